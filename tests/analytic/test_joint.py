@@ -211,6 +211,7 @@ def test_a_motor_that_speeds_up_takes_the_load_along() -> None:
     assert found.output_rate[-1] == pytest.approx(240.0 / RATIO, rel=1e-2)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("times", [0.7, 1.0, 1.4])
 def test_small_errors_vibrate_on_the_tangent(times: float) -> None:
     made = joint(stiffening(4e-4))

@@ -7,6 +7,7 @@ import pickle
 import numpy as np
 import pytest
 from scipy.signal import find_peaks
+from sound import quick_first
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
@@ -70,6 +71,7 @@ def test_films_are_those_of_converged_references():
     np.testing.assert_allclose(found.film.rolling, [15.88, 37.27, 8.545, 44.83], rtol=2.5e-2)
 
 
+@pytest.mark.whole
 def test_incompressible_films_follow_moes():
     M, L = np.array([5.0, 10.0, 20.0, 50.0, 100.0, 200.0]), np.array([5.0, *5 * [10.0]])
     reference = np.array([4.126, 5.633, 5.262, 4.749, 4.367, 4.003])
@@ -91,6 +93,7 @@ def test_incompressible_films_follow_moes():
     np.testing.assert_allclose(found.film.central_film / unit, reference, rtol=0.015)
 
 
+@pytest.mark.whole
 def test_rigid_bodies_with_a_thin_oil_have_the_film_of_martin():
     """h = 4.896 eta u R/w between rigid bodies with an oil that pressure does not thicken."""
     fluid = Fluid(viscosity=0.04, pressure_viscosity=1e-12, **SIMPLE)
@@ -100,6 +103,7 @@ def test_rigid_bodies_with_a_thin_oil_have_the_film_of_martin():
     np.testing.assert_allclose(found.film.minimum_film, martin, rtol=5e-3)
 
 
+@pytest.mark.whole
 def test_soft_bodies_with_a_thin_oil_have_the_film_of_herrebrugh():
     """Central film 2.621 M^-0.2 in units of Moes, the elastic limit of isoviscous oil."""
     found = solve_lines(of_moes(np.array([20.0, 50.0]), 1e-3), nodes=257)
@@ -108,6 +112,7 @@ def test_soft_bodies_with_a_thin_oil_have_the_film_of_herrebrugh():
     np.testing.assert_allclose(found.film.central_film / unit, expected, rtol=0.045)
 
 
+@pytest.mark.whole
 def test_without_speed_and_roughness_pressure_is_that_of_hertz():
     case = contact(speed=0.0, texture=Rough(rq=1e-9, modulus=MODULUS))
     found = solve_lines(case, nodes=257)
@@ -118,6 +123,7 @@ def test_without_speed_and_roughness_pressure_is_that_of_hertz():
     np.testing.assert_allclose(found.film.pressure[inside], hertz[inside], atol=1e6)
 
 
+@pytest.mark.whole
 def test_a_squeezed_film_is_that_between_rigid_bodies():
     """h = (3 pi sqrt(2) eta V R^1.5/w)^(2/3) of a cylinder that approaches a plane."""
     speed = np.array([1e-3, 1e-2])
@@ -127,6 +133,7 @@ def test_a_squeezed_film_is_that_between_rigid_bodies():
     np.testing.assert_allclose(solve_lines(case).film.central_film, film, rtol=6e-3)
 
 
+@pytest.mark.whole
 def test_a_longer_inlet_changes_nothing_and_a_short_one_starves():
     case = contact([0.5e9, 1e9], [1.0, 1.0])
     full = solve_lines(case)
@@ -138,6 +145,7 @@ def test_a_longer_inlet_changes_nothing_and_a_short_one_starves():
     assert "starved" in short.warnings[-1] and "1.5 half-widths" in short.warnings[-1]
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("L", [5.0, 15.0])
 def test_films_of_a_flooded_inlet_are_those_of_an_endless_one(L):
     case = of_moes(np.array([0.5, 1.0, 2.0, 5.0, 12.0, 40.0]), L)
@@ -152,6 +160,7 @@ def test_films_of_a_flooded_inlet_are_those_of_an_endless_one(L):
     assert not any("starved" in text for text in at.warnings)
 
 
+@pytest.mark.whole
 def test_films_converge_with_second_order():
     case = contact(*map(np.array, ([0.3e9, 0.8e9], [0.1, 0.5], [0.1, 0.01])))
     film, pump = (
@@ -183,6 +192,7 @@ def test_load_gap_and_energy_are_balanced():
         np.testing.assert_allclose(-power, sheared + found.film.pumping_power, rtol=1e-8)
 
 
+@pytest.mark.whole
 def test_the_flow_of_oil_is_the_same_through_every_face():
     case = contact(0.5e9)
     problem, at = problem_of(case), grid(129)
@@ -240,6 +250,7 @@ def test_asperities_carry_less_of_the_load_the_faster_thicker_and_smoother_it_ru
     assert (np.diff(high) > 0.0).all() and high[0] < 1e-4
 
 
+@pytest.mark.whole
 def test_load_on_stiff_asperities_is_that_of_masjedi_and_khonsari():
     """Summits 12.6 times as stiff as in textbooks carry as a regression has it, to a seventh of the load."""
     speed = np.array([0.03, 0.1, 0.3, 1.0])
@@ -259,6 +270,7 @@ def test_load_on_stiff_asperities_is_that_of_masjedi_and_khonsari():
     np.testing.assert_allclose(share, np.asarray(law), atol=0.14)
 
 
+@pytest.mark.whole
 def test_ever_smoother_surfaces_become_smooth_ones():
     smooth = solve_lines(contact(0.5e9)).film
     rough = [
@@ -269,6 +281,7 @@ def test_ever_smoother_surfaces_become_smooth_ones():
     assert off[1] < off[0] < 1e-2 and off[1] < 1e-3
 
 
+@pytest.mark.whole
 def test_mean_planes_that_overlap_are_solved():
     soft = Rough(rq=0.8e-6, modulus=MODULUS)
     found = solve_lines(contact(1.2e9, 1e-3, texture=soft))
@@ -286,7 +299,7 @@ def slope(of, at):
     return (8.0 * one - two) / 12e-3
 
 
-@pytest.mark.parametrize("texture", [None, Rough(rq=0.3e-6, modulus=MODULUS)])
+@pytest.mark.parametrize("texture", quick_first([None, Rough(rq=0.3e-6, modulus=MODULUS)]))
 def test_stiffness_is_that_of_contacts_with_more_load(texture):
     case = contact([0.3e9, 0.6e9, 1e9], [0.1, 1.0, -2.0], slide=0.1, texture=texture)
     film = solve_lines(case).film
@@ -300,6 +313,7 @@ def test_stiffness_is_that_of_contacts_with_more_load(texture):
     assert (by_load[1:] > -0.13).all() and (by_load[1:] < -0.1).all()
 
 
+@pytest.mark.whole
 def test_stiffness_comes_nearer_to_that_over_a_range_of_loads_with_more_nodes():
     """A spike passes nodes as the load grows, so that the stiffness of a film on a grid wavers."""
     part = np.linspace(0.94, 1.06, 9)
@@ -314,6 +328,7 @@ def test_stiffness_comes_nearer_to_that_over_a_range_of_loads_with_more_nodes():
     assert off[1] < 0.05 and off[0] < 0.09
 
 
+@pytest.mark.whole
 def test_damping_is_that_of_contacts_that_approach_faster():
     case = contact([0.3e9, 0.8e9], [0.1, 1.0], approach=np.array([2e-4, 1e-3]))
     film = solve_lines(case, nodes=33).film
@@ -325,6 +340,7 @@ def test_damping_is_that_of_contacts_that_approach_faster():
     np.testing.assert_allclose(film.damping, differences, rtol=1e-7)
 
 
+@pytest.mark.whole
 def test_stiffness_and_damping_between_rigid_bodies_are_known():
     """w = 4.9 eta u R/h drawn in, and 3 pi sqrt(2) eta V R^1.5/h^1.5 squeezed."""
     fluid = Fluid(viscosity=0.04, pressure_viscosity=1e-12, **SIMPLE)
@@ -338,6 +354,7 @@ def test_stiffness_and_damping_between_rigid_bodies_are_known():
     np.testing.assert_allclose(film.damping * speed / 1e4, 1.0, rtol=1e-3)
 
 
+@pytest.mark.whole
 def test_surfaces_that_stand_on_their_asperities_are_stiff_and_not_damped():
     rough = Rough(rq=0.4e-6, modulus=MODULUS)
     film = solve_lines(contact(0.6e9, texture=rough, speed_a=0.5, speed_b=-0.5)).film
@@ -387,6 +404,7 @@ def test_oils_by_value_draw_as_oils_bear_unless_a_newtonian_one_is_asked_for():
 # ---- derivatives
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("texture", [None, Rough(rq=0.2e-6, modulus=MODULUS)])
 def test_the_matrix_is_that_of_differences(texture):
     """Balances of cells that are full: rows of the matrix times the scale of their defects."""
@@ -416,6 +434,7 @@ def test_the_matrix_is_that_of_differences(texture):
     np.testing.assert_allclose((differences / largest)[full], (matrix / largest)[full], atol=1e-6)
 
 
+@pytest.mark.whole
 def test_gradients_of_film_and_traction_are_those_of_differences():
     names = ("line_load", "speed", "viscosity", "radius", "rq", "alpha")
 
@@ -454,6 +473,7 @@ def test_gradients_of_film_and_traction_are_those_of_differences():
     np.testing.assert_allclose(damping, stiffness * by_approach, rtol=1e-6)
 
 
+@pytest.mark.whole
 def test_films_rise_with_the_speed_to_seven_tenths():
     film = solve_lines(contact(0.6e9, np.array([0.97, 1.03]))).film.central_film
     assert np.diff(np.log(film))[0] / np.log(1.03 / 0.97) == pytest.approx(0.7, abs=0.04)
@@ -491,6 +511,7 @@ def test_what_has_no_film_says_so_and_shows_no_numbers():
     assert np.isnan(found.film.pressure[:3]).all()
 
 
+@pytest.mark.whole
 def test_surfaces_that_roll_against_each_other_lie_on_their_asperities():
     rough = Rough(rq=0.4e-6, modulus=MODULUS, boundary_friction=0.12)
     case = contact(
@@ -503,6 +524,7 @@ def test_surfaces_that_roll_against_each_other_lie_on_their_asperities():
     )
 
 
+@pytest.mark.whole
 def test_a_solution_is_a_start_for_its_neighbours():
     first = solve_lines(contact([0.6e9, 0.8e9]))
     onward = solve_lines(contact([0.62e9, 0.83e9]), start=first)
@@ -514,6 +536,7 @@ def test_a_solution_is_a_start_for_its_neighbours():
         solve_lines(contact(0.6e9), start=first)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(("given", "wanted"), [(33, 129), (129, 33)])
 def test_films_on_other_grids_and_running_the_other_way_are_a_start(given, wanted):
     first = solve_lines(contact([0.6e9, 0.8e9], [1.0, -1.0]), nodes=given)
@@ -611,6 +634,7 @@ def test_bad_input_is_one_sentence(given, sentence):
         solve_lines(LineContact(**({"modulus": MODULUS, "fluid": Fluid(**OIL)} | case)))
 
 
+@pytest.mark.whole
 def test_the_grid_is_judged_by_the_film_also_where_mean_planes_meet():
     soft = Rough(rq=0.4e-6, modulus=MODULUS)
     thin, exact = (

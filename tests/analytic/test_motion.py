@@ -133,6 +133,7 @@ def _vibration(design, point, terms, vibrating):
     return steady(moved, driven, GRID), moved.damping
 
 
+@pytest.mark.whole
 def test_parametric_work_of_a_period_is_that_of_springs_that_change_while_pressed():
     """And of the places from which they push, since Weber's contact stiffens with its load."""
     found = steady_motion(alone(), SPEED, GRID)

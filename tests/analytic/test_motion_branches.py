@@ -114,6 +114,7 @@ def driven_by_gear_2():
     return vibrating(**given, passage=passage(design, point, XU.compliance))
 
 
+@pytest.mark.whole
 def test_a_wheel_that_drives_loses_to_friction_and_its_energy_closes():
     own = driven_by_gear_2()
     found = found_at(own, SLOW / 2.0)
@@ -141,6 +142,7 @@ def test_a_wheel_that_drives_loses_to_friction_and_its_energy_closes():
 # ---- film
 
 
+@pytest.mark.whole
 def test_films_of_a_motion_are_those_of_its_forces_and_speeds():
     own, law = vibrating(), FILM_THICKNESS["dowson_higginson_1959"]
     found = found_at(own, RISING[0])

@@ -31,6 +31,7 @@ def alone():
     return found_at()
 
 
+@pytest.mark.whole
 def test_an_error_of_half_an_order_repeats_after_two_mesh_cycles(alone):
     assert alone.status.code in FOUND
     assert np.any(np.all(np.asarray(alone.found.stretch) < 0.0, axis=(0, 1)))  # teeth part
@@ -47,6 +48,7 @@ def test_an_error_of_half_an_order_repeats_after_two_mesh_cycles(alone):
     assert float(orders[1]) < 1e-6 * float(orders[2])
 
 
+@pytest.mark.whole
 def test_the_error_of_a_motion_follows_its_tolerance(alone):
     """From one tolerance to the next it may fall by three or by thirty: steps end at kinks by chance."""
     exact = found_at(tolerance=1e-13).transmission_error

@@ -130,6 +130,7 @@ def nijenbanning_1994(load: float, viscosity: float, ratio: float) -> float:
     )
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("load", "viscosity", "ratio"),
     [(20.0, 10.0, 1.0), (100.0, 10.0, 1.0), (100.0, 5.0, 1.0), (30.0, 8.0, 0.2), (30.0, 8.0, 3.0)],
@@ -142,6 +143,7 @@ def test_ellipses_have_the_film_of_nijenbanning_venner_and_moes(load, viscosity,
     assert film == pytest.approx(nijenbanning_1994(load, viscosity, ratio), rel=0.08)
 
 
+@pytest.mark.whole
 def test_the_thinnest_film_converges_with_more_than_second_order():
     """Film of a ball on grids that halve; the film in the middle follows with the second order from 65 on."""
     contact = moderate_ball(20.0, 5.0)
@@ -177,6 +179,7 @@ def _widths(film: PatchFilm) -> np.ndarray:
     return np.array(widths)
 
 
+@pytest.mark.whole
 def test_thinner_and_thinner_films_end_in_the_dry_contact():
     apart = [_from_dry(coarse(ball((speed, 0.0))).film) for speed in (2.0, 0.3, 0.06)]
     assert apart[1] < 0.5 * apart[0]
@@ -197,6 +200,7 @@ def _edges(middles: np.ndarray) -> np.ndarray:
     return np.append(middles - half, middles[-1] + half)
 
 
+@pytest.mark.whole
 def test_entrainment_along_the_other_axis_turns_the_film():
     along, across = (
         coarse(ball((2.0, 0.0), ratio=3.0)),
@@ -216,6 +220,7 @@ def test_reversed_entrainment_mirrors_the_film():
     assert ahead.shear_force[0] == pytest.approx(-back.shear_force[0])
 
 
+@pytest.mark.whole
 def test_oblique_entrainment_of_a_ball_turns_its_film():
     straight = coarse(ball((2.0, 0.0))).film
     speed = 2.0 * np.cos(0.6), 2.0 * np.sin(0.6)
@@ -226,6 +231,7 @@ def test_oblique_entrainment_of_a_ball_turns_its_film():
     assert np.hypot(*oblique.rolling) == pytest.approx(float(straight.rolling[0]), rel=0.1)
 
 
+@pytest.mark.whole
 def test_asperities_carry_more_the_slower_the_surfaces_are():
     rough = Rough(rq=0.3e-6, modulus=MODULUS)
     films = [coarse(line(speed=speed, texture=rough)).film for speed in (3.0, 0.3, 0.03)]
@@ -244,6 +250,7 @@ def test_asperities_carry_more_the_slower_the_surfaces_are():
         assert rubbed == pytest.approx(float(film.asperity_share), rel=1e-9)
 
 
+@pytest.mark.whole
 def test_derivatives_of_the_balances_are_those_of_differences():
     contact = line(texture=Rough(rq=0.3e-6, modulus=MODULUS))
     found = coarse(contact)
@@ -318,6 +325,7 @@ def solved_again(found: PatchFilms, by: np.ndarray) -> np.ndarray:
 FILM = jax.jit(patch_film)
 
 
+@pytest.mark.whole
 def test_derivatives_of_films_are_those_of_differences():
     found = coarse(wavy_line())
     exact = jax.jit(jax.jacfwd(lambda by: figures(film_near(changed(by), found))))(jnp.zeros(5))
@@ -362,6 +370,7 @@ def test_smooth_surfaces_that_stand_still_have_no_film():
     assert "no film" in found.warnings[0]
 
 
+@pytest.mark.whole
 def test_a_line_that_leans_is_the_mirror_of_one_that_leans_the_other_way():
     leans = line(places=ENDS, relief=np.array([0.0, 2e-6]), crown=0.0)
     other = line(places=ENDS, relief=np.array([2e-6, 0.0]), crown=0.0)
@@ -372,6 +381,7 @@ def test_a_line_that_leans_is_the_mirror_of_one_that_leans_the_other_way():
     assert one.near_ends[0, 1] == pytest.approx(two.near_ends[1, 1], rel=1e-6)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("turn", [(1, -1), (-1, 1), (-1, -1)])
 @pytest.mark.parametrize("swapped", [False, True])
 def test_turned_ellipses_have_turned_films(turn: tuple[int, int], swapped: bool):
@@ -394,6 +404,7 @@ def test_turned_ellipses_have_turned_films(turn: tuple[int, int], swapped: bool)
         assert np.allclose(turned, getattr(film, name), rtol=1e-6), name
 
 
+@pytest.mark.whole
 def test_free_ends_take_pressure_from_the_ends():
     flush = [coarse(line(crown=0.0, ends=ends)).film for ends in ("half_space", "mirrored")]
     assert np.all(flush[1].near_ends[:, 0] < 0.8 * flush[0].near_ends[:, 0])
@@ -416,6 +427,7 @@ def wide_contact(load: float = 1.0, approach: float = 0.0) -> PatchFilms:
     return coarse(contact)
 
 
+@pytest.mark.whole
 def test_stiffness_and_damping_are_those_of_contacts_that_are_solved_again():
     film = wide_contact().film
     less, more = (wide_contact(load=part).film.separation for part in (0.98, 1.02))
@@ -425,6 +437,7 @@ def test_stiffness_and_damping_are_those_of_contacts_that_are_solved_again():
     assert float(film.damping) == pytest.approx(float(film.stiffness) * by_approach, rel=1e-3)
 
 
+@pytest.mark.whole
 def test_shear_below_a_crowned_line_is_between_those_of_lines_and_balls():
     found, depth = crowned_line(), np.linspace(0.5, 1.1, 13) * float(crowned_line().film.half_width)
     shear = np.asarray(found.stresses(depth, 0.3).largest_shear())
@@ -433,6 +446,7 @@ def test_shear_below_a_crowned_line_is_between_those_of_lines_and_balls():
     assert depth[most[0]] == pytest.approx(0.786 * float(found.film.half_width), rel=0.08)
 
 
+@pytest.mark.whole
 def test_oil_that_begins_nearby_starves_a_patch_as_it_starves_a_line():
     inlet = 1.6 * float(crowned_line().film.half_width)
     starved = solve_patch(line(inlet=inlet), nodes=129, cells=64)

@@ -76,6 +76,7 @@ def test_a_map_of_a_parabola_is_another_radius():
     assert np.allclose(one.pressure, two.pressure, atol=1e-6)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("turn", [(-1, 1), (1, -1)])
 @pytest.mark.parametrize("swapped", [False, True])
 def test_turned_contacts_with_turned_maps_have_turned_films(turn: tuple[int, int], swapped: bool):
@@ -92,6 +93,7 @@ def test_turned_contacts_with_turned_maps_have_turned_films(turn: tuple[int, int
     assert np.allclose(gap[:: turn[1], :: turn[0]], film.gap, rtol=1e-9)
 
 
+@pytest.mark.whole
 def test_pressure_stands_on_waves_and_flattens_them():
     smooth, wavy = (solved(ball(heights=maps)).film for maps in ((), wave()))
     inside = smooth.pressure > 0.4 * smooth.hertz_pressure
@@ -105,6 +107,7 @@ def test_pressure_stands_on_waves_and_flattens_them():
     assert np.corrcoef((wavy.gap - smooth.gap)[outside], -high[outside])[0, 1] > 0.95
 
 
+@pytest.mark.whole
 def test_a_film_may_take_a_map_of_each_surface():
     x = np.linspace(-1e-3, 1e-3, 11)
     halves = tuple(wave(high=2.5e-8, member=None) for _ in range(2))

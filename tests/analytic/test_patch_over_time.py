@@ -82,6 +82,7 @@ def squeezed(steps: int) -> tuple[list[PatchMoment], float, float]:
     return marched(contacts, times), film, LOAD / (6.0 * ETA * bulge)
 
 
+@pytest.mark.whole
 def test_plates_are_squeezed_together_as_reynolds_says():
     # h^3 = 12 eta V G/F, d(1/h^2)/dt = F/(6 eta G), with G the integral of the solution of Poisson's equation
     # on the rectangle: the series of a twisted bar (Timoshenko, Goodier, Theory of Elasticity, art. 109).
@@ -92,6 +93,7 @@ def test_plates_are_squeezed_together_as_reynolds_says():
     assert np.allclose(films, (1.0 / film**2 + rate * times) ** -0.5, rtol=1e-2)
 
 
+@pytest.mark.whole
 def test_steps_of_time_are_of_second_order():
     films = [float(squeezed(count)[0][-1].film.central_film) for count in (8, 16, 32)]
     order = np.log2((films[1] - films[0]) / (films[2] - films[1]))
@@ -125,6 +127,7 @@ def steady_gap(contact: PatchContact, like: PatchMoment) -> float:
     return float(np.min(problem.gap(state.pressure, state.level)) * problem.flow.height)
 
 
+@pytest.mark.whole
 def test_slow_changes_find_the_steady_film_of_every_time():
     contacts, times = swelling(6, period=4000.0 * PASSING)
     last = marched(contacts, times)[-1]
@@ -135,6 +138,7 @@ def test_slow_changes_find_the_steady_film_of_every_time():
     assert abs(float(last.film.minimum_film) / steady_gap(contacts[-1], last) - 1.0) > 0.02
 
 
+@pytest.mark.whole
 def test_steps_by_error_keep_to_it():
     contacts, times = swelling(2)
     given = [contacts[0], contacts[-1]], times[[0, -1]]
@@ -196,6 +200,7 @@ def left_of(*speeds: float) -> float:
     return float(np.linalg.norm(found - waves @ amplitudes) / np.linalg.norm(found))
 
 
+@pytest.mark.whole
 def test_what_waves_do_at_the_inlet_passes_with_the_mean_speed():
     # Where oil is so thick that pressure moves none of it, d(rho h)/dt + u d(rho h)/dx = 0: what waves do to
     # the film where oil comes in passes with the mean speed u, whatever surface they are on.
@@ -225,6 +230,7 @@ def test_a_dataset_has_every_field_at_every_time():
     assert np.allclose(loads, [float(one.load) for one in contacts], rtol=1e-6)
 
 
+@pytest.mark.whole
 def test_a_march_ends_with_a_film_that_is_not_found():
     still = ball(speed=0.0)
     found = list(march_patches([still, still], [0.0, 1e-3], **GRID))

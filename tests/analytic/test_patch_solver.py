@@ -50,6 +50,7 @@ def on(contact: PatchContact, nodes: int, start: PatchFilms | None = None) -> Pa
     return found
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("contact", "earlier", "nodes"),
     [
@@ -93,6 +94,7 @@ def test_symmetric_contacts_have_symmetric_films():
         assert np.allclose(film.pressure, film.pressure[::-1], atol=1e-6 * film.hertz_pressure)
 
 
+@pytest.mark.whole
 def test_the_tips_of_an_ellipse_hold_their_film():
     # Emptied ones, as by an arithmetic mean of the conductances across, have a tenth, and are no solution.
     oil = Fluid(viscosity=0.013, pressure_viscosity=2e-8)
@@ -123,6 +125,7 @@ def test_rows_that_are_images_of_each_other_are_inverted_once(
     assert np.allclose(half.film.gap, every.film.gap, rtol=1e-6)
 
 
+@pytest.mark.whole
 def test_another_ellipse_needs_no_other_program():
     on(ball(), 33)
     kept = programs._LOADED["programs"]
@@ -136,6 +139,7 @@ def test_attempts_that_do_not_fall_are_hopeless():
     assert not _hopeless([1.0] * 10)
 
 
+@pytest.mark.whole
 def test_thin_films_have_the_film_of_an_infinite_line():
     contact = line(0.012)
     found = on(contact, 129)
@@ -147,6 +151,7 @@ def test_thin_films_have_the_film_of_an_infinite_line():
     assert found.film.central_film == pytest.approx(float(infinite.central_film), rel=0.02)
 
 
+@pytest.mark.whole
 def test_a_thick_film_between_balls_leaks_as_that_of_rigid_ones():
     """Of rigid balls h = 128 (U/W)^2 (.131 atan(1/2) + 1.683)^2 (3/5)^2 R; its grid keeps a part away."""
     oil = Fluid(viscosity=0.05, pressure_viscosity=2e-8, shear_law="newtonian")

@@ -148,7 +148,10 @@ def test_rolling_is_that_of_the_films_unless_the_case_has_a_model_of_it(spur):
     assert 0.01 < off.max() < 0.15
 
 
-@pytest.mark.parametrize("text", [PAIR, WAVE], ids=["spur", "strain wave"])
+@pytest.mark.parametrize(
+    "text",
+    [pytest.param(PAIR, id="spur"), pytest.param(WAVE, marks=pytest.mark.whole, id="strain wave")],
+)
 def test_loss_and_efficiency_are_those_of_the_films_over_the_cycle(text):
     case = built(text, film={"solver": "line", "nodes": 33})
     parts = [FILM.compute(case, piece, lambda _: None) for piece in FILM.pieces(case)]
@@ -174,6 +177,7 @@ def coefficients(model, thinner=1.0, sliding=0.5):
     )
 
 
+@pytest.mark.whole
 def test_smooth_flanks_in_a_thin_oil_have_hardly_any_friction():
     """Shear eta u/h falls with the viscosity, as the film falls with less than its first power."""
     smooth = replace(COARSE, asperities=SMOOTH, shear_law="newtonian", density_law="incompressible")
@@ -185,6 +189,7 @@ def test_smooth_flanks_in_a_thin_oil_have_hardly_any_friction():
     assert (rough < COARSE.boundary_friction).all()
 
 
+@pytest.mark.whole
 def test_films_of_all_turns_are_counted():
     one, counted = np.ones(2), []
     oil = lubricants.find("pao-vg-100").build()
@@ -251,6 +256,7 @@ def test_a_film_that_was_not_solved_gives_no_numbers(monkeypatch):
 HELICAL = {"helix_angle": "15 deg"}
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("case", ["helical", "strain wave"])
 def test_other_families_follow(case):
     one = built(WAVE) if case == "strain wave" else built(gears=HELICAL, models={"slices": 2})
@@ -262,6 +268,7 @@ def test_other_families_follow(case):
     assert json.loads(data.attrs["solve"])["code"] == Code.SOLVED
 
 
+@pytest.mark.whole
 def test_back_driving_is_solved_too():
     forth = built(friction=["constant", "ehl_line"])
     data = OPERATION.compute(forth, {}, lambda _: None)
@@ -292,6 +299,7 @@ def test_a_map_between_levels_is_the_polynomial_through_them():
     np.testing.assert_allclose(twice, 2.0 * ends, rtol=1e-12)
 
 
+@pytest.mark.whole
 def test_a_loss_map_rests_on_films_at_few_points():
     asked = {"torque": "60 N m", "speed": "1800 rpm", "count": 6, "temperatures": ["60 degC"]}
     case = built(friction=["constant", "ehl_line"], loss_map=asked)

@@ -465,6 +465,7 @@ def test_batch_of_designs_equals_each_alone():
     assert np.asarray(together) == pytest.approx(np.asarray(each), rel=1e-12)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("model", ["beam_hertz_common_modulus", "beam_foundation_weber"])
 def test_gradients_with_respect_to_shifts_and_load(pairs, model):
     pair = pairs["GP3"]

@@ -198,6 +198,7 @@ def _root_and_rate(given, load):
     return root(load), jax.grad(root)(load)
 
 
+@pytest.mark.whole
 def test_derivatives_of_the_balance_agree_with_differences(warm):
     cool = surrounded(warm.solids, warm.case.operation.temperature)
     given = warm.design, warm.operation, warm.models[0], heating(warm.case, cool)
@@ -215,6 +216,7 @@ def test_a_balance_that_is_not_found_says_so(warm):
     assert not any("no balance" in text for text in warm.warnings)
 
 
+@pytest.mark.whole
 def test_backwards_has_a_balance_of_its_own(warm):
     other = warm.backwards
     assert int(other.warming.code) == Code.SOLVED

@@ -229,6 +229,7 @@ def test_mesh_stiffness_is_the_slope_of_the_wind_up_over_the_load():
     assert np.all(found.total * found.approach * radius**2 > 1.2 * load)
 
 
+@pytest.mark.whole
 def test_derivatives_of_what_misalignment_does():
     mesh = pair(inclination="5 mrad", axial_offset="0.3 mm")
 

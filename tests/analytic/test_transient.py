@@ -191,6 +191,7 @@ def test_bearings_give_way_to_the_teeth(started):
         np.testing.assert_allclose(shift[:, -1], expected, atol=1e-6 * np.max(np.abs(shift)))
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("driver", [1, 2])
 def test_contacts_travel_with_the_flanks(driver):
     bodies = [gear(1e-3, viscous=3.0), gear(6e-3, viscous=12.0)]
@@ -361,6 +362,7 @@ def test_discs_reach_a_common_speed_in_the_time_of_the_textbook():
     np.testing.assert_allclose(found.energy.mesh, 0.0, atol=1e-8 * found.energy.kinetic[0])
 
 
+@pytest.mark.whole
 def test_a_block_on_a_belt_slips_sticks_and_slips_the_other_way():
     mass, frequency, belt, start = 1.0, 100.0, 0.05, 0.12
     held = mass * frequency**2

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.special import k0
+from sound import quick_first
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
@@ -151,7 +152,7 @@ def test_the_warmer_surface_takes_less_of_the_heat():
 # ---- whole contacts
 
 
-@pytest.mark.parametrize("texture", ["sliding", "rough"])
+@pytest.mark.parametrize("texture", quick_first(["sliding", "rough"]))
 def test_all_heat_that_is_made_goes_into_the_surfaces(texture, request):
     case, found = request.getfixturevalue(texture)
     film, slip = found.film, np.asarray(case.speed_b - case.speed_a)
@@ -161,7 +162,7 @@ def test_all_heat_that_is_made_goes_into_the_surfaces(texture, request):
     np.testing.assert_allclose(film.heat.flux_a + film.heat.flux_b, film.heat.heat, rtol=1e-9)
 
 
-@pytest.mark.parametrize("texture", ["sliding", "rough"])
+@pytest.mark.parametrize("texture", quick_first(["sliding", "rough"]))
 def test_energy_dissipated_is_traction_by_sliding_and_rolling(texture, request):
     case, found = request.getfixturevalue(texture)
     film = found.film
@@ -198,6 +199,7 @@ def test_surfaces_are_as_warm_as_their_heat_makes_them(sliding):
         np.testing.assert_allclose(rise[k], expected, rtol=0, atol=0.015 * np.max(expected))
 
 
+@pytest.mark.whole
 def test_traction_rises_with_sliding_and_falls_with_heat(sliding):
     case, found = sliding
     cold = solve_lines(dataclasses.replace(case, conduction=None), nodes=65)
@@ -215,6 +217,7 @@ def test_without_sliding_there_is_little_heat_and_no_traction():
     assert cold.heat is None
 
 
+@pytest.mark.whole
 def test_rolling_films_become_thinner_as_by_murch_and_wilson():
     """Within a tenth of the film, for thermal loadings of 0.05 to 1."""
     speed = np.array([2.0, 5.0, 9.0])
@@ -224,6 +227,7 @@ def test_rolling_films_become_thinner_as_by_murch_and_wilson():
     np.testing.assert_allclose(warm / cold, murch_wilson_1975(thermal_loading=loading), rtol=0.1)
 
 
+@pytest.mark.whole
 def test_oil_that_conducts_well_makes_surfaces_and_film_alike():
     poor = Conductor(conductivity=0.26, heat_capacity=1.9e6)
     given = conduction(b=poor, oil=1e6)
@@ -235,6 +239,7 @@ def test_oil_that_conducts_well_makes_surfaces_and_film_alike():
     assert (heat.power_a > 5.0 * heat.power_b).all()
 
 
+@pytest.mark.whole
 def test_temperatures_are_mirrored_when_surfaces_turn_round():
     ahead = solve_lines(contact(slide=np.array([0.5])), nodes=65).film
     back = solve_lines(contact(speed=-5.0, slide=np.array([0.5])), nodes=65).film
@@ -244,12 +249,14 @@ def test_temperatures_are_mirrored_when_surfaces_turn_round():
     assert back.heat.power_a[0] == pytest.approx(ahead.heat.power_a[0], rel=1e-8)
 
 
+@pytest.mark.whole
 def test_contacts_together_are_those_alone(sliding):
     _, together = sliding
     alone = solve_lines(contact(slide=SLIDES[4:5]), nodes=65).film
     np.testing.assert_allclose(alone.heat.film[0], together.film.heat.film[4], rtol=1e-9)
 
 
+@pytest.mark.whole
 def test_asperities_warm_the_surfaces(rough):
     case, found = rough
     without = dataclasses.replace(
@@ -292,6 +299,7 @@ def test_profiles_can_be_left_out():
     assert heat.film.shape == (9, 0) and heat.largest_film.shape == (9,)
 
 
+@pytest.mark.whole
 def test_gradients_of_warm_films_are_those_of_differences():
     """To load, speeds, viscosity, thinning, and what conducts the heat; asperities carry a part."""
 
@@ -331,6 +339,7 @@ def test_gradients_of_warm_films_are_those_of_differences():
         np.testing.assert_allclose(slopes[:, k] / scale, difference / scale, atol=1e-6)
 
 
+@pytest.mark.whole
 def test_films_that_can_be_differentiated_are_those_solved(sliding):
     case, found = sliding
     film = jax.jit(lambda one: line_films(one, nodes=65))(some(case, slice(2, 5)))

@@ -64,6 +64,7 @@ def sliding() -> PatchFilms:
     return solved(ball())
 
 
+@pytest.mark.whole
 def test_the_middle_of_a_long_line_is_one_without_ends() -> None:
     """In the middle of one that is pressed alike along its length, as bodies end with it at free faces."""
     common = {"radius": RADIUS, "modulus": MODULUS, "fluid": FLUID, "conduction": HEAT}
@@ -136,6 +137,7 @@ def test_symmetric_contacts_are_symmetric_and_turn_round_with_their_speeds() -> 
         np.testing.assert_allclose(getattr(back, name), field[:, ::-1], **close)
 
 
+@pytest.mark.whole
 def test_entrainment_along_the_other_axis_turns_the_temperatures() -> None:
     along = sliding().film
     still = {"speed_a": 0.0, "speed_b": 0.0, "across": tuple(speeds(4.0, 0.4).values())}
@@ -147,6 +149,7 @@ def test_entrainment_along_the_other_axis_turns_the_temperatures() -> None:
     assert across.heat.power_b == pytest.approx(float(along.heat.power_b), rel=1e-8)
 
 
+@pytest.mark.whole
 def test_rises_are_half_of_those_in_what_conducts_twice_as_well() -> None:
     """Of an oil that temperature does not thin, whose film is nearly that without heat."""
     dull = {"fluid": Fluid(**OIL, viscosity_slope=0.0), "slide": 0.02}
@@ -168,6 +171,7 @@ def test_rises_are_half_of_those_in_what_conducts_twice_as_well() -> None:
     assert any("does not thin as it warms" in told for told in once.warnings)
 
 
+@pytest.mark.whole
 def test_without_sliding_there_is_little_heat_and_the_film_is_isothermal() -> None:
     given = {"speed": 0.6, "slide": 0.0}
     warm, cold = (solved(ball(**given, conduction=one)).film for one in (HEAT, None))
@@ -184,6 +188,7 @@ def test_warm_films_are_thinner_and_rub_less() -> None:
     assert 0.7 * cold.central_film < warm.central_film < cold.central_film
 
 
+@pytest.mark.whole
 def test_a_film_is_the_same_from_one_that_is_like_it() -> None:
     near = solved(ball(speed=5.0))
     found = solved(ball(), start=near)
@@ -211,6 +216,7 @@ def figures(film: Any) -> Any:
     return jnp.stack([*forces, film.heat.largest_film, film.heat.largest_b, film.heat.power_a])
 
 
+@pytest.mark.whole
 def test_derivatives_of_films_are_those_of_differences() -> None:
     found = sliding()
     near = jax.jit(lambda by: figures(film_near(changed(by), found)))

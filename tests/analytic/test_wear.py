@@ -219,6 +219,7 @@ def rate_of(built: Built, cells: int = CELLS) -> tuple[Any, tuple[int, int, int]
     return rate, (2, grid.count, grid.strips)
 
 
+@pytest.mark.whole
 def test_shorter_steps_change_the_depth_within_the_stated_error():
     rate, shape = rate_of(pair())
     coarse = marched(rate, shape, 3e6, tolerance=1e-2)
@@ -239,6 +240,7 @@ def test_worn_flanks_hand_the_load_to_those_that_are_less_worn():
     assert volumes[1] == pytest.approx(volumes[0], rel=0.3)
 
 
+@pytest.mark.whole
 def test_the_number_of_steps_does_not_grow_with_the_cycles():
     given = discs()
     start, cells = as_new(*given, parts=PARTS, count=CELLS)
@@ -288,6 +290,7 @@ def more(wear: WearModel, name: str, part: float) -> WearModel:
     return replace(wear, own=({**first, name: first[name] * (1.0 + part)}, second))
 
 
+@pytest.mark.whole
 def test_sensitivities_of_the_life_are_those_of_differences():
     """Two humps that relieve each other as they deepen, against whole marches of changed inputs."""
     built, depth, step = pair(), 3e-6, 5e-3
@@ -332,6 +335,7 @@ def test_flanks_that_count_as_new_wear_by_their_first_rate():
         assert one.life == pytest.approx(-one.rate, abs=1e-12), name
 
 
+@pytest.mark.whole
 def test_sensitivities_of_discs_are_the_powers_of_archard():
     given = discs()
     start, cells = as_new(*given, parts=PARTS, count=CELLS)
@@ -367,6 +371,7 @@ def by_share(*, coefficient: Any, hardness: Any, asperity_share: Any) -> Any:
 FILMS = WearModel(by_share, (OWN, OWN), films=FilmModel(nodes=33))
 
 
+@pytest.mark.whole
 def test_films_tell_the_load_on_asperities(monkeypatch):
     built = pair("equal")
     given, seen = (built.design, built.operation, built.models[0]), []
@@ -513,6 +518,7 @@ def test_contacts_feel_the_second_difference_over_their_width():
     assert over[0] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("name", ["torus", "helical_few_teeth_plastic"])
 def test_other_families_keep_their_volume(name):
     sharing = {"models.load_sharing": "from_stiffness"}

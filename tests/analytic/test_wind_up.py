@@ -214,6 +214,7 @@ def of_pair(mesh, load):
     return stiffness, found, touch(other.gap, arm, other.active)
 
 
+@pytest.mark.whole
 def test_the_mesh_stiffness_of_a_spur_pair_is_the_slope_of_its_wind_up():
     """Springs pass through the load at its wind-up, and along its slope, of Weber's contact."""
     stiffness, found, _ = jax.tree.map(np.asarray, of_pair(SPUR, jnp.asarray(80.0)))
