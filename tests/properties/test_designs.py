@@ -118,6 +118,7 @@ def _figures(pair, shift, angle):
     return figures(at), jax.jacfwd(figures)(at)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("number", [0, 1, 4])
 def test_derivatives_through_building_agree_with_differences(designs, number):
     pair, step = designs[number], 1e-6
@@ -183,6 +184,7 @@ def _clearances(drive, deflection):
     return jax.jvp(clearances, (deflection,), (jnp.ones(()),))
 
 
+@pytest.mark.whole
 def test_derivatives_of_clearances_by_the_deflection_agree_with_differences(wave):
     at, step = wave.line.deflection / wave.module, 1e-5
     _, slopes = _clearances(wave, at)
