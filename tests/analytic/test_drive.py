@@ -221,7 +221,6 @@ def test_a_loss_between_two_shafts_of_a_stage_is_overcome_by_that_stage():
 
 
 XU = next(law for law in LAWS if law.name == "xu_2007")
-THIRD = Stage(design((17, 55), 4e-3), (2, 3), place=jnp.asarray(0.12), turn=jnp.asarray(1.0))
 BEARINGS = [bearing(1, -0.03, 0.1), bearing(1, 0.1, -0.03), bearing(2, 0.03, 0.15)]
 
 
@@ -251,7 +250,8 @@ def every_figure(drive, few):
 @pytest.mark.parametrize("drag", [[], BEARINGS], ids=["alone", "bearings"])
 def test_few_loads_stand_for_all_meetings_of_three_stages(drag):
     drag = [dataclasses.replace(one, between=jnp.append(one.between, 0.0)) for one in drag]
-    drive = chained([FIRST, SECOND, THIRD], drag)
+    third = Stage(design((17, 55), 4e-3), (2, 3), place=jnp.asarray(0.12), turn=jnp.asarray(1.0))
+    drive = chained([stage_1(), stage_2(), third], drag)
     few, every = (jax.tree.map(np.asarray, every_figure(drive, few)) for few in (5, None))
     assert few["count"] < every["count"] / (2 if drag else 6)
     for name in ("means", "friction", "pressed"):
