@@ -193,6 +193,7 @@ def test_what_cannot_be_squeezed_is_told(
     assert caught.value.key == key
 
 
+@pytest.mark.whole
 def test_lines_are_followed_while_they_keep_their_length(case: str) -> None:
     built = load_case(case, settings={"gears.helix_angle": "8 deg"})
     course, states = course_of(built), wholes(built).states

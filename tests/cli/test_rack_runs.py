@@ -35,6 +35,7 @@ def test_the_shipped_example_is_short() -> None:
     assert (manifest["driver"], manifest["loaded"]) == ("pinion", "rack")
 
 
+@pytest.mark.whole
 def test_power_goes_from_the_pinion_to_the_rack(outcome: Outcome) -> None:
     data = outcome.parts["operation"]
     lost, seal = float(data["mean_loss"].values[0, 0]), 0.1 * SPEED
@@ -46,6 +47,7 @@ def test_power_goes_from_the_pinion_to_the_rack(outcome: Outcome) -> None:
     assert float(data["mean_drag_loss"].values[0, 0]) == pytest.approx(seal, rel=1e-12)
 
 
+@pytest.mark.whole
 def test_the_map_of_the_rack_is_in_its_units(outcome: Outcome) -> None:
     data = outcome.parts["four_quadrants"]
     units = [data[name].attrs["units"] for name in ("output_torque", "output_speed")]
@@ -61,6 +63,7 @@ def test_the_map_of_the_rack_is_in_its_units(outcome: Outcome) -> None:
     assert ">Four quadrants<" in render({"default": outcome})
 
 
+@pytest.mark.whole
 def test_guides_of_the_rack_bear_the_separating_force_alone() -> None:
     data = run(SAMPLE, settings={**SMALL, **FRICTIONLESS})["default"].parts["operation"]
     radial, axial = (
@@ -72,6 +75,7 @@ def test_guides_of_the_rack_bear_the_separating_force_alone() -> None:
     np.testing.assert_array_equal(axial, 0.0)
 
 
+@pytest.mark.whole
 def test_a_thrust_of_helical_teeth_is_that_on_the_shaft_of_the_pinion_alone(
     outcome: Outcome,
 ) -> None:
@@ -83,6 +87,7 @@ def test_a_thrust_of_helical_teeth_is_that_on_the_shaft_of_the_pinion_alone(
     assert "axial load on the guides" not in page
 
 
+@pytest.mark.whole
 def test_what_travels_has_units_of_its_own(outcome: Outcome) -> None:
     torsion, back = outcome.parts["torsion"], outcome.parts["back_driving"]
     units = {
@@ -100,6 +105,7 @@ def test_what_travels_has_units_of_its_own(outcome: Outcome) -> None:
     assert outcome.parts["vibration"]["torque"].attrs["long_name"] == "output force"
 
 
+@pytest.mark.whole
 def test_stiffness_against_the_force_is_that_along_the_line_of_action(outcome: Outcome) -> None:
     """A travel s closes the flanks by s cos(alpha), and the force along them is F/cos(alpha)."""
     torsion, stiffness = outcome.parts["torsion"], outcome.parts["stiffness"]
@@ -109,16 +115,19 @@ def test_stiffness_against_the_force_is_that_along_the_line_of_action(outcome: O
     assert float(torsion["torsional_stiffness"].values[at]) == pytest.approx(mean, rel=1e-3)
 
 
+@pytest.mark.whole
 def test_the_map_reaches_the_force_that_was_asked_for(outcome: Outcome) -> None:
     assert outcome.parts["loss_map"]["torque"].values.tolist() == [0.0, 4000.0]
 
 
+@pytest.mark.whole
 def test_json_says_the_units_of_a_travel(outcome: Outcome) -> None:
     shown = figures(outcome)
     assert shown["units"]["wind_up"] == "m"
     assert shown["units"]["mean_input_torque"] == "N m"
 
 
+@pytest.mark.whole
 def test_every_section_that_applies_is_in_the_report_in_words_of_a_travel(outcome: Outcome) -> None:
     page = render({"default": outcome})
     sections = re.findall(r'<section id="(\w+)"', page)

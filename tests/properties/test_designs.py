@@ -194,6 +194,7 @@ def test_derivatives_of_clearances_by_the_deflection_agree_with_differences(wave
     np.testing.assert_allclose(slopes, (beyond - before) / (2.0 * step), rtol=1e-5)
 
 
+@pytest.mark.whole
 def test_a_drive_that_overlaps_has_a_status_in_a_trace(wave):
     larger = dataclasses.replace(wave, conjugate=False, groove=_lowered(wave.groove, 0.01e-3))
     code = {name: int(_status(drive).code) for name, drive in (("good", wave), ("bad", larger))}
