@@ -153,7 +153,10 @@ class Program(Generic[P, R]):
             if flat.outline is None:
                 return None
             return lambda *leaves: flat.rebuilt(traced(*map(np.asarray, leaves)))
-        call = jax.jit(found.call, compiler_options=self.options)
+        # A compiled function of these shapes, since JAX compiles one anew where numbers that were plain once
+        # (of a "weak" type) stand in other places.
+        shapes = [jax.ShapeDtypeStruct(leaf.shape, leaf.dtype) for leaf in arrays]
+        call = jax.jit(found.call, compiler_options=self.options).lower(*shapes).compile()
         return lambda *leaves: _rebuilt(outline, iter(call(*leaves)))
 
     def _path(self, given: Any) -> Path:

@@ -150,6 +150,18 @@ def test_derivatives_go_through_a_program():
     np.testing.assert_array_equal(jax.vmap(squared)(jnp.arange(3.0)), [0.0, 1.0, 4.0])
 
 
+def test_numbers_that_were_plain_compile_nothing_more(kept):
+    """JAX tells them from others, as of another type; the program does not."""
+    doubled = Program(moved, programs.QUICK)
+    doubled(Bodies(jnp.asarray(np.float64(3.0)), "a"), by=2.0)
+    before = programs._LOADED["programs"]
+    plain = jnp.asarray(3.0)
+    assert plain.weak_type
+    found = doubled(Bodies(plain, "a"), by=2.0)
+    assert float(found["force"]) == 6.0
+    assert programs._LOADED["programs"] == before
+
+
 def test_forgetting_gives_memory_back(kept):
     one = Program(moved, programs.QUICK)
     one(Bodies(jnp.arange(3.0), "b"), by=1.0)
