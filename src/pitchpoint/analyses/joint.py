@@ -91,10 +91,10 @@ def joint_part(built: Built, progress: Progress) -> xr.Dataset:
     waves = _waves(built, torsion.ripple, progress)
     joints = [_joint(built, torsion, free) for free in (False, True)]
     stacked = jax.tree.map(lambda *values: np.stack(values), *joints)
-    own = jax.device_get(_own(stacked, jnp.asarray(waves.order)))
+    own = jax.device_get(_own(stacked, array(waves.order)))
     speeds = _speeds(built, own["critical_speed"], waves)
     found = jax.device_get(
-        _against_speed(stacked, *map(jnp.asarray, (waves.order, waves.amplitude, speeds)))
+        _against_speed(stacked, *map(array, (waves.order, waves.amplitude, speeds)))
     )
     names, courses = _courses(built, joints[0], waves, own["critical_speed"][0, waves.strongest])
     axes = ("motor", "excitation", "speed")
@@ -159,9 +159,9 @@ def _found(points: np.ndarray) -> np.ndarray:
 def _sliding(built: Built, known: Any, force: np.ndarray) -> Sliding:
     """Friction of all flanks at the operating point, gathered in parts of equal count by their rates."""
     mesh = built.design.mesh
-    own, nominal = (
-        np.asarray(along(known.contacts.slip_arm, way)) for way in (mesh.loaded, mesh.motion)
-    )
+    slip = jax.device_get(known.contacts).slip_arm
+    ways: Any = jax.device_get((mesh.loaded, mesh.motion))
+    own, nominal = (np.asarray(along(slip, way)) for way in ways)
     held = (force * np.abs(own) * np.asarray(known.weight)).ravel()
     rate = np.abs(nominal / np.where(own != 0.0, own, np.inf)).ravel()
     order = np.argsort(np.where(held > 0.0, rate, np.inf))[: max(np.count_nonzero(held), 1)]

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.figures import error_ranges, numbers
 from pitchpoint.cases.build import Built
@@ -72,7 +72,7 @@ def kinematic_error_part(
         progress: told the number of states that are done, after each group of teeth.
     """
     design, gears = built.design, built.case.gears
-    load = jnp.full((1, 1), built.case.operation.load)
+    load = array(np.full((1, 1), built.case.operation.load))
     phases = PHASES if design.mesh.couples else FEW_PAIRS
     period = _period(design.mesh, design.solids, built.terms, load, phases)
     teeth = np.asarray(gears.tooth_numbers)
@@ -158,7 +158,7 @@ def _pieces(mesh: Mesh, period: _Period, deviations: Surfaces, count: int) -> It
     phases = period.contacts.path.shape[-1]
     for start in range(0, count, TEETH):
         turned = start + np.arange(TEETH)[:, None] + np.arange(phases) / phases
-        added = _added(mesh, period, deviations, jnp.asarray(turned))
+        added = _added(mesh, period, deviations, array(turned))
         found = jax.device_get(_errors(period, added))
         each = (found.geometric, found.elastic_mean, found.under_load)
         yield np.stack([values.ravel() for values in each])

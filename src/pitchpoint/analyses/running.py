@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint._jax import array, jnp
+from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.lacking import untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
@@ -89,7 +89,7 @@ def _over(built: Ready, speeds: np.ndarray, degrees: np.ndarray, *, resting: boo
 
 def _of_mesh(built: Built, speeds: np.ndarray, degrees: np.ndarray, *, resting: bool) -> np.ndarray:
     idle = replace(built.operation, load=array(0.0))
-    points = Operation(*map(jnp.asarray, (0.0 * speeds, speeds, degrees)))
+    points = Operation(*map(array, (0.0 * speeds, speeds, degrees)))
     known = engaged(built.design, idle, built.models[0])
     torque = starting_torque if resting else no_load_torque
     each = [torque(built.design, points, own, known) for own in built.models]
@@ -102,7 +102,7 @@ def _of_drive(
     """The same of stages: what one of them takes is the load of the one before."""
     drive, idle = built.design, 0.0 * speeds
     if resting:
-        points = Operation(*map(jnp.asarray, (idle, speeds, degrees)))
+        points = Operation(*map(array, (idle, speeds, degrees)))
         each = [starting_torque_of_drive(drive, points, own.stages) for own in built.models]
         return np.stack([np.asarray(one) for one in each])
     every = zip(idle.ravel(), speeds.ravel(), degrees.ravel(), strict=True)

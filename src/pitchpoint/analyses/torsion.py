@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
@@ -345,8 +345,8 @@ def wound_ups(
         if each and isinstance(
             body, OnBalls
         ):  # balls stand near where they stood for the torque before
-            body = replace(body, start=jnp.asarray(each[-1].balls))
-        at = wound_up(*given, jnp.asarray(torque), known.contacts, body)
+            body = replace(body, start=each[-1].balls)
+        at = wound_up(*given, torque, known.contacts, body)
         each.append(jax.device_get(at))
     return each, body
 
@@ -367,7 +367,7 @@ def _by_balls(
     if other is None:
         return {}
     design = replace(built.design, mesh=other)
-    given = other, design.solids, built.terms, jnp.asarray(built.case.operation.load)
+    given = other, design.solids, built.terms, array(built.case.operation.load)
     found = wound_up(*given, contacts, coupling(design, contacts))
     return {"wind_up_by_balls": np.asarray(found.wind_up) @ weight - as_they_stand}
 
@@ -398,8 +398,8 @@ def _at_rest(built: Built, contacts: Contacts, each: list[Any]) -> np.ndarray | 
     design = built.design
     if not design.drag:
         return 0.0
-    viscosity = design.lubricant.kinematic_viscosity(built.operation.temperature)
-    torques = [_drag_at_rest(design, contacts, one.force, viscosity) for one in each]
+    warm = built.operation.temperature
+    torques = [_drag_at_rest(design, contacts, one.force, warm) for one in each]
     return np.stack(jax.device_get(torques))
 
 
@@ -408,8 +408,9 @@ def _drag_at_rest(
     design: Design,
     contacts: Contacts,
     force: Float[Array, "pair slice node"],
-    viscosity: Float[Array, ""],
+    temperature: Float[Array, ""],
 ) -> Float[Array, " node"]:
+    viscosity = design.lubricant.kinematic_viscosity(temperature)
     drags, loaded = at_rest(design.drag), design.mesh.loaded
     total = jnp.zeros(force.shape[2:])
     for drag, load in zip(drags, bearing_loads(drags, design.mesh, contacts, force), strict=True):

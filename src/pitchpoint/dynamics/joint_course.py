@@ -351,6 +351,8 @@ def fading(joint: Joint, order: One, speed: One) -> float:
         order: waves in a turn of the driver.
         speed: rate of the driver [rad/s].
     """
-    decay = joint.damping / (2.0 * joint.reduced)
-    needed = float(-jnp.log(FADED) / decay * order * speed / (2.0 * jnp.pi))
-    return float(np.ceil(min(needed, MOST_PERIODS)))
+    damping, motor, load = map(float, (joint.damping, joint.motor, joint.load))
+    decay = damping * (1.0 / motor + 1.0 / load) / 2.0
+    needed = -np.log(FADED) / decay if decay > 0.0 else np.inf
+    waves = needed * float(order) * float(speed) / (2.0 * np.pi)
+    return float(np.ceil(min(waves, MOST_PERIODS)))

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array
 from pitchpoint.contact.surface import Surfaces, Waves
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
@@ -96,4 +96,4 @@ def waves(given: tuple[Deviation, ...]) -> tuple[Waves, ...]:
     rows = np.zeros((len(fields(Waves)), ceil(len(given) / WAVES) * WAVES))
     for row, one in zip(rows, fields(Waves), strict=True):
         row[: len(given)] = [getattr(wave, one.name) for wave in given]
-    return (Waves(*map(jnp.asarray, rows)),)
+    return (Waves(*map(array, rows)),)

@@ -526,7 +526,8 @@ def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
             f"The circular spline's flank could not be found at {lost} of {NODES} heights: curvature, "
             "pressure and film there say nothing."
         )
-    usual = rim_by_strain(float(mesh.module * mesh.teeth[0]), float(mesh.line.deflection))
+    pitch_diameter = float(mesh.module) * float(np.asarray(mesh.teeth)[0])
+    usual = rim_by_strain(pitch_diameter, float(mesh.line.deflection))
     if not 1.0 / FAR_FROM_USUAL < float(mesh.rim.thickness) / usual < FAR_FROM_USUAL:
         told.append(
             f"The rim of the flexspline is {1e3 * float(mesh.rim.thickness):.3g} mm thick; usual for its "
@@ -578,10 +579,10 @@ def double_arc_flank(
 def _double_arc(
     form: DoubleArcForm, module: float, rim_thickness: float, tips: Tips
 ) -> DoubleArcFlank:
-    values = {field.name: jnp.asarray(module * getattr(form, field.name)) for field in fields(form)}
+    values = {field.name: array(module * getattr(form, field.name)) for field in fields(form)}
     flank = DoubleArcFlank(
-        pitch=jnp.asarray(pi * module),
-        pitch_height=jnp.asarray(rim_thickness / 2.0 + form.dedendum * module),
+        pitch=array(pi * module),
+        pitch_height=array(rim_thickness / 2.0 + form.dedendum * module),
         tip_rounding=tips.rounding,
         tip_relief=tips.relief,
         relief_length=tips.relief_length,

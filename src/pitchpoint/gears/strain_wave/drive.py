@@ -1,7 +1,7 @@
 """Strain wave gear: wave generator, flexspline and circular spline, and the many contacts between them."""
 
 import dataclasses
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import equinox as eqx
 import numpy as np
@@ -247,7 +247,7 @@ class StrainWave(Mesh):
     def driven_by(self, member: str | int) -> Self:
         """The drive with this member driving; the fixed one stays fixed, the third carries the load."""
         drives = number_of(member, MEMBERS)
-        fixed = int(np.argmin(self.driver_of + self.loaded_of))
+        fixed = int(np.argmin(np.asarray(self.driver_of) + np.asarray(self.loaded_of)))
         if drives == fixed:
             raise InputError(f"the {MEMBERS[fixed]} is fixed and cannot drive")
         motion, driver, loaded = map(array, rates(np.asarray(self.teeth), fixed, drives))
@@ -289,7 +289,7 @@ class StrainWave(Mesh):
 
     def in_pairs(self, values: np.ndarray, axis: int, *, like_first: bool = False) -> np.ndarray:
         """Values by pairs that are held, of two places the one nearer to the root first."""
-        number, zone = np.asarray(self._number).astype(int), self._zone
+        number, zone = _numbers(np.asarray(self.teeth), self.lanes, np).astype(int), self._zone
         (first,) = np.nonzero(~self._second & (number < float(self.held)))
         same = (zone == zone[first, None]) & (number == number[first, None]) & self._second
         other = np.where(same.any(axis=1), same.argmax(axis=1), -1)
@@ -311,9 +311,7 @@ class StrainWave(Mesh):
     @property
     def _number(self) -> Float[Array, " place"]:
         """Number of the pair at each place, counted from the first one that is held in its zone."""
-        own, deep = jnp.arange(self.lanes), jnp.arange(seconds_for(self.lanes))
-        deep = deep + jnp.ceil(-_DEEP / self.tooth_angle) - self._start
-        return jnp.tile(jnp.concatenate([own, deep]), 2)
+        return jnp.asarray(_numbers(self.teeth, self.lanes, jnp))
 
     @property
     def _start(self) -> Float[Array, ""]:
@@ -855,6 +853,14 @@ def _reversal(
     part = first / jnp.where(turns[before], first - second, 1.0)
     at = angle[before] + part * (angle[before + 1] - angle[before])
     return jnp.where(jnp.any(turns), at, 0.0)
+
+
+def _numbers(teeth: Any, lanes: int, module: Any) -> Any:
+    """Numbers of the pairs at the places, by the functions of JAX or of NumPy, which compiles nothing."""
+    angle = 2.0 * np.pi / teeth[0]
+    second = module.ceil(-_DEEP / angle) - module.ceil(WINDOW[0] / angle)
+    deep = np.arange(seconds_for(lanes)) + second
+    return module.tile(module.concatenate([np.arange(lanes), deep]), 2)
 
 
 def _points(places: Array) -> Float[Array, "... 2"]:

@@ -7,9 +7,10 @@ from functools import partial
 from typing import Self
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Complex, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.involute import involute
 
@@ -68,7 +69,7 @@ class Flank(eqx.Module):
     @property
     def unrelieved(self) -> Self:
         """The same flank without relief, which generates the groove of its mate."""
-        none = jnp.zeros_like(self.tip_relief)
+        none = array(np.zeros(jnp.shape(self.tip_relief)))
         return replace(self, tip_relief=none, relief_length=none)
 
     @property
