@@ -193,7 +193,8 @@ def _published() -> Iterator[Iterable[str]]:
 
 def _variable(value: Any) -> str:
     """Name of a variable; those of other publications are looked up where it is none of the known ones."""
-    return str(value) if value in VARIABLES else _ANY_VARIABLE(value)
+    known = isinstance(value, str) and value in VARIABLES
+    return str(value) if known else _ANY_VARIABLE(value)
 
 
 _ANY_VARIABLE = named(_variables, "quantity")
