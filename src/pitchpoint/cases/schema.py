@@ -191,16 +191,6 @@ def _published() -> Iterator[Iterable[str]]:
     return (one.variables for one in PUBLICATIONS.values())
 
 
-def _variable(value: Any) -> str:
-    """Name of a variable; those of other publications are looked up where it is none of the known ones."""
-    known = isinstance(value, str) and value in VARIABLES
-    return str(value) if known else _ANY_VARIABLE(value)
-
-
-_ANY_VARIABLE = named(_variables, "quantity")
-_variable.known = _variables  # type: ignore[attr-defined]  # what the schema for editors lists
-
-
 def _with_its_variables(source: str) -> str:
     """Key of a publication, whose variables may be read from now on."""
     publication_of(source)
@@ -1079,7 +1069,7 @@ class Target(Table):
     """Study that is read; this or a part."""
     part: Text = ""
     """Part of the result that is read; this or a study."""
-    variable: Annotated[str, BeforeValidator(_variable)] = ""
+    variable: Annotated[str, BeforeValidator(named(_variables, "quantity", VARIABLES))] = ""
     """Result variable that is read."""
     at: Annotated[tuple[Any, ...], BeforeValidator(_places)] = ()
     """Places on the axis that are read, one or a list; all that were computed unless given."""

@@ -166,10 +166,20 @@ class Pair:
         return both, both
 
 
-def named(registry: Callable[[], Collection[str]], kind: str) -> Callable[[Any], str]:
-    """Validator of a name out of a registry that is looked up when it is needed."""
+def named(
+    registry: Callable[[], Collection[str]], kind: str, at_hand: Collection[str] = ()
+) -> Callable[[Any], str]:
+    """Validator of a name out of a registry that is looked up when it is needed.
+
+    Args:
+        registry: names that there are, as they are looked up.
+        kind: what a name stands for.
+        at_hand: those of them that are known without a look.
+    """
 
     def read(value: Any) -> str:
+        if isinstance(value, str) and value in at_hand:
+            return value
         from pitchpoint.registry import known_as, listed, nearest
 
         known = registry()
