@@ -30,9 +30,9 @@ from pitchpoint.status import Status
 
 __all__ = [
     "MET",
-    "Behind",
     "Drive",
     "DriveCycle",
+    "NextStage",
     "Stage",
     "braked",
     "chained",
@@ -377,7 +377,7 @@ def drive_cycle(
             speed=(operation.speed * ratios[number])[..., None, None, None],
             temperature=operation.temperature[..., None, None, None],
         )
-        behind = Behind(states[0], every[0]) if every[0].kept else None
+        behind = NextStage(states[0], every[0]) if every[0].kept else None
         drag = braked(drive, number, behind)
         found = state(replace(stage.design, drag=drag), point, phase, laws, engaged=known)
         loads = bearing_loads(drag, stage.design.mesh, found.contacts, found.balance.load)
@@ -398,7 +398,7 @@ def drive_cycle(
     )
 
 
-class Behind(NamedTuple):
+class NextStage(NamedTuple):
     """The stage behind another one, whose teeth load the bearings of the same shaft.
 
     Attributes:
@@ -410,7 +410,7 @@ class Behind(NamedTuple):
     meetings: Meetings
 
 
-def braked(drive: Drive, number: int, behind: Behind | None = None) -> tuple[Drag, ...]:
+def braked(drive: Drive, number: int, behind: NextStage | None = None) -> tuple[Drag, ...]:
     """Losses of the drive that a stage overcomes, in its coordinates, then its own.
 
     Args:
@@ -458,7 +458,7 @@ def _seated(seat: Bearing, stage: Stage) -> Bearing:
     return replace(seat, coordinate=coordinate, place=seat.place - stage.place, other=other)
 
 
-def _beside(seat: Bearing, stage: Stage, after: Stage, behind: Behind) -> Float[Array, "3 *#b"]:
+def _beside(seat: Bearing, stage: Stage, after: Stage, behind: NextStage) -> Float[Array, "3 *#b"]:
     """Load on a bearing by the stage behind, in the frame of a stage [N]."""
     state = behind.state
     borne = _seated(seat, after).borne(after.design.mesh, state.contacts, state.balance.load)
