@@ -1,6 +1,6 @@
 """Equilibrium of contacts that only push: which of them carry a load, and how far the loaded body moves."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
@@ -158,7 +158,7 @@ def equilibrium(
     if isinstance(body, OnBalls):
         return _on_balls(teeth, body, gap, arm, active, load)
     problem, scale = _normalised(teeth, body, gap, arm, active, load)
-    loaded, _, iterations = _loaded(jax.lax.stop_gradient(problem), start)
+    loaded, iterations = _loaded(jax.lax.stop_gradient(problem), start)
     found = _solve(problem, loaded)
     residual = jax.lax.stop_gradient(_residual(problem, loaded, found))
     solved = (residual <= UNSOLVED) & (load >= 0.0)
@@ -192,10 +192,6 @@ class _Held(NamedTuple):
     shift: Rows
     across: Float[Array, "*b ball lane"]
     free: Float[Array, "*b ball"]
-
-    def moved(self, force: Rows) -> Float[Array, "*b ball"]:
-        """Approach of the balls by forces of the lanes."""
-        return self.free - jnp.einsum("...ij,...j->...i", self.across, force)
 
 
 def _held(body: OnBalls, approach: Float[Array, "*b ball"]) -> _Held:
@@ -232,28 +228,28 @@ def _on_balls(
     each = (teeth.shape[2:], body.lanes.shape[2:], gap.shape[2:], arm.shape[2:], load.shape)
     batch = jnp.broadcast_shapes(*each)
 
-    def on_springs(body: OnBalls, approach: Array, *given: Array) -> tuple[_Held, dict[str, Any]]:
+    def on_springs(
+        body: OnBalls, approach: Array, loaded: Array, *given: Array
+    ) -> tuple[Equilibrium, Array]:
         own, gaps, arms, may, carried = given
         held = _held(body, approach)
         shift = jnp.moveaxis(held.shift, -1, 0).reshape(*gaps.shape[:2], *batch)
         matrix = jnp.moveaxis(held.lanes, (-2, -1), (0, 1))
         lanes = {"gap": gaps + shift, "arm": arms, "active": may}
-        return held, {"teeth": own, "body": matrix, **lanes, "load": carried}
+        found = equilibrium(own, matrix, **lanes, load=carried, start=loaded)
+        force = jnp.moveaxis(found.force.reshape(-1, *batch), 0, -1)
+        moved = held.free - jnp.einsum("...ij,...j->...i", held.across, force)
+        return found, moved
 
     given = teeth, gap, arm, active, load
     fixed = jax.lax.stop_gradient((body, *given))
 
     def again(at: _Settling) -> _Settling:
-        held, springs = on_springs(fixed[0], at.approach, *fixed[1:])
-        problem, scale = _normalised(**springs)
-        loaded, force, tried = _loaded(problem, at.loaded)
-        # The equilibrium itself would solve for its derivatives once more.
-        approach = held.moved(force * scale.force[..., None])
+        found, approach = on_springs(fixed[0], at.approach, at.loaded, *fixed[1:])
         change = jnp.max(jnp.abs(approach - at.approach), axis=-1)
         size = jnp.max(jnp.abs(approach), axis=-1)
-        moves, lanes = change > SETTLED * size, jnp.moveaxis(loaded, -1, 0)
-        lanes = lanes.reshape(*gap.shape[:2], *batch)
-        return _Settling(approach, lanes, moves, at.steps + 1, at.sets + tried)
+        moves, sets = change > SETTLED * size, at.sets + found.iterations
+        return _Settling(approach, found.loaded, moves, at.steps + 1, sets)
 
     start = jnp.where(
         jnp.isfinite(body.start), body.start, over_batch(body.approach, body.start.ndim - 1)
@@ -264,9 +260,7 @@ def _on_balls(
     begin = _Settling(start, none, jnp.ones(batch, bool), jnp.asarray(0), jnp.asarray(0))
     settled = jax.lax.while_loop(lambda at: (at.steps < PASSES) & jnp.any(at.open), again, begin)
     frozen = jax.lax.stop_gradient(settled.approach)
-    held, springs = on_springs(body, frozen, *given)
-    found = equilibrium(springs.pop("teeth"), springs.pop("body"), **springs, start=settled.loaded)
-    approach = held.moved(jnp.moveaxis(found.force.reshape(-1, *batch), 0, -1))
+    found, approach = on_springs(body, frozen, settled.loaded, *given)
     done = ~settled.open & jnp.all(jnp.isfinite(frozen), axis=-1)
     # Balls that went on moving are no equilibrium: one, the whole of their approach, is far from solved.
     return Equilibrium(
@@ -392,7 +386,7 @@ class _Search(NamedTuple):
 
     Attributes:
         loaded: set of lanes to try next.
-        last: forces on the last set, of any sign.
+        pushes: True where a lane of the last set pushes.
         force: not negative, of the whole load; only a search that goes step by step needs it.
         open: True where the last set was wrong.
         fewest: least number of wrong lanes so far.
@@ -401,7 +395,7 @@ class _Search(NamedTuple):
     """
 
     loaded: Bool[Array, "*b lane"]
-    last: Rows
+    pushes: Bool[Array, "*b lane"]
     force: Rows
     open: Bool[Array, "*b"]
     fewest: Int[Array, "*b"]
@@ -411,18 +405,18 @@ class _Search(NamedTuple):
 
 def _loaded(
     problem: _Problem, first: Bool[Array, "pair slice *b"] | None
-) -> tuple[Bool[Array, "*b lane"], Rows, Int[Array, ""]]:
-    """Lanes that carry, the forces on them where something couples them, and the number of sets tried."""
+) -> tuple[Bool[Array, "*b lane"], Int[Array, ""]]:
+    """Lanes that carry, and the number of sets that were tried."""
     start = _as_if_alone(problem)
     if first is not None:
         flat = jnp.moveaxis(first.reshape(-1, *first.shape[2:]), 0, -1)
         start = jnp.where(jnp.any(flat, axis=-1, keepdims=True), flat & problem.active, start)
     if problem.matrix is None:
-        return start, jnp.zeros(start.shape), jnp.asarray(1)
+        return start, jnp.asarray(1)
     batch, lanes = start.shape[:-1], start.shape[-1]
     begin = _Search(
         loaded=start,
-        last=jnp.zeros(start.shape),
+        pushes=start,
         force=jnp.zeros(start.shape),
         open=jnp.ones(batch, bool),
         fewest=jnp.full(batch, lanes + 1),
@@ -433,8 +427,7 @@ def _loaded(
         lambda at: (at.steps < MOST) & jnp.any(at.open), lambda at: _try(problem, at), begin
     )
     # A lane that carries nothing may be in the set by rounding. The last set that was tried is the right one.
-    loaded = search.loaded & (search.last > 0.0)
-    return loaded, jnp.where(search.open[..., None], jnp.nan, search.last), search.steps
+    return search.loaded & search.pushes, search.steps
 
 
 def _try(problem: _Problem, at: _Search) -> _Search:
@@ -452,7 +445,7 @@ def _try(problem: _Problem, at: _Search) -> _Search:
     loaded = jnp.where((patience < 0)[..., None], first > 0.0, at.loaded ^ (pulls | overlaps))
     return _Search(
         loaded=jnp.where(careful[..., None], descent, loaded),
-        last=found.force,
+        pushes=found.force > 0.0,
         force=jnp.where(careful[..., None], force, first),
         open=count > 0,
         fewest=jnp.minimum(count, at.fewest),
