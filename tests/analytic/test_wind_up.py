@@ -19,7 +19,7 @@ from pitchpoint.loading import wind_up as module
 from pitchpoint.loading.balance import balance
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import touch
-from pitchpoint.loading.kinematic_error import added_gap, even, kinematic_error
+from pitchpoint.loading.kinematic_error import added_gap, kinematic_error
 from pitchpoint.loading.mesh_stiffness import mesh_stiffness
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import hysteresis, wind_up
@@ -279,7 +279,7 @@ def _errors(deviations, load, gap):
     at = two_zones(gap)
     added = added_gap(tuple((one,) for one in deviations), spots(at))
     yields = Compliance(jnp.full(at.path.shape, 1e9), None, jnp.full(SAMPLES, load))
-    return kinematic_error(at, yields, LOADED, added, even(at, yields, LOADED))
+    return kinematic_error(at, yields, LOADED, added)
 
 
 def lines(values):

@@ -18,13 +18,7 @@ from pitchpoint.contact.surface import Surfaces
 from pitchpoint.gears.family import Turning
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.compliance import Compliance, compliance
-from pitchpoint.loading.kinematic_error import (
-    Even,
-    KinematicError,
-    added_gap,
-    even,
-    kinematic_error,
-)
+from pitchpoint.loading.kinematic_error import KinematicError, added_gap, kinematic_error
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import looping_program, program
@@ -50,12 +44,11 @@ Over = Callable[[Surfaces, int], np.ndarray]
 
 
 class _Period(eqx.Module):
-    """One tooth period, which every tooth repeats: its contacts, how they yield at the load, and how far."""
+    """One tooth period, which every tooth repeats: its contacts and how they yield at the load."""
 
     contacts: Contacts
     yields: Compliance
     loaded: Float[Array, " dof"]
-    without: Even
 
 
 def kinematic_error_part(
@@ -177,7 +170,7 @@ def _period(
 ) -> _Period:
     contacts = mesh.contacts(mesh.onward * jnp.arange(phases)[None] / phases)
     yields = compliance(mesh, contacts, solids, terms, load)
-    return _Period(contacts, yields, mesh.loaded, even(contacts, yields, mesh.loaded))
+    return _Period(contacts, yields, mesh.loaded)
 
 
 @program
@@ -189,7 +182,7 @@ def _added(
 
 @looping_program
 def _errors(period: _Period, added: Float[Array, "pair slice tooth phase"]) -> KinematicError:
-    return kinematic_error(period.contacts, period.yields, period.loaded, added, period.without)
+    return kinematic_error(period.contacts, period.yields, period.loaded, added)
 
 
 _FOUND: WeakKeyDictionary[Built, xr.Dataset] = WeakKeyDictionary()

@@ -386,7 +386,6 @@ class _Search(NamedTuple):
 
     Attributes:
         loaded: set of lanes to try next.
-        pushes: True where a lane of the last set pushes.
         force: not negative, of the whole load; only a search that goes step by step needs it.
         open: True where the last set was wrong.
         fewest: least number of wrong lanes so far.
@@ -395,7 +394,6 @@ class _Search(NamedTuple):
     """
 
     loaded: Bool[Array, "*b lane"]
-    pushes: Bool[Array, "*b lane"]
     force: Rows
     open: Bool[Array, "*b"]
     fewest: Int[Array, "*b"]
@@ -416,7 +414,6 @@ def _loaded(
     batch, lanes = start.shape[:-1], start.shape[-1]
     begin = _Search(
         loaded=start,
-        pushes=start,
         force=jnp.zeros(start.shape),
         open=jnp.ones(batch, bool),
         fewest=jnp.full(batch, lanes + 1),
@@ -426,8 +423,8 @@ def _loaded(
     search = jax.lax.while_loop(
         lambda at: (at.steps < MOST) & jnp.any(at.open), lambda at: _try(problem, at), begin
     )
-    # A lane that carries nothing may be in the set by rounding. The last set that was tried is the right one.
-    return search.loaded & search.pushes, search.steps
+    # A lane that carries nothing may be in the set by rounding.
+    return search.loaded & (_solve(problem, search.loaded).force > 0.0), search.steps
 
 
 def _try(problem: _Problem, at: _Search) -> _Search:
@@ -445,7 +442,6 @@ def _try(problem: _Problem, at: _Search) -> _Search:
     loaded = jnp.where((patience < 0)[..., None], first > 0.0, at.loaded ^ (pulls | overlaps))
     return _Search(
         loaded=jnp.where(careful[..., None], descent, loaded),
-        pushes=found.force > 0.0,
         force=jnp.where(careful[..., None], force, first),
         open=count > 0,
         fewest=jnp.minimum(count, at.fewest),

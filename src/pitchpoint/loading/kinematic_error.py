@@ -9,7 +9,7 @@ from pitchpoint.contact.surface import Spot, Surfaces, missing
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touch
 
-__all__ = ["Even", "KinematicError", "added_gap", "even", "kinematic_error"]
+__all__ = ["KinematicError", "added_gap", "kinematic_error"]
 
 Each = Float[Array, "*#b"]
 Lanes = Float[Array, "pair slice *#b"]
@@ -34,20 +34,6 @@ class KinematicError(eqx.Module):
     wind_up: Each
 
 
-class Even(eqx.Module):
-    """What errors of a mesh are counted from: the same mesh without deviations, at phases `*b`.
-
-    Attributes:
-        touch: rotation to first touch [rad].
-        more: forces that a unit of the load adds [N/(N m)].
-        approach: rotation under load [rad].
-    """
-
-    touch: Each
-    more: Lanes
-    approach: Each
-
-
 def added_gap(deviations: Surfaces, spots: tuple[Spot, Spot]) -> Lanes:
     """What the deviations of both members add to the separation of their flanks [m].
 
@@ -59,31 +45,8 @@ def added_gap(deviations: Surfaces, spots: tuple[Spot, Spot]) -> Lanes:
     return first + second
 
 
-def even(contacts: Contacts, yields: Compliance, loaded: Float[Array, " dof"]) -> Even:
-    """Equilibrium of a mesh without deviations, and how it changes with the load.
-
-    Args:
-        contacts: of the mesh.
-        yields: how the pairs yield, and the load of the loaded member.
-        loaded: one for that member.
-    """
-
-    def under(load: Each) -> tuple[Lanes, Equilibrium]:
-        found = _under(contacts, yields, loaded, yields.gap(contacts), load)
-        return found.force, found
-
-    load = yields.load
-    _, more, plain = jax.jvp(under, (load,), (jnp.ones_like(load),), has_aux=True)
-    gap = yields.gap(contacts)
-    return Even(touch(gap, **_given(contacts, loaded)), more, plain.approach)
-
-
 def kinematic_error(
-    contacts: Contacts,
-    yields: Compliance,
-    loaded: Float[Array, " dof"],
-    added: Lanes,
-    without: Even,
+    contacts: Contacts, yields: Compliance, loaded: Float[Array, " dof"], added: Lanes
 ) -> KinematicError:
     """Rotation of the loaded member by deviations: of rigid teeth, their elastic mean, and under load.
 
@@ -98,7 +61,6 @@ def kinematic_error(
         yields: how the pairs yield, and the load of the loaded member.
         loaded: one for that member.
         added: separation of the flanks by deviations [m].
-        without: the same mesh without deviations, see `even`.
 
     Returns:
         NaN where no equilibrium was found.
@@ -106,22 +68,24 @@ def kinematic_error(
     From virtual work: forces that balance a unit of the load do as much work on the added gaps as it
     does on the rotation.
     """
-    gap = yields.gap(contacts) + added
-    deviating = _under(contacts, yields, loaded, gap, yields.load)
-    return KinematicError(
-        geometric=touch(gap, **_given(contacts, loaded)) - without.touch,
-        elastic_mean=total(without.more * added),
-        under_load=deviating.approach - without.approach,
-        wind_up=without.approach,
-    )
-
-
-def _under(
-    contacts: Contacts, yields: Compliance, loaded: Array, gap: Lanes, load: Each
-) -> Equilibrium:
     teeth = yields.of_teeth(contacts)
-    return equilibrium(teeth, yields.body, gap=gap, load=load, **_given(contacts, loaded))
+    given = {"arm": jnp.abs(along(contacts.normal, loaded)), "active": contacts.active}
 
+    gaps = yields.gap(contacts)
 
-def _given(contacts: Contacts, loaded: Array) -> dict[str, Array]:
-    return {"arm": jnp.abs(along(contacts.normal, loaded)), "active": contacts.active}
+    def under(gap: Lanes, load: Each) -> Equilibrium:
+        return equilibrium(teeth, yields.body, gap=gap, load=load, **given)
+
+    def plainly(load: Each) -> tuple[Lanes, Equilibrium]:
+        found = under(gaps, load)
+        return found.force, found
+
+    load = yields.load
+    _, more, plain = jax.jvp(plainly, (load,), (jnp.ones_like(load),), has_aux=True)
+    deviating = under(gaps + added, load)
+    return KinematicError(
+        geometric=touch(gaps + added, **given) - touch(gaps, **given),
+        elastic_mean=total(more * added),
+        under_load=deviating.approach - plain.approach,
+        wind_up=plain.approach,
+    )
