@@ -11,11 +11,9 @@ import shutil
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-import pitchpoint
 from pitchpoint import kept
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.schema import Study
@@ -62,7 +60,7 @@ def _text(case: str | Path) -> list[str]:
 
 def _folder(asked: Any, compute: Callable[[Path], None]) -> Path:
     """Folder of a result, whole: another worker that computes it is waited for."""
-    digest = hashlib.sha256(json.dumps([_code(), surroundings(), asked]).encode()).hexdigest()
+    digest = hashlib.sha256(json.dumps([surroundings(), asked]).encode()).hexdigest()
     bank = kept.prepared(kept.base_folder() / "bank")
     assert bank is not None
     place = bank / digest[:40]
@@ -82,16 +80,6 @@ def _alone(path: Path) -> Iterator[None]:
     with path.open("w") as file:
         fcntl.flock(file, fcntl.LOCK_EX)  # given back as the file closes
         yield
-
-
-@cache
-def _code() -> str:
-    """Digest of every file of the package."""
-    root, digest = Path(pitchpoint.__file__).parent, hashlib.sha256()
-    for path in sorted(root.rglob("*")):
-        if path.suffix in (".py", ".toml"):
-            digest.update(str(path.relative_to(root)).encode() + path.read_bytes())
-    return digest.hexdigest()
 
 
 def _make_room(bank: Path) -> None:

@@ -69,7 +69,7 @@ def test_what_was_asked_for_longest_ago_makes_room(asked, monkeypatch):
 def test_changed_code_computes_anew(asked, monkeypatch):
     ask, counts = asked
     ask("a")
-    monkeypatch.setattr(bank, "_code", lambda: "changed")
+    monkeypatch.setattr(bank, "surroundings", lambda: {"code": "changed"})
     ask("a")
     assert counts == {"a": 2}
 

@@ -135,6 +135,7 @@ def test_no_program_is_compiled_for_numbers() -> None:
 
 def test_arrays_that_are_kept_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_jax, "MOST_KEPT", 3)
+    monkeypatch.setattr(_jax, "_ARRAYS", {})
     assert [float(_jax.array(value)) for value in (5.0, 6.0, 7.0, 8.0, 5.0)] == [5, 6, 7, 8, 5]
     assert len(_jax._ARRAYS) <= 3
 
