@@ -3,6 +3,7 @@
 import gc
 import math
 import os
+import sys
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,6 +20,12 @@ _more = [flag for flag in QUICKLY if flag.partition("=")[0] not in _given]
 os.environ["XLA_FLAGS"] = " ".join([_given, *_more]).strip()  # read once, with the first array
 # Nobody reads from which lines of Python an operation of a program came: finding out is a tenth of the work.
 os.environ.setdefault("JAX_TRACEBACK_IN_LOCATIONS_LIMIT", "0")
+
+if sys.dont_write_bytecode:  # or each of many processes would compile the package anew
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    sys.dont_write_bytecode = False
+    caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"] = str(caches / "pitchpoint-bytecode")
 
 import budget  # noqa: E402
 import jax  # noqa: E402

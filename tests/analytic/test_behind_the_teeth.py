@@ -146,6 +146,7 @@ def test_parts_sum_up_to_the_wind_up(given):
     assert float(parts["bearing of the wave generator"].mean()) > 0.0
 
 
+@pytest.mark.whole
 def test_the_whole_drive_goes_with_the_cube_of_its_size():
     """Sizes 17, 25 and 32 in proportion: contacts and balls of points included."""
     turned = {}

@@ -24,12 +24,14 @@ def found():
     return fit_double_arc(**SHORT)
 
 
+@pytest.mark.whole
 def test_a_short_search_betters_its_start(found):
     assert found.start == merit_of(START, teeth=TEETH)
     assert found.merit.objective < found.start.objective - 0.1
     assert found.evaluations == 14 * 3
 
 
+@pytest.mark.whole
 def test_the_merit_told_is_that_of_the_tooth_told(found):
     assert merit_of(found.form, found.deflection, teeth=TEETH) == found.merit
     figures = found.merit

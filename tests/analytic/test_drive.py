@@ -247,6 +247,7 @@ def every_figure(drive, few):
     }
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("drag", [[], BEARINGS], ids=["alone", "bearings"])
 def test_few_loads_stand_for_all_meetings_of_three_stages(drag):
     drag = [dataclasses.replace(one, between=jnp.append(one.between, 0.0)) for one in drag]

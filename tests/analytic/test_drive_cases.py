@@ -107,6 +107,7 @@ def test_torque_route_equals_loss_route_at_every_meeting_of_phases():
     np.testing.assert_allclose(torque * SPEED - out, lost, rtol=1e-10, atol=rounding)
 
 
+@pytest.mark.whole
 def test_with_a_constant_coefficient_the_efficiency_is_the_product_of_those_of_the_stages():
     slow = f"{1500.0 / RATIOS[0]!r} rpm"
     second = {"operation.speed": slow, "gears.flank": "right"}

@@ -168,6 +168,7 @@ NONE = Waves(array([0.0]), array([2.0]), array([0.0]))
 WAVE = Waves(array([ERROR]), array([2.0]), array([0.3]))
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("motor", [np.inf, MOTOR])
 def test_a_free_vibration_without_damping_is_a_cosine(motor: float) -> None:
     made = joint(motor=motor, damping=0.0)
@@ -247,6 +248,7 @@ def test_a_free_motor_vibrates_as_the_tangent_says() -> None:
     np.testing.assert_allclose(there.motor, swing["motor"], atol=1e-3 * np.ptp(swing["motor"]))
 
 
+@pytest.mark.whole
 def test_friction_at_rest_in_time_is_about_its_first_harmonic() -> None:
     made = joint(held=0.1)
     order, error, speed = map(array, (2.0, ERROR, float(own(made)[2])))

@@ -237,6 +237,7 @@ def test_contacts_together_are_those_alone():
 # ---- mixed lubrication
 
 
+@pytest.mark.whole
 def test_asperities_carry_less_of_the_load_the_faster_thicker_and_smoother_it_runs():
     share = lambda found: np.asarray(found.film.asperity_share)  # noqa: E731
     rough = Rough(rq=0.3e-6, modulus=MODULUS)
@@ -361,6 +362,7 @@ def test_surfaces_that_stand_on_their_asperities_are_stiff_and_not_damped():
     assert film.stiffness > 0.0 and np.isnan(film.damping)
 
 
+@pytest.mark.whole
 def test_the_spike_is_the_last_maximum_of_the_pressure():
     found = solve_lines(contact([0.6e9, 0.7e9], [1.0, -1.0]), nodes=257).film
     for k, sense in enumerate((1, -1)):
@@ -373,6 +375,7 @@ def test_the_spike_is_the_last_maximum_of_the_pressure():
         assert 0.6 < sense * found.spike_place[k] / found.half_width[k] < 0.9
 
 
+@pytest.mark.whole
 def test_a_pressure_with_one_maximum_has_no_spike():
     """Soft bodies, and a light load that a spike far inside carries alone."""
     one = solve_lines(of_moes(np.array([20.0]), 1e-3), nodes=257).film
@@ -392,6 +395,7 @@ def test_friction_is_the_shear_of_a_newtonian_oil_over_its_film():
     assert (film.film_ratio == np.inf).all()
 
 
+@pytest.mark.whole
 def test_oils_by_value_draw_as_oils_bear_unless_a_newtonian_one_is_asked_for():
     oil = {"viscosity": 0.04, "pressure_viscosity": 2.2e-8}
     usual = solve_lines(contact(0.9e9, slide=0.2, fluid=Fluid(**oil)))
@@ -482,6 +486,7 @@ def test_films_rise_with_the_speed_to_seven_tenths():
 # ---- statuses, warnings, bad input
 
 
+@pytest.mark.whole
 def test_a_film_that_is_too_thin_for_the_grid_is_told():
     """An oil that pressure does not thicken leaves a film far thinner than the inlet is long."""
     found = solve_lines(of_moes(np.array([20.0, 1000.0]), 1e-3), nodes=65)

@@ -98,6 +98,7 @@ def alone(driver=np.inf, **given):
 # ---- one coordinate: the vibration along the line of action
 
 
+@pytest.mark.whole
 def test_with_a_steady_driver_and_without_friction_it_is_the_vibration_along_the_line_of_action():
     vibrating = Vibrating(
         inertia=array([np.inf, INERTIA[1]]),
@@ -149,6 +150,7 @@ def test_parametric_work_of_a_period_is_that_of_springs_that_change_while_presse
     assert float(missed) == pytest.approx(0.0, abs=1e-8 * float(jnp.max(found.energy.contacts)))
 
 
+@pytest.mark.whole
 def test_a_driver_with_inertia_keeps_its_mean_speed_under_a_constant_torque():
     found = steady_motion(alone(INERTIA[0], mesh_damping=array(2000.0)), SPEED, GRID)
     assert found.status.code == Code.SOLVED
@@ -265,6 +267,7 @@ def test_a_gear_on_a_steady_one_swings_about_its_deflection():
     np.testing.assert_allclose(found.place[1] * ACTION[1], expected, atol=1e-8 * rest)
 
 
+@pytest.mark.whole
 def test_an_ellipse_alone_swings_about_its_approach_at_the_slope_of_its_force():
     """Hertz: F is proportional to approach^1.5, so that dF/d(approach) is 1.5 F/approach."""
     mesh = torus()

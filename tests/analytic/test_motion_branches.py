@@ -70,6 +70,7 @@ def swing(motion):
     return float(motion.rms(motion.transmission_error))
 
 
+@pytest.mark.whole
 def test_speeds_that_rise_and_fall_find_both_branches_between_the_folds(branches):
     rising, falling = branches
     for speed in RISING[1:-1]:
@@ -84,6 +85,7 @@ def pressed(motion):
     return np.sum(np.asarray(motion.found.force), axis=(0, 1))
 
 
+@pytest.mark.whole
 def test_every_branch_is_a_motion_that_repeats_itself(branches):
     for way in branches:
         for motion in way.values():

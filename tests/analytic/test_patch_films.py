@@ -72,6 +72,7 @@ def coarse(contact: PatchContact) -> PatchFilms:
     return found
 
 
+@pytest.mark.whole
 def test_the_middle_of_a_long_line_is_an_infinite_line():
     contact = line(slender=56.5, crown=5e-6, sliding=0.0)
     found = solve_patch(contact).film
@@ -363,6 +364,7 @@ def test_grids_that_there_are_not_are_refused():
         solve_patch(line(), cells=48)
 
 
+@pytest.mark.whole
 def test_smooth_surfaces_that_stand_still_have_no_film():
     found = solve_patch(line(speed=0.0), nodes=65, cells=64)
     assert found.ended.code == Code.NO_FILM
@@ -410,6 +412,7 @@ def test_free_ends_take_pressure_from_the_ends():
     assert np.all(flush[1].near_ends[:, 0] < 0.8 * flush[0].near_ends[:, 0])
 
 
+@pytest.mark.whole
 def test_a_middle_that_does_not_touch_has_no_film():
     lifted = line(places=ENDS, relief=np.array([0.0, 40e-6]), crown=0.0, slender=40.0, speed=3.0)
     lifted = eqx.tree_at(lambda one: one.load, lifted, 0.05 * lifted.load)
@@ -464,6 +467,7 @@ def test_oil_that_begins_nearby_starves_a_patch_as_it_starves_a_line():
     assert not any("starved" in told for told in crowned_line().warnings)
 
 
+@pytest.mark.whole
 def test_a_patch_begins_no_nearer_than_its_grid():
     found = coarse(line(inlet=1e-5))
     assert -found.layout.inlet == pytest.approx(1.5 * found.layout.length)

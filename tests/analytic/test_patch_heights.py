@@ -119,6 +119,7 @@ def test_a_film_may_take_a_map_of_each_surface():
     )
 
 
+@pytest.mark.whole
 def test_waves_that_a_grid_does_not_show_are_told():
     told = solved(ball(heights=wave(length=3e-5))).warnings
     assert any("waves shorter than about four cells are lost" in one for one in told)

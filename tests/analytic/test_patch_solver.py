@@ -70,11 +70,13 @@ def test_a_start_from_another_film_finds_the_same_film_sooner(
     assert np.allclose(warm.film.pressure, cold.film.pressure, atol=1e-6 * cold.film.hertz_pressure)
 
 
+@pytest.mark.whole
 def test_films_that_were_not_solved_are_no_start():
     still = solve_patch(line(0.0), nodes=33, cells=32)
     assert on(line(), 33, still).ended.steps == on(line(), 33).ended.steps
 
 
+@pytest.mark.whole
 def test_a_start_that_leads_nowhere_is_left(monkeypatch: pytest.MonkeyPatch):
     cold, near = on(line(), 33), on(line(1.3), 33)
 
@@ -87,6 +89,7 @@ def test_a_start_that_leads_nowhere_is_left(monkeypatch: pytest.MonkeyPatch):
     assert np.array_equal(on(line(), 33, near).film.gap, cold.film.gap)
 
 
+@pytest.mark.whole
 def test_symmetric_contacts_have_symmetric_films():
     for contact in (line(), ball()):
         film = on(contact, 65).film

@@ -97,6 +97,7 @@ def figures(mesh, load, sharing):
     return np.array([found[name][0] for name in ("mean_efficiency", "mean_input_torque")])
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("sharing", ["sanchez_2017", "from_stiffness"])
 def test_it_is_the_limit_of_a_wheel_with_more_and_more_teeth(sharing):
     """Errors fall with the number of teeth: two wheels and their extrapolation."""

@@ -72,6 +72,7 @@ def solved(case):
     return found, cycle_of(case.design, case.operation, known, found.balance)
 
 
+@pytest.mark.whole
 def test_films_and_forces_agree_as_in_a_loop_of_ones_own(spur):
     case, found, own = spur
     assert Code(int(found.status.code)).ok
@@ -107,6 +108,7 @@ def test_films_and_forces_agree_as_in_a_loop_of_ones_own(spur):
     assert lost == pytest.approx(1.0 - float(found.mean_efficiency), rel=1e-6)
 
 
+@pytest.mark.whole
 def test_without_load_there_is_no_film_to_solve(spur):
     case, found, _ = spur
     models = case.models[0]
@@ -119,6 +121,7 @@ def test_without_load_there_is_no_film_to_solve(spur):
     assert np.any(np.asarray(found.balance.load) > 0.0)
 
 
+@pytest.mark.whole
 def test_the_energy_closes(spur):
     _, _, own = spur
     state = own.state
@@ -134,6 +137,7 @@ def test_the_energy_closes(spur):
     np.testing.assert_allclose(whole, lost, rtol=1e-12, atol=1e-12 * lost.max())
 
 
+@pytest.mark.whole
 def test_rolling_is_that_of_the_films_unless_the_case_has_a_model_of_it(spur):
     _, _, by_film = spur
     case = built(models={"rolling_resistance": "wu_cheng_1991"})
@@ -214,6 +218,7 @@ def test_films_are_solved_by_the_choices_of_the_case():
     assert films == FilmModel(nodes=65, boundary_friction=0.08, inlet=2e-3)
 
 
+@pytest.mark.whole
 def test_points_of_a_sweep_have_films_by_their_own_choices():
     film = {"solver": "line", "nodes": 33}
     points = [built(film={**film, "boundary_friction": one}) for one in (0.05, 0.1)]

@@ -93,6 +93,7 @@ def runs(drives, engaged):
     return OnDemand(lambda key: run(drives[key[0]], key[1], engaged[key[0], NODES[0]]))
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("torque", TORQUES)
 @pytest.mark.parametrize("form", quick_first(FORMS))
 def test_no_edge_carries_and_every_pair_closes_its_gap(drives, runs, form, torque):
@@ -156,6 +157,7 @@ def test_pairs_of_an_involute_drive_at_a_tenth_of_a_rated_torque(runs, torque):
     assert 6.0 <= pairs <= 10.0
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("form", quick_first(FORMS))
 def test_no_force_jumps_as_teeth_pass(drives, form):
     """Where contacts yield in proportion, the largest step of a force shrinks with that of the phase."""
@@ -172,6 +174,7 @@ def finely(drives):
     return OnDemand(lambda form: passing(drives[form], phases))
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("torque", TORQUES)
 @pytest.mark.parametrize("form", quick_first(FORMS))
 def test_forces_by_webers_law_hardly_step(drives, finely, form, torque):

@@ -4,6 +4,7 @@ import equinox as eqx
 import jax
 import numpy as np
 import pytest
+from sound import quick_first
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.ellipse import hertz_1881, largest_shear
@@ -27,8 +28,8 @@ def below_an_ellipse(across, poisson=0.3):
     return jax.tree.map(np.asarray, below_row(bodies, pressure, DEPTH, poisson, 32))
 
 
-@pytest.mark.parametrize("across", [1.0, 3.0])
-@pytest.mark.parametrize("poisson", [0.3, 0.4])
+@pytest.mark.parametrize("across", quick_first([3.0, 1.0]))
+@pytest.mark.parametrize("poisson", quick_first([0.3, 0.4]))
 def test_below_an_ellipse_it_is_that_of_hertz(across, poisson):
     """Ratios of radii are those that make the ellipse; the closed form is asked for its shear."""
     radii = {"radius": 1.0, "transverse_radius": 1.0, "load": 1.0, "modulus": 1e6}

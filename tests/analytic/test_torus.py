@@ -186,6 +186,7 @@ def test_both_flanks_pressing_are_told():
     assert told[0].startswith("Misalignment takes 28 um more than the backlash")
 
 
+@pytest.mark.whole
 def test_yielding_is_that_of_both_teeth_and_of_an_ellipse():
     mesh, load = pair(), 500.0
     contacts = contacts_of(mesh, jnp.asarray([0.85]))
@@ -209,6 +210,7 @@ def test_yielding_is_that_of_both_teeth_and_of_an_ellipse():
     assert 1.0 / one - teeth == pytest.approx(float(pressed.approach) / load, rel=1e-9)
 
 
+@pytest.mark.whole
 def test_mesh_stiffness_is_the_slope_of_the_wind_up_over_the_load():
     """Of teeth in series with an ellipse, whose approach grows with the load to the power 2/3."""
     mesh, load, radius = pair(), 100.0, float(pair().base_radii[1])

@@ -274,6 +274,7 @@ def test_solved_asks_that_the_end_is_reached_and_the_energy_closes(reached, clos
     assert int(_code(jnp.asarray(reached), array(closure))) == code
 
 
+@pytest.mark.whole
 def test_times_may_lie_where_pairs_enter():
     """Rounding puts the same moment at two numbers, between which no step fits."""
     end = 4.0 * float(PAIR.mesh.period) / 100.0
@@ -342,6 +343,7 @@ def discs(inertia, mass, held, creep, times, rate):
     return jax.tree.map(np.asarray, transient(given, times, place=pressed, rate=rate))
 
 
+@pytest.mark.whole
 def test_discs_reach_a_common_speed_in_the_time_of_the_textbook():
     inertia, speed = np.array([1e-3, 4e-3]), 20.0
     grip = FRICTION * NORMAL

@@ -34,6 +34,7 @@ def together(own, loads):
     return jax.vmap(one)(loads)
 
 
+@pytest.mark.whole
 def test_transients_at_once_are_the_single_ones():
     """Where teeth meet and part rounding may shift a step, to the tolerance of 1e-10 of a state."""
     every = together(free(), array([60.0, LOAD, 140.0]))

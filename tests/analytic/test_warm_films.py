@@ -209,6 +209,7 @@ def test_traction_rises_with_sliding_and_falls_with_heat(sliding):
     assert (warm[1:] < drawn[1:]).all()
 
 
+@pytest.mark.whole
 def test_without_sliding_there_is_little_heat_and_no_traction():
     warm = solve_lines(contact(speed=np.array([0.01, 0.1])), nodes=65).film
     cold = solve_lines(contact(speed=np.array([0.01, 0.1]), conduction=None), nodes=65).film
@@ -267,6 +268,7 @@ def test_asperities_warm_the_surfaces(rough):
     assert (found.film.heat.largest_a[1:] > smooth.largest_a[1:]).all()
 
 
+@pytest.mark.whole
 def test_what_has_no_temperature_says_so_and_shows_no_numbers():
     squeezed = contact(speed=0.0, approach=np.array([1e-3]))
     found = solve_lines(squeezed, nodes=33)

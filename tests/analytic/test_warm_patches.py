@@ -87,6 +87,7 @@ def test_the_middle_of_a_long_line_is_one_without_ends() -> None:
         assert found_there.max() == pytest.approx(expected.max(), rel=0.01)
 
 
+@pytest.mark.whole
 def test_all_heat_that_is_made_goes_into_the_surfaces() -> None:
     film, ended = sliding().film, sliding().ended
     assert film.asperity_share > 0.004
@@ -102,6 +103,7 @@ def test_all_heat_that_is_made_goes_into_the_surfaces() -> None:
     assert 2 <= ended.turns < 40
 
 
+@pytest.mark.whole
 def test_surfaces_and_film_are_as_warm_as_their_heat_makes_them() -> None:
     """Summed up anew in SI along the motion of the surfaces in one row, and across the film."""
     film, (rows, nodes) = sliding().film, sliding().film.pressure.shape
@@ -180,6 +182,7 @@ def test_without_sliding_there_is_little_heat_and_the_film_is_isothermal() -> No
     assert warm.shear_force[0] == 0.0
 
 
+@pytest.mark.whole
 def test_warm_films_are_thinner_and_rub_less() -> None:
     cold = solved(ball(conduction=None)).film
     warm = sliding().film
@@ -259,6 +262,7 @@ def test_datasets_have_temperatures_with_units() -> None:
     )
 
 
+@pytest.mark.whole
 def test_what_has_no_steady_heat_says_so_and_shows_no_numbers() -> None:
     found = solve_patch(ball(speed=0.0, approach=1e-3), **COARSE)
     assert found.ended.code == Code.NO_STEADY_HEAT

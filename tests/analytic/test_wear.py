@@ -104,6 +104,7 @@ def test_discs_wear_by_their_line_load_and_sliding_over_rolling():
     assert reached.depth.min(axis=(1, 2)) == pytest.approx(expected, rel=1e-10)
 
 
+@pytest.mark.whole
 def test_many_discs_together_wear_as_each_of_them():
     given, cells = discs(), as_new(*discs(), parts=PARTS, count=CELLS)[1]
     loads, turns = np.array([1.0, 2.0, 0.5]) * LOAD, np.array([1e9, 1e6, 1e9])
@@ -324,6 +325,7 @@ def test_sensitivities_of_the_life_are_those_of_differences():
     assert not {"centre distance", "tip alteration 1"} & {*found}  # they follow from the others
 
 
+@pytest.mark.whole
 def test_flanks_that_count_as_new_wear_by_their_first_rate():
     """At a rate that stays, the depth changes as the rate does, and the life the other way."""
     built, (_, cells) = pair(), begun(pair())

@@ -304,6 +304,9 @@ FURTHER = (
     "ring 20/-60, wheel drives",
     "helical ring 18/-71, right flank",
     "helical rack",
+    "strain wave 200/202, flexspline fixed",
+    "strain wave 200/202, wave generator fixed",
+    "strain wave 200/202, back-driving",
     "strain wave 200/204",
 )
 """Of families that have others here; most are another structure to the compiler, some 10 s each."""
@@ -425,11 +428,19 @@ def check_energy(found):
 ROLLING = {"line": "wu_cheng_1991", "ellipse": "wu_cheng_1991_strips"}
 
 
+def test_torque_route_equals_loss_route(family):
+    check_routes(family, LOCAL[:1])
+
+
+@pytest.mark.whole
 @pytest.mark.parametrize("rolls", [False, True], ids=["none", "rolling"])
-def test_torque_route_equals_loss_route(family, rolls):
-    rolling = ROLLING[family.at.shape] if rolls else "none"
+def test_torque_route_equals_loss_route_by_every_law(family, rolls):
+    check_routes(family, laws_for(family.mesh), ROLLING[family.at.shape] if rolls else "none")
+
+
+def check_routes(family, laws, rolling="none"):
     operation = operation_for(family.mesh)
-    for law in laws_for(family.mesh):
+    for law in laws:
         found = states(family, law, rolling)
         check_energy(found)
         rates = family.told.motion * float(operation.speed)
@@ -659,6 +670,7 @@ def test_batch_equals_loop(family):
         np.testing.assert_allclose(np.asarray(getattr(square, name)), shaped, **near)
 
 
+@pytest.mark.whole
 def test_states_together_equal_states_alone(family):
     mesh, phase = family.mesh, jnp.asarray(family.phase)
     together = states(family, "xu_2007", "none")["torque"]

@@ -11,6 +11,7 @@ from unittest.mock import patch
 import equinox as eqx
 import numpy as np
 import pytest
+from sound import quick_first
 from strain_wave_positions import drive
 
 from pitchpoint._jax import array, jax, jnp
@@ -50,7 +51,7 @@ def seen(mesh, phase):
         return mesh.contacts(phase), raw
 
 
-@pytest.fixture(scope="module", params=FORMS)
+@pytest.fixture(scope="module", params=quick_first(FORMS))
 def passing(request):
     """Contacts of one zone, one row for each quantity, with the positions of their flanks."""
     form = FORMS[request.param]
@@ -279,6 +280,7 @@ def running(request):
     )
 
 
+@pytest.mark.whole
 def test_torques_follow_virtual_work_whichever_member_is_fixed(running):
     z1, z2 = np.asarray(running.mesh.teeth)
     torque = running.smooth.torque
@@ -287,6 +289,7 @@ def test_torques_follow_virtual_work_whichever_member_is_fixed(running):
     np.testing.assert_allclose(torque, expected, rtol=1e-9)
 
 
+@pytest.mark.whole
 def test_without_friction_nothing_is_lost(running):
     """Though teeth carry that had a clearance."""
     loaded = running.smooth.load > 0.0
@@ -296,6 +299,7 @@ def test_without_friction_nothing_is_lost(running):
     assert np.all(running.smooth.loss == 0.0)
 
 
+@pytest.mark.whole
 def test_torque_route_equals_loss_route_with_loads_from_stiffness(running):
     found = running.rough
     power = running.motion @ found.torque * SPEED
@@ -307,18 +311,21 @@ def test_torque_route_equals_loss_route_with_loads_from_stiffness(running):
     assert np.all((found.efficiency > 0.0) & (found.efficiency < 1.0))
 
 
+@pytest.mark.whole
 def test_tooth_friction_alone_does_not_lock_the_drive(running):
     """Either way round: it takes a coefficient of more than a half."""
     assert not running.rough.locked
     assert running.rough.mean_efficiency > 0.5
 
 
+@pytest.mark.whole
 def test_extremes_are_those_of_the_nodes(running):
     """Pairs come and go between the events: a polynomial would run beyond what was computed."""
     torque = running.rough.input_torque
     np.testing.assert_array_equal(running.rough.extremes, [torque.min(), torque.max()])
 
 
+@pytest.mark.whole
 def test_many_pairs_carry_and_only_push(running):
     for found in (running.smooth, running.rough):
         carrying = found.load > 0.0

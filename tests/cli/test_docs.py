@@ -175,6 +175,7 @@ def test_a_case(name: str) -> None:
     assert ("kinematic_error" in made) == (name in ("modified", "wave", "limits", "targets"))
 
 
+@pytest.mark.whole
 def test_the_table_of_worn_flanks(tmp_path: Path) -> None:
     """A march of few turns, and what goes on from it."""
     case = merged(tree("wear"), {"wear": {"cycles": 10.0, "cells": 8, "phases": 4}})
@@ -346,6 +347,7 @@ def test_the_python_of_the_readme(folder: Path) -> None:
     assert (folder / "again.html").is_file()
 
 
+@pytest.mark.whole
 def test_films_without_any_gear(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -355,6 +357,7 @@ def test_films_without_any_gear(
     assert (tmp_path / "films.nc").is_file()
 
 
+@pytest.mark.whole
 def test_contacts_of_finite_length(capsys: pytest.CaptureFixture[str]) -> None:
     ran("guide/films.md", "solve_patch")
     told = capsys.readouterr().out
@@ -377,6 +380,7 @@ def test_units_of_ones_choice(folder: Path, capsys: pytest.CaptureFixture[str]) 
     assert capsys.readouterr().out.splitlines()[-1] == "N cm"
 
 
+@pytest.mark.whole
 def test_the_parts_of_a_strain_wave_drive_are_those_of_the_text() -> None:
     """What the block reads of them is run beside a drive, in `test_strain_wave_runs`."""
     (told,) = re.findall(r"print\(list\(drive\.parts\)\)\n# (.*)", PAGES["guide/python.md"])

@@ -380,6 +380,7 @@ def test_films_in_series_yield_as_films_of_more_load_do(case: str) -> None:
     assert "less)" in film_answer(outcome)
 
 
+@pytest.mark.whole
 def test_films_in_series_need_a_torque(case: str) -> None:
     settings = {"film.in_series": True, "operation.torque": "0 N m"}
     with pytest.raises(InputError, match="nothing is carried") as told:

@@ -74,6 +74,7 @@ def test_what_does_not_change_is_steady() -> None:
         assert data[name].values == pytest.approx(float(data[name][0]), rel=1e-6)
 
 
+@pytest.mark.whole
 def test_one_pair_is_followed_from_moment_to_moment(outcome: Outcome, case: str) -> None:
     data, built = outcome.parts["film_squeeze"], load_case(case)
     assert data.sizes["moment"] == int(data["solved_moments"]) == 7
@@ -89,6 +90,7 @@ def test_one_pair_is_followed_from_moment_to_moment(outcome: Outcome, case: str)
     assert loads.min() >= 0.1 * loads.max()
 
 
+@pytest.mark.whole
 def test_oil_takes_time_to_leave_and_to_come(outcome: Outcome) -> None:
     # A film that has to become thinner is still thicker than a steady one, and the other way round.
     data = outcome.parts["film_squeeze"]
@@ -151,6 +153,7 @@ def test_a_film_that_is_lost_ends_the_march_and_leaves_steady_ones(
     assert "3 moments of the engagement was not found" in render({"default": one})
 
 
+@pytest.mark.whole
 def test_report_screen_and_json_have_the_squeeze(outcome: Outcome) -> None:
     page = render({"default": outcome})
     for words in (
@@ -170,6 +173,7 @@ def test_report_screen_and_json_have_the_squeeze(outcome: Outcome) -> None:
     assert told["squeeze_change"] == float(outcome.parts["film_squeeze"]["squeeze_change"])
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("given", "key", "words"),
     [
@@ -216,6 +220,7 @@ def test_the_run_around_a_moment_has_no_gap() -> None:
     assert _around(np.ones(3, bool), 0) == slice(0, 3)
 
 
+@pytest.mark.whole
 def test_contacts_are_those_that_one_grid_shows(case: str) -> None:
     own = laid_out(course_of(load_case(case)).contacts[0], 32)
     narrow = own._replace(half_width=0.01 * own.half_width)
@@ -225,6 +230,7 @@ def test_contacts_are_those_that_one_grid_shows(case: str) -> None:
     assert _shown([None], 65, 0) == slice(0, 0)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("moments", [2, 3, 7])
 def test_the_moment_that_carries_most_is_among_few(case: str, moments: int) -> None:
     built = load_case(case, settings={"film.moments": moments})

@@ -68,6 +68,7 @@ def leaning(tmp_path_factory: pytest.TempPathFactory) -> str:
     return str(path)
 
 
+@pytest.mark.whole
 def test_every_loaded_contact_has_a_film(outcome: Outcome) -> None:
     assert list(outcome.parts) == ["finite_film"]
     data = outcome.parts["finite_film"]
@@ -188,6 +189,7 @@ def test_the_load_along_a_line_is_that_of_the_slices(leaning: str) -> None:
     assert own[inner] == pytest.approx(shared[inner], rel=0.15)
 
 
+@pytest.mark.whole
 def test_ends_by_name_lower_the_pressure_there(case: str) -> None:
     built = load_case(case, settings={"film.end_profile": "dub_off", **DUB})
     numbers = wholes(built).numbers
@@ -218,6 +220,7 @@ def test_a_ball_on_a_disc_has_an_ellipse_once_for_all_phases() -> None:
     assert 'id="finite_film"' in render({"default": outcome})
 
 
+@pytest.mark.whole
 def test_a_barrel_has_both_its_radii() -> None:
     built = load_case(BALL, settings={"gears.transverse_radius": "30 mm"})
     contact = one_contact(built, wholes(built).numbers[0, 0, 0])

@@ -71,6 +71,7 @@ def outcome(folder: Path) -> Outcome:
     return running.run(written(folder, table("both", "waves.csv")))["default"]
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("file", "more"), [("csv", ""), ("txt", 'unit = "1 nm"\n'), ("npy", 'unit = "1 m"\n')]
 )
@@ -88,6 +89,7 @@ def test_a_file_is_the_map_that_it_holds(folder: Path, file: str, more: str) -> 
     assert still.member is None
 
 
+@pytest.mark.whole
 def test_films_are_those_of_the_same_map_in_python(outcome: Outcome, folder: Path) -> None:
     data = outcome.parts["finite_film"]
     built = load_case(written(folder, "", "plain.toml"))
@@ -112,6 +114,7 @@ def test_another_content_is_another_run(folder: Path, tmp_path: Path) -> None:
     assert again["field_heights"].values == pytest.approx(half, abs=1e-15)
 
 
+@pytest.mark.whole
 def test_the_report_shows_what_the_grid_sees(outcome: Outcome) -> None:
     page = render({"default": outcome})
     assert "Roughness seen" in page and "Film and heights along the contact" in page
@@ -139,6 +142,7 @@ def test_a_map_moves_with_its_surface_under_squeeze(
     assert np.ptp(data["field_heights"].values[0]) > 1e-8
 
 
+@pytest.mark.whole
 def test_maps_that_take_too_long_to_pass_are_told(folder: Path) -> None:
     case = written(folder, table("gear_1", "waves.csv", "periodic = true\n"), "long.toml")
     with pytest.raises(InputError, match="mm of the surface pass") as caught:
@@ -160,6 +164,7 @@ BAD = {
 }
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("name", BAD)
 def test_files_without_heights_are_told(name: str, folder: Path) -> None:
     content, words = BAD[name]
@@ -171,6 +176,7 @@ def test_files_without_heights_are_told(name: str, folder: Path) -> None:
     assert f'"{name}"' in caught.value.message
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     "settings",
     [
@@ -185,6 +191,7 @@ def test_files_of_settings_lie_beside_the_case_file(settings: dict[str, Any], fo
     assert film.heights.both.file == str((folder / "waves.txt").resolve())
 
 
+@pytest.mark.whole
 def test_a_record_of_another_content_is_told(folder: Path, tmp_path: Path) -> None:
     np.savetxt(folder / "kept.csv", WAVES, delimiter=",")
     (described,) = describe(written(folder, table("both", "kept.csv"), "kept.toml"))
@@ -205,12 +212,14 @@ def load_warnings(record: Path, settings: dict[str, Any] | None = None) -> list[
     return found
 
 
+@pytest.mark.whole
 def test_an_array_of_objects_is_not_read(folder: Path) -> None:
     np.save(folder / "objects.npy", np.array([[{}, {}]], object), allow_pickle=True)
     with pytest.raises(InputError, match="cannot be read as an array"):
         load_case(written(folder, table("both", "objects.npy"), "bad.toml"))
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("more", "words"),
     [
@@ -228,6 +237,7 @@ def test_maps_that_do_not_fit_the_contact_are_told(
     assert caught.value.key == "film.heights"
 
 
+@pytest.mark.whole
 def test_lines_without_ends_take_no_maps(folder: Path) -> None:
     case = written(folder, table("both", "waves.csv"), "line.toml")
     with pytest.raises(InputError, match="one profile all along") as caught:

@@ -58,6 +58,7 @@ def deviating(case: str) -> Outcome:
     return bank.outcomes(case, settings=DEVIATING)["default"]
 
 
+@pytest.mark.whole
 def test_the_joint_vibrates_on_the_slope_of_its_wind_up(outcome: Outcome) -> None:
     torsion, joint = outcome.parts["torsion"], outcome.parts["joint"]
     slope = float(joint["torsional_stiffness"][0])
@@ -69,6 +70,7 @@ def test_the_joint_vibrates_on_the_slope_of_its_wind_up(outcome: Outcome) -> Non
     np.testing.assert_allclose(joint["joint_damping_ratio"], [0.03 / np.sqrt(1.6 / 0.6), 0.03])
 
 
+@pytest.mark.whole
 def test_without_deviations_the_ripple_of_the_teeth_excites(outcome: Outcome) -> None:
     joint = outcome.parts["joint"]
     assert joint["excitation"].values.tolist() == ["passing teeth, order 202"]
@@ -151,6 +153,7 @@ def test_torques_without_equilibrium_end_the_curve() -> None:
         _found(points)
 
 
+@pytest.mark.whole
 def test_without_a_load_the_flanks_change_sides(case: str) -> None:
     built = running.load_case(case, settings={"operation.torque": "0 N m"})
     joint = joint_part(built, lambda done: None)
@@ -161,6 +164,7 @@ def test_without_a_load_the_flanks_change_sides(case: str) -> None:
     )
 
 
+@pytest.mark.whole
 def test_a_case_without_the_table_has_no_joint(case: str, tmp_path: Path) -> None:
     path = tmp_path / "still.toml"
     path.write_text(DRIVE.partition("[dynamics]")[0], "utf-8")

@@ -65,6 +65,7 @@ def outcome(case: str, folder: Path) -> Outcome:
     return running.run(case, folder=folder)["default"]
 
 
+@pytest.mark.whole
 def test_a_motion_is_found_and_its_energy_closes(outcome: Outcome) -> None:
     data = outcome.parts["motion"]
     assert data.attrs["sentence"] == Code.SOLVED.sentence
@@ -78,6 +79,7 @@ def test_a_motion_is_found_and_its_energy_closes(outcome: Outcome) -> None:
     )
 
 
+@pytest.mark.whole
 def test_speeds_and_forces_are_those_of_bodies_in_balance(outcome: Outcome) -> None:
     data = outcome.parts["motion"]
     assert data["relative_speed"].dims == ("body", "node")
@@ -92,6 +94,7 @@ def test_speeds_and_forces_are_those_of_bodies_in_balance(outcome: Outcome) -> N
     assert abs(own) == pytest.approx(float(np.trapezoid(force, turned)), rel=1e-3)
 
 
+@pytest.mark.whole
 def test_the_part_is_what_the_kernel_finds(case: str, outcome: Outcome) -> None:
     built = load_case(case)
     moving, modes = moving_of(built)
@@ -103,6 +106,7 @@ def test_the_part_is_what_the_kernel_finds(case: str, outcome: Outcome) -> None:
         steady_motion(moving, 0.0)
 
 
+@pytest.mark.whole
 def test_the_march_goes_up_and_down_and_is_resumed(
     case: str, folder: Path, outcome: Outcome
 ) -> None:
@@ -119,6 +123,7 @@ def test_the_march_goes_up_and_down_and_is_resumed(
     np.testing.assert_array_equal(again["mean_efficiency"], data["mean_efficiency"])
 
 
+@pytest.mark.whole
 def test_a_start_gathers_speed_by_what_its_torques_leave(outcome: Outcome) -> None:
     data = outcome.parts["start_up"]
     energy = {name: data[name].values for name in data.data_vars if "work" in str(name)}
@@ -131,6 +136,7 @@ def test_a_start_gathers_speed_by_what_its_torques_leave(outcome: Outcome) -> No
     assert left[-1] == pytest.approx(float(data["kinetic_energy"][-1]), rel=2e-2)
 
 
+@pytest.mark.whole
 def test_report_screen_and_figures_tell_it(outcome: Outcome) -> None:
     page = render({"default": outcome})
     for words in ("Motion with friction", "Campbell", "Against speed", "bearings that yield"):
@@ -152,6 +158,7 @@ def test_report_screen_and_figures_tell_it(outcome: Outcome) -> None:
         assert words in page
 
 
+@pytest.mark.whole
 def test_critical_speeds_are_where_orders_meet_modes(outcome: Outcome) -> None:
     rows = figures(outcome)["critical_speeds"]
     data = outcome.parts["motion_against_speed"]
@@ -174,6 +181,7 @@ def test_critical_speeds_are_where_orders_meet_modes(outcome: Outcome) -> None:
     assert "rpm wide at half power" in warned
 
 
+@pytest.mark.whole
 def test_what_vibration_takes_is_the_difference_of_efficiencies(outcome: Outcome) -> None:
     data = outcome.parts["motion"]
     taken = float(data["quasi_static_efficiency"] - data["mean_efficiency"])
@@ -181,6 +189,7 @@ def test_what_vibration_takes_is_the_difference_of_efficiencies(outcome: Outcome
     assert taken != 0.0
 
 
+@pytest.mark.whole
 def test_orders_of_the_bearing_forces_have_their_mean_and_their_swing(outcome: Outcome) -> None:
     data = outcome.parts["motion"]
     spectrum = data["bearing_spectrum"]
@@ -194,6 +203,7 @@ def test_orders_of_the_bearing_forces_have_their_mean_and_their_swing(outcome: O
         assert first == pytest.approx(amplitudes[1], rel=1e-2, abs=0.5)
 
 
+@pytest.mark.whole
 def test_inertia_that_a_case_leaves_open_stands_among_its_inputs(outcome: Outcome) -> None:
     rows = [row for row in outcome.manifest["inputs"] if row["key"] == "inertia"]
     ((small, large),) = [row["value"] for row in rows]
@@ -250,6 +260,7 @@ def test_what_cannot_move_is_told_in_one_sentence(given: str, tmp_path: Path) ->
     assert told in str(error.value)
 
 
+@pytest.mark.whole
 def test_a_motion_without_load_is_refused(case: str) -> None:
     with pytest.raises(
         InputError, match=r"operation.torque: 0 was given; a motion asks for a torque"
@@ -257,6 +268,7 @@ def test_a_motion_without_load_is_refused(case: str) -> None:
         load_case(case, settings={"operation.torque": "0 N m"})
 
 
+@pytest.mark.whole
 def test_a_start_that_runs_backwards_says_so(case: str) -> None:
     given = {"dynamics.motion.start_up.torque": "5 N m"}
     built = load_case(case, settings=given)

@@ -357,6 +357,7 @@ def test_gradients_by_keys_are_those_of_rebuilt_cases(result: pp.Result) -> None
     np.testing.assert_allclose(table.derivative, slopes, rtol=2e-5)
 
 
+@pytest.mark.whole
 def test_a_key_that_makes_other_gears_has_no_derivative() -> None:
     """Lines of a spur pair are straight: nothing is known of the first inclination of them."""
     helix = "gears.helix_angle"

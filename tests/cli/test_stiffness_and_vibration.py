@@ -283,6 +283,7 @@ WARM = {
 }
 
 
+@pytest.mark.whole
 def test_warm_wheel_is_softer_and_says_so(file: Callable[[str], str]) -> None:
     path = file(ENGINEER)
     warming = WARM | {"models.tooth_temperature": "vdi_2736_2"}

@@ -37,6 +37,7 @@ def cycle(tree: dict[str, Any], **changes: dict[str, Any]) -> xr.Dataset:
     return CYCLE.compute(built, None, lambda _: None)
 
 
+@pytest.mark.whole
 def test_contacts_are_ellipses_of_their_load() -> None:
     data = cycle(SAMPLE, models={"elliptic_contact": "hamrock_brewe_1983"})
     load, radius = (data[name].values[0, :, 0, 0] for name in ("load", "radius"))
@@ -52,6 +53,7 @@ def test_contacts_are_ellipses_of_their_load() -> None:
     assert json.loads(data.attrs["solve"])["code"] == Code.SOLVED
 
 
+@pytest.mark.whole
 def test_an_ellipse_longer_than_its_room_is_told_with_both_lengths() -> None:
     data = cycle(
         SAMPLE,
@@ -71,6 +73,7 @@ def test_an_ellipse_longer_than_its_room_is_told_with_both_lengths() -> None:
     assert float(data["largest_inclination"].min()) < 17e-3
 
 
+@pytest.mark.whole
 def test_the_inclination_is_largest_where_the_contact_reaches_the_end() -> None:
     """Near (b/2 - a)/R_y: 19 mrad for a semi-axis of 2 mm on a face of 15 mm."""
     data = cycle(SAMPLE)

@@ -102,6 +102,7 @@ def test_all_44_efficiencies_of_the_catalogue():
     assert np.abs(away.mean(axis=0)).max() < 1.0
 
 
+@pytest.mark.whole
 def test_pairs_that_carry_make_all_the_losses():
     """The loss map leaves the others out."""
     built, models = case()
@@ -157,6 +158,7 @@ def test_each_of_the_two_constants_is_needed_and_at_its_best():
         assert all(squares(**{name: by}) > 1.2 * least for by in (0.9, 1.1))
 
 
+@pytest.mark.whole
 def test_a_higher_ratio_loses_less_torque():
     """Ratio 160, -10 and 40 degC, 2000 rpm: what grows with the deflection falls with the ratio."""
     tree = find("csd25")[1]
@@ -192,6 +194,7 @@ def from_rest(built):
     return float(starting_torque(built.design, idle, models, engaged(built.design, idle, models)))
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(("size", "ratio"), STARTING)
 def test_torques_that_start_a_drive_either_way(size, ratio):
     """One set of constants for both sizes and ratios."""
@@ -203,6 +206,7 @@ def test_torques_that_start_a_drive_either_way(size, ratio):
     assert 0.9 < back / (ratio * forth) < 1.3
 
 
+@pytest.mark.whole
 def test_the_shipped_example_has_the_efficiency_of_real_drives():
     built = load_case(str(EXAMPLE))
     point = built.case.operation
@@ -287,6 +291,7 @@ def beside_the_catalogue(variant):
     return compare(drive(variant).case.targets, {"torsion": part})
 
 
+@pytest.mark.whole
 def test_stiffness_as_built_beside_the_catalogue():
     """Nothing is fitted: half of K1, 30 % of the others are allowed."""
     rows = beside_the_catalogue("as_built")
@@ -297,6 +302,7 @@ def test_stiffness_as_built_beside_the_catalogue():
     assert [row.printed for row in rows[:3]] == [1e-3 * k for k in (K1, K2, K3)]
 
 
+@pytest.mark.whole
 def test_stiffness_of_teeth_rim_and_wall_beside_the_catalogue():
     """What yields behind them, and the balls, is not in it."""
     rows = beside_the_catalogue("rigid_bearing")
@@ -313,6 +319,7 @@ SOFTER = {50: (0.81, 0.71), 30: (0.36, 0.27)}
 """K1 and K2 of the size 32 by ratio, over those at 80 and more: CSF, tables 41 and 42, in a public copy."""
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("ratio", SOFTER)
 def test_low_ratios_with_usual_walls_are_softer_as_in_the_catalogue(ratio):
     """Asked is the trend: within two tenths of the stiffness at 100."""
@@ -377,6 +384,7 @@ def test_a_ball_between_two_races_yields_as_hertz_says(conformity):
     assert 0.95 < total / palmgren < 1.15
 
 
+@pytest.mark.whole
 def test_pairs_and_stiffness_grow_with_the_torque():
     found = size_32()
     assert np.all(np.diff(found.loaded_pairs[1:], axis=0) >= 0)

@@ -84,6 +84,7 @@ def missed(study, variant="as_published", **changes):
 # ------------------------------------------------------------------ the comparison
 
 
+@pytest.mark.whole
 def test_rows_of_the_paper_are_counted_for_each_kind():
     assert {kind: dict(found) for kind, found in counts(rows("as_published")).items()} == {
         "fitted": {"pass": 68},
@@ -94,6 +95,7 @@ def test_rows_of_the_paper_are_counted_for_each_kind():
     }
 
 
+@pytest.mark.whole
 def test_what_misses_or_is_left_out_says_why():
     found = [row for row in rows("as_published") if row.verdict in ("miss", "excluded")]
     assert all(len(row.reason) > 40 for row in found)
@@ -113,6 +115,7 @@ def test_no_row_of_the_corrected_contact_misses(study):
     assert missed(study, "physical") == set()
 
 
+@pytest.mark.whole
 def test_rows_of_the_corrected_motion_miss_where_flanks_would_pull():
     """At 300 rad/s; all six conditions are a file of tests/long."""
     rows_of = {"study_steady_fast": read("steady_fast", "physical")}
@@ -274,6 +277,7 @@ def by_hand(drive, time):
     return q[4] - q[5] + q[0] - q[1]
 
 
+@pytest.mark.whole
 def test_motion_is_that_of_another_solver():
     drive, turn = driven("heavy", 2, "torus")
     moved = jax.device_get(course(drive, turn))

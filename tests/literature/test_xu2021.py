@@ -102,6 +102,7 @@ def without_films(tmp_path):
     return str(path)
 
 
+@pytest.mark.whole
 def test_no_row_misses(without_films):
     rows = compare_case(without_films)[2]
     assert [(row.quantity, row.computed) for row in rows if row.verdict == "miss"] == []
@@ -111,6 +112,7 @@ def test_no_row_misses(without_films):
     }
 
 
+@pytest.mark.whole
 def test_no_row_of_the_physical_variant_misses():
     targets = case("physical").targets
     studies = {one.study for one in targets if one.study}
@@ -419,6 +421,7 @@ def test_inputs_carry_their_marks(variant):
     assert "Xu" in cite(TREE["source"])
 
 
+@pytest.mark.whole
 def test_errors_of_the_paper_are_issues_of_the_case():
     found = case().issues
     assert all(one.verdict for one in found)

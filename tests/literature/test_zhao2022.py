@@ -81,6 +81,7 @@ def missed(study, **changes):
 # ------------------------------------------------------------------ the comparison
 
 
+@pytest.mark.whole
 def test_no_row_misses():
     rows = bank.rows("zhao2022")
     assert [(row.quantity, row.computed) for row in rows if row.verdict == "miss"] == []

@@ -143,8 +143,9 @@ def names(inputs):
     ]
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("choice", [0, 1, 2], ids=["xu", "iso", "constant"])
-@pytest.mark.parametrize("name", ["18/36", pytest.param("undercut 10/41", marks=pytest.mark.whole)])
+@pytest.mark.parametrize("name", ["18/36", "undercut 10/41"])
 def test_gradients_equal_differences(name, choice):
     check_gradients((design_of(CASES[name]()), operation()), choice)
 
@@ -189,6 +190,7 @@ def ripple(design, shift, chosen):
     return cycle(shifted(design, shift), operation(), chosen).ripple
 
 
+@pytest.mark.whole
 def test_ripple_has_a_slope_on_each_side_of_an_event(design):
     chosen = models(2)
     low, high = 0.0, 0.6

@@ -251,6 +251,7 @@ def test_points_of_a_study_that_carry_on_part_of_the_face_are_told() -> None:
     assert faces_warning([crowned], np.array([[2.0]]), slices[:1]) == []  # the mesh cycle says it
 
 
+@pytest.mark.whole
 def test_a_study_over_misalignment_tells_of_faces_that_carry_in_part() -> None:
     sizes = ("1 um", "80 um")
     points = [
@@ -265,6 +266,7 @@ def test_a_study_over_misalignment_tells_of_faces_that_carry_in_part() -> None:
     assert carrying[0].split("carry, ")[1].split(" %")[0] in told
 
 
+@pytest.mark.whole
 def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> None:
     """Crowned and relieved: static transmission error and stiffness are those of the wind-up."""
     given = {"gears__modifications__crowning": "8 um", "models__tooth_compliance": "beam_hertz"}
@@ -282,6 +284,7 @@ def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> Non
     np.testing.assert_allclose(sum_of_pairs, stiffness, rtol=1e-9)
 
 
+@pytest.mark.whole
 def test_vibration_has_the_springs_that_carry() -> None:
     """A face that carries on a third of its width vibrates on that third, in equilibrium at rest."""
     example = Path(__file__).parents[2] / "examples" / "spur_modified.toml"

@@ -121,12 +121,14 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> list[tuple]:
     return found
 
 
+@pytest.mark.whole
 def test_the_first_process_keeps_what_it_compiles(runs):
     (_, _, missed, _), kept, _ = runs[0]
     assert missed > 0
     assert len(kept) == missed
 
 
+@pytest.mark.whole
 def test_the_second_process_compiles_nothing(runs):
     (first, kept, _), (second, kept_after, _) = runs
     asked, found, missed, _ = second
@@ -135,11 +137,13 @@ def test_the_second_process_compiles_nothing(runs):
     assert kept_after == kept
 
 
+@pytest.mark.whole
 def test_the_second_process_traces_nothing_that_was_kept(runs):
     (_, _, before), (_, _, after) = runs
     assert len(before) > 5
     assert after == before
 
 
+@pytest.mark.whole
 def test_another_pair_and_a_sweep_ask_for_no_other_program(runs):
     assert [more for (*_, more), _, _ in runs] == [0, 0]
