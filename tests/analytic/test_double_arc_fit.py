@@ -47,6 +47,7 @@ def test_the_same_seed_finds_the_same_tooth_and_tells_its_progress(found):
     assert told[-1] == (found.evaluations, found.merit.objective)
 
 
+@pytest.mark.whole
 def test_the_tooth_found_obeys_every_condition(found):
     """Read from the seven numbers alone."""
     form = found.form
@@ -67,6 +68,7 @@ def test_the_tooth_found_obeys_every_condition(found):
     assert (form.addendum, form.dedendum) == (START.addendum, START.dedendum)
 
 
+@pytest.mark.whole
 def test_the_tooth_found_makes_a_drive_without_interference(found):
     """Every place of the flank on its way against the groove: outlines and positions alone."""
     module = 0.5e-3
@@ -98,6 +100,7 @@ def test_another_clearance_and_rim_are_kept():
     assert found.merit != merit_of(found.form, found.deflection, teeth=TEETH)
 
 
+@pytest.mark.whole
 def test_a_tooth_that_makes_no_drive_is_passed_over(found, monkeypatch):
     refused = [found.form]
 

@@ -181,6 +181,7 @@ def test_a_free_vibration_without_damping_is_a_cosine(motor: float) -> None:
     assert int(found.status.code) == Code.SOLVED
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     "made",
     [

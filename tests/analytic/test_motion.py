@@ -186,6 +186,7 @@ def quasi_static(design, point, own, phase):
     return cycle(design, point, own).mean_efficiency, state(design, point, phase, own).balance.load
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("family", quick_first(["spur", "helical", "torus"]))
 def test_a_slow_motion_is_the_quasi_static_cycle(family):
     """Of teeth so stiff that their wind-up adds nothing to the sliding."""

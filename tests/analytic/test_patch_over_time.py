@@ -46,6 +46,7 @@ def swelling(count: int, period: float = 8.0 * PASSING) -> tuple[list[PatchConta
     return [ball(float(load)) for load in loads], times
 
 
+@pytest.mark.whole
 def test_what_does_not_change_stays_steady():
     steady = solve_patch(ball(), **GRID).film
     last = marched([ball()] * 4, PASSING * np.arange(4.0))[-1].film

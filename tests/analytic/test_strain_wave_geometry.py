@@ -94,6 +94,7 @@ def places(flank, station):
     return flank.place(station), flank.angle(station), flank.curvature(station)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("name", FORMS)
 def test_flank_is_its_own_arc_length_angle_and_curvature(drives, name):
     flank, outline = drives[name].flank, BY[name].outline

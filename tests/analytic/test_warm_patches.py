@@ -129,6 +129,7 @@ def test_surfaces_and_film_are_as_warm_as_their_heat_makes_them() -> None:
     assert nodes == x.size
 
 
+@pytest.mark.whole
 def test_symmetric_contacts_are_symmetric_and_turn_round_with_their_speeds() -> None:
     heat = sliding().film.heat
     back = solved(ball(speed=-4.0)).film.heat

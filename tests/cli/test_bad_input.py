@@ -22,7 +22,7 @@ from typing import Any, Literal, Union, get_args, get_origin
 import numpy as np
 import pytest
 from pydantic import BaseModel, BeforeValidator
-from sound import PAIR
+from sound import PAIR, quick_first
 
 from pitchpoint import cli, units
 from pitchpoint.cases import schema
@@ -1103,7 +1103,7 @@ def refuse(
     return run
 
 
-@pytest.mark.parametrize("base", BASES)
+@pytest.mark.parametrize("base", quick_first(BASES))
 def test_the_whole_case_is_sound(
     base: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -79,6 +79,7 @@ def test_every_loaded_contact_has_a_film(outcome: Outcome) -> None:
     assert np.nanmax(data["film_defect"].values) < 1e-6
 
 
+@pytest.mark.whole
 def test_a_contact_is_that_of_the_solver_alone_and_carries_its_load(
     outcome: Outcome, case: str
 ) -> None:
@@ -96,6 +97,7 @@ def test_a_contact_is_that_of_the_solver_alone_and_carries_its_load(
     assert carried == pytest.approx(float(data["load"].values[at]), rel=1e-8)
 
 
+@pytest.mark.whole
 def test_energy_is_lost_by_sliding_and_rolling(outcome: Outcome) -> None:
     data = outcome.parts["finite_film"]
     lost = (data["film_sliding_loss"] + data["film_rolling_loss"]).sum(("pair", "line"))
@@ -229,6 +231,7 @@ def test_a_barrel_has_both_its_radii() -> None:
     assert contact.length is None
 
 
+@pytest.mark.whole
 def test_the_heat_that_films_leave_out_is_told_with_what_takes_it_along(case: str) -> None:
     built = load_case(case)
     run = {"pressure": 1e9, "radius": 0.01, "entrainment": 3.0, "sliding_velocity": 3.0}
@@ -335,6 +338,7 @@ def test_progress_tells_contacts_and_steps(case: str) -> None:
     silent(*told[-1])
 
 
+@pytest.mark.whole
 def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
     page = render({"default": outcome})
     for words in (
@@ -367,6 +371,7 @@ def test_what_rounding_leaves_is_zero_on_the_screen() -> None:
     assert shown("largest_asperity_share", 1e-6) == "0.0001"
 
 
+@pytest.mark.whole
 def test_without_a_torque_nothing_is_loaded(case: str) -> None:
     one = running.run(case, settings={"operation.torque": "0 N m"})["default"]
     words = dict(SECTION.answer(one))["Films of finite contacts"]
@@ -393,6 +398,7 @@ def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
     assert "not compared" in page and "undefined, no power" not in page
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("settings", "key", "words"),
     [
@@ -429,6 +435,7 @@ def test_ellipses_have_no_finite_line() -> None:
     assert caught.value.key == "film.solver"
 
 
+@pytest.mark.whole
 def test_ends_that_do_not_fit_are_told(case: str) -> None:
     given = {"film.end_profile": "dub_off", "film.end_radius": "1 m", "film.end_length": "11 mm"}
     with pytest.raises(InputError, match="do not fit") as caught:
@@ -436,6 +443,7 @@ def test_ends_that_do_not_fit_are_told(case: str) -> None:
     assert caught.value.key == "film.end_length"
 
 
+@pytest.mark.whole
 def test_a_record_of_finite_films_runs_again(outcome: Outcome, tmp_path: Path) -> None:
     path = tmp_path / "manifest.json"
     path.write_text(json.dumps(outcome.manifest, default=str))

@@ -71,6 +71,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+@pytest.mark.whole
 def test_all_parts_are_there_and_the_record_repeats_them_bit_for_bit(folder: Path) -> None:
     first, again = folder / "out" / "default", folder / "again" / "default"
     manifest = json.loads((first / "manifest.json").read_text())
@@ -83,6 +84,7 @@ def test_all_parts_are_there_and_the_record_repeats_them_bit_for_bit(folder: Pat
     np.testing.assert_allclose(manifest["motion"], [1.0, -23 / 61, 1.0 / RATIO], rtol=1e-14)
 
 
+@pytest.mark.whole
 def test_what_is_set_for_a_stage_is_its_own(folder: Path) -> None:
     rows = json.loads((folder / "out" / "default" / "manifest.json").read_text())["inputs"]
     every = {f"{row['table']}.{row['key']}": row for row in rows}
@@ -94,6 +96,7 @@ def test_what_is_set_for_a_stage_is_its_own(folder: Path) -> None:
     assert (flank["value"], flank["status"], flank["given"]) == ("right", "derived", False)
 
 
+@pytest.mark.whole
 def test_the_loss_of_a_seal_is_that_of_its_shaft(folder: Path) -> None:
     data = load(folder / "out" / "default" / "operation.nc")
     lost = 0.5 * SPEED / RATIO
@@ -104,6 +107,7 @@ def test_the_loss_of_a_seal_is_that_of_its_shaft(folder: Path) -> None:
     np.testing.assert_allclose(product, data["mean_efficiency"].values, rtol=1e-12)
 
 
+@pytest.mark.whole
 def test_a_seal_at_the_output_is_what_starts_the_drive(folder: Path) -> None:
     data = load(folder / "out" / "default" / "running.nc")
     assert data["speed"].values == pytest.approx([SPEED])
@@ -113,6 +117,7 @@ def test_a_seal_at_the_output_is_what_starts_the_drive(folder: Path) -> None:
         assert np.all((over > 1.0) & (over < 1.06)), name  # and the friction of teeth that turn it
 
 
+@pytest.mark.whole
 def test_a_sweep_holds_the_operating_point(folder: Path) -> None:
     where = folder / "out" / "default"
     point, speeds = load(where / "operation.nc"), load(where / f"{PARTS[4]}.nc")
@@ -124,6 +129,7 @@ def test_a_sweep_holds_the_operating_point(folder: Path) -> None:
     assert np.all(np.abs(np.diff(shifts["mean_efficiency"].values)) > 1e-5)
 
 
+@pytest.mark.whole
 def test_the_report_shows_the_stages(folder: Path) -> None:
     page = (folder / "out" / "report.html").read_text()
     for words in ('id="stages"', 'id="torsion"', 'id="map"', "Wind-up at the output by the stage"):
@@ -135,6 +141,7 @@ def test_the_report_shows_the_stages(folder: Path) -> None:
     assert "largest less smallest rotation of each stage, at the output, summed" in page
 
 
+@pytest.mark.whole
 def test_json_of_a_case_on_disk_has_the_figures_by_stage(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -148,6 +155,7 @@ def test_json_of_a_case_on_disk_has_the_figures_by_stage(
     assert found["torsion"]["torsional_stiffness"][-1] > 1e6
 
 
+@pytest.mark.whole
 def test_the_screen_has_a_row_for_each_stage(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

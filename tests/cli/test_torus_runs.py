@@ -110,6 +110,7 @@ def test_an_elliptic_contact_is_no_choice_for_lines() -> None:
     assert error.value.key == "models.elliptic_contact"
 
 
+@pytest.mark.whole
 def test_the_answer_says_how_large_the_ellipse_is_and_what_tilt_it_bears() -> None:
     data = cycle(SAMPLE)
     outcome = Mock(spec=Outcome)

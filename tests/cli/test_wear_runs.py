@@ -74,6 +74,7 @@ def outcome(case: str, folder: Path) -> Outcome:
     return running.run(case, folder=folder / "whole")["default"]
 
 
+@pytest.mark.whole
 def test_the_march_ends_where_it_is_asked_to(outcome: Outcome) -> None:
     data = outcome.parts["wear"]
     assert float(data["final_cycles"]) == 3e6
@@ -153,6 +154,7 @@ def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
     xr.testing.assert_identical(whole, outcome.parts["wear"])
 
 
+@pytest.mark.whole
 def test_worn_gears_are_gears(outcome: Outcome, folder: Path) -> None:
     kept = folder / "whole" / "default" / "wear.nc"
     settings = {"worn.file": str(kept), "worn.cycles": 3e6}
@@ -174,6 +176,7 @@ def test_worn_gears_are_gears(outcome: Outcome, folder: Path) -> None:
     }
 
 
+@pytest.mark.whole
 def test_a_kept_profile_wears_in_proportion_to_the_cycles(case: str) -> None:
     both = [
         running.run(case, settings={"wear.profile": "kept", "wear.cycles": turns})["default"]
@@ -183,6 +186,7 @@ def test_a_kept_profile_wears_in_proportion_to_the_cycles(case: str) -> None:
     assert long == pytest.approx(1e3 * short, rel=1e-9)
 
 
+@pytest.mark.whole
 def test_the_march_ends_where_flanks_move_off_their_places(case: str) -> None:
     given = {"wear.coefficient": 1e-3, "wear.cycles": 1e12, "wear.profile": "kept"}
     data = running.run(case, settings=given)["default"].parts["wear"]
@@ -220,6 +224,7 @@ LIMITS = {
 }
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("end", quick_first(LIMITS))
 def test_a_limit_ends_the_march(case: str, outcome: Outcome, end: str) -> None:
     given, name, expected = LIMITS[end]
@@ -237,6 +242,7 @@ def test_a_limit_ends_the_march(case: str, outcome: Outcome, end: str) -> None:
     assert {"tip land": "at its tip", "backlash": "backlash"}.get(end, "") in printed.line
 
 
+@pytest.mark.whole
 def test_tips_that_are_narrower_as_new_are_refused(case: str) -> None:
     with pytest.raises(InputError, match=r"wear.tip_land_limit: 9 mm was given, and teeth of gear"):
         running.run(case, settings={"wear.tip_land_limit": "9 mm"})
@@ -291,6 +297,7 @@ def test_a_film_that_is_not_solved_ends_the_march(
     assert told in render({"default": outcome})
 
 
+@pytest.mark.whole
 def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     page = render({"default": outcome})
     assert 'id="wear"' in page
@@ -386,6 +393,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("what", REFUSED)
 def test_what_cannot_be_is_one_sentence(what: str, folder: Path) -> None:
     settings, words = REFUSED[what]
@@ -396,6 +404,7 @@ def test_what_cannot_be_is_one_sentence(what: str, folder: Path) -> None:
     assert told.count("\n") == 0
 
 
+@pytest.mark.whole
 def test_worn_flanks_belong_to_their_gears(outcome: Outcome, folder: Path) -> None:
     kept = folder / "whole" / "default" / "wear.nc"
     bare = written(folder, MODELS, "bare.toml")
@@ -421,6 +430,7 @@ def test_what_has_no_teeth_has_no_limit_of_them() -> None:
         load_case(ball, settings={**films, "wear.hardness": "2 GPa"})
 
 
+@pytest.mark.whole
 def test_flanks_are_drawn_where_they_are_and_their_wear_magnified(outcome: Outcome) -> None:
     """Off the new flank by so many times the depth, along its normal, at every place of the slider."""
     panel = next(

@@ -94,6 +94,7 @@ def at_load(load=RATED):
 # ------------------------------------------------------------------ efficiency
 
 
+@pytest.mark.whole
 def test_all_44_efficiencies_of_the_catalogue():
     away = 100.0 * at_load() - CATALOGUE
     assert np.abs(away).max() < 1.09
@@ -393,6 +394,7 @@ def test_pairs_and_stiffness_grow_with_the_torque():
     assert np.all(np.diff(found.load[1:] / found.wind_up[1:], axis=0) > 0.0)
 
 
+@pytest.mark.whole
 def test_stiffness_grows_with_the_cube_of_the_size():
     """Twice as large and eight times the torque: the same wind-up, contact linear."""
     small, large = (

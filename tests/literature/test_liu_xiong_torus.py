@@ -110,6 +110,7 @@ def test_no_row_of_the_standard_pair_misses():
     }
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("study", ["light", "heavy", "tilted"])
 def test_no_row_of_the_corrected_contact_misses(study):
     assert missed(study, "physical") == set()

@@ -355,6 +355,7 @@ def test_units_of_length_mass_and_time_scale_every_result(design, length, mass, 
         )
 
 
+@pytest.mark.whole
 def test_a_dimension_takes_along_what_follows_from_it():
     """As if the pair were built anew: without backlash the module moves the centre distance."""
     point, step = operation(), 1e-6

@@ -395,7 +395,7 @@ def test_a_case_is_made_again_from_its_record(odd: dict[str, Any], tmp_path: Pat
     [
         "tian2024",
         "zhao2022",
-        "liu_xiong_torus",
+        pytest.param("liu_xiong_torus", marks=pytest.mark.whole),
         EXAMPLES / "strain_wave.toml",
         EXAMPLES / "helical_resonance.toml",
         EXAMPLES / "spur_modified.toml",

@@ -1,12 +1,16 @@
 """Names out of lists: an unknown one gets the nearest known ones, however it is spelled."""
 
+import re
+from pathlib import Path
+
 import pytest
 
+import pitchpoint
 from pitchpoint.cases.library import names, path_of
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.registry import LAWS
 from pitchpoint.materials import lubricants, solids
-from pitchpoint.registry import Registry, alike, known_as, letters, nearest, unknown_name
+from pitchpoint.registry import Registry, alike, code_at, known_as, letters, nearest, unknown_name
 from pitchpoint.runs.catalogue import entries
 
 KNOWN = ["steel", "pom"]
@@ -75,3 +79,11 @@ def test_an_empty_list_says_so():
 
 def test_a_long_name_is_cut():
     assert len(str(unknown_name("x" * 200_000, KNOWN, what="a material"))) < 150
+
+
+def test_code_that_is_loaded_when_it_is_chosen_is_where_it_is_said_to_be():
+    texts = [path.read_text("utf-8") for path in Path(pitchpoint.__file__).parent.rglob("*.py")]
+    places = {place for text in texts for place in re.findall(r'"(pitchpoint[.\w]+:\w+)"', text)}
+    assert len(places) > 100
+    for place in places:
+        assert code_at(place) is not None, place

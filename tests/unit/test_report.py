@@ -440,6 +440,7 @@ def test_reopened_results_give_the_same_report(published: Outcomes, folder: Path
     assert [path.name for path in folder.glob(".report*")] == []
 
 
+@pytest.mark.whole
 def test_without_power_the_efficiency_is_undefined(idle: Outcomes) -> None:
     page = render(idle)
     assert "undefined, no power mean efficiency" in Words(page).text
@@ -604,7 +605,15 @@ def outside() -> Outcomes:
     return {name: shown(**changes) for name, changes in OUTSIDE.items()}
 
 
-@pytest.fixture(params=["published", "idle", "wheel", *OUTSIDE, "rack"])
+@pytest.fixture(
+    params=[
+        "published",
+        pytest.param("idle", marks=pytest.mark.whole),
+        "wheel",
+        *OUTSIDE,
+        "rack",
+    ]
+)
 def drawn(request: pytest.FixtureRequest, outside: Outcomes) -> Picture:
     if request.param in OUTSIDE:
         return picture_of(outside[request.param])
