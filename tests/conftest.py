@@ -37,7 +37,7 @@ install()  # before anything of the package is imported
 
 from pitchpoint import programs  # noqa: E402
 
-MOST_MAPS = 45_000
+MOST_MAPS = 55_000
 """Memory maps of a process (Linux allows 65,530) beyond which compiled programs are given back."""
 
 # Here their maps are counted, and programs shared across a thousand.

@@ -246,6 +246,7 @@ def again(by: Any) -> Any:
     return patch_film(contact, *lies)
 
 
+@pytest.mark.whole
 def test_films_that_were_solved_without_heat_have_no_derivatives_with_it() -> None:
     cold = replace(sliding(), rise=None)
     with pytest.raises(InputError, match="were solved without heat, and the contact has") as caught:
@@ -253,6 +254,7 @@ def test_films_that_were_solved_without_heat_have_no_derivatives_with_it() -> No
     assert caught.value.key == "films"
 
 
+@pytest.mark.whole
 def test_datasets_have_temperatures_with_units() -> None:
     data = patch_dataset(sliding())
     np.testing.assert_array_equal(data["heat_film"], sliding().film.heat.film)

@@ -646,6 +646,7 @@ def points(found, active):
     return found["point"][:, active[:, 0], active[:, 1], 0]
 
 
+@pytest.mark.whole
 def test_batch_equals_loop(family):
     phase = jnp.asarray(family.phase)
     alone, mapped = each_alone(family.mesh, phase), vectorised(family.mesh, phase)

@@ -518,7 +518,7 @@ def contact_ratio(teeth: xr.Dataset, count: int | list[int]) -> float:
 @pytest.mark.parametrize(
     ("name", "warning"),
     [
-        ("pair_23_61", ""),
+        pytest.param("pair_23_61", "", marks=pytest.mark.whole),
         pytest.param("pair_23_61_high_contact_ratio", "", marks=pytest.mark.whole),
         pytest.param("pair_17_17", "", marks=pytest.mark.whole),
         pytest.param("pair_12_120", "", marks=pytest.mark.whole),

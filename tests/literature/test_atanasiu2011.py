@@ -83,11 +83,13 @@ def computed(rows, quantity):
 # ------------------------------------------------------------------ the comparison
 
 
+@pytest.mark.whole
 def test_no_row_misses(rows):
     assert [(row.quantity, row.computed) for row in rows if row.verdict == "miss"] == []
     assert all(row.reason for row in rows if row.verdict == "excluded")
 
 
+@pytest.mark.whole
 def test_rows_are_counted_for_each_kind(rows):
     assert {kind: dict(found) for kind, found in counts(rows).items()} == {
         "predicted": {"pass": 14},
@@ -97,11 +99,13 @@ def test_rows_are_counted_for_each_kind(rows):
     }
 
 
+@pytest.mark.whole
 def test_reference_values_are_never_called_those_of_the_paper(rows):
     for row in rows:
         assert (row.where == "reference calculation") == (row.kind == "reference")
 
 
+@pytest.mark.whole
 def test_geometry_alone_gives_the_rows_of_the_whole_comparison(rows):
     assert missed() == set()
     for pair in PAIRS:
@@ -167,6 +171,7 @@ def test_profile_shift_within_the_last_printed_digit_is_noticed():
     }
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("quantity", ["mean stiffness", "variation of stiffness"])
 def test_swapped_moduli_models_would_miss(rows, quantity):
     """The row of one model with the number of the other: GP3's means happen to be 1 % apart."""
@@ -177,6 +182,7 @@ def test_swapped_moduli_models_would_miss(rows, quantity):
             assert (off > row.tolerance) == (pair != "GP3" or quantity != "mean stiffness")
 
 
+@pytest.mark.whole
 def test_models_with_a_yielding_body_would_miss_the_rows_without(rows):
     for pair in ("GP1", "GP2", "GP3", "GP4"):
         beam, body = (
@@ -226,6 +232,7 @@ def test_undercut_limit_has_both_readings(study, starred, printed, exact):
     assert all(f"{number:.4f}" in issue("eq. 2b", "exponent") for number in (printed, exact))
 
 
+@pytest.mark.whole
 def test_equivalent_mass_has_both_readings(rows):
     """Eq. 13 with the radii at the wrong inertias is 156 times too small, a resonance 12.5 times off."""
     right = computed(rows, "equivalent mass of the 4/51 pair, right form of eq. 13")

@@ -143,6 +143,7 @@ def test_rows_of_the_case_are_those_of_the_catalogue():
     assert all(CATALOGUE[place] == printed for place, printed in listed.items())
 
 
+@pytest.mark.whole
 def test_each_of_the_two_constants_is_needed_and_at_its_best():
     """A tenth more or less of either follows the catalogue worse."""
     built, _ = case()
@@ -236,6 +237,7 @@ def test_part_load_lowers_the_efficiency_about_as_a_manual_says_of_another_size(
 # ------------------------------------------------------------------ self-locking
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("arcs", ["liu", "flat"])
 @pytest.mark.parametrize("driver", ["wave generator", "flexspline"])
 def test_tooth_friction_alone_does_not_lock_the_drive(arcs, driver):
