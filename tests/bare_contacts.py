@@ -2,17 +2,20 @@
 
 import numpy as np
 
-from pitchpoint._jax import array, jnp
+from pitchpoint._jax import array
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.lubrication.conditions import Conditions
 
 
 def line_contacts(**given):
     """Contacts that lie at the origin, their normals and tangents along x and y."""
-    lanes = jnp.shape(given["path"])
-    axes = [jnp.zeros((3, *lanes)).at[k].set(1.0) for k in (0, 1)]
-    frame = {"point": jnp.zeros((3, *lanes)), "direction": axes[0], "tangent": axes[1]}
-    return Contacts(**frame, **given, shape="line")
+    lanes = np.shape(given["path"])
+    axes = np.zeros((2, 3, *lanes))
+    axes[0, 0] = axes[1, 1] = 1.0
+    frame = {"point": np.zeros((3, *lanes)), "direction": axes[0], "tangent": axes[1]}
+    return Contacts(
+        **{name: array(value) for name, value in {**frame, **given}.items()}, shape="line"
+    )
 
 
 def conditions(shape, **changed):

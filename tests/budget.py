@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-PROGRAMS = 8000
+PROGRAMS = 5000
 """Programs of the quick part that JAX is asked for, found in the cache on disk or not; 4000 are aimed at, and
 this is lowered as files come to share more."""
 

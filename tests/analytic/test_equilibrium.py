@@ -271,17 +271,17 @@ def test_stiffness_is_the_slope_of_the_load():
 
 def contacts(path, gap=0.0, active=True):
     path = np.asarray(path, float).reshape(-1, 1, 1)
-    none = jnp.zeros(path.shape)
+    none = np.zeros(path.shape)
     return line_contacts(
-        active=jnp.broadcast_to(jnp.asarray(active), path.shape),
-        path=jnp.asarray(path),
+        active=np.broadcast_to(np.asarray(active), path.shape),
+        path=np.asarray(path),
         width=none,
         weight=none + 0.01,
-        curvature=none + jnp.ones((2, 2, 1, 1, 1)),
-        surface=none + jnp.ones((2, 3, 1, 1, 1)),
-        normal=jnp.stack([none, none, none - 0.02]),
+        curvature=none + np.ones((2, 2, 1, 1, 1)),
+        surface=none + np.ones((2, 3, 1, 1, 1)),
+        normal=np.stack([none, none, none - 0.02]),
         gap=none + gap,
-        flank=jnp.stack([none, none]),
+        flank=np.stack([none, none]),
     )
 
 

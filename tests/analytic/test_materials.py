@@ -21,6 +21,8 @@ from pitchpoint.materials.viscosity import astm_d341
 
 DATA = resources.files("pitchpoint.materials").joinpath("catalogue", "lubricants.toml")
 OILS = tomllib.loads(DATA.read_text(encoding="utf-8"))["oil"]
+d341 = jax.jit(astm_d341)
+
 CHECKED = [name for name, entry in OILS.items() if "nu_80_mm2_s" in entry]
 
 
@@ -123,20 +125,18 @@ def test_plastics_of_the_catalogue_are_plastics(name):
 
 
 def test_d341_passes_through_its_two_points():
-    nu = astm_d341(
-        T=jnp.array([313.15, 373.15]), nu_1=98.8e-6, T_1=313.15, nu_2=15.2e-6, T_2=373.15
-    )
+    nu = d341(T=jnp.array([313.15, 373.15]), nu_1=98.8e-6, T_1=313.15, nu_2=15.2e-6, T_2=373.15)
     np.testing.assert_allclose(nu, [98.8e-6, 15.2e-6], rtol=1e-12)
 
 
 def test_d341_meets_a_hand_calculation():
-    nu = astm_d341(T=328.15, nu_1=98.8e-6, T_1=313.15, nu_2=15.2e-6, T_2=373.15)
+    nu = d341(T=328.15, nu_1=98.8e-6, T_1=313.15, nu_2=15.2e-6, T_2=373.15)
     assert float(nu) * 1e6 == pytest.approx(54.79, abs=0.005)
 
 
 def test_d341_is_straight_in_its_own_coordinates():
     T = jnp.geomspace(280.0, 390.0, 7)
-    nu = astm_d341(T=T, nu_1=98.8e-6, T_1=313.15, nu_2=15.2e-6, T_2=373.15)
+    nu = d341(T=T, nu_1=98.8e-6, T_1=313.15, nu_2=15.2e-6, T_2=373.15)
     steps = jnp.diff(jnp.log10(jnp.log10(nu * 1e6 + 0.7)))
     np.testing.assert_allclose(steps, steps[0], rtol=1e-10)
 
@@ -217,13 +217,13 @@ def test_an_oil_for_the_cold_goes_through_its_three_viscosities(name):
     assert np.all(np.diff(np.asarray(oil.kinematic_viscosity(degrees))) < 0.0)
     beside = oil.kinematic_viscosity(jnp.array([313.15 - 1e-9, 313.15 + 1e-9]))
     assert float(beside[0]) == pytest.approx(float(beside[1]), rel=1e-9)
-    alone = astm_d341(T=233.15, nu_1=oil.nu_1, T_1=313.15, nu_2=oil.nu_2, T_2=373.15)
+    alone = d341(T=233.15, nu_1=oil.nu_1, T_1=313.15, nu_2=oil.nu_2, T_2=373.15)
     assert 1.7 < float(alone) / known[0] < 2.3
 
 
 def test_an_oil_for_the_cold_tells_what_changes_at_room_temperature():
     oil = lubricants.find("pao-4")
-    line = astm_d341(T=298.15, nu_1=19e-6, T_1=313.15, nu_2=4.1e-6, T_2=373.15)
+    line = d341(T=298.15, nu_1=19e-6, T_1=313.15, nu_2=4.1e-6, T_2=373.15)
     there = float(oil.build().kinematic_viscosity(298.15))
     assert f"at 25 degC it is {there * 1e6:.4g} mm2/s" in oil.bend
     assert f"{100.0 * (there / float(line) - 1.0):+.1f} % against the line" in oil.bend
@@ -232,7 +232,7 @@ def test_an_oil_for_the_cold_tells_what_changes_at_room_temperature():
 
 def test_a_viscosity_in_the_cold_goes_with_the_other_two():
     oil = lubricants.find("pao-4")
-    line = float(astm_d341(T=233.15, nu_1=oil.nu_1.value, T_1=313.15, nu_2=4.1e-6, T_2=373.15))
+    line = float(d341(T=233.15, nu_1=oil.nu_1.value, T_1=313.15, nu_2=4.1e-6, T_2=373.15))
     for known in ("pao-4", "pao-6", "pao-8", "fva-3"):
         lubricants.demand_plausible_cold(lubricants.find(known))
     for factor in (0.21, 4.9):

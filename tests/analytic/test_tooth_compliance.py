@@ -114,19 +114,19 @@ class Pair:
         rolling = np.stack(
             [self.start + path * self.pitch, self.tangent - self.start - path * self.pitch]
         )
-        none = jnp.zeros((1, 1, len(path)))
-        curvature = jnp.asarray(np.cos(self.base_helix) / rolling)[:, None, None, None]
+        none = np.zeros((1, 1, len(path)))
+        curvature = np.asarray(np.cos(self.base_helix) / rolling)[:, None, None, None]
         flank = rolling**2 / (2.0 * np.array(self.base)[:, None])
         return line_contacts(
             active=none == 0.0,
-            path=jnp.asarray(path)[None, None],
+            path=np.asarray(path)[None, None],
             width=none,
             weight=none,
-            curvature=jnp.concatenate([curvature, jnp.zeros_like(curvature)], axis=1),
-            surface=jnp.zeros((2, 2, *none.shape)),
-            normal=jnp.zeros((2, *none.shape)),
+            curvature=np.concatenate([curvature, np.zeros_like(curvature)], axis=1),
+            surface=np.zeros((2, 2, *none.shape)),
+            normal=np.zeros((2, *none.shape)),
             gap=none,
-            flank=jnp.asarray(flank)[:, None, None],
+            flank=np.asarray(flank)[:, None, None],
         )
 
     def unit_stiffness(self, path, model, solids=(STEEL, PA66), load=LOAD):

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+import equinox as eqx
 import numpy as np
 import pytest
 import xarray as xr
@@ -43,8 +44,12 @@ def pair_of(**changes: Any) -> CylindricalPair:
     )
 
 
+drawing_of = eqx.filter_jit(CylindricalPair.drawing)
+contacts_of = eqx.filter_jit(CylindricalPair.contacts)
+
+
 def teeth_of(pair: CylindricalPair) -> xr.Dataset:
-    numbers = {name: np.asarray(value) for name, value in pair.drawing().items()}
+    numbers = {name: np.asarray(value) for name, value in drawing_of(pair).items()}
     dims = FAMILY.drawing
     teeth = dataset(
         {name: (dims.get(name, ("gear",)[: v.ndim]), v) for name, v in numbers.items()},
@@ -237,7 +242,7 @@ def test_lengths_of_contact_lines_have_closed_forms(alpha: float, beta: float) -
 def test_contact_lines_are_as_long_as_the_contacts(helical: CylindricalPair) -> None:
     plane = plane_of_action(teeth_of(helical))
     phases = np.array([0.02, 0.3, 0.7, 0.95])
-    contacts = helical.contacts(jnp.asarray(phases))
+    contacts = contacts_of(helical, jnp.asarray(phases))
     weights = np.where(contacts.active, contacts.weight, 0.0).sum(axis=(0, 1))
     assert weights == pytest.approx([plane.total_length(phase) for phase in phases], rel=1e-6)
 
@@ -401,7 +406,7 @@ def test_helical_values_stand_at_the_middle_of_the_face(
     """A quantity that is linear along the path is met exactly, whatever slices a line has."""
     path = path_of(whole)
     phases = np.linspace(0.0, 0.999, 40)
-    contacts = helical.contacts(jnp.asarray(phases))
+    contacts = contacts_of(helical, jnp.asarray(phases))
     lanes = ("node", "pair", "slice")
     fields = {
         name: np.moveaxis(np.broadcast_to(values, contacts.path.shape), -1, 0)
