@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import nnls, root
-from sound import quick_first
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
@@ -239,7 +238,8 @@ def test_teeth_sit_back_by_what_the_balls_push_less():
     assert 1e-6 < np.max(np.abs(body.shift)) < 8e-6
 
 
-@pytest.mark.parametrize("play", quick_first([8e-6, -2e-6]))
+@pytest.mark.whole
+@pytest.mark.parametrize("play", [8e-6, -2e-6])
 def test_teeth_and_balls_are_one_equilibrium(play):
     """The same forces by non-negative least squares: no gap counts from a state that balls already made."""
     drive, contacts, body = held(play)

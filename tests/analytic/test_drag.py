@@ -295,6 +295,7 @@ def test_rolling_resistance_and_drag_together():
     assert np.all(found["force"] > plain["force"])
 
 
+@pytest.mark.whole
 def test_derivatives_equal_differences():
     def torque(values, mesh):
         load, speed, f1, preload = values
@@ -400,6 +401,7 @@ def test_a_breakaway_model_asks_for_its_factors():
         Drag([1.0, 0.0], mean_diameter=0.06, breakaway=HELD, breakaway_factors={"dry": 1.0})
 
 
+@pytest.mark.whole
 def test_torque_without_load_grows_with_the_power_of_the_viscosity():
     """Where the lubricant alone brakes, down to the oil's lowest temperature."""
     degrees = jnp.linspace(float(OIL.T_min), 320.0, 9)

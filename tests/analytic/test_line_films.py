@@ -176,6 +176,7 @@ def test_films_converge_with_second_order():
 # ---- balances
 
 
+@pytest.mark.whole
 def test_load_gap_and_energy_are_balanced():
     case = contact(np.array([0.4e9, 0.8e9]), np.array([0.5, 1.0]), slide=0.1)
     for texture in (None, Rough(rq=0.1e-6, modulus=MODULUS)):

@@ -159,6 +159,7 @@ def test_straight_limit_of_a_helical_pair():
     np.testing.assert_allclose(other.sum(axis=1)[:2], one.sum(axis=1), atol=1e-5)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("model", [BEAM, FULL])
 @pytest.mark.parametrize("name", ["GP1", "V1"])
 def test_slices_converge_at_second_order(name, model):
@@ -316,6 +317,7 @@ def test_estimate_of_the_standard_takes_the_load_of_the_driven_gear():
 # ------------------------------------------------------------------ internal pairs
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("degrees", [0.0, 15.0], ids=["spur", "helical"])
 def test_internal_pair_is_stiffer_than_the_external_one_of_equal_teeth(degrees):
     """By its thicker teeth alone, and more so with the bodies, where the ring's counts as rigid."""

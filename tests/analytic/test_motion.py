@@ -217,6 +217,7 @@ def bearing(inertia, torque=0.0, mass=2.0):
     return Body(inertia, torque, support=across(mass, 2e8, 4e3))
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("combination", quick_first(["separating, motor", "linear, steady driver"]))
 def test_energy_of_a_transient_closes_with_every_effect(combination):
     own = models("xu_2007", rolling="wu_cheng_1991")

@@ -126,6 +126,7 @@ def quasi_static(design, point, phase, laws):
     return found.balance, found.input_torque
 
 
+@pytest.mark.whole
 def test_a_start_from_rest_ends_in_the_quasi_static_balance(started):
     assert started.status.code == Code.SOLVED
     assert np.all(started.rate[:, 0] == 0.0)
@@ -146,6 +147,7 @@ def test_a_start_from_rest_ends_in_the_quasi_static_balance(started):
     assert np.all(np.diff(speed[last]) != 0.0)
 
 
+@pytest.mark.whole
 def test_the_friction_law_is_asked_at_the_speed_and_force_of_the_moment(started):
     found = started.found
     expected = rising(
@@ -156,6 +158,7 @@ def test_the_friction_law_is_asked_at_the_speed_and_force_of_the_moment(started)
     np.testing.assert_allclose(found.friction, np.where(carries, expected, 0.0), rtol=1e-10)
 
 
+@pytest.mark.whole
 def test_energy_of_a_start_from_rest_closes(started):
     energy = started.energy
     assert energy.closure < 1e-8
@@ -168,6 +171,7 @@ def test_energy_of_a_start_from_rest_closes(started):
     assert dataclasses.replace(energy, friction=0.0 * energy.friction).closure > 1e-3
 
 
+@pytest.mark.whole
 def test_parametric_work_is_that_of_springs_that_change_while_pressed(started):
     after = np.s_[-15:]
     acts = started.found
@@ -180,6 +184,7 @@ def test_parametric_work_is_that_of_springs_that_change_while_pressed(started):
     assert work[-1] - work[0] == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.whole
 def test_bearings_give_way_to_the_teeth(started):
     contacts, drawn = started.found.contacts, started.found.drawn
     pushed = np.sum(

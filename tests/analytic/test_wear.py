@@ -404,6 +404,7 @@ def test_films_tell_the_load_on_asperities(monkeypatch):
     assert not bool(found.lost)
 
 
+@pytest.mark.whole
 def test_a_film_that_is_not_solved_is_never_a_result(monkeypatch):
     own = film_share.solve_lines
 

@@ -366,6 +366,7 @@ def test_contacts_of_finite_length(capsys: pytest.CaptureFixture[str]) -> None:
     assert "nan" not in told
 
 
+@pytest.mark.whole
 def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ran("guide/python.md", "write_report")
     assert (folder / "again.html").stat().st_size > 1_000_000

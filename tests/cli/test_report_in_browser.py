@@ -63,7 +63,7 @@ def top(page: Browser, selector: str) -> float:
     )
 
 
-@pytest.mark.parametrize("width", [1280, 500])
+@pytest.mark.parametrize("width", quick_first([1280, 500]))
 @pytest.mark.parametrize("scheme", quick_first(["light", "dark"]))
 def test_all_is_drawn_and_the_console_is_silent(
     chromium: Browser, report: Path, width: int, scheme: str

@@ -113,6 +113,7 @@ def drive(folder: Path) -> Outcome:
     return open_result(folder)["default"]
 
 
+@pytest.mark.whole
 def test_all_parts_are_there(drive: Outcome) -> None:
     assert list(drive.parts) == PARTS
     assert drive.manifest["finished"]
@@ -138,6 +139,7 @@ def test_an_efficiency_without_losses_is_that_of_the_teeth_alone(folder: Path) -
     assert TEETH_ALONE not in some.warnings
 
 
+@pytest.mark.whole
 def test_the_torsional_stiffness_carries_what_yields(drive: Outcome) -> None:
     covers = drive.parts["torsion"]["torsional_stiffness"].attrs["covers"]
     assert covers.startswith("teeth, ring and cup wall of the flexspline")
@@ -153,6 +155,7 @@ def test_the_torsional_stiffness_carries_what_yields(drive: Outcome) -> None:
     assert "assumed proportions: rim thickness" in figures(drive)["torsion"]["stiffness_of"]
 
 
+@pytest.mark.whole
 def test_the_tables_on_screen(drive: Outcome) -> None:
     (row,) = summary(drive).rows
     assert "η mean [%]" in row
@@ -170,6 +173,7 @@ def test_the_tables_on_screen(drive: Outcome) -> None:
     json.dumps(told, allow_nan=False)
 
 
+@pytest.mark.whole
 def test_the_loads_carry_the_torque(drive: Outcome) -> None:
     data = drive.parts["operation"]
     ratio = float(data["speed_ratio"].values[0, 0])
@@ -185,6 +189,7 @@ def test_the_loads_carry_the_torque(drive: Outcome) -> None:
     np.testing.assert_allclose(share, 1.0, rtol=1e-12)
 
 
+@pytest.mark.whole
 def test_wind_up_grows_with_the_torque(drive: Outcome) -> None:
     data = drive.parts["torsion"]
     assert data["wind_up"].values[0] == pytest.approx(0.0, abs=1e-12)
@@ -194,6 +199,7 @@ def test_wind_up_grows_with_the_torque(drive: Outcome) -> None:
     assert data["tooth_force"].shape == (25, 8, data.sizes["pair"])
 
 
+@pytest.mark.whole
 def test_orders_of_the_kinematic_error(drive: Outcome) -> None:
     """Odd orders cancel over both ends of the long axis, even ones stand at their place."""
     data = drive.parts["kinematic_error"]
@@ -215,6 +221,7 @@ def test_orders_of_the_kinematic_error(drive: Outcome) -> None:
     assert kinematic_error_answer(drive).endswith("if they were rigid and without load")
 
 
+@pytest.mark.whole
 def test_waves_stay_on_their_teeth(drive: Outcome) -> None:
     """Once the wave has passed all teeth of the circular spline, those of the other have moved on by two."""
     data = drive.parts["kinematic_error"].sel(curve="elastic mean")
@@ -230,6 +237,7 @@ def test_waves_stay_on_their_teeth(drive: Outcome) -> None:
     assert np.arctan2(-fitted[2], fitted[1]) == pytest.approx(np.radians(50.0), abs=0.3)
 
 
+@pytest.mark.whole
 def test_running_without_load(drive: Outcome) -> None:
     data = drive.parts["running"]
     assert (data["no_load_torque"].values > 0.010).all()  # more than the seal
@@ -266,6 +274,7 @@ def test_python_of_the_documentation(
     assert all(name in told for name in ("wall of the cup", "K1", "starting_torque"))
 
 
+@pytest.mark.whole
 def test_the_map_agrees_with_the_operating_point(drive: Outcome) -> None:
     data = drive.parts["loss_map"]
     assert data["mean_loss"].shape == (1, 3, 2, 2)

@@ -145,6 +145,7 @@ def test_no_printed_number_is_forgotten():
     }
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("change", "names"),
     [

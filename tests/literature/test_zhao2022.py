@@ -94,6 +94,7 @@ def test_no_row_misses():
     }
 
 
+@pytest.mark.whole
 def test_no_row_of_the_physical_variant_misses():
     targets = case("physical").targets
     studies = {one.study for one in targets if one.study}
