@@ -824,8 +824,10 @@ def _rows(rows: "list[Row]") -> None:
 
 
 def _verdicts(rows: "list[Row]", of: str = "") -> None:
-    from pitchpoint.results.target_rows import counts
+    from pitchpoint.results.target_rows import counts, in_words
 
+    if rows:
+        _console().print(_plain(f"{of}{in_words(rows)}"))
     for kind, verdicts in counts(rows).items():
         told = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())
         _console().print(_plain(f"{of}{kind}: {told}"))

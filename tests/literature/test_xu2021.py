@@ -107,7 +107,7 @@ def test_no_row_misses(without_films):
     rows = compare_case(without_films)[2]
     assert [(row.quantity, row.computed) for row in rows if row.verdict == "miss"] == []
     assert {kind: dict(found) for kind, found in counts(rows).items()} == {
-        "predicted": {"pass": 1},
+        "definition": {"pass": 1},
         "reference": {"pass": 30},
     }
 

@@ -397,7 +397,7 @@ def test_oil_laws_sharing_and_misses_stand_at_the_top(page: str) -> None:
         "Xu and Kahraman",
         "equal load per length of contact line",
         "gear 1 drives at 900 rpm, gear 2 carries 60 N m, oil at 60 °C",
-        "1 printed number was not met",
+        "1 number was not met",
         "number out of reach (made to miss)",
         "number left out (never computed)",
         "The teeth of gear 1 are",

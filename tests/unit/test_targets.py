@@ -12,6 +12,7 @@ from pitchpoint.cases.library import find, names
 from pitchpoint.cases.schema import Target, validate
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import dataset
+from pitchpoint.results.target_rows import Row, in_words
 from pitchpoint.runs.run import describe
 
 TORQUE = np.array([0.0, 10.0, 20.0, 40.0])
@@ -215,3 +216,28 @@ REST = tomllib.loads(PAIR) | {
         "loaded": {"sweep": {"key": "operation.torque", "values": ["1 N m", "2 N m"]}},
     },
 }
+
+
+def row(kind, verdict, reason=""):
+    return Row("q", "w", 1.0, 1.0, "1", 0.1, kind, verdict, reason)
+
+
+def test_numbers_of_an_independent_calculation_are_counted_apart():
+    rows = [
+        row("predicted", "pass"),
+        row("trend", "miss", "the paper says so of another load"),
+        row("fitted", "miss"),
+        row("excluded", "excluded", "is not printed"),
+        row("definition", "pass"),
+    ]
+    of_the_publication = (
+        "5 of the publication: 2 met, 1 missed with a reason, 1 missed without a reason, 1 left out"
+    )
+    assert in_words(rows) == of_the_publication
+    beside = [row("reference", "pass"), row("reference", "miss")]
+    assert (
+        in_words(beside + rows)
+        == f"{of_the_publication}; 2 of an independent calculation: 1 met, 1 missed without a reason"
+    )
+    assert in_words(beside[:1]) == "1 of an independent calculation: 1 met"
+    assert in_words([]) == ""

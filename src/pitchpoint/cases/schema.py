@@ -1053,7 +1053,9 @@ class Target(Table):
     """What the number is, in words."""
     where: Text
     """Place of the number in its source."""
-    kind: Literal["predicted", "fitted", "calibrated", "trend", "reference", "excluded"]
+    kind: Literal[
+        "predicted", "fitted", "calibrated", "trend", "definition", "reference", "excluded"
+    ]
     """What agreement with the number would show, and whether it is left out."""
     printed: Annotated[float, ANY]
     """The printed number, in its unit."""

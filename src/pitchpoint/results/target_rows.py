@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any
 
-__all__ = ["Row", "counts"]
+__all__ = ["Row", "counts", "in_words"]
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,30 @@ class Row:
     def as_json(self) -> dict[str, Any]:
         """The row for machines."""
         return asdict(self)
+
+
+_VERDICTS = {"pass": "met", "miss": "missed", "excluded": "left out"}
+
+
+def in_words(rows: Iterable[Row]) -> str:
+    """How many numbers of the publication were met, and apart from them of an independent calculation."""
+    of_both: dict[str, list[Row]] = {}
+    for row in rows:
+        independent = row.kind == "reference"
+        source = "of an independent calculation" if independent else "of the publication"
+        of_both.setdefault(source, []).append(row)
+    every = sorted(of_both.items(), reverse=True)
+    return "; ".join(f"{len(those)} {source}: {_tally(those)}" for source, those in every)
+
+
+def _tally(rows: Iterable[Row]) -> str:
+    ordered = sorted(rows, key=lambda row: [*_VERDICTS].index(row.verdict))
+    return ", ".join(f"{count} {told}" for told, count in Counter(map(_verdict, ordered)).items())
+
+
+def _verdict(row: Row) -> str:
+    because = (" with a reason" if row.reason else " without a reason") * (row.verdict == "miss")
+    return _VERDICTS[row.verdict] + because
 
 
 def counts(rows: Iterable[Row]) -> dict[str, Counter[str]]:

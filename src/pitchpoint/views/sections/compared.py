@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from math import ceil, log10
 from typing import Any
 
-from pitchpoint.results.target_rows import Row, counts
+from pitchpoint.results.target_rows import Row, counts, in_words
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.section import Block, Drawn, Heading, Page, Section
@@ -12,10 +12,11 @@ from pitchpoint.views.section import Block, Drawn, Heading, Page, Section
 __all__ = ["COMPARED"]
 
 KINDS = {
-    "predicted": "nothing was tuned to it",
+    "predicted": "no constant, grid or reading was chosen with it",
     "calibrated": "a constant or a reading of the model was found with it",
     "fitted": "an input was tuned to it",
     "trend": "only a direction was printed",
+    "definition": "it follows from the inputs by arithmetic, whatever the model",
     "reference": "a value of an independent calculation, not of the publication",
     "excluded": "not computed, for the reason given",
 }
@@ -49,6 +50,7 @@ def _rows(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
             for name, rows in by_variant.items()
             for kind, verdicts in counts(rows).items()
         ],
+        "in_words": [(name, in_words(rows)) for name, rows in by_variant.items()],
         "missed": [row for row in table if row["verdict"] == "miss"],
         "excluded": [row for row in table if row["verdict"] == "excluded"],
         "variants": [*by_variant],
