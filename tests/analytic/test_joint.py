@@ -202,6 +202,7 @@ def test_the_energy_closes_while_the_motor_speeds_up(made: Joint) -> None:
     assert float(found.damping[-1]) > 0.0
 
 
+@pytest.mark.whole
 def test_a_motor_that_speeds_up_takes_the_load_along() -> None:
     """An even gain of speed needs the torque J a of the load on top, once the vibration has faded."""
     made = joint(damping=400.0)

@@ -210,6 +210,7 @@ def test_the_flow_of_oil_is_the_same_through_every_face():
     np.testing.assert_allclose(carried[end], carried[end][0], rtol=1e-12)
 
 
+@pytest.mark.whole
 def test_films_are_mirrored_when_surfaces_turn_round():
     one, other = (solve_lines(contact(0.6e9, sign * 1.0, slide=0.2)).film for sign in (1.0, -1.0))
     np.testing.assert_array_equal(one.pressure, other.pressure[::-1])
@@ -552,6 +553,7 @@ def test_films_on_other_grids_and_running_the_other_way_are_a_start(given, wante
     assert (onward.ended.iterations < 0.8 * afresh.ended.iterations).all()
 
 
+@pytest.mark.whole
 def test_doubtful_contacts_are_told_with_numbers():
     told = solve_lines(contact([1.6e9])).warnings
     assert told == (

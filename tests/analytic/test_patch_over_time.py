@@ -101,6 +101,7 @@ def test_steps_of_time_are_of_second_order():
     assert 1.7 < order < 2.4
 
 
+@pytest.mark.whole
 def test_what_leaves_the_film_flows_out_of_it():
     one, other = squeezed(32)[0][-2:]
     film, before = other.film, one.film

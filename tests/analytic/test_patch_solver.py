@@ -5,7 +5,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from scipy.constants import pi
-from sound import quick_first
 
 from pitchpoint import programs
 from pitchpoint.contact.end_profiles import crowned
@@ -118,7 +117,8 @@ def test_the_tips_of_an_ellipse_hold_their_film():
     assert finer > 0.25
 
 
-@pytest.mark.parametrize("made", quick_first([line, ball]))
+@pytest.mark.whole
+@pytest.mark.parametrize("made", [line, ball])
 def test_rows_that_are_images_of_each_other_are_inverted_once(
     made: Callable[[], PatchContact], monkeypatch: pytest.MonkeyPatch
 ):

@@ -211,6 +211,7 @@ def test_contacts_travel_with_the_flanks(driver):
     np.testing.assert_allclose(along, outwards * turned, rtol=1e-6, atol=1e-15)
 
 
+@pytest.mark.whole
 def test_a_pair_without_friction_swings_about_its_deflection():
     radii = np.abs(np.asarray(PAIR.mesh.base_radii))
     inertia, push = np.array([1e-3, 6e-3]), 1e-5  # so small that phase stands still

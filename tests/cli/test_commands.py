@@ -515,15 +515,16 @@ def contact_ratio(teeth: xr.Dataset, count: int | list[int]) -> float:
     return float(path / (2.0 * np.pi * base[0] / z[0]))
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("name", "warning"),
     [
-        pytest.param("pair_23_61", "", marks=pytest.mark.whole),
-        pytest.param("pair_23_61_high_contact_ratio", "", marks=pytest.mark.whole),
-        pytest.param("pair_17_17", "", marks=pytest.mark.whole),
-        pytest.param("pair_12_120", "", marks=pytest.mark.whole),
+        ("pair_23_61", ""),
+        ("pair_23_61_high_contact_ratio", ""),
+        ("pair_17_17", ""),
+        ("pair_12_120", ""),
         ("pair_12_120_undercut", "The flanks of gear 1 are undercut"),
-        pytest.param("wheel_drives", "", marks=pytest.mark.whole),
+        ("wheel_drives", ""),
     ],
 )
 def test_pairs_that_no_paper_holds(
@@ -584,6 +585,7 @@ def killed_after_another_piece(folder: Path, *arguments: str) -> None:
     assert process.returncode == -signal.SIGKILL
 
 
+@pytest.mark.whole
 def test_interrupted_runs_go_on_where_they_were(
     pitchpoint: Callable[..., Told],
     finished: Path,

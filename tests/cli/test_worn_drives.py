@@ -89,6 +89,7 @@ def spur(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.whole
 def test_a_spur_pair_wears_in_two_humps_around_its_pitch_point(spur: Path) -> None:
     data = load(spur / "physical" / "wear.nc")
     depths, radii = data["worn_depth"].values[-1, :, :, 0], data["flank_radius"].values

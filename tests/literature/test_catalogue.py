@@ -220,6 +220,7 @@ def test_the_shipped_example_has_the_efficiency_of_real_drives():
     assert built.covers == {}
 
 
+@pytest.mark.whole
 def test_efficiency_rises_with_temperature_and_torque_and_falls_with_speed():
     part, full = at_load(0.57 * RATED), at_load()
     assert np.all(np.diff(full, axis=1) > 0.0)

@@ -162,6 +162,7 @@ def test_other_inputs_make_rows_miss(change, names):
     assert names <= missed("heavy", **change)
 
 
+@pytest.mark.whole
 def test_a_wider_torus_lets_the_ellipse_leave_the_face_earlier():
     found = missed("tilted", "physical", **{"gears.torus_radius": ["35.35 mm", "55 mm"]})
     assert "limit of tilt, semi-axis of 2 mm, parabola" in found

@@ -112,7 +112,7 @@ def test_reference_values_are_never_called_those_of_the_paper(variant):
 
 def test_calibrated_and_excluded_rows_say_why():
     told = [one for one in case().targets if one.kind in ("calibrated", "excluded")]
-    assert len(told) == 12
+    assert len(told) == 15
     assert all(one.reason for one in told)
 
 
