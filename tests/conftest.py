@@ -113,7 +113,12 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 def _beyond(config: pytest.Config) -> list[str]:
-    """A sentence for each figure that was exceeded, as far as this run is held to them."""
+    """A sentence for each figure that was exceeded, as far as this run is held to them.
+
+    Single operations are shared with the files before: a file alone asks for more than is recorded of it.
+    """
+    if config.args_source is not pytest.Config.ArgsSource.TESTPATHS:
+        return []
     figures = budget.recorded(*_parts(config))
     most = budget.PROGRAMS if _parts(config) == ("quick",) else math.inf
     paced = budget.slow(SPENT, figures) if config.option.hold_pace else []

@@ -127,12 +127,13 @@ def test_parts_in_series_turn_with_the_driver():
     assert in_series(back)["wave generator's shaft"] == pytest.approx(1.0 / shaft, rel=1e-12)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     "given",
     [
         {"support_stiffness": 2e9},
-        pytest.param({"behind": Behind(), "bearing": Balls()}, marks=pytest.mark.whole),
-        pytest.param({"behind": Behind(), "bearing": Balls(play=8e-6)}, marks=pytest.mark.whole),
+        {"behind": Behind(), "bearing": Balls()},
+        {"behind": Behind(), "bearing": Balls(play=8e-6)},
     ],
 )
 def test_parts_sum_up_to_the_wind_up(given):
@@ -280,6 +281,7 @@ _teeth = jax.jit(
 )
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("number", [23, 24])
 def test_preloaded_balls_carry_without_torque_in_balance_with_the_wall(number):
     """What does not cancel around the ring moves it sideways, against the shear of the wall."""
@@ -314,6 +316,7 @@ def test_balls_with_much_play_hold_the_ring_near_the_long_axis_only():
     assert not many[np.abs(np.cos(angle)) < np.cos(np.deg2rad(70.0))].any()
 
 
+@pytest.mark.whole
 def test_the_first_slope_falls_with_the_play():
     slopes = [float(np.mean(at(held(play)[0], 1.0)[0].stiffness)) for play in (0.0, 5e-6, 15e-6)]
     assert slopes[0] > 1.2 * slopes[1] > 1.44 * slopes[2]

@@ -213,6 +213,7 @@ def test_entrainment_along_the_other_axis_turns_the_film():
     assert along.film.shear_force[0] == pytest.approx(across.film.shear_force[1])
 
 
+@pytest.mark.whole
 def test_reversed_entrainment_mirrors_the_film():
     ahead, back = coarse(ball((2.0, 0.0))).film, coarse(ball((-2.0, 0.0))).film
     assert np.allclose(ahead.gap, back.gap[:, ::-1], rtol=1e-9)

@@ -152,10 +152,8 @@ def test_rolling_is_that_of_the_films_unless_the_case_has_a_model_of_it(spur):
     assert 0.01 < off.max() < 0.15
 
 
-@pytest.mark.parametrize(
-    "text",
-    [pytest.param(PAIR, id="spur"), pytest.param(WAVE, marks=pytest.mark.whole, id="strain wave")],
-)
+@pytest.mark.whole
+@pytest.mark.parametrize("text", [PAIR, WAVE], ids=["spur", "strain wave"])
 def test_loss_and_efficiency_are_those_of_the_films_over_the_cycle(text):
     case = built(text, film={"solver": "line", "nodes": 33})
     parts = [FILM.compute(case, piece, lambda _: None) for piece in FILM.pieces(case)]

@@ -363,6 +363,7 @@ def pair(request, drives):
     return SimpleNamespace(name=request.param, mesh=mesh, by=by, space=space)
 
 
+@pytest.mark.whole
 def test_groove_is_the_outermost_place_of_the_tooth(pair):
     """With ridges blended, tips relieved and rounded, and room at the bottom."""
     groove, space = pair.mesh.groove, pair.space

@@ -99,6 +99,7 @@ def compared(folder: Path) -> Outcomes:
     return designs([str(folder / "out" / "pair")])
 
 
+@pytest.mark.whole
 def test_what_a_reference_means(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
     Path("a@b.toml").write_text(BALL)

@@ -192,6 +192,7 @@ def test_the_table_of_worn_flanks(tmp_path: Path) -> None:
     assert any("worn by 5 turns" in told for told in built.told)
 
 
+@pytest.mark.whole
 def test_the_table_of_heights(tmp_path: Path) -> None:
     given = merged(tree("finite"), tomllib.loads(HEIGHTS))
     map_, file = given["film"]["heights"]["gear_1"], tmp_path / "flank.csv"

@@ -95,6 +95,9 @@ def test_files_that_take_longest_start_first():
     ]
 
 
+WHOLE_SUITE = pytest.Config.ArgsSource.TESTPATHS
+
+
 @pytest.fixture
 def plugin(request):
     return request.config.pluginmanager.getplugin(
@@ -102,9 +105,9 @@ def plugin(request):
     )
 
 
-def config(**options):
+def config(source=WHOLE_SUITE, **options):
     given = {"markexpr": "not whole", "record_budget": False, "hold_pace": False} | options
-    return SimpleNamespace(option=SimpleNamespace(**given))
+    return SimpleNamespace(option=SimpleNamespace(**given), args_source=source)
 
 
 @pytest.mark.parametrize(
@@ -113,6 +116,7 @@ def config(**options):
         (Spent(PROGRAMS, 1e6, 1e6), {}, pytest.ExitCode.OK),
         (Spent(PROGRAMS + 1), {}, pytest.ExitCode.TESTS_FAILED),
         (Spent(PROGRAMS + 1), {"markexpr": "whole"}, pytest.ExitCode.OK),
+        (Spent(PROGRAMS + 1), {"source": pytest.Config.ArgsSource.ARGS}, pytest.ExitCode.OK),
         (Spent(1, 1e6, 34.0), {"hold_pace": True}, pytest.ExitCode.TESTS_FAILED),
     ],
 )
