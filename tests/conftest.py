@@ -1,7 +1,6 @@
 """Compiles quickly, gives compiled programs back, and holds the suite to its budget."""
 
 import gc
-import math
 import os
 import sys
 from collections import defaultdict
@@ -113,16 +112,17 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 def _beyond(config: pytest.Config) -> list[str]:
-    """A sentence for each figure that was exceeded, as far as this run is held to them.
+    """A sentence for each figure that was exceeded, as far as this run is held to them: all of the quick part is.
 
-    Single operations are shared with the files before: a file alone asks for more than is recorded of it.
+    Single operations are shared with the files before: a file alone, or in another order, asks for more than
+    is recorded of it.
     """
-    if config.args_source is not pytest.Config.ArgsSource.TESTPATHS:
+    whole_suite = config.args_source is pytest.Config.ArgsSource.TESTPATHS
+    if not whole_suite or _parts(config) != ("quick",):
         return []
-    figures = budget.recorded(*_parts(config))
-    most = budget.PROGRAMS if _parts(config) == ("quick",) else math.inf
+    figures = budget.recorded("quick")
     paced = budget.slow(SPENT, figures) if config.option.hold_pace else []
-    return budget.exceeded(SPENT, figures, most) + paced
+    return budget.exceeded(SPENT, figures) + paced
 
 
 @pytest.hookimpl(optionalhook=True)
