@@ -112,7 +112,7 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 def _beyond(config: pytest.Config) -> list[str]:
-    """A sentence for each figure that was exceeded, as far as this run is held to them: all of the quick part is.
+    """A sentence for each figure that was exceeded, as far as this run is held to them: the quick part is.
 
     Single operations are shared with the files before: a file alone, or in another order, asks for more than
     is recorded of it.
