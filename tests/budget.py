@@ -29,6 +29,9 @@ TABLE = Path(__file__).with_name("budget.toml")
 GROWTH = 1.1
 """How far a figure may be exceeded; files share programs in another order each time."""
 
+NOISE = 1.25
+"""How far loops may exceed those that were recorded: runs of the same tests took 34 to 42 in a second."""
+
 FEW = 5
 """Programs that fail no file, be they ever so many times its figure."""
 
@@ -144,5 +147,5 @@ def most_of(figure: int) -> int:
 def slow(spent: Mapping[str, Spent], figures: Mapping[str, Spent]) -> list[str]:
     """A sentence where the files took more loops than were recorded of them, together."""
     taken = sum(own.loops for own in spent.values())
-    most = GROWTH * sum(figures[file].loops for file in spent if file in figures)
+    most = NOISE * sum(figures[file].loops for file in spent if file in figures)
     return [f"the suite takes {taken:.0f} loops, {most:.0f} are its budget"] * (taken > most > 0.0)
