@@ -4,6 +4,8 @@ Nothing here calls the geometry of the library. In a section across a line of co
 numbers; in a section along it a line is straight and a ball is round.
 """
 
+from abc import ABC, abstractmethod
+
 import numpy as np
 
 FLAT = 1e30
@@ -15,7 +17,7 @@ def circle(radius, across):
     return across**2 / (radius + np.sqrt(radius**2 - across**2))
 
 
-class Section:
+class Section(ABC):
     """Both flanks about the point where they should touch.
 
     Attributes:
@@ -23,12 +25,12 @@ class Section:
         scale: size of the numbers behind them, for their rounding [m].
     """
 
+    @abstractmethod
     def height(self, member, across):
         """Height of a flank's point along the normal out of member 0, `across` away from the normal [m]."""
-        raise NotImplementedError
 
 
-class Curves:
+class Curves(ABC):
     """What is asked of each family.
 
     Attributes:
@@ -39,17 +41,17 @@ class Curves:
     slope = 1.0
     ratio = np.inf
 
+    @abstractmethod
     def section(self, path, direction):
         """Section in rolling direction (0) or across it (1) at a place of the path."""
-        raise NotImplementedError
 
+    @abstractmethod
     def velocity(self, coordinate, path):
         """Closing and sliding velocity at the touching point for a unit rate of a coordinate."""
-        raise NotImplementedError
 
+    @abstractmethod
     def path(self, phase, pair, width):
         """Place on the path of a pair, counted from the last one that entered, at a place across the face."""
-        raise NotImplementedError
 
 
 class Straight(Section):

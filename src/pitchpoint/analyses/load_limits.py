@@ -53,7 +53,7 @@ def load_limits_part(built: Built) -> xr.Dataset:
     limits, loaded = gears.limits, built.case.operation.load
     torque = flexspline_torque(loaded, built.loaded, gears.tooth_numbers)
     stresses = _stresses(built, limits, torque)
-    against = _against(limits, torque, float(mesh.module) * float(np.asarray(mesh.teeth)[0]))
+    against = _against(limits, torque, mesh.pitch_diameter)
     life = _life(built, limits, torque)
     return dataset(
         {

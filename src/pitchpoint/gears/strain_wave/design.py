@@ -526,8 +526,7 @@ def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
             f"The circular spline's flank could not be found at {lost} of {NODES} heights: curvature, "
             "pressure and film there say nothing."
         )
-    pitch_diameter = float(mesh.module) * float(np.asarray(mesh.teeth)[0])
-    usual = rim_by_strain(pitch_diameter, float(mesh.line.deflection))
+    usual = rim_by_strain(mesh.pitch_diameter, float(mesh.line.deflection))
     if not 1.0 / FAR_FROM_USUAL < float(mesh.rim.thickness) / usual < FAR_FROM_USUAL:
         told.append(
             f"The rim of the flexspline is {1e3 * float(mesh.rim.thickness):.3g} mm thick; usual for its "

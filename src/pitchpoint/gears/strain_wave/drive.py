@@ -287,6 +287,11 @@ class StrainWave(Mesh):
         """True where what may carry of a tooth reaches into the circular spline's teeth."""
         return _overlaps(self.tooth_motion, self.groove, angle, self.edges_carry)
 
+    @property
+    def pitch_diameter(self) -> float:
+        """Reference diameter of the flexspline, of plain numbers, for which nothing is compiled [m]."""
+        return float(self.module) * float(np.asarray(self.teeth)[0])
+
     def in_pairs(self, values: np.ndarray, axis: int, *, like_first: bool = False) -> np.ndarray:
         """Values by pairs that are held, of two places the one nearer to the root first."""
         number, zone = _numbers(np.asarray(self.teeth), self.lanes, np).astype(int), self._zone
