@@ -68,6 +68,11 @@ WARM = {"study": "warm", "variable": "mean_efficiency"}
         ({**WARM, "at": ["283.15 K", "0 degC"], "reduce": "relative_drop"}, 1.0 - 0.5 / 0.6),
         ({**WARM, "at": "10 degC", "law": [1]}, 1.0),
         ({**WARM, "at": ["0 degC", "20 degC"], "law": [0, 1], "reduce": "max_difference"}, 0.5),
+        ({**WARM, "law": [0, 1], "reduce": "least_excess"}, -0.5),
+        ({**WARM, "law": [1, 0], "reduce": "least_excess"}, 0.2),
+        ({**WOUND, "reduce": "least_rise"}, 1e-4),
+        ({**WOUND, "at": ["40 N m", "20 N m"], "reduce": "largest_rise"}, -1e-4),
+        ({**WOUND, "at": "15 N m", "less": 2e-4}, 0.5e-4),
         ({"study": "point", "variable": "mean_efficiency"}, 0.8),
     ],
 )
@@ -83,6 +88,11 @@ def test_values_and_slopes(given, expected):
         ({**WOUND, "at": "3 mm"}, "at", ("length", "torque")),
         ({**WOUND, "at": 3}, "at", ("no unit",)),
         ({**WOUND, "at": "1 N m", "reduce": "slope"}, "at", ("slope takes two places",)),
+        (
+            {"study": "point", "variable": "mean_efficiency", "reduce": "least_rise"},
+            "at",
+            ("least_rise takes two places",),
+        ),
         ({**WOUND, "at": ["1 N m", "2 N m"]}, "at", ("value takes one place",)),
         ({**WOUND, "reduce": "slope", "unit": "N m/rad"}, "unit", ("N m/rad", "angle over torque")),
         ({**WOUND, "at": "1 N m", "law": [2]}, "law", ("[2]", "this part has 2 friction laws")),
@@ -218,14 +228,23 @@ REST = tomllib.loads(PAIR) | {
 }
 
 
-def row(kind, verdict, reason=""):
-    return Row("q", "w", 1.0, 1.0, "1", 0.1, kind, verdict, reason)
+def row(kind, verdict, reason="", expected_miss=False):
+    return Row("q", "w", 1.0, 1.0, "1", 0.1, kind, verdict, reason, expected_miss=expected_miss)
+
+
+def test_a_number_surprises_that_is_missed_without_cause_or_met_in_spite_of_one():
+    known = "the model has no cup"
+    surprising = [row("trend", "miss", "a remark"), row("trend", "pass", known, True)]
+    expected = [row("trend", "miss", known, True), row("trend", "pass", "a remark")]
+    assert [one.surprises for one in surprising + expected] == [True, True, False, False]
+    assert not row("excluded", "excluded", known).surprises
+    assert in_words(surprising[1:]) == "1 of the publication: 1 met in spite of its reason"
 
 
 def test_numbers_of_an_independent_calculation_are_counted_apart():
     rows = [
         row("predicted", "pass"),
-        row("trend", "miss", "the paper says so of another load"),
+        row("trend", "miss", "the paper says so of another load", True),
         row("fitted", "miss"),
         row("excluded", "excluded", "is not printed"),
         row("definition", "pass"),

@@ -12,7 +12,15 @@ from pitchpoint.cases.schema import Target
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
-from pitchpoint.results.reductions import INVERSE_SLOPE, PLAIN, REDUCTIONS, SLOPE, SPANS
+from pitchpoint.results.reductions import (
+    INVERSE_SLOPE,
+    OF_TWO_LAWS,
+    PLAIN,
+    REDUCTIONS,
+    RISES,
+    SLOPE,
+    SPANS,
+)
 from pitchpoint.results.target_rows import Row
 from pitchpoint.results.variables import VARIABLES
 
@@ -51,9 +59,10 @@ class _OutsideError(InputError):
 
 
 def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
-    reason = target.reason
+    reason = target.missed or target.reason
     try:
-        computed = None if target.kind == "excluded" else _computed(target, results)
+        left_out = target.kind == "excluded"
+        computed = None if left_out else _computed(target, results) - target.less
     except _OutsideError as error:
         # Nothing that was computed is lost for it: the row misses and says why.
         computed, reason = float("nan"), f"not computed: {error.message}. {reason}"
@@ -71,6 +80,7 @@ def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
         verdict=_verdict(target, computed),
         reason=reason,
         bound=_bound(target),
+        expected_miss=bool(target.missed),
     )
 
 
@@ -201,7 +211,8 @@ def _axis(data: xr.Dataset, dim: str) -> _Axis:
 def _demand_places(target: Target, axis: _Axis) -> None:
     """InputError if a reduction has not the places that it needs."""
     given, spans = len(target.at), target.reduce in SPANS
-    if given and spans and np.ptp(axis.at(target.at)) == 0.0:
+    same = np.ptp(axis.at(target.at)) == 0.0 if given else axis.places.size < 2
+    if spans and same and (given or target.reduce in RISES):
         raise InputError(f"{target.reduce} takes two places of the axis", key="at")
     several = given > 1 or (target.part and not given and axis.places.size > 1)
     if several and target.reduce == "value":
@@ -218,7 +229,7 @@ def _unsteady(data: xr.Dataset, laws: list[int]) -> bool:
 def _laws(target: Target, count: int) -> list[int]:
     """Positions of the laws that a target reads."""
     wanted = [int(position) for position in target.law]
-    needed = 2 if target.reduce == "max_difference" else 1
+    needed = 2 if target.reduce in OF_TWO_LAWS else 1
     if max(wanted, default=-1) >= count or len(wanted) < needed:
         raise InputError(
             f"{shown(wanted)} does not fit; this {'part' if target.part else 'study'} has {count} "

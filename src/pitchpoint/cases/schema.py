@@ -1079,8 +1079,12 @@ class Target(Table):
     """How one number is made of the values at these places."""
     law: tuple[Annotated[float, POSITION], ...] = (0.0,)
     """Positions of the friction laws that are read, from 0."""
+    less: Annotated[float, ANY] = 0.0
+    """Number that is taken off the computed one before both are compared, in the unit of the print."""
     reason: Text = ""
     """Why the number deviates, or is left out."""
+    missed: Text = ""
+    """Why the number is known to be missed; a number that is met all the same fails the comparison."""
 
     @property
     def reads(self) -> str:
@@ -1093,6 +1097,8 @@ class Target(Table):
             raise InputError(
                 "study and part were both given; a target reads one of them", key="part"
             )
+        if self.missed and self.kind == "excluded":
+            raise InputError("a number that is left out is not missed; give a reason", key="missed")
         if self.times != 1.0 and self.expect == "within":
             raise InputError('belongs to a bound, expect = "above" or "below"', key="times")
         return self

@@ -75,7 +75,7 @@ def _row(row: Row) -> dict[str, str]:
         "tolerance": tolerance,
         "kind": row.kind,
         "verdict": row.verdict,
-        "reason": row.reason or ("no reason is known" if row.verdict == "miss" else ""),
+        "reason": row.reason or "no reason is known" * (row.verdict == "miss"),
     }
 
 
