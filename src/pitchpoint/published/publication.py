@@ -54,6 +54,7 @@ class Curves:
         names: variables of the courses, in the order of the columns.
         columns: what they are in words, where they are not those of the table beside them.
         decades: drawn on a logarithmic axis.
+        shows: figure of the publication that it shows, as "Figure 9"; empty for none.
     """
 
     title: str
@@ -61,6 +62,7 @@ class Curves:
     names: tuple[str, ...]
     columns: tuple[str, ...] = ()
     decades: bool = False
+    shows: str = ""
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,7 @@ class Beside:
         calibrated: which constants were set for numbers that they then meet; shown in a box of its own.
         curves: drawn under the numbers.
         families: of one course each, drawn for all points of a sweep over each other.
+        over_studies: of one course each, drawn for all studies of one point over each other.
         solves: by words for a solve, the variable of each column that holds its `status.Code`.
     """
 
@@ -83,6 +86,7 @@ class Beside:
     calibrated: str = ""
     curves: tuple[Curves, ...] = ()
     families: tuple[Curves, ...] = ()
+    over_studies: tuple[Curves, ...] = ()
     solves: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
