@@ -87,13 +87,15 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Paragraph(beside.note, "note")
         if beside.calibrated:
             yield Paragraph(beside.calibrated, "warning")
-        for position, data in enumerate(_studies(page, beside)):
+        studies = _studies(page, beside)
+        name = f"formulas{number}"
+        drawn = [_panel(name, studies, beside), _side_by_side(f"{name}_each", studies, beside)]
+        drawn += [_families(f"{name}_{k}", one, beside) for k, one in enumerate(studies)]
+        yield from (panel for panel in drawn if panel.figures)
+        for data in studies:
             yield Heading(str(data.attrs["title"]))
             yield _table(data, beside)
             yield from _solves(data, beside)
-            name = f"formulas{number}_{position}"
-            panels = _panel(name, data, beside), _families(f"{name}_all", data, beside)
-            yield from (panel for panel in panels if panel.figures)
 
 
 def _solves(data: xr.Dataset, beside: Beside) -> Iterator[Block]:
@@ -111,25 +113,40 @@ def _solves(data: xr.Dataset, beside: Beside) -> Iterator[Block]:
                 yield Paragraph(words, "warning")
 
 
-def _panel(name: str, data: xr.Dataset, beside: Beside) -> Panel:
-    """Courses of a study, with a menu of its points; empty where it has none."""
-    there = [one for one in beside.curves if all(each in data for each in one.names)]
-    curves = {f"{name}_{k}": one for k, one in enumerate(there)}
-    figures = [_figure(each, one, data, beside) for each, one in curves.items()]
+def _panel(name: str, studies: list[xr.Dataset], beside: Beside) -> Panel:
+    """Courses at a point, with a menu of the points of all studies; empty where there are none."""
+    points = [(data, k) for data in studies for k in range(data.sizes["point"])]
+    there = {
+        f"{name}_{k}": one
+        for k, one in enumerate(beside.curves)
+        if any(_holds(data, one) for data in studies)
+    }
+    figures = [_figure(each, one, points, beside) for each, one in there.items()]
     choices = [
-        Choice(place, {each: [_changed(one, data, point), {}] for each, one in curves.items()})
-        for point, place in enumerate(_places(data))
+        Choice(_point(*point), {each: [_at(one, *point), {}] for each, one in there.items()})
+        for point in points
     ]
     several = len(choices) > 1 and bool(figures)
     return Panel("", figures, choices=choices if several else [], menu="Shown at")
 
 
-def _changed(one: Curves, data: xr.Dataset, point: int) -> dict[str, list[Any]]:
-    """What a choice of a point changes: values, and places where they are others."""
-    places = data[one.along].values
-    moved = not np.array_equal(places[point], places[0])
-    x = {"x": [_shown(one.along, data, point)] * len(one.names)} if moved else {}
-    return {**x, "y": [_shown(name, data, point) for name in one.names]}
+def _holds(data: xr.Dataset, one: Curves) -> bool:
+    return all(each in data for each in one.names)
+
+
+def _point(data: xr.Dataset, point: int) -> str:
+    """A point of a study in words."""
+    return ": ".join(filter(None, (str(data.attrs["title"]), _places(data)[point])))
+
+
+def _at(one: Curves, data: xr.Dataset, point: int) -> dict[str, list[Any]]:
+    """Places and values of courses at a point; empty where the study does not hold them."""
+    if not _holds(data, one):
+        return dict.fromkeys("xy", [[]] * len(one.names))
+    return {
+        "x": [_shown(one.along, data, point)] * len(one.names),
+        "y": [_shown(each, data, point) for each in one.names],
+    }
 
 
 def _families(name: str, data: xr.Dataset, beside: Beside) -> Panel:
@@ -137,22 +154,33 @@ def _families(name: str, data: xr.Dataset, beside: Beside) -> Panel:
     places = _places(data)
     if not 1 < len(places) <= len(PALETTE):
         return Panel("", [])
-    there = [one for one in beside.families if all(each in data for each in one.names)]
-    return Panel("", [_family(f"{name}{k}", one, data, places) for k, one in enumerate(there)])
+    there = [one for one in beside.families if _holds(data, one)]
+    each = [(data, point) for point in range(len(places))]
+    figures = [_family(f"{name}_all{k}", one, each, places) for k, one in enumerate(there)]
+    return Panel(str(data.attrs["title"]), figures)
 
 
-def _family(name: str, one: Curves, data: xr.Dataset, places: list[str]) -> Figure:
-    """A course at each point of a sweep."""
+def _side_by_side(name: str, studies: list[xr.Dataset], beside: Beside) -> Panel:
+    """Courses of all studies of one point over each other."""
+    figures = []
+    for k, one in enumerate(beside.over_studies):
+        alone = [data for data in studies if data.sizes["point"] == 1 and _holds(data, one)]
+        titles = [str(data.attrs["title"]) for data in alone]
+        if 1 < len(alone) <= len(PALETTE):
+            figures.append(_family(f"{name}{k}", one, [(data, 0) for data in alone], titles))
+    return Panel("", figures)
+
+
+def _family(
+    name: str, one: Curves, points: list[tuple[xr.Dataset, int]], titles: list[str]
+) -> Figure:
+    """One course at each of several points."""
     (variable,) = one.names
-    keys = [Key(place, PALETTE[k]) for k, place in enumerate(places)]
+    keys = [Key(title, PALETTE[k]) for k, title in enumerate(titles)]
+    unit = show.unit_of(variable)
     traces = [
-        plain(
-            key,
-            _shown(one.along, data, point),
-            _shown(variable, data, point),
-            show.unit_of(variable),
-        )
-        for point, key in enumerate(keys)
+        plain(key, _shown(one.along, *point), _shown(variable, *point), unit)
+        for key, point in zip(keys, points, strict=True)
     ]
     return _drawn(name, one, traces, keys)
 
@@ -162,7 +190,8 @@ def _drawn(name: str, one: Curves, traces: list[Trace], keys: list[Key]) -> Figu
     if max(filter(None, traces[0]["x"]), default=0.0) > _MANY:
         scales["xaxis"] = {"exponentformat": "power", "separatethousands": False}
     axes = layout(show.axis_title(one.along), short_axis(one.names[0]), **scales)
-    title = one.title[0].upper() + one.title[1:]
+    shows = f" ({one.shows} of the publication)" if one.shows else ""
+    title = f"{one.title[0].upper()}{one.title[1:]}{shows}"
     return Figure(name, title, traces, axes, keys=tuple(keys), missing="No numbers were found.")
 
 
@@ -170,14 +199,14 @@ def _shown(name: str, data: xr.Dataset, point: int) -> list[Any]:
     return rounded(display(name, data[name].values[point]))
 
 
-def _figure(name: str, one: Curves, data: xr.Dataset, beside: Beside) -> Figure:
-    """Courses over each other at the first point."""
+def _figure(name: str, one: Curves, points: list[tuple[xr.Dataset, int]], beside: Beside) -> Figure:
+    """Courses over each other at the first point; empty where only other studies hold them."""
     columns = one.columns or beside.columns
     keys = [Key(column, PALETTE[k]) for k, column in enumerate(columns)]
-    unit, places = show.unit_of(one.names[0]), display(one.along, data[one.along].values[0])
+    first, unit = _at(one, *points[0]), show.unit_of(one.names[0])
     traces = [
-        plain(key, places, display(each, data[each].values[0]), unit, opacity=0.75)
-        for key, each in zip(keys, one.names, strict=True)
+        plain(key, x, y, unit, opacity=0.75)
+        for key, x, y in zip(keys, first["x"], first["y"], strict=True)
     ]
     for trace in traces:
         trace["line"]["width"] = 1  # of vibrations that lie close
