@@ -33,6 +33,7 @@ class Code(IntEnum):
     NO_STEADY_HEAT = 16
     FILM_LOST = 17
     NO_NUMBER = 18
+    HELD = 19
 
     @property
     def sentence(self) -> str:
@@ -67,6 +68,8 @@ _SENTENCES = {
     Code.NO_STEADY_HEAT: "surfaces that both stand still in their contact have no steady temperature",
     Code.FILM_LOST: "the film of a contact that carries was not solved",
     Code.NO_NUMBER: "an input of the contact is not a finite number",
+    Code.HELD: "a law gives more than can be, and its value is held at the limit: what it hangs on does "
+    "not move it",
 }
 
 

@@ -19,6 +19,7 @@ from pitchpoint.cases.document import leaves, resolve
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
+from pitchpoint.input.quantities import SIValue
 from pitchpoint.published.publication import Point
 from pitchpoint.published.zhao2022 import printed
 from pitchpoint.published.zhao2022.printed import (
@@ -31,9 +32,10 @@ from pitchpoint.published.zhao2022.printed import (
     tooth_forces,
 )
 from pitchpoint.published.zhao2022.publication import PUBLICATION
-from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
-from pitchpoint.published.zhao2022.wear import march, marched, severe, strips_of
+from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear, Reference
+from pitchpoint.published.zhao2022.wear import Strips, march, marched, severe, strips_of
 from pitchpoint.results.target_rows import counts
+from pitchpoint.status import Code
 
 NAME, TREE = find("zhao2022")
 VARIANTS = {name: Variant(TREE, NAME, name) for name in ("as_published", "physical")}
@@ -70,7 +72,8 @@ def readings(studies, variant="as_published", **changes):
 def read(study, variant="as_published"):
     """Targets of geometry and load; the balance of the drive and the wear are left out."""
     every = [one for one in case(variant).targets if one.study == study]
-    return [one for one in every if one.variable not in ("mean_efficiency", *WEAR)]
+    own = [one for one in every if not one.missed]
+    return [one for one in own if one.variable not in ("mean_efficiency", *WEAR)]
 
 
 def missed(study, **changes):
@@ -82,14 +85,15 @@ def missed(study, **changes):
 
 
 @pytest.mark.whole
-def test_no_row_misses():
+def test_only_rows_miss_whose_cause_is_known():
     rows = bank.rows("zhao2022")
-    assert [(row.quantity, row.computed) for row in rows if row.verdict == "miss"] == []
+    assert [(row.quantity, row.computed) for row in rows if row.surprises] == []
     assert {kind: dict(found) for kind, found in counts(rows).items()} == {
-        "reference": {"pass": 55},
-        "calibrated": {"pass": 10},
-        "trend": {"pass": 7},
-        "excluded": {"excluded": 5},
+        "reference": {"pass": 57},
+        "calibrated": {"pass": 9},
+        "predicted": {"miss": 9},
+        "trend": {"pass": 8, "miss": 4},
+        "excluded": {"excluded": 1},
     }
 
 
@@ -112,16 +116,16 @@ def test_reference_values_are_never_called_those_of_the_paper(variant):
 
 def test_calibrated_and_excluded_rows_say_why():
     told = [one for one in case().targets if one.kind in ("calibrated", "excluded")]
-    assert len(told) == 15
+    assert len(told) == 10
     assert all(one.reason for one in told)
 
 
 def test_no_printed_number_on_wear_is_forgotten():
     printed_ones = {one.printed for one in case().targets if one.where.startswith("section")}
-    wanted = {0.0557, 0.0554, 8.15, 2.03, 0.021, 0.022, 444.66, 481.67, 4e10, 2.8e10}
+    wanted = {0.0557, 0.0554, 0.15, 0.03, 0.021, 0.022, 444.66, 481.67, 4e10, 2.8e10}
     assert printed_ones >= wanted
     left_out = {one.printed for one in case().targets if one.kind == "excluded"}
-    assert left_out == {444.66, 481.67, 1.0, 1.43}
+    assert left_out == {1.0}, "stress of the ring, taken from another publication"
 
 
 @pytest.mark.parametrize(
@@ -293,15 +297,17 @@ def test_mean_of_both_sides_of_the_offset():
 
 
 def test_file_says_that_the_match_is_no_validation():
-    strips, conjugate = PUBLICATION.beside
+    strips, _, conjugate = PUBLICATION.beside
     assert "does not validate" in strips.calibrated
     assert "assumed" in conjugate.note
     assert strips.curves and strips.families and conjugate.curves
     for variant, table in (("as_published", FlankWear), ("physical", ConjugateWear)):
         assert type(case(variant).formulas) is table
         provenance = resolve(dict(TREE), name=NAME, variant=variant).provenance
-        keys = table.model_fields.keys() - {"form"}
-        assert {f"formulas.{one}" for one in keys} <= provenance.keys()
+        keys = table.model_fields.keys() - {"form", "reference"}
+        inside = Reference.model_fields.keys() if table is FlankWear else ()
+        marked = {f"formulas.{one}" for one in keys}
+        assert marked | {f"formulas.reference.{one}" for one in inside} <= provenance.keys()
 
 
 def test_radial_load_is_the_tangential_one_through_the_pressure_angle():
@@ -316,7 +322,8 @@ def test_radial_load_is_the_tangential_one_through_the_pressure_angle():
 
 def test_contacts_are_hardly_warmer_than_the_oil():
     """T_s of eq. 10, by hand: heat of a strip 21 um long into the flank that slides through."""
-    pressure, sliding = value("wear_pressure_new"), 21e-6 / STEP * 1.01 * 40.0 * np.pi
+    sliding = 21e-6 / STEP * 1.01 * 40.0 * np.pi
+    pressure = 880.8 / 21e-6 / np.cos(strips().angle[0])
     carried = np.sqrt(46.0 * 7750.0 * 470.0 * sliding)
     flash = 2.0 * 0.1 * pressure * sliding * np.sqrt(21e-6 / np.pi) / carried
     assert value("tip_flash") == pytest.approx(flash, rel=1e-9)
@@ -328,7 +335,125 @@ def test_contacts_are_hardly_warmer_than_the_oil():
 def test_dry_flanks_wear_in_the_same_shape():
     data = readings(["double_arc"])["study_double_arc"]
     ratio = data["flank_depth_late"].values[0] / data["dry_flank_depth"].values[0]
-    np.testing.assert_allclose(ratio, value("wetted_share"), rtol=1e-12)
+    np.testing.assert_allclose(ratio, 8.4532e-9 / value("dry_coefficient"), rtol=1e-6)
+    assert value("lubricated_over_dry") == pytest.approx(ratio[0], rel=1e-6)
+
+
+HELD = {"formulas.cycles": 1e8}
+"""So few cycles that none of the coefficients below wears a flank flat."""
+
+
+def as_given(changes):
+    return {key: SIValue(one) if isinstance(one, float) else one for key, one in changes.items()}
+
+
+def moved_by(**changes):
+    """Coefficient over that of the reference by eqs. 10 and 29, of a share that eq. 9 holds at 1."""
+    design = built("double_arc", **as_given(changes)).design
+    temperature = changes.get("operation.temperature", 313.15)
+    turning = changes.get("operation.speed", 40.0 * np.pi) / (40.0 * np.pi)
+    modulus = float(design.modulus) / 220.333734e9
+    alpha = float(design.lubricant.pressure_viscosity(temperature)) / 13.6403377e-9
+    rough = float(design.roughness.composite_rq) / 0.55e-6
+    sliding, rise = 21e-6 / STEP * 1.01 * 40.0 * np.pi, value("tip_flash")
+    defects = [
+        -np.expm1(-3e-10 / (speed * 3e-12) * np.exp(-36.9e3 / (8.31446261815324 * warm)))
+        for speed, warm in (
+            (sliding, 313.15 + rise),
+            (sliding * turning, temperature + rise * np.sqrt(turning)),
+        )
+    ]
+    regression = modulus ** (-1.0 - 1.219 - 7.377) * alpha**-7.377 * rough**1.589
+    return regression * defects[1] / defects[0]
+
+
+SENSITIVITIES = [
+    {"operation.temperature": 363.15},
+    {"operation.speed": 4.0 * np.pi},
+    {"roughness.composite_rq": 1.1e-6},
+    {"materials.gear_1.young": 100e9},
+    {"lubricant.name": "mineral-vg-220"},
+]
+
+
+@pytest.mark.parametrize("changes", SENSITIVITIES)
+def test_oil_roughness_modulus_speed_and_temperature_move_the_depth_by_closed_forms(changes):
+    factor = moved_by(**changes)
+    assert abs(np.log(factor)) > 0.3
+    moved = value("wear_depth", **as_given(changes), **HELD)
+    longer = value("wear_depth", **{"formulas.cycles": 1e8 * factor})
+    assert moved == pytest.approx(longer, rel=1e-6)
+    # After so few cycles the profile is kept, and the depth itself scales.
+    few = {"formulas.cycles": 1.0}
+    kept = value("wear_depth", **as_given(changes), **few) / value("wear_depth", **few)
+    assert kept == pytest.approx(factor, rel=1e-6)
+    assert value("dry_depth", **as_given(changes), **HELD) == value("dry_depth", **HELD)
+
+
+def test_load_on_asperities_that_eq_9_cuts_moves_nothing_and_says_so():
+    assert value("asperity_regression") == pytest.approx(2.68, abs=0.005)
+    assert Code(int(value("asperity_regression_status"))) is Code.HELD
+    assert value("tip_asperity_share") == value("asperity_share_ratio") == 1.0
+    smooth = {"roughness.composite_rq": "0.02 um"}
+    assert Code(int(value("asperity_regression_status", **smooth))) is Code.SOLVED
+    part = value("asperity_regression", **smooth)
+    assert 0.0 < part < 1.0
+    assert value("asperity_share_ratio", **smooth) == part
+
+
+def test_load_moves_the_coefficient_where_the_case_says_so():
+    loads = {"formulas.coefficient_load": "case"}
+    for torque, times in (("32 N m", 2.0), ("4 N m", 0.25)):
+        changes = {"operation.torque": torque}
+        assert value("wear_regression_ratio", **changes) == pytest.approx(1.0, rel=1e-6)
+        assert value("film_defect_ratio", **changes) == 1.0
+        moved = value("wear_regression_ratio", **changes, **loads)
+        assert moved == pytest.approx(times**1.219, rel=2e-5)
+
+
+def test_pressure_follows_the_worn_slope_on_strips_of_the_new_flank():
+    new = strips(**{"formulas.area": "new strip"}).without_offset()
+    depth = 3e-5 * np.linspace(1.0, 0.0, 20) ** 2
+    angle, pressure, _ = new.worn(depth)
+    by_hand = new.force / np.cos(angle) / (12e-3 * 21e-6)
+    np.testing.assert_allclose(pressure, by_hand, rtol=1e-12)
+    assert pressure[0] > new.worn(np.zeros(20))[1][0]
+    kept = strips().without_offset()
+    np.testing.assert_allclose(kept.worn(depth)[1], kept.worn(np.zeros(20))[1], rtol=1e-12)
+
+
+def test_march_without_feedback_misses_the_ratios_over_the_torque(monkeypatch):
+    worn = Strips.worn
+    monkeypatch.setattr(Strips, "worn", lambda self, depth: worn(self, np.zeros_like(depth)))
+    own = dict(leaves(case().studies["feedback"].change))
+    torques = ("16 N m", "32 N m")
+    found = [value("wear_depth", **own, **{"operation.torque": one}) for one in torques]
+    assert found[1] / found[0] == pytest.approx(2.0, rel=1e-12)
+    (target,) = [
+        one for one in case().targets if one.study == "feedback" and one.kind == "calibrated"
+    ]
+    assert abs(found[1] / found[0] - target.less - target.printed) > target.tolerance
+
+
+def test_change_of_the_depth_with_twice_the_points_is_told():
+    change = value("wear_depth", **{"formulas.points": 40}) - value("wear_depth")
+    assert value("wear_depth_change") == pytest.approx(change, rel=1e-9)
+    assert value("wear_depth_change") > 0.01 * value("wear_depth")
+
+
+def test_involute_courses_beside_the_double_arc_are_those_of_involute_teeth():
+    beside = readings(["double_arc"])["study_double_arc"]
+    alone = readings(["involute"])["study_involute"]
+    ours, theirs = beside["involute_flank_depth"].values[0], alone["flank_depth_late"].values[0]
+    np.testing.assert_allclose(ours, theirs, rtol=1e-9)
+    cycles = beside["severe_course"].values[0]
+    known = beside["involute_tip_depth"].values[0]
+    there = np.isfinite(known)
+    assert 10 < there.sum() < there.size, "involute teeth wear severely before"
+    by_theirs = np.interp(
+        cycles[there], alone["severe_course"].values[0], alone["severe_tip_depth"].values[0]
+    )
+    np.testing.assert_allclose(known[there], by_theirs, rtol=1e-3)
 
 
 # ------------------------------------------------------------------ wear by the conjugate kinematics

@@ -8,7 +8,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Numbers
 from pitchpoint.lubrication.groups import line_groups
 
-__all__ = ["masjedi_khonsari_2012", "none"]
+__all__ = ["masjedi_khonsari_2012", "none", "regression_of_masjedi_khonsari"]
 
 Each = Float[Numbers, "*#b"]
 
@@ -56,6 +56,34 @@ def masjedi_khonsari_2012(
         >>> round(float(share), 4)
         0.6488
     """
+    share = regression_of_masjedi_khonsari(
+        line_load=line_load,
+        entrainment=entrainment,
+        viscosity=viscosity,
+        pressure_viscosity=pressure_viscosity,
+        radius=radius,
+        modulus=modulus,
+        roughness_rq=roughness_rq,
+        hardness=hardness,
+    )
+    return jnp.where(share > 1.0, 1.0, share)
+
+
+def regression_of_masjedi_khonsari(
+    *,
+    line_load: Each,
+    entrainment: Each,
+    viscosity: Each,
+    pressure_viscosity: Each,
+    radius: Each,
+    modulus: Each,
+    roughness_rq: Each,
+    hardness: Each,
+) -> Each:
+    """What the regression behind `masjedi_khonsari_2012` gives, which may be more than all of the load [1].
+
+    Args and source: as `masjedi_khonsari_2012`. Above 1 it is asked outside its range.
+    """
     film = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
     own = {"s": roughness_rq / radius, "V": hardness / modulus}
     groups = dict(zip("WUG", film, strict=True)) | own
@@ -64,7 +92,7 @@ def masjedi_khonsari_2012(
     outer = jnp.log(0.005e-2) + _sum(logs, W=-0.408, U=-0.088, G=0.103)
     share = jnp.exp(outer) * jax.nn.softplus(inner)
     acts = (groups["W"] > 0.0) & (groups["s"] > 0.0)
-    return jnp.where(acts, jnp.where(share > 1.0, 1.0, share), 0.0)
+    return jnp.where(acts, share, 0.0)
 
 
 def _log(value: Each) -> Array:

@@ -1,11 +1,11 @@
 """Wear of the flexspline's flank as Zhao et al. (2022) calculate it, eqs. 10 to 33.
 
-A discrete model, not the right physics: the force of a tooth is prescribed by a cosine over the zone,
-the step between two points of the flank stands for the sliding, and the coefficient does not follow
-the load. What is calibrated in it is data of the case.
+A discrete model, not the right physics: the force of a tooth is prescribed by a cosine over the zone, and
+the step between two points of the flank stands for the sliding. What is calibrated in it is data of the case;
+how oil, roughness, speed and temperature move the coefficient stands in `coefficient`.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import acos, log10, pi, tan
 from typing import Any
@@ -13,13 +13,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pitchpoint._jax import array, jax, jnp
+from pitchpoint._jax import jnp
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
-from pitchpoint.programs import program
 from pitchpoint.published.publication import Point, Read
+from pitchpoint.published.zhao2022.coefficient import (
+    READINGS,
+    MixedLubrication,
+    mixed_lubrication,
+)
 from pitchpoint.published.zhao2022.printed import (
     ENGAGED_HEIGHT,
     HALF_ZONE,
@@ -27,7 +30,6 @@ from pitchpoint.published.zhao2022.printed import (
     largest_tangential_load,
 )
 from pitchpoint.published.zhao2022.table import FlankWear
-from pitchpoint.wear.film_defect import fractional_film_defect
 
 __all__ = ["LATER", "March", "Strips", "march", "marched", "readings", "severe"]
 
@@ -65,7 +67,7 @@ class Strips:
         step: between two points [m].
         face_width: [m].
         tip_land: s_ag [m].
-        cumulative: takes the area of all strips up to a point, eq. 26.
+        area: that carries the force of a point, as the table of the case has it.
     """
 
     angle: Array
@@ -76,7 +78,7 @@ class Strips:
     step: float
     face_width: float
     tip_land: float
-    cumulative: bool = False
+    area: str = "strip"
 
     def without_offset(self) -> "Strips":
         """The same without the turn of the teeth."""
@@ -86,11 +88,13 @@ class Strips:
         """Flank angle [rad], pressure [Pa] and step [m] of a flank worn to depths, shape (point) each.
 
         Depth is carried on the normals of the new flank. Where it grows towards the tip the flank leans over;
-        points keep their height, so that their step grows with it.
+        points keep their height, so that their step grows with it. On strips of the worn flank the area
+        grows as the normal force does, and the pressure stays; on those of the new flank it rises.
         """
         angle = self.angle - np.arctan(np.gradient(depth, self.step))
         step = self.step * np.cos(self.angle) / np.cos(angle)
-        area = self.face_width * (np.cumsum(step) if self.cumulative else step)
+        carrying = {"strip": step, "new strip": self.step, "cumulative": np.cumsum(step)}
+        area = self.face_width * carrying[self.area]
         # Eqs. 20, 21 and 28: alpha there is the slope, and both signs of the offset are averaged.
         shift = self.face_width * self.turn * self.tip_land / (2.0 * area)
         return angle, self.force / np.cos(angle) / area / (1.0 - shift**2), step
@@ -220,13 +224,16 @@ def counterpart(flank: DoubleArcFlank, gears: StrainWaveGears) -> InvoluteFlank:
     return InvoluteFlank(**{name: jnp.asarray(value) for name, value in made.items()}, **edges)
 
 
-def strips_of(point: Point, flank: Flank, neutral: float) -> Strips:
-    """Strips of a flank on a neutral line of a radius [m], at the torque of a point with its table."""
+def strips_of(point: Point, flank: Flank, neutral: float, *, finer: int = 1) -> Strips:
+    """Strips of a flank on a neutral line of a radius [m], at the torque of a point with its table.
+
+    With `finer` there are so many times the points; each carries the force of a pitch all the same.
+    """
     gears, given, mesh = point.gears, point.formulas, point.design.mesh
     assert isinstance(gears, StrainWaveGears)
     assert isinstance(given, FlankWear)
     assert isinstance(mesh, StrainWave)
-    count, module = int(given.points), gears.module
+    count, module = finer * int(given.points), gears.module
     assert isinstance(flank, DoubleArcFlank | InvoluteFlank)
     curve = _double_arc(flank) if isinstance(flank, DoubleArcFlank) else _involute(flank)
     step, middle = given.flank_length * module / count, np.arange(count, dtype=np.float64) + 0.5
@@ -253,7 +260,7 @@ def strips_of(point: Point, flank: Flank, neutral: float) -> Strips:
         step=step,
         face_width=gears.face_width,
         tip_land=float(flank.tip_land),
-        cumulative=given.area == "cumulative",
+        area=given.area,
     )
     return made if given.offset == "mean" else made.without_offset()
 
@@ -268,18 +275,25 @@ def readings(point: Point) -> Read:
         return {}
     assert isinstance(gears, StrainWaveGears)
     assert isinstance(mesh, StrainWave)
-    rate = given.coefficient / given.hardness
     neutral = float(mesh.line.radius)
     strips = strips_of(point, mesh.flank, neutral)
+    mixed = mixed_lubrication(
+        point, tip_angle=float(strips.angle[0]), tip_force=float(strips.force[0])
+    )
+    rate = mixed.coefficient / given.hardness
     found: dict[str, Any] = {"wear_rate": rate}
     found |= _depths(strips, rate, given)
+    finer = strips_of(point, mesh.flank, neutral, finer=2)
+    twice = marched(finer, rate=rate, cycles=given.cycles).at(given.cycles, "depth")
+    found["wear_depth_change"] = float(np.max(twice)) - found["wear_depth"]
     found |= _stages(strips, rate, _limit(strips, given, gears.module))
-    found |= _dry(found, point, given)
     found |= _flank_courses(strips, rate, neutral)
-    found["dry_flank_depth"] = found["flank_depth_late"] / found["wetted_share"]
+    found |= _dry(strips, found, mixed, given)
+    found |= {name: getattr(mixed, held) for name, held in READINGS.items()}
+    found["contact_temperature"] = float(point.operation.temperature) + mixed.flash
     found["depth_growth"] = found["tip_depth_late"] / found["tip_depth_early"]
     if isinstance(mesh.flank, DoubleArcFlank):
-        found |= _beside_involute(found["severe_wear_cycles"], strips, point, rate)
+        found |= _beside_involute(found, strips, point, rate)
     return found
 
 
@@ -321,7 +335,8 @@ def _stages(strips: Strips, rate: float, limit: float) -> dict[str, Any]:
     return {
         "severe_depth": limit,
         "severe_wear_cycles": end,
-        "severe_pressure": float(whole.at(end, "pressure")[0]),
+        "severe_pressure": (last := float(whole.at(end, "pressure")[0])),
+        "severe_pressure_ratio": last / float(whole.pressure[0, 0]),
         "wear_long_step": float(whole.at(LONG, "step")[0]),
         "severe_course": cycles,
         "severe_tip_pressure": _over(cycles, whole.cycles, whole.pressure[:, 0]),
@@ -330,60 +345,27 @@ def _stages(strips: Strips, rate: float, limit: float) -> dict[str, Any]:
     }
 
 
-def _dry(found: dict[str, Any], point: Point, given: FlankWear) -> dict[str, Any]:
-    """Lubricated over dry by eq. 10, with the sliding speed of new flanks at the tip."""
-    gears, mesh = point.gears, point.design.mesh
-    assert isinstance(gears, StrainWaveGears)
-    assert isinstance(mesh, StrainWave)
-    step = given.flank_length * gears.module / given.points
-    rate = abs(float(mesh.motion[1] - mesh.motion[0])) * float(point.operation.speed)
-    sliding = step * rate * gears.teeth[0] / (2.0 * pi)
-    strip = {
-        "heat": array(given.friction * found["wear_pressure_new"] * sliding),
-        "half_width": array(step / 2.0),
-        "speed_a": array(sliding),
-        "speed_b": array(0.0),
-    }
-    capacity = float(point.design.solids[0].density) * given.specific_heat
-    steel = Conductor(conductivity=given.conductivity, heat_capacity=capacity)
-    flash, defect = map(float, _bare(strip, steel, point.operation.temperature, _molecules(given)))
-    wetted = defect * given.asperity_share
-    return {
-        "tip_flash": flash,
-        "contact_temperature": float(point.operation.temperature) + flash,
-        "adsorbed_film_defect": defect,
-        "dry_coefficient": given.coefficient / wetted,
-        "dry_depth": found["wear_depth"] / wetted,
-        "dry_orders": -log10(wetted),
-        "wetted_share": wetted,
-    }
+def _dry(
+    strips: Strips, found: dict[str, Any], mixed: MixedLubrication, given: FlankWear
+) -> dict[str, Any]:
+    """Depths of dry flanks: those of the reference, deeper by ψ L_a / 100 of the reference.
 
-
-def _molecules(given: FlankWear) -> dict[str, jax.Array]:
-    """What eq. 10 takes of the adsorbed film."""
-    return {
-        "adsorption_heat": array(given.adsorption_heat),
-        "molecule_diameter": array(given.molecule),
-        "vibration_period": array(given.vibration_period),
-    }
-
-
-@program
-def _bare(
-    strip: Mapping[str, jax.Array],
-    flank: Conductor,
-    bulk: jax.Array,
-    molecules: Mapping[str, jax.Array],
-) -> tuple[jax.Array, jax.Array]:
-    """Flash temperature of a strip [K] and the film defect that it is warm enough for, eq. 10.
-
-    One flank passes the strip at the speed of sliding and takes all the heat, the other stays under it; the
-    limit of fast surfaces makes it warmer than it is.
+    A march with the dry coefficient itself would end within a thousandth of the cycles.
     """
-    flash = shared_flash(**strip, bodies=(flank, flank))
-    warm = bulk + flash
-    bare = fractional_film_defect(sliding=strip["speed_a"], temperature=warm, **molecules)
-    return flash, bare
+    deeper = mixed.dry_coefficient / mixed.reference_coefficient
+    rate = mixed.reference_coefficient / given.hardness
+    late, all_cycles = (
+        deeper * marched(strips, rate=rate, cycles=one).at(one, "depth")
+        for one in (LATER["late"], given.cycles)
+    )
+    depth = float(np.max(all_cycles))
+    over_dry = found["wear_depth"] / depth
+    return {
+        "dry_depth": depth,
+        "dry_flank_depth": _spread(late),
+        "lubricated_over_dry": over_dry,
+        "dry_orders": -log10(over_dry) if over_dry > 0.0 else np.nan,
+    }
 
 
 def _flank_courses(strips: Strips, rate: float, neutral: float) -> dict[str, Any]:
@@ -430,8 +412,10 @@ def _profile(strips: Strips, depth: Array) -> Array:
     return np.where(new <= height[0], np.interp(new, height[::-1], across[::-1]), np.nan)
 
 
-def _beside_involute(onset: float, strips: Strips, point: Point, rate: float) -> dict[str, Any]:
-    """Double arc over the involute flank of Table 1 with the same coefficient."""
+def _beside_involute(
+    found: dict[str, Any], strips: Strips, point: Point, rate: float
+) -> dict[str, Any]:
+    """Double arc beside the involute flank of Table 1 with the same coefficient, eqs. 11 to 33."""
     mesh, gears, given = point.design.mesh, point.gears, point.formulas
     assert isinstance(mesh, StrainWave)
     assert isinstance(mesh.flank, DoubleArcFlank)
@@ -440,11 +424,21 @@ def _beside_involute(onset: float, strips: Strips, point: Point, rate: float) ->
     flank = counterpart(mesh.flank, gears)
     involute = strips_of(point, flank, float(flank.neutral_radius))
     limit = _limit(involute, given, gears.module)
-    ours, theirs = (
-        marched(one, rate=rate, cycles=given.cycles).at(given.cycles, "depth")
-        for one in (strips, involute)
-    )
+    whole = severe(involute, rate=rate, limit=limit)
+    ours, theirs = (marched(one, rate=rate, cycles=given.cycles) for one in (strips, involute))
+    ratios = {
+        name: float(np.max(ours.at(given.cycles, name) / theirs.at(given.cycles, name)))
+        for name in ("pressure", "step", "depth")
+    }
+    late = marched(involute, rate=rate, cycles=LATER["late"]).at(LATER["late"], "depth")
     return {
-        "onset_over_involute": onset / severe(involute, rate=rate, limit=limit).cycles_to(limit),
-        "depth_over_involute": float(np.max(ours / theirs)),
+        "onset_over_involute": found["severe_wear_cycles"] / whole.cycles_to(limit),
+        **{f"{name}_over_involute": one for name, one in ratios.items()},
+        "involute_flank_depth": _spread(late),
+        **{
+            f"involute_tip_{name}": _over(
+                found["severe_course"], whole.cycles, getattr(whole, name)[:, 0]
+            )
+            for name in ("pressure", "step", "depth")
+        },
     }

@@ -1,0 +1,187 @@
+"""Wear coefficient in mixed lubrication, eqs. 9, 10 and 29 to 31, relative to a reference contact.
+
+The paper gives no number by which the coefficient could be computed: the regression of eq. 29 changes by a
+factor of 43 over usual oils. So K ψ L_a / 100 is stated for one contact, and the equations carry it to
+others: eq. 29 its K, eq. 10 its ψ, eq. 9 its L_a. Dry flanks have the K of the reference whatever the oil.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import cos
+
+import numpy as np
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.gears.strain_wave.drive import StrainWave
+from pitchpoint.gears.strain_wave.table import StrainWaveGears
+from pitchpoint.lubrication.asperity_load import regression_of_masjedi_khonsari
+from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
+from pitchpoint.programs import program
+from pitchpoint.published.publication import Point
+from pitchpoint.published.zhao2022.printed import HALF_ZONE
+from pitchpoint.published.zhao2022.table import FlankWear, Reference
+from pitchpoint.status import Code
+from pitchpoint.wear.film_defect import fractional_film_defect
+from pitchpoint.wear.laws import janakiraman_2013
+
+__all__ = ["READINGS", "MixedLubrication", "mixed_lubrication"]
+
+
+@dataclass(frozen=True)
+class MixedLubrication:
+    """Coefficients of a contact and what carried them there.
+
+    Attributes:
+        coefficient: K ψ L_a / 100 of the contact [1].
+        reference_coefficient: the same of the reference [1].
+        dry_coefficient: K of dry flanks, which knows of no oil [1].
+        regression_ratio: K by eq. 29 over that of the reference [1].
+        film_defect: ψ, eq. 10 [1].
+        film_defect_ratio: over that of the reference [1].
+        asperity_share: L_a / 100, held at 1 [1].
+        asperity_share_ratio: over that of the reference [1].
+        asperity_regression: what eq. 9 gives, also above 1 [1].
+        asperity_status: `Code.HELD` where the share is held at 1.
+        flash: rise of the contact over the oil, at most [K].
+    """
+
+    coefficient: float
+    reference_coefficient: float
+    dry_coefficient: float
+    regression_ratio: float
+    film_defect: float
+    film_defect_ratio: float
+    asperity_share: float
+    asperity_share_ratio: float
+    asperity_regression: float
+    asperity_status: float
+    flash: float
+
+
+def mixed_lubrication(point: Point, *, tip_angle: float, tip_force: float) -> MixedLubrication:
+    """Coefficients of the tip of new flanks, for a case with its table.
+
+    Args:
+        point: torque, speed, oil, solids and roughness of the case.
+        tip_angle: flank angle at the first point [rad].
+        tip_force: tangential force of a tooth there [N].
+    """
+    given, gears, mesh = point.formulas, point.gears, point.design.mesh
+    assert isinstance(given, FlankWear)
+    assert isinstance(gears, StrainWaveGears)
+    assert isinstance(mesh, StrainWave)
+    oil, temperature = point.design.lubricant, point.operation.temperature
+    held, reference = given.coefficient_load == "reference", given.reference
+    case = {
+        "line_load": reference.line_load if held else tip_force / gears.face_width,
+        "speed": float(point.operation.speed),
+        "temperature": float(temperature),
+        "roughness": float(point.design.roughness.composite_rq),
+        "modulus": float(point.design.modulus),
+        "viscosity": float(oil.viscosity(temperature)),
+        "pressure_viscosity": float(oil.pressure_viscosity(temperature)),
+        "hardness": given.hardness,
+    }
+    both = {
+        each: array(np.array([getattr(reference, each), case[each]]))
+        for each in Reference.model_fields
+    }
+    # A strip of one pitch, whatever the number of points: the step that the paper takes.
+    length = given.flank_length * gears.module
+    strip = length * 2.0 * np.pi / gears.teeth[0] / HALF_ZONE
+    passing = abs(float(mesh.motion[1] - mesh.motion[0])) * length / HALF_ZONE
+    capacity = float(point.design.solids[0].density) * given.specific_heat
+    values = _laws(
+        both,
+        {
+            "radius": array(given.equivalent_radius),
+            "passing": array(passing),
+            "strip": array(strip),
+            "friction_per_area": array(given.friction / strip / cos(tip_angle)),
+            "adsorption_heat": array(given.adsorption_heat),
+            "molecule_diameter": array(given.molecule),
+            "vibration_period": array(given.vibration_period),
+        },
+        Conductor(conductivity=given.conductivity, heat_capacity=capacity),
+    )
+    laws = {name: np.asarray(value) for name, value in values.items()}
+    share = np.minimum(laws["asperity_regression"], 1.0)
+    ratios = {
+        name: float(each[1] / each[0])
+        for name, each in (*laws.items(), ("share", share))
+        if name != "flash"
+    }
+    moved = ratios["regression"] * ratios["defect"] * ratios["share"]
+    return MixedLubrication(
+        coefficient=given.coefficient * moved,
+        reference_coefficient=given.coefficient,
+        dry_coefficient=given.coefficient / float(laws["defect"][0] * share[0]),
+        regression_ratio=ratios["regression"],
+        film_defect=float(laws["defect"][1]),
+        film_defect_ratio=ratios["defect"],
+        asperity_share=float(share[1]),
+        asperity_share_ratio=ratios["share"],
+        asperity_regression=float(laws["asperity_regression"][1]),
+        asperity_status=float(Code.HELD if laws["asperity_regression"][1] > 1.0 else Code.SOLVED),
+        flash=float(laws["flash"][1]),
+    )
+
+
+@program
+def _laws(
+    contact: Mapping[str, jax.Array], own: Mapping[str, jax.Array], flank: Conductor
+) -> dict[str, jax.Array]:
+    """Eqs. 9, 10 and 29 at the reference and at the case, shape (2) each.
+
+    One flank passes the strip at the speed of sliding and takes all the heat, the other stays under it; the
+    limit of fast surfaces makes it warmer than it is. Entrainment is half the sliding.
+    """
+    sliding = own["passing"] * contact["speed"]
+    flash = shared_flash(
+        heat=own["friction_per_area"] * contact["line_load"] * sliding,
+        half_width=own["strip"] / 2.0,
+        speed_a=sliding,
+        speed_b=jnp.zeros_like(sliding),
+        bodies=(flank, flank),
+    )
+    oil = {name: contact[name] for name in ("modulus", "pressure_viscosity")}
+    return {
+        "flash": flash,
+        "defect": fractional_film_defect(
+            sliding=sliding,
+            temperature=contact["temperature"] + flash,
+            adsorption_heat=own["adsorption_heat"],
+            molecule_diameter=own["molecule_diameter"],
+            vibration_period=own["vibration_period"],
+        ),
+        "asperity_regression": regression_of_masjedi_khonsari(
+            line_load=contact["line_load"],
+            entrainment=sliding / 2.0,
+            viscosity=contact["viscosity"],
+            radius=own["radius"],
+            roughness_rq=contact["roughness"],
+            hardness=contact["hardness"],
+            **oil,
+        ),
+        "regression": janakiraman_2013(
+            line_load=contact["line_load"],
+            radius=own["radius"],
+            ra_1=contact["roughness"],
+            ra_2=jnp.zeros_like(contact["roughness"]),
+            **oil,
+        ),
+    }
+
+
+READINGS = {
+    "dry_coefficient": "dry_coefficient",
+    "wear_regression_ratio": "regression_ratio",
+    "adsorbed_film_defect": "film_defect",
+    "film_defect_ratio": "film_defect_ratio",
+    "tip_asperity_share": "asperity_share",
+    "asperity_share_ratio": "asperity_share_ratio",
+    "asperity_regression": "asperity_regression",
+    "asperity_regression_status": "asperity_status",
+    "tip_flash": "flash",
+}
+"""What a result keeps of them, by the name of its variable."""
