@@ -363,6 +363,21 @@ def test_the_march_ends_where_a_measure_of_the_teeth_does():
     assert state.depth.sum(axis=0)[0, 0] == pytest.approx(play, rel=1e-3)
 
 
+def test_the_march_ends_where_the_pressure_reaches_the_hardness():
+    shape = (2, 4, 1)
+
+    def rate(depth):
+        pressure = 1e9 + 1e14 * float(np.max(depth))
+        return Rate(1e-12 * np.ones(shape), pressure, False, False, False)
+
+    state, limit = unworn(rate, shape), Limit(1e9, hardness=1.96e9)
+    while not state.end:
+        state = after(state, rate, limit, start=1e9, tolerance=1e-3)
+    assert state.end == "hardness"
+    assert state.rate.pressure == pytest.approx(1.96e9, rel=1e-3)
+    assert state.turns == pytest.approx(0.96e9 / 1e14 / 1e-12, rel=1e-3)
+
+
 # ---- the load on asperities
 
 

@@ -4,6 +4,7 @@ import gc
 import io
 import json
 import os
+import runpy
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -225,3 +226,10 @@ def test_who_calls_the_command_line_keeps_the_garbage_collector_as_it_is():
         progress.part("a", "cycle", False)
     assert gc.isenabled()
     assert gc.get_freeze_count() <= frozen  # less where what was frozen before has died
+
+
+def test_the_package_runs_as_a_module(monkeypatch):
+    begun = []
+    monkeypatch.setattr(cli, "command", lambda: begun.append("command"))
+    runpy.run_module("pitchpoint", run_name="__main__")
+    assert begun == ["command"]

@@ -23,6 +23,7 @@ from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.units import si_unit
 
 __all__ = [
+    "PREFIX",
     "STUDIES",
     "SWEPT",
     "demand_films",

@@ -11,7 +11,7 @@ import xarray as xr
 from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.schema import WEAR_LAND, WearTable
+from pitchpoint.cases.schema import HARDNESS, WEAR_LAND, WearTable
 from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
@@ -106,7 +106,14 @@ def _limit(built: Built) -> Limit:
         teeth.append(("tip land", lambda depth: least - float(tips.left(depth).min())))
     if (most := table.backlash_limit) is not None:
         teeth.append(("backlash", lambda depth: _play(built, depth) - most))
-    return replace(limit_of(table, _deepest(built)), teeth=tuple(teeth))
+    limit = limit_of(table, _deepest(built))
+    return replace(limit, hardness=_hardness(built), teeth=tuple(teeth))
+
+
+def _hardness(built: Built) -> float:
+    """That of the softer flank [Pa]; infinite where neither is known."""
+    known = asked(built).hardness or tuple(float(one.hardness) for one in built.design.solids)
+    return float(np.nanmin([*known, np.inf]))
 
 
 def _play(built: Built, depth: np.ndarray) -> float:
@@ -323,6 +330,12 @@ def _warnings(
         told.append(
             f"Wear: the march ends at {HOLDS:g} modules, beyond which flanks no longer touch where they did "
             "as new."
+        )
+    if end == "hardness":
+        told.append(
+            f"Wear: the march ends where the largest pressure on worn flanks reaches the hardness of the "
+            f"softer one, {HARDNESS.show(_hardness(built))}: beyond it the surface yields, which no law of "
+            "wear here knows of."
         )
     if end == "outgrown":
         told.append(

@@ -1172,7 +1172,8 @@ class WearTable(Table):
     pressure and film; one that is "kept" goes on as with new ones. The load on asperities is that of
     `models.asperity_load`, the "formula", or that of the solved "film". The march ends before at a limit of
     the depth, of the largest pressure over that at the start, of the thickness that is left of a tooth at
-    its tip, or of the normal backlash that wear adds. `severe_by` names what tells that wear is severe.
+    its tip, or of the normal backlash that wear adds, and where the pressure reaches the hardness of the
+    softer flank. `severe_by` names what tells that wear is severe.
     `cells` lie along each flank, `phases` are those between two events of the mesh cycle, and `tolerance` is
     the error of a step over the largest depth. Without `sensitivities` those of the life to all inputs are
     told where they take seconds: not of teeth on a ring that share their load by its stiffness.

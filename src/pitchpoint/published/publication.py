@@ -55,6 +55,7 @@ class Curves:
         columns: what they are in words, where they are not those of the table beside them.
         decades: drawn on a logarithmic axis.
         shows: figure of the publication that it shows, as "Figure 9"; empty for none.
+        studies: names of those whose points it is drawn for, among families; all where none is named.
     """
 
     title: str
@@ -63,6 +64,7 @@ class Curves:
     columns: tuple[str, ...] = ()
     decades: bool = False
     shows: str = ""
+    studies: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -100,6 +102,9 @@ class Publication:
         variables: of the readings.
         beside: those that the report sets beside each other; none for most.
         courses: dimension of each reading that is a course, by name.
+        answers: readings that it is about, for the answer at the top.
+        sections: of the report that show what the publication is about; a reader opens the others. All
+            are open where none is named.
     """
 
     name: str
@@ -107,6 +112,8 @@ class Publication:
     variables: Mapping[str, Variable] = field(default_factory=dict)
     beside: tuple[Beside, ...] = ()
     courses: Mapping[str, str] = field(default_factory=dict)
+    answers: tuple[str, ...] = ()
+    sections: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if taken := [key for key, one in self.variables.items() if VARIABLES.get(key, one) != one]:

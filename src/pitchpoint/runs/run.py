@@ -394,6 +394,17 @@ def compare_case(
     """
     known = held(case, [variant] if variant else [])
     made = next((one for one in known if one.variant == "as_published"), known[0])
+    return made.label, made.variant, rows_of(made, watch)
+
+
+def rows_of(
+    made: Variant, watch: Callable[[Path | None], AbstractContextManager[Progress]] | None = None
+) -> list[Row]:
+    """Rows of a variant with targets: no more is computed than they read.
+
+    Raises:
+        InputError: the case has no targets.
+    """
     built = made.built({})
     if not built.case.targets:
         raise InputError("has no targets to compare with", file=made.name)
@@ -406,7 +417,7 @@ def compare_case(
         progress.expect(len(chosen))
         for job in chosen:
             parts[job.name] = _part(job, made, "", None, progress)
-    return made.label, made.variant, compare(built.case.targets, parts, made.name)
+    return compare(built.case.targets, parts, made.name)
 
 
 def run_piece(

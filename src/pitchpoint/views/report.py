@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pitchpoint.kept import base_folder, prepared, read, write
+from pitchpoint.published.registry import publication_of
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.run import Outcome
@@ -21,6 +22,7 @@ from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import (
     Block,
     Drawn,
+    Folded,
     Heading,
     Page,
     Section,
@@ -57,6 +59,10 @@ def write_report(
         InputError: units that there are not.
     """
     write_text(Path(path), render(outcomes, designs=designs, units=units))
+
+
+_OF_ALL = ("answer", "formulas", "compared", "models", "sources")
+"""Sections that are open whatever a publication is about."""
 
 
 def render(
@@ -111,9 +117,16 @@ def _made(section: Section, page: Page) -> dict[str, Any]:
         "name": section.name,
         "title": title,
         "short": short,
-        "folded": section.folded,
+        "folded": section.folded or _aside(section, page),
         "blocks": _captioned(section.blocks(page), title),
     }
+
+
+def _aside(section: Section, page: Page) -> bool:
+    """True for what the publication of a case is not about."""
+    publication = publication_of(str(page.first.get("source", "")))
+    about = publication.sections if publication else ()
+    return bool(about) and section.name not in (*about, *_OF_ALL)
 
 
 def _captioned(blocks: Iterable[Block], title: str) -> list[Block]:
@@ -127,6 +140,8 @@ def _captioned(blocks: Iterable[Block], title: str) -> list[Block]:
         elif isinstance(block, Variants):
             each = {name: _captioned(them, f"{title}, {name}") for name, them in block.each.items()}
             block = Variants(each)
+        elif isinstance(block, Folded):
+            block = replace(block, inside=_captioned(block.inside, title))
         done.append(block)
     return done
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Block",
     "Drawn",
+    "Folded",
     "Heading",
     "Moving",
     "Page",
@@ -108,7 +109,16 @@ class Moving:
     acting: Any = None
 
 
-Block = Heading | Paragraph | Table | Panel | Drawn | Variants
+@dataclass(frozen=True)
+class Folded:
+    """Blocks without figures that a reader opens."""
+
+    words: str
+    inside: "Sequence[Block]"
+    block: ClassVar[str] = "folded"
+
+
+Block = Heading | Paragraph | Table | Panel | Drawn | Variants | Folded
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,16 @@ __all__ = ["FIRST", "End", "Limit", "Rate", "Reached", "after", "as_new"]
 
 Values = NDArray[np.float64]
 End = Literal[
-    "", "turns", "depth", "pressure", "tip land", "backlash", "outgrown", "lost", "no wear"
+    "",
+    "turns",
+    "depth",
+    "pressure",
+    "hardness",
+    "tip land",
+    "backlash",
+    "outgrown",
+    "lost",
+    "no wear",
 ]
 
 FIRST = 1e-9
@@ -61,12 +70,14 @@ class Limit:
         turns: of the driver.
         depth: on either member [m].
         pressure: largest one over that with flanks as new.
+        hardness: of the softer flank, which no pressure exceeds: beyond it surfaces yield [Pa].
         teeth: measures of the depth that stay below zero, each with the end that it makes.
     """
 
     turns: float
     depth: float = inf
     pressure: float = inf
+    hardness: float = inf
     teeth: tuple[tuple[End, Callable[[Values], float]], ...] = ()
 
 
@@ -195,9 +206,14 @@ def _ends(
     def beyond_depth(turns: float) -> float:
         return float(inside(turns).max()) - limit.depth
 
+    def pressure(turns: float) -> float:
+        return rate(march.y if turns == march.t else inside(turns)).pressure
+
     def beyond_pressure(turns: float) -> float:
-        depth = march.y if turns == march.t else inside(turns)
-        return rate(depth).pressure / start - limit.pressure
+        return pressure(turns) / start - limit.pressure
+
+    def beyond_hardness(turns: float) -> float:
+        return pressure(turns) / limit.hardness - 1.0
 
     def beyond(measure: Callable[[Values], float]) -> Callable[[float], float]:
         return lambda turns: measure(inside(turns).reshape(shape))
@@ -207,6 +223,8 @@ def _ends(
         found.append((brentq(beyond_depth, march.t_old, march.t), "depth"))
     if beyond_pressure(march.t) >= 0.0:
         found.append((_first(beyond_pressure, march.t_old, march.t), "pressure"))
+    if beyond_hardness(march.t) >= 0.0:
+        found.append((_first(beyond_hardness, march.t_old, march.t), "hardness"))
     for end, own in limit.teeth:
         if (measure := beyond(own))(march.t) >= 0.0:
             found.append((_first(measure, march.t_old, march.t), end))

@@ -266,16 +266,27 @@ _CURVES = (
 )
 
 _FAMILIES = (
-    Curves(
-        "wear depth after 6.28e9 cycles",
-        "flank_way",
-        ("flank_depth_late",),
-        shows="Figures 17, 19 and 20",
+    *(
+        Curves(course.long_name, "wear_cycles", (name,), shows=figure, studies=studies)
+        for (name, course), figure, studies in zip(
+            _OVER_CYCLES.items(),
+            ("Figure 14", "Figure 15", "Figure 16"),
+            (("torque", "feedback"), ("torque",), ("torque",)),
+            strict=True,
+        )
     ),
     *(
-        Curves(course.long_name, "wear_cycles", (name,), shows=figure)
-        for (name, course), figure in zip(
-            _OVER_CYCLES.items(), ("Figure 14", "Figure 15", "Figure 16"), strict=True
+        Curves(
+            "wear depth after 6.28e9 cycles",
+            "flank_way",
+            ("flank_depth_late",),
+            shows=figure,
+            studies=(study,),
+        )
+        for study, figure in (
+            ("module", "Figure 17"),
+            ("face_width", "Figure 19"),
+            ("hardness", "Figure 20"),
         )
     ),
 )
@@ -388,4 +399,9 @@ PUBLICATION = Publication(
     },
     beside=(_STRIPS, _MIXED, _TOUCHING),
     courses=_DIMENSIONS,
+    answers=(
+        *("wear_depth", "severe_wear_cycles", "lubricated_over_dry"),
+        *("onset_over_involute", "conjugate_depth_outer"),
+    ),
+    sections=("drive", "wear"),
 )

@@ -1,15 +1,18 @@
 """What the formulas of a publication give, side by side as it compares them."""
 
-from collections.abc import Iterator
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.studies import is_study
+from pitchpoint.analyses.studies import PREFIX, is_study
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.published.publication import Beside, Curves
-from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.published.registry import PUBLICATIONS, publication_of
+from pitchpoint.runs.run import Outcome
 from pitchpoint.status import Code
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -26,12 +29,15 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.inputs import in_words
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
+from pitchpoint.views.section import Block, Folded, Heading, Page, Paragraph, Section, Table
 
 __all__ = ["FORMULAS"]
 
 _WIDE = 6
 """Columns of numbers that a table has room for."""
+
+_FEW = 4
+"""Places that a sentence has room for."""
 
 _MANY = 1e6
 """Cycles from which on an axis counts them in powers of ten."""
@@ -44,22 +50,22 @@ def _besides(page: Page) -> tuple[Beside, ...]:
     return tuple(one for one in every if _studies(page, one))
 
 
-def _studies(page: Page, beside: Beside) -> list[xr.Dataset]:
+def _studies(page: Page, beside: Beside) -> dict[str, xr.Dataset]:
     """Studies that hold readings, without those whose points all stand in one with as much to tell."""
     found = [
-        data
+        (part.removeprefix(PREFIX), data)
         for one in page.outcomes.values()
         for part, data in one.parts.items()
         if is_study(part) and _rows(data, beside)
     ]
     kept: list[int] = []
     seen: list[_Told] = []
-    for place in sorted(range(len(found)), key=lambda one: -len(_rows(found[one], beside))):
-        points = _points(found[place], beside)
+    for place in sorted(range(len(found)), key=lambda one: -len(_rows(found[one][1], beside))):
+        points = _points(found[place][1], beside)
         if not all(any(point <= other for other in seen) for point in points):
             kept.append(place)
             seen += points
-    return [found[place] for place in sorted(kept)]
+    return dict(found[place] for place in sorted(kept))
 
 
 _Told = frozenset[tuple[str, float]]
@@ -89,28 +95,46 @@ def _blocks(page: Page) -> Iterator[Block]:
             yield Paragraph(beside.calibrated, "warning")
         studies = _studies(page, beside)
         name = f"formulas{number}"
-        drawn = [_panel(name, studies, beside), _side_by_side(f"{name}_each", studies, beside)]
-        drawn += [_families(f"{name}_{k}", one, beside) for k, one in enumerate(studies)]
+        drawn = [
+            _panel(name, [*studies.values()], beside),
+            _side_by_side(f"{name}_each", [*studies.values()], beside),
+            _families(name, studies, beside),
+        ]
         yield from (panel for panel in drawn if panel.figures)
-        for data in studies:
-            yield Heading(str(data.attrs["title"]))
-            yield _table(data, beside)
-            yield from _solves(data, beside)
+        yield from _solves(studies, beside)
+        first, *others = studies.values()
+        yield from _numbers(first, beside)
+        if others:
+            inside = [block for data in others for block in _numbers(data, beside)]
+            yield Folded(f"The numbers of {len(others)} further studies", inside)
 
 
-def _solves(data: xr.Dataset, beside: Beside) -> Iterator[Block]:
+def _numbers(data: xr.Dataset, beside: Beside) -> Iterator[Block]:
+    yield Heading(str(data.attrs["title"]))
+    yield _table(data, beside)
+
+
+def _solves(studies: Mapping[str, xr.Dataset], beside: Beside) -> Iterator[Block]:
     """What became of solves that are not plainly solved, and where."""
     for told, names in beside.solves.items():
         found: dict[Code, list[str]] = {}
-        for column, name in zip(beside.columns, names, strict=True):
-            codes = data[name].values[0] if name in data else np.zeros(0)
-            for place, code in zip(_places(data), codes, strict=False):
-                where = " at ".join(filter(None, (column, place)))
-                found.setdefault(Code(int(code)), []).append(where)
+        for data in studies.values():
+            for column, name in zip(beside.columns, names, strict=True):
+                codes = data[name].values[0] if name in data else np.zeros(0)
+                for point, code in enumerate(codes):
+                    where = f"{column} at" * (len(beside.columns) > 1)
+                    found.setdefault(Code(int(code)), []).append(f"{where} {_point(data, point)}")
         for code, places in found.items():
             if not code.ok:
-                words = f"{told.capitalize()}, {', '.join(places)}: {code.sentence}."
+                where = "everywhere" if len(found) == 1 else _listed(places)
+                words = f"{told[0].upper()}{told[1:]}, {where}: {code.sentence}."
                 yield Paragraph(words, "warning")
+
+
+def _listed(places: list[str]) -> str:
+    """Places in words; of many the first ones and how many more there are."""
+    shown = "; ".join(place.strip() for place in places[:_FEW])
+    return shown + f"; and {len(places) - _FEW} more" * (len(places) > _FEW)
 
 
 def _panel(name: str, studies: list[xr.Dataset], beside: Beside) -> Panel:
@@ -149,15 +173,18 @@ def _at(one: Curves, data: xr.Dataset, point: int) -> dict[str, list[Any]]:
     }
 
 
-def _families(name: str, data: xr.Dataset, beside: Beside) -> Panel:
-    """Courses of all points of a sweep over each other; empty without a sweep, or beyond all colours."""
-    places = _places(data)
-    if not 1 < len(places) <= len(PALETTE):
-        return Panel("", [])
-    there = [one for one in beside.families if _holds(data, one)]
-    each = [(data, point) for point in range(len(places))]
-    figures = [_family(f"{name}_all{k}", one, each, places) for k, one in enumerate(there)]
-    return Panel(str(data.attrs["title"]), figures)
+def _families(name: str, studies: Mapping[str, xr.Dataset], beside: Beside) -> Panel:
+    """Courses of all points of each sweep over each other; a sweep beyond all colours is left out."""
+    figures = []
+    for of, data in studies.items():
+        places = _places(data)
+        each = [(data, point) for point in range(len(places))]
+        asked = [one for one in beside.families if not one.studies or of in one.studies]
+        for k, one in enumerate(asked):
+            if 1 < len(places) <= len(PALETTE) and _holds(data, one):
+                titled = replace(one, title=f"{one.title}; {str(data.attrs['title']).lower()}")
+                figures.append(_family(f"{name}_{of}{k}", titled, each, places))
+    return Panel("", figures)
 
 
 def _side_by_side(name: str, studies: list[xr.Dataset], beside: Beside) -> Panel:
@@ -257,6 +284,17 @@ def _places(data: xr.Dataset) -> list[str]:
     ]
 
 
+def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
+    """What the publication is about, at the first point of the first study."""
+    publication = publication_of(str(outcome.manifest.get("source", "")))
+    for name in publication.answers if publication else ():
+        held = (data for part, data in outcome.parts.items() if is_study(part) and name in data)
+        for data in itertools.islice(held, 1):
+            value = float(data[name].values[0, 0])
+            words = show.quantity(name, value) if np.isfinite(value) else "not found"
+            yield show.described(name).long_name, f"{words} ({_point(data, 0)})"
+
+
 def _lacks(page: Page) -> str | None:
     return None if _besides(page) else ""
 
@@ -265,7 +303,8 @@ FORMULAS = Section(
     name="formulas",
     title="Formulas of the publication",
     short="Formulas",
-    order=610.0,
+    order=90.0,
     lacks=_lacks,
     blocks=_blocks,
+    answer=_answer,
 )

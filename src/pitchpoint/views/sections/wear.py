@@ -54,6 +54,7 @@ _ENDS = {
     "module": "at 0.2 modules, beyond which contacts move off their places",
     "outgrown": "where its contacts have outgrown Hertz's theory",
     "pressure": "where the largest pressure reaches its limit",
+    "hardness": "where the largest pressure reaches the hardness of the softer flank",
     "tip land": "where a tooth is as thin at its tip as its limit",
     "backlash": "where the backlash that wear adds reaches its limit",
     "lost": "where the loads of the worn flanks, or films that are asked for, were not found",
