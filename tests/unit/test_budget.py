@@ -6,7 +6,18 @@ from types import SimpleNamespace
 
 import budget
 import pytest
-from budget import FEW, GROWTH, PROGRAMS, Meter, Spent, exceeded, most_of, record, recorded, slow
+from budget import (
+    GROWTH,
+    PROGRAMS,
+    SHARED,
+    Meter,
+    Spent,
+    exceeded,
+    most_of,
+    record,
+    recorded,
+    slow,
+)
 
 from pitchpoint._jax import jax
 
@@ -41,21 +52,30 @@ def test_loops_are_counted_by_what_a_loop_took_then():
 
 
 def test_a_suite_within_its_budget_is_silent():
-    assert most_of(200) == int(GROWTH * 200)
-    assert most_of(3) == 3 + FEW
-    spent = {file: Spent(most_of(own.programs), 1e6, own.loops) for file, own in FIGURES.items()}
-    assert exceeded(spent, FIGURES) == slow(spent, FIGURES) == []
+    assert most_of(2000) == int(GROWTH * 2000)
+    assert most_of(3) == 3 + SHARED
+    for file in FIGURES:
+        most = FIGURES[file] + Spent(SHARED, 1e6)
+        spent = FIGURES | {file: most}
+        assert exceeded(spent, FIGURES) == slow(spent, FIGURES) == []
 
 
 def test_a_file_beyond_its_figure_is_named():
-    (told,) = exceeded({"tests/a.py": Spent(221), "tests/b.py": Spent(8)}, FIGURES)
-    assert told == "tests/a.py asks for 221 programs, 220 are its budget"
+    figures = FIGURES | {"tests/c.py": Spent(3000)}
+    (told,) = exceeded(figures | {"tests/a.py": Spent(301)}, figures)
+    assert told == "tests/a.py asks for 301 programs, 300 are its budget"
+
+
+def test_files_that_grow_a_little_each_exceed_the_sum_of_what_was_recorded():
+    figures = {f"tests/{n}.py": Spent(100) for n in range(30)}
+    (told,) = exceeded({file: Spent(106) for file in figures}, figures)
+    assert told == "the suite asks for 3180 programs, 3150 are its budget"
 
 
 def test_a_file_without_a_figure_is_named_where_others_have_one():
-    spent = {"tests/new.py": Spent(FEW + 1)}
+    spent = {"tests/new.py": Spent(SHARED + 1)}
     (told,) = exceeded(spent, FIGURES)
-    assert told.startswith(f"tests/new.py asks for {FEW + 1} programs")
+    assert told.startswith(f"tests/new.py asks for {SHARED + 1} programs")
     assert exceeded(spent, {}) == []
 
 
