@@ -139,10 +139,7 @@ def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     if source not in PUBLICATIONS or not alone:
         return {}
     read, courses = PUBLICATIONS[source].read, PUBLICATIONS[source].courses
-    found = [
-        read(Point(point.case.gears, point.design, point.operation, point.case.formulas))
-        for point in alone
-    ]
+    found = [read(_at(point)) for point in alone]
 
     def variable(name: str) -> tuple[tuple[str, str], np.ndarray]:
         values = np.array([one[name] for one in found])
@@ -151,6 +148,19 @@ def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
         return ("law", "point"), np.array([values] * laws)
 
     return {name: variable(name) for name in found[0]}
+
+
+def _at(point: Built) -> Point:
+    """What the formulas of a publication are read at."""
+    case = point.case
+    return Point(
+        gears=case.gears,
+        design=point.design,
+        operation=point.operation,
+        formulas=case.formulas,
+        models=tuple(point.models),
+        dynamics=case.dynamics,
+    )
 
 
 def _planned(subject: Subject, name: str, study: Study, where: str) -> _Planned:

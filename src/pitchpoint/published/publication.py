@@ -14,7 +14,7 @@ from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
 
 if TYPE_CHECKING:
-    from pitchpoint.efficiency.quasi_static import Design, Operation
+    from pitchpoint.efficiency.quasi_static import Design, Models, Operation
     from pitchpoint.input.tables import Table
 
 __all__ = ["Beside", "Curves", "Point", "Publication", "Read", "Reading"]
@@ -29,12 +29,16 @@ class Point:
         design: as it is built.
         operation: one operating point.
         formulas: inputs of the formulas beside all that, where the publication has a table of them.
+        models: of the case, under each of its friction laws.
+        dynamics: inputs of its vibration, where it has some.
     """
 
     gears: Table
     design: Design
     operation: Operation
     formulas: Table | None = None
+    models: tuple[Models, ...] = ()
+    dynamics: Table | None = None
 
 
 Read = Mapping[str, "float | Float[np.ndarray, ' place']"]
