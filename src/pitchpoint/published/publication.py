@@ -14,6 +14,7 @@ from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
 
 if TYPE_CHECKING:
+    from pitchpoint.dynamics.vibration import Vibrating
     from pitchpoint.efficiency.quasi_static import Design, Models, Operation
     from pitchpoint.input.tables import Table
 
@@ -30,7 +31,7 @@ class Point:
         operation: one operating point.
         formulas: inputs of the formulas beside all that, where the publication has a table of them.
         models: of the case, under each of its friction laws.
-        dynamics: inputs of its vibration, where it has some.
+        vibrating: gives its inertia, damping and profile error, where it vibrates along its line of action.
     """
 
     gears: Table
@@ -38,7 +39,7 @@ class Point:
     operation: Operation
     formulas: Table | None = None
     models: tuple[Models, ...] = ()
-    dynamics: Table | None = None
+    vibrating: Callable[[], Vibrating] | None = None
 
 
 Read = Mapping[str, "float | Float[np.ndarray, ' place']"]

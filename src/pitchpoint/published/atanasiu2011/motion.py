@@ -11,7 +11,6 @@ from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.system import System
 from pitchpoint.dynamics.vibration import (
-    Vibrating,
     excited,
     frequency_ratio,
     nominal_force,
@@ -96,32 +95,23 @@ _NUMBERS = {
 
 def _parts(point: Point, given: PairInMotion) -> list[Excited]:
     """Springs and masses for both line stiffnesses, each at both torques."""
-    mesh, dynamics = point.design.mesh, point.dynamics
+    mesh = point.design.mesh
     assert isinstance(mesh, CylindricalPair)
-    if dynamics is None:
+    if point.vibrating is None:
         told = "a pair in motion vibrates; give its damping ratio in [dynamics]"
         raise InputError(told, key="dynamics")
-    damping = array(dynamics.damping_ratio)  # type: ignore[attr-defined]
-    densities = array([float(solid.density) for solid in point.design.solids])
-    inertia, ratio = jax.device_get(_inertia_and_ratio(mesh.bare, densities))
-    none = jnp.zeros(0)
-    vibrating = Vibrating(inertia, damping, none, none, ())
-    terms = point.models[0].compliance
+    vibrating, terms = point.vibrating(), point.models[0].compliance
+    first, second = np.abs(np.asarray(mesh.teeth))
     return [
         _excited(
             point.design,
-            replace(point.operation, load=array(torque * float(ratio))),
+            replace(point.operation, load=array(torque * second / first)),
             replace(terms, middle=array(name == "middle")),
             vibrating,
         )
         for name in PROCEDURES
         for torque in given.input_torques
     ]
-
-
-@program
-def _inertia_and_ratio(mesh: CylindricalPair, density: Float[Array, "2"]) -> tuple[Array, Array]:
-    return mesh.inertia(density), jnp.abs(mesh.teeth[1] / mesh.teeth[0])
 
 
 _excited = program(excited)
@@ -191,7 +181,7 @@ def _courses(found: dict[str, np.ndarray]) -> dict[str, float | Course]:
     return {name: _cut(values, found["stiffness"]) for name, values in every.items()}
 
 
-def _cut(values: Course, stiffness: np.ndarray) -> Course:
+def _cut(values: Course, stiffness: np.ndarray) -> Float[np.ndarray, " kept"]:
     """Values until the pair leaves the mesh."""
     (carries,) = np.nonzero(stiffness.ravel() > 0.0)
     return values[: carries[-1] + 1]
