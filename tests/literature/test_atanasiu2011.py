@@ -211,7 +211,8 @@ def test_rows_of_the_middle_of_contact_lines_tell_it_from_the_integral(rows):
         (row,) = (
             row
             for row in rows
-            if row.quantity == f"{pair}, separate moduli, mean stiffness from the middle of contact lines"
+            if row.quantity
+            == f"{pair}, separate moduli, mean stiffness from the middle of contact lines"
         )
         integral = computed(rows, f"{pair}, separate moduli, mean stiffness")
         assert abs(integral - row.printed) > row.tolerance

@@ -136,7 +136,10 @@ def test_courses_of_a_pair_follow_the_equations():
         turned = []
         for gear in (0, 1):
             total = np.ones_like(place)
-            for where, mu, part in ((place, own, share), (beside, np.nan_to_num(other), 1.0 - share)):
+            for where, mu, part in (
+                (place, own, share),
+                (beside, np.nan_to_num(other), 1.0 - share),
+            ):
                 from_n1 = length - tip + where * pitch
                 arm = from_n1 if gear == 0 else length - from_n1
                 past_pitch_point = np.sign(from_n1 - length / 3.0)

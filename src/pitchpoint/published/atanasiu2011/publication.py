@@ -26,7 +26,9 @@ _NUMBERS = {
     "pair_mean_stiffness": stiffness("mean stiffness of the mesh", "k_m"),
     "pair_stiffness_variation": percent("variation of stiffness over its mean", "Δk/k_m"),
     "pair_mean_error": deviation("mean transmission error at the first torque", "δ_a"),
-    "pair_error_range": deviation("variation of the transmission error at the first torque", "Δδ_a"),
+    "pair_error_range": deviation(
+        "variation of the transmission error at the first torque", "Δδ_a"
+    ),
     "other_error_range": deviation(
         "variation of the transmission error at the second torque", "Δδ_b"
     ),
@@ -100,17 +102,21 @@ _MOTION = Beside(
     ),
     over_studies=(
         Curves("stiffness of the mesh", "pair_time", ("pair_total_stiffness",), shows="Figure 4"),
-        Curves("stiffness of one pair of teeth", "pair_time", ("pair_stiffness_1",), shows="Figure 4"),
-        Curves("dynamic factor of one pair of teeth", "pair_time", ("pair_factor_1",), shows="Figure 5"),
+        Curves(
+            "stiffness of one pair of teeth", "pair_time", ("pair_stiffness_1",), shows="Figure 4"
+        ),
+        Curves(
+            "dynamic factor of one pair of teeth", "pair_time", ("pair_factor_1",), shows="Figure 5"
+        ),
         Curves("dynamic load of one pair of teeth", "pair_time", ("pair_load_1",)),
         Curves(
-            "dynamic transmission error at 0.42 N m",
+            "dynamic transmission error at the first torque, 0.42 N m in print",
             "pair_time",
             ("pair_error",),
             shows="Figures 6 and 7",
         ),
         Curves(
-            "dynamic transmission error at 0.3 N m",
+            "dynamic transmission error at the second torque, 0.3 N m in print",
             "pair_time",
             ("pair_other_error",),
             shows="Figures 6 and 7",

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.summary import summarise
@@ -43,40 +43,32 @@ def readings(point: Point) -> dict[str, float | Course]:
         told = "the courses of a pair compare two friction laws, and one was given"
         raise InputError(told, key="models.friction")
     places = _places(mesh, int(point.formulas.places))
-    given = point.design, point.operation, places
+    given = point.design, point.operation, array(places)
     found = [jax.device_get(_along(*given, models)) for models in point.models]
-    read: dict[str, float | Course] = {"pair_path": places}
-    read["pair_share"] = found[0]["share"]
+    courses = {"pair_path": places, "pair_share": found[0]["share"]}
     for method, course in zip(METHODS, found, strict=False):
-        read |= {f"pair_{name}_{method}": course[name] for name in _OF_METHODS}
-    ends = _ends(places)
-    for name, place in ends.items():
-        read[f"load_share_{name}"] = float(read["pair_share"][place])
-        for method in METHODS:
-            read[f"force_{name}_{method}"] = float(read[f"pair_force_{method}"][place])
-    return {
-        **read,
-        **_statements(read),
-        **_table_3(point, [course["efficiency"] for course in found]),
-    }
+        courses |= {f"pair_{name}_{method}": course[name] for name in _OF_METHODS}
+    numbers = _at_ends(courses) | _statements(courses)
+    table = _table_3(point, [course["efficiency"] for course in found])
+    return {**courses, **numbers, **table}
 
 
 _OF_METHODS = ("force", "friction", "other_friction", "efficiency", "input_torque")
 
 
-def _statements(read: dict[str, float | Course]) -> dict[str, float]:
+def _statements(courses: dict[str, Course]) -> dict[str, float]:
     """What the text says of Figs. 4 to 6, as numbers that are positive where it holds."""
 
     def of(name: str, *, single: bool) -> Course:
-        quarters = np.reshape(read[name], (4, -1))
+        quarters = np.reshape(courses[name], (4, -1))
         return (quarters[1:3] if single else quarters[[0, 3]]).ravel()
 
-    share, *force = (
-        of(name, single=False) for name in ("pair_share", *_of_methods("pair_force"))
-    )
+    share, *force = (of(name, single=False) for name in ("pair_share", *_of_methods("pair_force")))
     friction = [of(name, single=False) for name in _of_methods("pair_friction")]
     step = {
-        f"efficiency_step_{method}": float(np.min(of(name, single=True)) - np.max(of(name, single=False)))
+        f"efficiency_step_{method}": float(
+            np.min(of(name, single=True)) - np.max(of(name, single=False))
+        )
         for method, name in zip(METHODS, _of_methods("pair_efficiency"), strict=True)
     }
     return {
@@ -108,13 +100,22 @@ def _zones(mesh: InvolutePair) -> Float[Array, "5"]:
     line = mesh.line
     ratio = mesh.transverse_contact_ratio
     pitch = (line.pitch_position - line.limits[0]) / line.base_pitch
-    return jnp.sort(jnp.stack([jnp.zeros_like(ratio), ratio - 1.0, pitch, jnp.ones_like(ratio), ratio]))
+    return jnp.sort(
+        jnp.stack([jnp.zeros_like(ratio), ratio - 1.0, pitch, jnp.ones_like(ratio), ratio])
+    )
 
 
-def _ends(places: Course) -> dict[str, int]:
-    """Positions of the first place, the last one before single contact and the first one in it."""
-    count = len(places) // 4
-    return {"entry": 0, "double": count - 1, "single": count, "exit": len(places) - 1}
+def _at_ends(courses: dict[str, Course]) -> dict[str, float]:
+    """Shares and forces where mesh and single contact begin and end."""
+    last, count = len(courses["pair_path"]) - 1, len(courses["pair_path"]) // 4
+    places = {"entry": 0, "double": count - 1, "single": count, "exit": last}
+    names = {"load_share_{}": "pair_share"}
+    names |= {f"force_{{}}_{method}": f"pair_force_{method}" for method in METHODS}
+    return {
+        told.format(end): float(courses[name][place])
+        for end, place in places.items()
+        for told, name in names.items()
+    }
 
 
 @program

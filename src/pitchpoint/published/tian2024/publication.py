@@ -27,8 +27,8 @@ def _plain(long_name: str, symbol: str) -> Variable:
 
 _COURSES = {
     "force": _plain("force of the pair over the whole one without friction", "β"),
-    "friction": _plain("friction coefficient of the pair", "μ_1"),
-    "other_friction": _plain("friction coefficient of the other pair in mesh", "μ_2"),
+    "friction": _plain("friction coefficient of the pair", "μ"),
+    "other_friction": _plain("friction coefficient of the other pair in mesh", "μ"),
     "efficiency": percent("efficiency where the pair is", "η"),
     "input_torque": torque("input torque where the pair is", "T_in"),
 }
@@ -72,7 +72,7 @@ _STATEMENTS = {
 }
 
 _ALONG = {
-    "pair_share": _plain("share of the load of the pair", "λ"),
+    "pair_share": _plain("force of the pair over the whole one, without friction", "β"),
     **{
         f"pair_{name}_{method}": replace(one, long_name=f"{one.long_name}, {words}")
         for name, one in _COURSES.items()
@@ -140,9 +140,9 @@ _BY_METHOD = Beside(
         "mean efficiency, Table 3 and Figure 12a": tuple(f"table_3_{method}" for method in _TABLE_3)
     },
     note=(
-        "The methods that Table 3 compares: Höhn's has one coefficient of the whole load and the loss factor, "
-        "so one efficiency for the whole path; that of Diez-Ibarbia et al. is Method I without its factor 2. "
-        "The fifth one, by Wang et al., is in another publication."
+        "The methods that Table 3 compares: Höhn's has one coefficient of the whole load and the loss "
+        "factor, so one efficiency for the whole path; that of Diez-Ibarbia et al. is Method I without its "
+        "factor 2. The fifth one, by Wang et al., is in another publication."
     ),
     calibrated=(
         "The conditions of Table 3 are not printed. The viscosity was chosen for the mean of Method I, "
@@ -150,7 +150,10 @@ _BY_METHOD = Beside(
     ),
     curves=(
         Curves(
-            "efficiency by the methods of Table 3", "pair_path", tuple(_COMPARED), shows="Figure 12b"
+            "efficiency by the methods of Table 3",
+            "pair_path",
+            tuple(_COMPARED),
+            shows="Figure 12b",
         ),
     ),
 )
