@@ -43,7 +43,7 @@ Excited = tuple[MeshStiffness, System, Excitation]
 
 
 def readings(point: Point) -> dict[str, float | Course]:
-    """Courses from the begin of the mesh of a pair to its end, over meshing time in base pitches.
+    """Courses from the entry of a pair into mesh to its exit, over meshing time in base pitches.
 
     They are those of the line stiffness that the case chooses; numbers are those of both.
 

@@ -76,7 +76,7 @@ _MOTION = Beside(
         if name != "pair_status"
     },
     note=(
-        "One pair of teeth from the begin to the end of its mesh, over the time in base pitches, with the "
+        "One pair of teeth from its entry into mesh to its exit, over the time in base pitches, with the "
         "pairs II and III that follow it. Both procedures for the stiffness of a contact line stand beside "
         "each other; the curves are those of its middle, which the figures of the paper show. The paper "
         "gives no numbers of its figures. At 1800 rpm the mesh is a hundredfold slower than its natural "

@@ -14,10 +14,10 @@ __all__ = ["PUBLICATION"]
 _METHODS = {"average": "average friction coefficient", "varying": "time-varying one"}
 
 _ENDS = {
-    "entry": "at the begin of the mesh",
+    "entry": "at entry",
     "double": "at the end of the first double contact",
-    "single": "at the begin of single contact",
-    "exit": "at the end of the mesh",
+    "single": "at the start of single contact",
+    "exit": "at exit",
 }
 
 
@@ -95,7 +95,7 @@ _ON_PATH = Beside(
         for end, told in _ENDS.items()
     },
     note=(
-        "One pair of teeth from the begin to the end of its mesh, over the base pitches from there on. "
+        "One pair of teeth from its entry into mesh to its exit, over the base pitches since it entered. "
         "Without friction its force is the share of the load of eq. 11, with it that of the balance of "
         "torques, eq. 16, over the force at the base circle of the driven gear. The other pair is the one "
         "that shares the load in double contact."
@@ -172,7 +172,7 @@ PUBLICATION = Publication(
     name="tian_2024",
     readings=(_on_path,),
     variables={
-        "pair_path": _plain("base pitches from the begin of the mesh", "B_1K_1/p_b"),
+        "pair_path": _plain("base pitches since the pair entered", "B_1K_1/p_b"),
         **_NUMBERS,
         **_STATEMENTS,
         **_ALONG,
