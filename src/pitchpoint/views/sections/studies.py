@@ -120,6 +120,8 @@ def _split(title: str, note: str, studies: list[Seen]) -> Iterator[Block]:
 
 def _lossless(data: xr.Dataset, law: int) -> bool:
     """True where power goes through all points under a law and none is lost."""
+    if "mean_loss" not in data:
+        return False
     loss, efficiency = (data[name].values[law] for name in ("mean_loss", "mean_efficiency"))
     return bool(np.all((loss == 0.0) & (np.abs(efficiency - 1.0) < ROUNDING)))
 
