@@ -48,13 +48,13 @@ _stiffness = eqx.filter_jit(mesh_stiffness)
 sections_of = eqx.filter_jit(lambda mesh: mesh.sections)
 
 
-def stiffness(mesh, model=FULL, solids=BOTH_STEEL, load=200.0, slices=12):
-    terms = terms_of(model)
+def stiffness(mesh, model=FULL, solids=BOTH_STEEL, load=200.0, slices=12, line="integrated"):
+    terms = terms_of(model, line)
     return jax.device_get(_stiffness(plain(mesh, slices), solids, terms, jnp.asarray(load)))
 
 
-def plastic(name, model=BEAM, slices=12):
-    return stiffness(GP[name], model, (STEEL, PA66), 5.355, slices)
+def plastic(name, model=BEAM, slices=12, line="integrated"):
+    return stiffness(GP[name], model, (STEEL, PA66), 5.355, slices, line)
 
 
 @eqx.filter_jit
@@ -197,6 +197,21 @@ def test_middle_of_the_contact_line_does_not_stand_for_long_lines():
     """Lines that leave the mid-line's zone of contact: 8 % on the mean of a steel pair."""
     exact, short = (stiffness(V1, BEAM, load=1e5, slices=n) for n in (128, 1))
     assert short.mean / exact.mean - 1.0 == pytest.approx(0.084, abs=0.005)
+
+
+@pytest.mark.parametrize("model", [BEAM, FULL])
+@pytest.mark.parametrize("name", ["GP1", "GP3"])
+def test_stiffness_from_the_middle_is_that_of_one_slice(name, model):
+    """Many slices, each as stiff as in the middle, against one slice that lies there."""
+    found, expected = plastic(name, model, line="middle"), plastic(name, model, slices=1)
+    np.testing.assert_allclose(found.along_action, expected.along_action, rtol=1e-7, atol=1.0)
+    integral = plastic(name, model)
+    assert np.max(np.abs(integral.total - found.total)) > 4e-3 * integral.mean
+
+
+def test_straight_teeth_are_as_stiff_from_the_middle_of_their_lines():
+    found, expected = (stiffness(SPUR, line=line) for line in ("middle", "integrated"))
+    np.testing.assert_array_equal(found.total, expected.total)
 
 
 # ------------------------------------------------------------------ moduli

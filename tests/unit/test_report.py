@@ -308,6 +308,35 @@ def test_sweeps_of_two_points_are_one_table(published: Outcomes) -> None:
         assert f'<td class="n">{100 * value:.2f}</td>' in table
 
 
+def test_tables_of_studies_leave_out_what_does_not_vary(published: Outcomes) -> None:
+    """Rows without loss stand apart, and what is the same in all rows stands above them."""
+
+    def lossless(data: xr.Dataset) -> xr.Dataset:
+        none = {name: 0.0 * data[name] for name in ("mean_loss", "torque_ripple", "mean_friction")}
+        full = {
+            f"{end}_efficiency": 0.0 * data["mean_loss"] + 1.0 for end in ("mean", "min", "max")
+        }
+        return data.assign({**none, **full}).assign_attrs(title="Idle")
+
+    cut = {}
+    for name, one in published.items():
+        two = one.parts["study_shape"].isel(point=[0, 2])
+        cut[name] = replace(
+            one, parts={**one.parts, "study_shape": two, "study_idle": lossless(two)}
+        )
+    page = render(cut)
+    every = re.findall(r"<caption>(Few values: addendum[^<]*)</caption>(.*?)</table>", page, re.S)
+    (with_loss, without) = dict(every).values()
+    assert "mean efficiency" in with_loss
+    assert "Idle" not in with_loss
+    assert not re.findall("100.00|efficiency|power loss|ripple|friction coefficient", without)
+    rows = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row) for row in without.split("<tr>")[2:]]
+    assert {row[0] for row in rows} == {"Idle"}
+    columns = [*zip(*rows, strict=True)][3:]
+    assert columns
+    assert all(len({*column}) > 1 for column in columns)
+
+
 def test_sweeps_of_one_key_share_their_figures(published: Outcomes) -> None:
     again = {
         name: replace(

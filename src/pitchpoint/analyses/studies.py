@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -21,6 +22,9 @@ from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.published.publication import Point
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.units import si_unit
+
+if TYPE_CHECKING:
+    from pitchpoint.dynamics.vibration import Vibrating
 
 __all__ = [
     "PREFIX",
@@ -139,10 +143,7 @@ def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     if source not in PUBLICATIONS or not alone:
         return {}
     read, courses = PUBLICATIONS[source].read, PUBLICATIONS[source].courses
-    found = [
-        read(Point(point.case.gears, point.design, point.operation, point.case.formulas))
-        for point in alone
-    ]
+    found = [read(_at(point)) for point in alone]
 
     def variable(name: str) -> tuple[tuple[str, str], np.ndarray]:
         values = np.array([one[name] for one in found])
@@ -151,6 +152,27 @@ def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
         return ("law", "point"), np.array([values] * laws)
 
     return {name: variable(name) for name in found[0]}
+
+
+def _at(point: Built) -> Point:
+    """What the formulas of a publication are read at."""
+    case = point.case
+    vibrates = case.dynamics is not None and point.design.mesh.along_action
+    return Point(
+        gears=case.gears,
+        design=point.design,
+        operation=point.operation,
+        formulas=case.formulas,
+        models=tuple(point.models),
+        vibrating=partial(_vibrating, point) if vibrates else None,
+    )
+
+
+def _vibrating(point: Built) -> "Vibrating":
+    """Inertia, damping and profile error; the code is imported when formulas ask for them."""
+    from pitchpoint.analyses.vibration import vibrating_of
+
+    return vibrating_of(point)
 
 
 def _planned(subject: Subject, name: str, study: Study, where: str) -> _Planned:

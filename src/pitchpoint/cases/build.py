@@ -603,7 +603,7 @@ def _common(choices: Choices) -> Models:
         parameters={},
         sharing=LOAD_SHARING[choices.load_sharing],
         rolling=_inlet(ROLLING_RESISTANCE[choices.rolling_resistance], choices),
-        compliance=terms_of(choices.tooth_compliance),
+        compliance=terms_of(choices.tooth_compliance, choices.line_stiffness),
     )
 
 

@@ -30,7 +30,7 @@ from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
-from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.ehl.registry import ASPERITIES, SMOOTH, THERMAL
 from pitchpoint.lubrication.registry import (
     ASPERITY_LOAD,
@@ -42,8 +42,10 @@ from pitchpoint.materials.data import base_names, oil_names, solid_names
 from pitchpoint.materials.registry import DENSITY as LAWS_OF_DENSITY
 from pitchpoint.materials.registry import SHEAR_STRESS, USUAL_SHEAR_STRESS
 from pitchpoint.materials.registry import VISCOSITY as LAWS_OF_VISCOSITY
+from pitchpoint.published.atanasiu2011.table import PairInMotion
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.registry import PUBLICATIONS, publication_of
+from pitchpoint.published.tian2024.table import PairOnPath
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.registry import alike, letters, nearest
@@ -431,6 +433,10 @@ class Choices(Table):
         str, BeforeValidator(named(TOOTH_COMPLIANCE.keys, "tooth compliance model"))
     ] = "beam_foundation_weber"
     """Model by which teeth yield under load."""
+    line_stiffness: Annotated[
+        str, BeforeValidator(named(LINE_STIFFNESS.keys, "stiffness of a contact line"))
+    ] = "integrated"
+    """Whether teeth yield at each place of an inclined contact line, or all along it as in its middle."""
     tooth_temperature: Annotated[
         str, BeforeValidator(named(TOOTH_TEMPERATURE.keys, "tooth temperature model"))
     ] = "isothermal"
@@ -1153,14 +1159,22 @@ Formulas = Annotated[
     Annotated[TorusFormulas, Tag("motion")]
     | Annotated[ZoneFilms, Tag("films")]
     | Annotated[FlankWear, Tag("wear")]
-    | Annotated[ConjugateWear, Tag("conjugate wear")],
-    Field(discriminator=by("form", TorusFormulas, ZoneFilms, FlankWear, ConjugateWear)),
+    | Annotated[ConjugateWear, Tag("conjugate wear")]
+    | Annotated[PairInMotion, Tag("pair in motion")]
+    | Annotated[PairOnPath, Tag("pair on path")],
+    Field(
+        discriminator=by(
+            "form", TorusFormulas, ZoneFilms, FlankWear, ConjugateWear, PairInMotion, PairOnPath
+        )
+    ),
 ]
 _SOURCE_OF = {
     TorusFormulas: "liu_xiong_2017",
     ZoneFilms: "xu_2021",
     FlankWear: "zhao_2022",
     ConjugateWear: "zhao_2022",
+    PairInMotion: "atanasiu_2011",
+    PairOnPath: "tian_2024",
 }
 """Bibliography entries of the papers whose equations take inputs of their own."""
 

@@ -15,7 +15,14 @@ if TYPE_CHECKING:
     from pitchpoint.gears.mesh import Mesh
     from pitchpoint.loading.compliance import Compliance
 
-__all__ = ["LOAD_SHARING", "TOOTH_COMPLIANCE", "LoadSharing", "ToothCompliance"]
+__all__ = [
+    "LINE_STIFFNESS",
+    "LOAD_SHARING",
+    "TOOTH_COMPLIANCE",
+    "LineStiffness",
+    "LoadSharing",
+    "ToothCompliance",
+]
 
 Flanks = Literal["any", "touching", "wave"]
 
@@ -182,5 +189,38 @@ TOOTH_COMPLIANCE = Registry(
         modulus="common",
         sources=(*_BEAM, "yang_sun_1985"),
         note="One modulus for both members is right only where both teeth yield alike.",
+    ),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class LineStiffness:
+    """One way from the stiffness of teeth at a point to that of a contact line.
+
+    Attributes:
+        name, title: by which it is picked, and what it says.
+        sources: keys of the bibliography.
+        note: caution for the user.
+    """
+
+    name: str
+    title: str
+    sources: tuple[str, ...]
+    note: str = ""
+
+
+LINE_STIFFNESS = Registry(
+    "stiffness of a contact line",
+    LineStiffness(
+        "integrated",
+        "stiffness of the teeth integrated along the contact line",
+        ("atanasiu_2011",),
+    ),
+    LineStiffness(
+        "middle",
+        "stiffness of the teeth in the middle of the contact line, times its length",
+        ("atanasiu_2011",),
+        note="Some 3 % off for helical pairs of steel and plastic with few teeth, 8 % for a steel pair with "
+        "long lines, 11 % where teeth are stiffest in the middle of their flank; the same for spur gears.",
     ),
 )

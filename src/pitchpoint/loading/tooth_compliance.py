@@ -15,7 +15,7 @@ from pitchpoint.contact.flattening import line_compression, yang_sun_1985
 from pitchpoint.contact.hertz import line_half_width
 from pitchpoint.gears.tooth_section import FLANK_NODES, ToothSection, chebyshev_nodes
 from pitchpoint.loading.foundation import foundation_compliance, foundation_warnings
-from pitchpoint.loading.registry import TOOTH_COMPLIANCE, ToothCompliance
+from pitchpoint.loading.registry import LINE_STIFFNESS, TOOTH_COMPLIANCE, ToothCompliance
 from pitchpoint.materials.solids import Solid
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "beam_compliance",
     "bending",
     "interpolate",
+    "middle_of_lines",
     "teeth_at",
     "terms_of",
     "tooth_compliance",
@@ -35,6 +36,7 @@ _BEAM_STATIONS = 20
 _LEAST_LINE_LOAD = 1e-3
 _THINNEST = 1e-3
 _BEYOND = 1e-6
+_LEAST_ARC = 1e-18  # m; the slope of a root is endless at zero
 
 Sections = tuple[ToothSection, ToothSection]
 Solids = tuple[Solid, Solid]
@@ -48,24 +50,28 @@ class Terms(eqx.Module):
         foundation: one if the body under the tooth yields, else zero.
         weber: True if the contact yields by Weber's law.
         common: True if one modulus stands for both members.
+        middle: True if a whole contact line is as stiff as in its middle.
     """
 
     foundation: Float[Array, ""]
     weber: Bool[Array, ""]
     common: Bool[Array, ""]
+    middle: Bool[Array, ""]
 
 
-def terms_of(name: str) -> Terms:
+def terms_of(name: str, line: str = "integrated") -> Terms:
     """What a model takes into account, as numbers: all models share one compiled program.
 
     Args:
         name: in `TOOTH_COMPLIANCE`.
+        line: in `LINE_STIFFNESS`.
     """
     model = TOOTH_COMPLIANCE[name]
     return Terms(
         foundation=array(float(model.foundation)),
         weber=array(model.contact == "weber"),
         common=array(model.modulus == "common"),
+        middle=array(LINE_STIFFNESS[line].name == "middle"),
     )
 
 
@@ -151,6 +157,7 @@ def teeth_at(contacts: Contacts, sections: Sections, solids: Solids, terms: Term
         solids: the material of each member.
         terms: of an entry of `TOOTH_COMPLIANCE`.
     """
+    contacts = _as_stiff(contacts, terms)
     bent = _bending(contacts, sections, _moduli(solids, terms), terms)
     if contacts.shape == "ellipse":
         over = zip(bent, sections, strict=True)
@@ -187,6 +194,7 @@ def unit_stiffness(
 
     Source: Atanasiu et al. (2011), eq. 16: deflections of both teeth and of the contact add up.
     """
+    contacts = _as_stiff(contacts, terms)
     yielding, both = _moduli(solids, terms), teeth.bending[0] + teeth.bending[1]
     if contacts.shape == "ellipse":
         return 1.0 / (both + _hertz(contacts, yielding, line_load))
@@ -205,8 +213,50 @@ def bending(contacts: Contacts, sections: Sections, solids: Solids, terms: Terms
 
     Source: Atanasiu et al. (2011), eq. 16, less the deflection of the contact.
     """
+    contacts = _as_stiff(contacts, terms)
     first, second = _bending(contacts, sections, _moduli(solids, terms), terms)
     return first + second
+
+
+def middle_of_lines(contacts: Contacts) -> Contacts:
+    """Contacts whose slices all lie on their flanks, and curve, as in the middle of their contact line.
+
+    Of involutes: the radius of a profile, and with it the root of its arc length, is linear along the line.
+
+    Args:
+        contacts: of a mesh, slices over the whole of each contact line.
+
+    Source: Atanasiu et al. (2011), text after eq. 20, the alternative procedure.
+    """
+    length = jnp.where(contacts.active, contacts.weight, 0.0)
+    whole = jnp.sum(length, axis=1, keepdims=True)
+    touches = whole > 0.0
+
+    def mean(values: Field) -> Field:
+        found = jnp.sum(length * values, axis=-length.ndim + 1, keepdims=True)
+        return jnp.where(touches, found / jnp.where(touches, whole, 1.0), values)
+
+    root = jnp.sqrt(jnp.maximum(contacts.flank, _LEAST_ARC))
+    profile = contacts.curvature[:, 0]
+    bent = profile != 0.0
+    radius = mean(jnp.where(bent, 1.0 / jnp.where(bent, profile, 1.0), 0.0))
+    known = bent & (radius != 0.0)
+    middle = jnp.where(known, 1.0 / jnp.where(known, radius, 1.0), profile)
+    return replace(
+        contacts, flank=mean(root) ** 2, curvature=contacts.curvature.at[:, 0].set(middle)
+    )
+
+
+def _as_stiff(contacts: Contacts, terms: Terms) -> Contacts:
+    """Contacts where the stiffness of their lines is that of the teeth."""
+    if contacts.path.shape[1] == 1:
+        return contacts
+    middle = middle_of_lines(contacts)
+    return replace(
+        contacts,
+        flank=jnp.where(terms.middle, middle.flank, contacts.flank),
+        curvature=jnp.where(terms.middle, middle.curvature, contacts.curvature),
+    )
 
 
 def _bending(contacts: Contacts, sections: Sections, solids: Solids, terms: Terms) -> list[Field]:

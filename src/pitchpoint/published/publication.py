@@ -14,7 +14,8 @@ from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
 
 if TYPE_CHECKING:
-    from pitchpoint.efficiency.quasi_static import Design, Operation
+    from pitchpoint.dynamics.vibration import Vibrating
+    from pitchpoint.efficiency.quasi_static import Design, Models, Operation
     from pitchpoint.input.tables import Table
 
 __all__ = ["Beside", "Curves", "Point", "Publication", "Read", "Reading"]
@@ -29,12 +30,16 @@ class Point:
         design: as it is built.
         operation: one operating point.
         formulas: inputs of the formulas beside all that, where the publication has a table of them.
+        models: of the case, under each of its friction laws.
+        vibrating: gives its inertia, damping and profile error, where it vibrates along its line of action.
     """
 
     gears: Table
     design: Design
     operation: Operation
     formulas: Table | None = None
+    models: tuple[Models, ...] = ()
+    vibrating: Callable[[], Vibrating] | None = None
 
 
 Read = Mapping[str, "float | Float[np.ndarray, ' place']"]

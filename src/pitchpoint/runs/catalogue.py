@@ -12,7 +12,7 @@ from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.gears.strain_wave.registry import WAVE_SHAPES
-from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point, limits_words
 from pitchpoint.lubrication.conditions import Law, shape_of
 from pitchpoint.lubrication.ehl.registry import ASPERITIES
@@ -57,6 +57,7 @@ def entries() -> list[dict[str, str]]:
         for kind, registry in (
             ("inlet_heating", INLET_HEATING),
             ("tooth_compliance", TOOTH_COMPLIANCE),
+            ("line_stiffness", LINE_STIFFNESS),
             ("tooth_contact", CONTACT_LAWS),
             ("tooth_temperature", TOOTH_TEMPERATURE),
             ("bearing", BEARING_LOSS),

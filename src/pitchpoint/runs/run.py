@@ -35,7 +35,7 @@ from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.mesh import PATHS
-from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.ehl.registry import ASPERITIES, ISOTHERMAL, SMOOTH, THERMAL
 from pitchpoint.lubrication.registry import (
@@ -702,6 +702,8 @@ def _of_mesh(built: Built) -> dict[str, Any]:
         found["inlet heating"] = INLET_HEATING[case.models.inlet_heating]
     if case.dynamics is not None or found["load sharing"].by_stiffness:
         found["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
+        if case.models.line_stiffness != "integrated":
+            found["stiffness of contact lines"] = LINE_STIFFNESS[case.models.line_stiffness]
     if case.dynamics is not None and built.design.mesh.along_action:
         found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
     if built.film_model is not None:

@@ -42,6 +42,20 @@ _SHOWN = ("mean_efficiency", "efficiency_fluctuation", "mean_input_torque", "tor
 _MOVING = ("mean_stiffness", "transmission_error_range", "largest_dynamic_factor")
 """Shown where a case has vibration, the same under every friction law."""
 _TABLE = ("contact_ratio", *MAIN)
+_OF_LOSS = (
+    *("mean_efficiency", "min_efficiency", "max_efficiency"),
+    *("mean_loss", "torque_ripple", "mean_friction"),
+)
+"""What a mesh without loss has at its limit, whatever else it is."""
+
+_NAMES = 3
+"""Columns that say which study, place and law a row is of."""
+
+_WITHOUT = "Without friction the efficiency is 100 %, and the torque has no ripple."
+
+_WIDE = 8
+"""Columns from beyond which a table is a wide one."""
+
 _FEW = 3
 
 _WORDS = {
@@ -79,44 +93,73 @@ def _kind(seen: Seen) -> tuple[Any, ...]:
 
 
 def _tables(page: Page) -> Iterator[Block]:
-    """Heading and table for each study of a single point, one table for sweeps of the same key."""
+    """Tables for studies of a single point, and for sweeps of the same key with few of them."""
+    alone: list[Seen] = []
     sweeps: dict[str, list[Seen]] = {}
     for _, seen in _studies(page.outcomes, page.curves):
         if "axis" not in seen[0][1]:
-            columns = _columns(seen)
-            yield Heading(str(seen[0][1].attrs["title"]))
-            yield Table(
-                ["Friction law", *(show.axis_title(name, seen[0][1]) for name in columns)],
-                [(curve.label, *_cells(data, law, columns)) for curve, data, law in seen],
-            )
+            alone.append(seen)
         elif _brief(seen):
             sweeps.setdefault(str(seen[0][1].attrs["sweep_key"]), []).append(seen)
+    if alone:
+        (first, *others) = (str(seen[0][1].attrs["title"]) for seen in alone)
+        yield from _split("Studies of one point" if others else first, "", alone)
     for key, studies in sweeps.items():
-        yield Heading(f"Few values: {_words_of(key)}")
-        yield Paragraph(f"Swept: {key}.", "note")
-        yield _brief_table(studies)
+        yield from _split(f"Few values: {_words_of(key)}", f"Swept: {key}.", studies)
 
 
-def _brief_table(studies: list[Seen]) -> Table:
-    """Every point of studies of the same key under every law."""
+def _split(title: str, note: str, studies: list[Seen]) -> Iterator[Block]:
+    """Tables of studies, rows without any loss apart: all that tells of it is the same in them."""
+    for lossless, more in ((False, ""), (True, ", without friction")):
+        rows = [[one for one in seen if _lossless(*one[1:]) == lossless] for seen in studies]
+        if these := [seen for seen in rows if seen]:
+            told = " ".join(filter(None, (note, _WITHOUT if lossless else "")))
+            yield Heading(f"{title}{more}")
+            yield from _table(these, told, lossless=lossless, named=len(studies) > 1)
+
+
+def _lossless(data: xr.Dataset, law: int) -> bool:
+    """True where power goes through all points under a law and none is lost."""
+    if "mean_loss" not in data:
+        return False
+    loss, efficiency = (data[name].values[law] for name in ("mean_loss", "mean_efficiency"))
+    return bool(np.all((loss == 0.0) & (np.abs(efficiency - 1.0) < ROUNDING)))
+
+
+def _table(studies: list[Seen], note: str, *, lossless: bool, named: bool) -> Iterator[Block]:
+    """Every point of studies of the same key under every law, without the columns that do not vary."""
     like = studies[0][0][1]
     every = [one for seen in studies for one in seen]
     columns = [*_columns(every)]
     if any("tip_thickness_1" in data for _, data, _ in every) and is_design_chart(like):
         columns.append("tip_thickness_1")
+    if lossless:
+        columns = [name for name in columns if name not in _OF_LOSS]
+    swept = "axis" in like
     titles = (show.axis_title(name, like) for name in columns)
-    return Table(
-        ["Study", _swept(like)[1], "Friction law", *titles],
-        [row for seen in studies for row in _brief_rows(seen, columns)],
-        wide=True,
+    heads = ["Study", _swept(like)[1] if swept else "", "Friction law", *titles]
+    rows = [row for seen in studies for row in _rows(seen, columns)]
+    told = [
+        k for k in range(_NAMES, len(heads)) if len(rows) > 1 and len({r[k] for r in rows}) == 1
+    ]
+    same = f"The same in all rows: {', '.join(f'{heads[k]} {rows[0][k]}' for k in told)}."
+    if note or told:
+        yield Paragraph(" ".join(filter(None, (note, same if told else ""))), "note")
+    left_out = {*told, *([] if named or swept else [0]), *([] if swept else [1])}
+    kept = [k for k in range(len(heads)) if k not in left_out]
+    yield Table(
+        [heads[k] for k in kept],
+        [tuple(row[k] for k in kept) for row in rows],
+        wide=len(kept) > _WIDE,
     )
 
 
-def _brief_rows(seen: Seen, columns: list[str]) -> Iterator[tuple[str, ...]]:
+def _rows(seen: Seen, columns: list[str]) -> Iterator[tuple[str, ...]]:
     """Every point of a study under every law."""
     for curve, data, law in seen:
         for point in range(data.sizes["point"]):
-            place, cells = _valued(data, point), _cells(data, law, columns, point)
+            place = _valued(data, point) if "axis" in data else ""
+            cells = _cells(data, law, columns, point)
             yield str(data.attrs["title"]), place, curve.label, *cells
 
 
@@ -334,7 +377,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
 
 
 def swept_rows(data: xr.Dataset) -> list[dict[str, str]]:
-    """A sweep point by point, under each friction law."""
+    """A sweep point by point, under each friction law; without loss nothing of it."""
     return [
         _swept_row(data, law, point)
         for point in range(data.sizes["point"])
@@ -346,11 +389,14 @@ def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
     key = data.attrs["sweep_key"]
     place = {key: _place(data["axis"].values[point], key)}
     names = CONTACT if of_contact(data) else (*SWEPT, *_of_strength([data], vary=True))
+    if idle := all(_lossless(data, each) for each in range(data.sizes["law"])):
+        names = tuple(name for name in names if name not in _OF_LOSS)
     cells = {
         head(n, data): _endless(n, value) or shown(n, value, data)
         for n, value in ((n, float(data[n].values[law, point])) for n in names if n in data)
     }
-    return {**place, "friction law": str(data["law"].values[law]), **cells, **efficiency_of(data)}
+    told = {} if idle else efficiency_of(data)
+    return {**place, "friction law": str(data["law"].values[law]), **cells, **told}
 
 
 def _place(value: float, key: str) -> str:

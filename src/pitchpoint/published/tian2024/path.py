@@ -1,0 +1,166 @@
+"""What Tian et al. (2024) draw over the path of contact of one pair of teeth: Figs. 4 to 7 and 12."""
+
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.contact.contacts import total
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
+from pitchpoint.efficiency.summary import summarise
+from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
+from pitchpoint.programs import program
+from pitchpoint.published.publication import Point
+from pitchpoint.published.tian2024.table import PairOnPath
+
+__all__ = ["METHODS", "readings"]
+
+METHODS = ("average", "varying")
+"""The first two friction laws of the case: one coefficient for the mesh, one for every place."""
+
+_BESIDE = 1e-9
+"""Distance in base pitches from where single contact begins or ends: shares jump there."""
+
+Course = Float[np.ndarray, " place"]
+
+
+def readings(point: Point) -> dict[str, float | Course]:
+    """Courses of a pair that begins its mesh at A, and the numbers that the paper tells of them.
+
+    Args:
+        point: with two friction laws at least, as `METHODS` names them; with four, the third one is that
+            of the loss factor and the fourth Method I without its factor, as Table 3 has them.
+
+    Raises:
+        InputError: the contact ratio does not lie between 1 and 2, or there are fewer laws.
+    """
+    assert isinstance(point.formulas, PairOnPath)
+    mesh = point.design.mesh
+    assert isinstance(mesh, InvolutePair)
+    if len(point.models) < len(METHODS):
+        told = "the courses of a pair compare two friction laws, and one was given"
+        raise InputError(told, key="models.friction")
+    places = _places(mesh, int(point.formulas.places))
+    given = point.design, point.operation, array(places)
+    found = [jax.device_get(_along(*given, models)) for models in point.models]
+    courses = {"pair_path": places, "pair_share": found[0]["share"]}
+    for method, course in zip(METHODS, found, strict=False):
+        courses |= {f"pair_{name}_{method}": course[name] for name in _OF_METHODS}
+    numbers = _at_ends(courses) | _statements(courses)
+    table = _table_3(point, [course["efficiency"] for course in found])
+    return {**courses, **numbers, **table}
+
+
+_OF_METHODS = ("force", "friction", "other_friction", "efficiency", "input_torque")
+
+
+def _statements(courses: dict[str, Course]) -> dict[str, float]:
+    """What the text says of Figs. 4 to 6, as numbers that are positive where it holds."""
+
+    def of(name: str, *, single: bool) -> Course:
+        quarters = np.reshape(courses[name], (4, -1))
+        return (quarters[1:3] if single else quarters[[0, 3]]).ravel()
+
+    share, *force = (of(name, single=False) for name in ("pair_share", *_of_methods("pair_force")))
+    friction = [of(name, single=False) for name in _of_methods("pair_friction")]
+    step = {
+        f"efficiency_step_{method}": float(
+            np.min(of(name, single=True)) - np.max(of(name, single=False))
+        )
+        for method, name in zip(METHODS, _of_methods("pair_efficiency"), strict=True)
+    }
+    return {
+        "force_excess_average": float(np.min(force[0] - share)),
+        "force_excess_varying": float(np.min(force[1] - force[0])),
+        "friction_excess": float(np.min(friction[1] - friction[0])),
+        **step,
+    }
+
+
+def _of_methods(name: str) -> tuple[str, ...]:
+    return tuple(f"{name}_{method}" for method in METHODS)
+
+
+def _places(mesh: InvolutePair, count: int) -> Course:
+    """Places from A [base pitches], the ends of single contact from both sides."""
+    found = jax.device_get(_zones(mesh))
+    if not 1.0 < found[-1] < 2.0:
+        told = f"{found[-1]:.4g} is the contact ratio; these courses are those of ratios between 1 and 2"
+        raise InputError(told, key="gears")
+    return np.concatenate(
+        [np.linspace(low + _BESIDE, high - _BESIDE, count) for low, high in pairwise(found)]
+    )
+
+
+@program
+def _zones(mesh: InvolutePair) -> Float[Array, "5"]:
+    """Ends of the path, of single contact, and the pitch point [base pitches]; rising."""
+    line = mesh.line
+    ratio = mesh.transverse_contact_ratio
+    pitch = (line.pitch_position - line.limits[0]) / line.base_pitch
+    return jnp.sort(
+        jnp.stack([jnp.zeros_like(ratio), ratio - 1.0, pitch, jnp.ones_like(ratio), ratio])
+    )
+
+
+def _at_ends(courses: dict[str, Course]) -> dict[str, float]:
+    """Shares and forces where mesh and single contact begin and end."""
+    last, count = len(courses["pair_path"]) - 1, len(courses["pair_path"]) // 4
+    places = {"entry": 0, "double": count - 1, "single": count, "exit": last}
+    names = {"load_share_{}": "pair_share"}
+    names |= {f"force_{{}}_{method}": f"pair_force_{method}" for method in METHODS}
+    return {
+        told.format(end): float(courses[name][place])
+        for end, place in places.items()
+        for told, name in names.items()
+    }
+
+
+@program
+def _along(
+    design: Design, operation: Operation, place: Float[Array, " place"], models: Models
+) -> dict[str, Float[Array, " place"]]:
+    """Courses of the pair under one friction law, and of the one that shares the load with it.
+
+    Source: Tian et al. (2024), eqs. 1 to 3, 11, 16 and 18, the last over the force at the base circle.
+    """
+    found = state(design, operation, place, models)
+    number = jnp.floor(place).astype(int)
+    active, load = found.contacts.active[:, 0], found.balance.load[:, 0]
+    lane = jnp.arange(load.shape[0])[:, None]
+
+    def of_pair(values: Float[Array, "pair 1 place"]) -> Float[Array, " place"]:
+        return jnp.take_along_axis(values[:, 0], number[None], axis=0)[0]
+
+    others = active & (lane != number)
+    friction = found.balance.friction
+    other = jnp.sum(jnp.where(others, friction[:, 0], 0.0), axis=0)
+    return {
+        "share": of_pair(found.balance.load) / total(found.balance.load),
+        "force": of_pair(found.balance.load) / found.balance.frictionless,
+        "friction": of_pair(friction),
+        "other_friction": jnp.where(jnp.any(others, axis=0), other, jnp.nan),
+        "efficiency": found.efficiency,
+        "input_torque": found.input_torque,
+    }
+
+
+def _table_3(point: Point, efficiency: list[Course]) -> dict[str, float | Course]:
+    """Mean and instantaneous efficiency by the methods of Table 3; nothing without its four laws."""
+    if len(point.models) != 4:
+        return {}
+    means = [summarise([(point.design, point.operation)], models) for models in point.models]
+    average, varying, nominal, single = means
+    hohn = 1.0 - float(nominal["mean_friction"][0] * nominal["loss_factor"][0])
+    return {
+        "table_3_hohn": hohn,
+        "table_3_diez_ibarbia": float(single["mean_efficiency_path"][0]),
+        "table_3_average": float(average["mean_efficiency_path"][0]),
+        "table_3_varying": float(varying["mean_efficiency_path"][0]),
+        "compared_hohn": np.full_like(efficiency[0], hohn),
+        "compared_diez_ibarbia": efficiency[3],
+        "compared_average": efficiency[0],
+        "compared_varying": efficiency[1],
+    }
