@@ -283,13 +283,16 @@ preload = "300 N"
 
 [formulas]
 form = "films"
-load = "940 N"
-radius = ["1.5 m", "0.1 m"]
-entrainment = ["0.1 m/s", "0.13 m/s"]
+map_angle = ["0 deg", "22.5 deg"]
+map_distance = [-0.9, 0.9]
+points = ["0 deg", "7 deg"]
+entrainment_factor = [1.0, 0.03]
 speeds = ["300 rpm", "3000 rpm"]
+temperatures = ["20 degC", "60 degC"]
 eta_beta_sigma = 0.05
 sigma_over_beta = 0.01
 nodes = 33
+course_nodes = 33
 """)
 
 INVOLUTE = copy.deepcopy(STRAIN_WAVE)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pitchpoint.efficiency.quasi_static import Design, Models, Operation
     from pitchpoint.input.tables import Table
 
-__all__ = ["Beside", "Curves", "Point", "Publication", "Read", "Reading"]
+__all__ = ["Beside", "Curves", "Maps", "Point", "Publication", "Read", "Reading"]
 
 
 @dataclass(frozen=True)
@@ -73,6 +73,23 @@ class Curves:
 
 
 @dataclass(frozen=True)
+class Maps:
+    """A field over two axes that the report draws in colours.
+
+    Attributes:
+        title: of the figure.
+        axes: variables of the places along x and along y.
+        name: variable of the values, row by row of y as one course.
+        shows: figure of the publication that it shows; empty for none.
+    """
+
+    title: str
+    axes: tuple[str, str]
+    name: str
+    shows: str = ""
+
+
+@dataclass(frozen=True)
 class Beside:
     """Readings that the report sets beside each other, at every point of a study.
 
@@ -84,6 +101,7 @@ class Beside:
         curves: drawn under the numbers.
         families: of one course each, drawn for all points of a sweep over each other.
         over_studies: of one course each, drawn for all studies of one point over each other.
+        maps: of the first study with them, at its first point.
         solves: by words for a solve, the variable of each column that holds its `status.Code`.
     """
 
@@ -94,6 +112,7 @@ class Beside:
     curves: tuple[Curves, ...] = ()
     families: tuple[Curves, ...] = ()
     over_studies: tuple[Curves, ...] = ()
+    maps: tuple[Maps, ...] = ()
     solves: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 

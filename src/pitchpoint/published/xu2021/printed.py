@@ -1,29 +1,28 @@
 """Formulas as Xu et al. (2021) print them, beside what their derivation asks for."""
 
-from functools import partial
+from collections.abc import Sequence
 from math import log, pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pitchpoint.efficiency.quasi_static import Design, Operation
-from pitchpoint.gears.strain_wave.drive import StrainWave
-from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
-from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.published.publication import Point
+from pitchpoint.materials.lubricants import Lubricant
 
 __all__ = [
-    "assumed_radius",
+    "TEMPERATURE_0",
+    "ZONE_END",
     "curvature_radii",
     "density",
     "effective_modulus",
     "largest_force",
     "loaded_count",
+    "mapped_radius",
     "mesh_point_speed",
+    "oil_of",
+    "pressure_viscosity",
     "printed_count",
     "printed_density",
     "printed_viscosity",
-    "readings",
     "relative_radius",
     "roelands_exponents",
     "tooth_forces",
@@ -36,7 +35,7 @@ ZONE_END = pi / 8.0
 """Angle at which the cosine of eq. 5 reaches zero [rad]."""
 
 MAP_SPAN = 0.9
-"""Distance of the mesh point from the pitch circle at both ends of the zone, below it on the long
+"""Usual distance of the mesh point from the pitch circle at both ends of the zone, below it on the long
 axis and above it at the end [modules]; assumed, the paper gives none."""
 
 
@@ -79,19 +78,27 @@ def _cosines(teeth: float, count: int) -> Array:
     return np.asarray(np.cos(np.arange(-count, count + 1) * 8.0 * pi / teeth))
 
 
-def assumed_radius(*, angle: ArrayLike, pitch_radius: float, module: float) -> Array:
-    """Distance R1 of the mesh point from the axis of the flexspline, a linear map [m].
+def mapped_radius(
+    *,
+    angle: ArrayLike,
+    map_angle: Sequence[float],
+    map_distance: Sequence[float],
+    pitch_radius: float,
+    module: float,
+) -> Array:
+    """Distance R1 of the mesh point from the axis of the flexspline, by a map of straight lines [m].
 
-    From 0.9 modules below the pitch circle on the long axis to 0.9 above at the end of the zone.
-    The paper gives no map: this one is assumed.
+    The paper gives none. The usual one goes from 0.9 modules below the pitch circle on the long axis to 0.9
+    above at the end of the zone.
 
     Args:
         angle: from the long axis, shape (...) [rad].
+        map_angle: angles of the map, rising [rad].
+        map_distance: R1 there less the pitch radius [modules].
         pitch_radius: of the flexspline [m].
         module: [m].
     """
-    place = 2.0 * np.asarray(angle) / ZONE_END - 1.0
-    return np.asarray(pitch_radius + MAP_SPAN * module * place)
+    return np.asarray(pitch_radius + module * np.interp(np.asarray(angle), map_angle, map_distance))
 
 
 def curvature_radii(
@@ -103,11 +110,15 @@ def curvature_radii(
         distance: R1, shape (...) [m].
         radial: deformation w that makes the polar radius rho_k = R1 + w, shape (...) [m].
         base_radius: r_b1, r_b2 [m].
+
+    Returns:
+        R_k1 and R_k2; NaN where the mesh point lies within a base circle.
     """
     first, second = base_radius
     polar = np.asarray(distance) + np.asarray(radial)
     radii = np.square(distance) - first**2, polar**2 - second**2
-    return np.asarray(np.sqrt(radii[0])), np.asarray(np.sqrt(radii[1]))
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.sqrt(radii[0])), np.asarray(np.sqrt(radii[1]))
 
 
 def relative_radius(*, first: ArrayLike, second: ArrayLike) -> Array:
@@ -200,6 +211,22 @@ def viscosity(
     return np.asarray(viscosity_0 * np.exp(height * (rise - 1.0)))
 
 
+def pressure_viscosity(
+    *, temperature: ArrayLike, viscosity_0: float, alpha: float, beta: float, temperature_0: float
+) -> Array:
+    """Pressure-viscosity coefficient of eq. 12 at a temperature and no pressure [1/Pa].
+
+    Args:
+        temperature: T_1, shape (...) [K].
+        viscosity_0, alpha, beta, temperature_0: as for the exponents.
+    """
+    _, s = roelands_exponents(
+        viscosity_0=viscosity_0, alpha=alpha, beta=beta, temperature_0=temperature_0
+    )
+    warmth = (np.asarray(temperature) - 138.0) / (temperature_0 - 138.0)
+    return np.asarray(alpha * warmth**-s)
+
+
 def printed_viscosity(
     *,
     temperature: ArrayLike,
@@ -266,124 +293,22 @@ def _compression(pressure: ArrayLike) -> Array:
     return np.asarray(0.6e-9 * p / (1.0 + 1.7e-9 * p))
 
 
-OIL = {"viscosity_0": 0.04, "alpha": 2.2e-8, "beta": 0.0476, "temperature_0": 313.0}
-"""Table 2, without the density."""
+BETA = 0.0476
+"""Fall of ln eta with temperature at that of Table 2 [1/K]."""
+
+TEMPERATURE_0 = 313.0
+"""Ambient temperature of Table 2 [K]."""
 
 
-def readings(point: Point) -> dict[str, float]:
-    """What the formulas give for a case, under the names of result variables.
+def oil_of(lubricant: Lubricant) -> dict[str, float]:
+    """Arguments of `viscosity` for an oil: eta_0 and alpha are its own at the temperature of Table 2.
 
-    Those with base circles are left out for teeth that have none.
+    Args:
+        lubricant: of the case.
     """
-    gears, design, operation = point.gears, point.design, point.operation
-    mesh = design.mesh
-    assert isinstance(gears, StrainWaveGears)
-    assert isinstance(mesh, StrainWave)
     return {
-        "tooth_ratio": gears.teeth[0] / (gears.teeth[1] - gears.teeth[0]),
-        **_of_base_circles(gears, mesh, operation),
-        **_of_oil(float(operation.temperature)),
-        "effective_modulus": effective_modulus(
-            young=_both(design, "young"), poisson=_both(design, "poisson")
-        ),
-        "composite_roughness": float(design.roughness.composite_rq),
-    }
-
-
-def _both(design: Design, name: str) -> tuple[float, float]:
-    first, second = design.solids
-    return float(getattr(first, name)), float(getattr(second, name))
-
-
-def _of_oil(temperature: float) -> dict[str, float]:
-    return {
-        "viscosity": float(viscosity(temperature=temperature, **OIL)),
-        "printed_viscosity": float(printed_viscosity(temperature=temperature, **OIL)),
-    }
-
-
-def _of_base_circles(
-    gears: StrainWaveGears, mesh: StrainWave, operation: Operation
-) -> dict[str, float]:
-    if not isinstance(mesh.flank, InvoluteFlank):
-        return {}
-    radii = _base_radii(mesh.flank, gears.teeth)
-    deflection = float(mesh.line.deflection)
-    return {
-        "base_radius_flexspline": radii[0],
-        "base_radius_circular_spline": radii[1],
-        **_loads(gears, radii, float(operation.load)),
-        **_curvatures(gears, radii, deflection),
-        **_speeds(gears, radii, deflection, float(operation.speed)),
-    }
-
-
-def _base_radii(flank: InvoluteFlank, teeth: tuple[float, float]) -> tuple[float, float]:
-    first = float(flank.base_radius)
-    return first, first * teeth[1] / teeth[0]
-
-
-def _loads(gears: StrainWaveGears, radii: tuple[float, float], torque: float) -> dict[str, float]:
-    teeth = gears.teeth[1]
-    force = partial(largest_force, torque=torque, base_radius=radii[1], teeth=teeth)
-    too_many, loaded = printed_count(teeth=teeth), loaded_count(teeth=teeth)
-    printed = force(count=too_many)
-    largest = force(count=loaded, zones=2)
-    forces = tooth_forces(largest=largest, teeth=teeth, count=loaded)
-    return {
-        "printed_largest_tooth_force": printed,
-        "printed_least_tooth_force": float(
-            tooth_forces(largest=printed, teeth=teeth, count=too_many).min()
-        ),
-        "one_zone_tooth_force": force(count=loaded),
-        "largest_tooth_force": largest,
-        "recovered_torque": 2.0 * radii[1] * float(forces.sum()),
-    }
-
-
-def _distances(gears: StrainWaveGears) -> tuple[Array, Array]:
-    angle = np.linspace(0.0, ZONE_END, 226)
-    pitch = gears.module * gears.teeth[0] / 2.0
-    return angle, assumed_radius(angle=angle, pitch_radius=pitch, module=gears.module)
-
-
-def _curvatures(
-    gears: StrainWaveGears, radii: tuple[float, float], deflection: float
-) -> dict[str, float]:
-    angle, distance = _distances(gears)
-    first, second = curvature_radii(
-        distance=distance,
-        radial=deflection * np.cos(2.0 * angle),
-        base_radius=radii,
-    )
-    radius = relative_radius(first=first, second=second)
-    return {
-        "printed_radius_root": float(radius[0]),
-        "printed_radius_10": float(np.interp(np.deg2rad(10.0), angle, radius)),
-        "printed_radius_end": float(radius[-1]),
-        "conformal_angle": float(np.interp(0.0, first - second, angle)),
-    }
-
-
-def _speeds(
-    gears: StrainWaveGears, radii: tuple[float, float], deflection: float, wave_speed: float
-) -> dict[str, float]:
-    angle, distance = _distances(gears)
-    opposed, added = (
-        mesh_point_speed(
-            angle=angle,
-            distance=distance,
-            base_radius=radii[0],
-            deflection=deflection,
-            teeth=gears.teeth,
-            wave_speed=wave_speed,
-            sense=sense,
-        )
-        for sense in (-1, 1)
-    )
-    return {
-        "least_opposed_speed": float(np.abs(opposed).min()),
-        "largest_opposed_speed": float(opposed.max()),
-        "least_added_speed": float(added.min()),
-        "largest_added_speed": float(added.max()),
+        "viscosity_0": float(lubricant.viscosity(TEMPERATURE_0)),
+        "alpha": float(lubricant.pressure_viscosity(TEMPERATURE_0)),
+        "beta": BETA,
+        "temperature_0": TEMPERATURE_0,
     }

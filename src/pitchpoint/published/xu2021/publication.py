@@ -3,12 +3,13 @@
 from dataclasses import replace
 
 from pitchpoint.published.conjugate_variables import OF_CONJUGATES
-from pitchpoint.published.publication import Beside, Curves, Point, Publication, Read
+from pitchpoint.published.publication import Beside, Curves, Maps, Point, Publication, Read
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.results.variable import (
     Variable,
     angle,
     deviation,
+    force,
     length,
     percent,
     pressure,
@@ -67,12 +68,49 @@ def _turning(long_name: str) -> Variable:
     return Variable(long_name, "n", "rad/s", "rpm", "rotational speed")
 
 
+def _radius(long_name: str) -> Variable:
+    return Variable(long_name, "R", "m", "m", "length")
+
+
+_OF_ENVELOPE = {
+    "axis_speed": speed("mesh point speed on the long axis, eq. 3", "u"),
+    "conjugate_radius_ratio": _plain(
+        "relative radius of the envelope at the root over that of eq. 2", "R/R"
+    ),
+    "conjugate_entrainment_ratio": _plain(
+        "entrainment of the envelope at the root over the speed of eq. 3", "u/u"
+    ),
+    "conjugate_film_ratio_root": _plain("film of the envelope over roughness, root", "λ"),
+    "conjugate_film_ratio_tip": _plain("film of the envelope over roughness, tip", "λ"),
+    "conjugate_speed_of_one_root": _turning(
+        "speed at which the film of the envelope is as thick as the roughness, root"
+    ),
+    "conjugate_speed_of_one_tip": _turning(
+        "speed at which the film of the envelope is as thick as the roughness, tip"
+    ),
+}
+
+_OF_FILM = {
+    "film_ratio": _plain("mean film over roughness", "λ"),
+    "asperity_share": percent("part of the load on asperities", "W"),
+    "film_stiffness": stiffness("stiffness of the film, load over separation", "k"),
+    "printed_film_stiffness": stiffness("stiffness of the film by eq. 16", "k_oil"),
+}
+
+_ZONE = {
+    "zone_radius": _radius("relative radius over the zone, eq. 2"),
+    "zone_added_speed": speed("mesh point speed over the zone, tangential parts added", "u"),
+    "zone_opposed_speed": speed("mesh point speed over the zone, tangential parts opposed", "u"),
+}
+
+_LOADS = {
+    "tooth_printed_load": force("load of the teeth, eq. 6 as printed", "F"),
+    "tooth_closed_load": force("load of the teeth that closes the torque", "F"),
+}
+
 _COURSES = {
-    "film_speed": {
-        "film_ratio": _plain("mean film over roughness", "λ"),
-        "asperity_share": percent("part of the load on asperities", "W"),
-        "film_stiffness": stiffness("stiffness of the film", "k_oil"),
-    },
+    "film_speed": _OF_FILM,
+    "film_temperature": {f"warm_{name}": one for name, one in _OF_FILM.items()},
     "film_place": {
         "ridge_pressure": pressure("pressure along the face, highest across", "p"),
         "ridge_film": deviation("film along the face, on the contact line", "h"),
@@ -81,29 +119,71 @@ _COURSES = {
         "cut_pressure": pressure("pressure across the contact, middle of the face", "p"),
         "cut_film": deviation("film across the contact, middle of the face", "h"),
     },
+    "film_map": {
+        "map_pressure": pressure("pressure over the contact, row by row", "p"),
+        "map_film": deviation("film over the contact, row by row", "h"),
+    },
 }
 """Courses of a point, by what they run over."""
 
 _AXES = {
+    "zone_angle": angle("angle from the long axis", "φ"),
+    "counted_angle": angle("angle of a tooth from the long axis", "φ"),
+    "tooth_angle": angle("angle of a tooth from the long axis", "φ"),
     "film_speed": _turning("speed of the wave generator"),
+    "film_temperature": Variable("temperature of the oil", "T", "K", "degC", "temperature"),
     "film_place": _plain("place along the face, over its width", "y/b"),
-    "film_cut": _plain("place across the contact, over the half-width", "x/b"),
+    "film_cut": _plain("place across the contact, over the half-width", "x/a"),
+    "film_map_x": _plain("place across the contact, over the half-width", "x/a"),
+    "film_map_y": _plain("place along the face, over its width", "y/b"),
+}
+
+_TEETH = {
+    "tooth_entrainment": speed("entrainment at the teeth, eq. 3 and its factor", "u"),
+    "tooth_film_ratio": _plain("mean film over roughness at the teeth", "λ"),
+    "tooth_asperity_share": percent("part of the load on asperities at the teeth", "W"),
+    "tooth_film_stiffness": stiffness(
+        "stiffness of the film, load over mean film, at the teeth", "k"
+    ),
+    "tooth_printed_stiffness": stiffness("stiffness of the film by eq. 16 at the teeth", "k_oil"),
+}
+
+_OF_TEETH = {
+    "teeth_with_films": _plain(
+        "teeth from the long axis on for which eqs. 1 to 5 give a contact", "n"
+    ),
+    "mean_tooth_film_ratio": _plain("mean film over roughness, mean of these teeth", "λ"),
+    "mean_tooth_asperity_share": percent(
+        "part of the load on asperities, mean of these teeth", "W"
+    ),
+    "mean_tooth_film_stiffness": stiffness(
+        "stiffness, load over mean film, mean of these teeth", "k"
+    ),
+    "mean_tooth_printed_stiffness": stiffness("stiffness by eq. 16, mean of these teeth", "k_oil"),
+    "tooth_printed_stiffness_step": stiffness(
+        "stiffness by eq. 16, largest change from a tooth to the next", "Δk_oil"
+    ),
 }
 
 _OF_POINT = {
+    "point_radius": _radius("relative radius, eq. 2"),
+    "point_load": force("load, eqs. 5 and 6", "F"),
+    "point_entrainment": speed("entrainment, eq. 3 and its factor", "u"),
+    "half_width": length("half-width of the dry contact", "a"),
     "speed_of_one": _turning("speed at which the film is as thick as the roughness"),
+    "temperature_of_one": Variable(
+        "temperature at which the film is as thick as the roughness",
+        "T",
+        "K",
+        "degC",
+        "temperature",
+    ),
     "slow_share": percent("part of the load on asperities at 100 rpm", "W"),
-    "film_ratio_rise": _plain("least change of the film ratio to the next speed", "Δλ"),
-    "asperity_share_rise": percent(
-        "largest change of the part on asperities to the next speed", "ΔW"
-    ),
-    "film_stiffness_ratio": _plain(
-        "stiffness of the film at the highest speed over that at 500 rpm", "k/k"
-    ),
     "rated_film_ratio": _plain("mean film over roughness at the operating point", "λ"),
     "rated_asperity_share": percent("part of the load on asperities at the operating point", "W"),
-    "rated_film_stiffness": stiffness("stiffness of the film at the operating point", "k_oil"),
-    "misprinted_film_ratio": _plain("the film ratio of the oil by eq. 12 as printed", "λ"),
+    "rated_film_stiffness": stiffness("stiffness of the film at the operating point", "k"),
+    "coarse_film_ratio": _plain("mean film over roughness there, on the grid of the courses", "λ"),
+    "misprinted_speed_of_one": _turning("the same speed of the oil by eq. 12 as printed"),
     "end_pressure": _plain(
         "pressure a quarter of a half-width from the ends over that in the middle", "p/p"
     ),
@@ -126,10 +206,82 @@ def _of_points(numbers: dict[str, Variable]) -> dict[str, Variable]:
     }
 
 
-_CURVES = tuple(
-    Curves(one.long_name, along, _pair(name))
-    for along, courses in _COURSES.items()
-    for name, one in courses.items()
+def _curves(along: str, shows: str) -> tuple[Curves, ...]:
+    return tuple(
+        Curves(one.long_name, along, _pair(name), shows="" if one.kind == "stiffness" else shows)
+        for name, one in _COURSES[along].items()
+    )
+
+
+_ZONE_BESIDE = Beside(
+    columns=("as printed", "envelope"),
+    rows={
+        "relative radius on the long axis, and of the envelope at the root": (
+            "printed_radius_root",
+            "deep_radius_root",
+        ),
+        "relative radius at 10 degrees, and of the envelope at the tip": (
+            "printed_radius_10",
+            "deep_radius_tip",
+        ),
+        "mesh point speed on the long axis, and entrainment of the envelope at the root": (
+            "axis_speed",
+            "deep_entrainment_root",
+        ),
+        "mesh point speed at the end of the zone, and entrainment of the envelope at the tip": (
+            "largest_added_speed",
+            "deep_entrainment_tip",
+        ),
+    },
+    note=(
+        "Relative radius and mesh point speed by eqs. 1 to 3, beside those of the envelope that flanks of"
+        " the case touch. The map of the mesh point is an input of the case and assumed. Where both radii"
+        " of curvature of eq. 1 agree, eq. 2 changes its sign: beyond that angle it gives no contact. The"
+        " curve leaves out radii beyond 20 m. Eq. 6 as printed counts teeth that would pull."
+    ),
+    curves=(
+        Curves(
+            "relative radius over the zone",
+            "zone_angle",
+            ("zone_radius",),
+            ("eq. 2",),
+            shows="Figure 5",
+        ),
+        Curves(
+            "mesh point speed over the zone",
+            "zone_angle",
+            ("zone_added_speed", "zone_opposed_speed"),
+            ("eq. 3, tangential parts added", "opposed"),
+            shows="Figure 5",
+        ),
+        Curves(
+            "load of the teeth",
+            "counted_angle",
+            tuple(_LOADS),
+            ("eq. 6 as printed", "teeth of both zones that eq. 5 loads"),
+            shows="Figure 6",
+        ),
+    ),
+)
+
+_ENVELOPE = Beside(
+    columns=("root, point A", "tip, point B"),
+    rows={
+        "film of the envelope over roughness": (
+            "conjugate_film_ratio_root",
+            "conjugate_film_ratio_tip",
+        ),
+        "speed at which that film is as thick as the roughness": (
+            "conjugate_speed_of_one_root",
+            "conjugate_speed_of_one_tip",
+        ),
+    },
+    note=(
+        "Films that the envelope's radius and entrainment make by Moes' law, under the load that closes "
+        "the torque, fully flooded and isothermal: an upper bound. Entrainment is some 60 times what eq. "
+        "3 gives on the long axis, and the film as thick as the roughness at a few turns a minute, where "
+        "the paper has 300 and 2500 rpm: no motion of the teeth that was tried leads to its speeds."
+    ),
 )
 
 _FILMS = Beside(
@@ -137,18 +289,60 @@ _FILMS = Beside(
     rows={one.long_name: _pair(name) for name, one in _OF_POINT.items()},
     note=(
         "Films of one tooth at the root (A) and at the tip (B) of the zone, solved on the whole contact "
-        "line, with load and radius as eqs. 2 and 6 give them as printed. Entrainment at both points is "
-        "calibrated: the paper does not give it, and no motion of the teeth that was tried leads to both of "
-        "its speeds. Radii of a metre make contacts as wide as the flank, which half spaces do not hold for."
+        "line, with load and radius by eqs. 1 to 6 and the oil of the case. Stiffness stands by two "
+        "definitions: the load over the separation that the film adds to the dry contact, which wavers "
+        "with the grid, and by eq. 16 the load step over the fall of the mean film, on a line without "
+        "ends. Radii of a metre make contacts as wide as the flank, which half spaces do not hold for. "
+        "The maps end two and a half half-widths ahead of the contact."
     ),
-    curves=_CURVES,
+    calibrated=(
+        "The factor on eq. 3 is set so that the film is as thick as the roughness at the speeds of "
+        "section 3.2: in A it is 1, in B a thirtieth. The density of summits is set for the load on "
+        "asperities in A."
+    ),
+    curves=(
+        *_curves("film_place", "Figure 8"),
+        *_curves("film_cut", "Figure 8"),
+        *_curves("film_speed", "Figure 9"),
+        *_curves("film_temperature", "Figure 10"),
+    ),
+    maps=tuple(
+        Maps(
+            f"{one.long_name.removesuffix(', row by row')}, point {point.upper()}",
+            ("film_map_x", "film_map_y"),
+            f"{name}_{point}",
+            shows="Figure 8",
+        )
+        for point in _NAMES
+        for name, one in _COURSES["film_map"].items()
+    ),
     solves={"films": _pair("films_status")},
+)
+
+_TEETH_BESIDE = Beside(
+    columns=("",),
+    rows={one.long_name: (name,) for name, one in _OF_TEETH.items()},
+    note=(
+        "Every tooth from the long axis on, those on its other side being alike: films on lines without "
+        "ends. The factor on eq. 3 lies between those of A and B. Teeth beyond the angle at which eq. 2 "
+        "changes its sign have loads and no films. There is no place in the zone where one tooth carries "
+        "alone, and the stiffness does not jump."
+    ),
+    families=tuple(
+        Curves(one.long_name, "tooth_angle", (name,), shows=shows)
+        for (name, one), shows in zip(
+            _TEETH.items(),
+            ("", "", "", "Figure 11", "Figure 11"),
+            strict=True,
+        )
+    ),
+    solves={"films": ("teeth_status",)},
 )
 
 
 def _films(point: Point) -> Read:
     """Films of the zone; the solver is imported when a case asks for them."""
-    if not isinstance(point.formulas, ZoneFilms):
+    if not isinstance(point.formulas, ZoneFilms) or point.formulas.solves == "nothing":
         return {}
     from pitchpoint.published.xu2021.films import films_at
 
@@ -158,22 +352,35 @@ def _films(point: Point) -> Read:
 PUBLICATION = Publication(
     name="xu_2021",
     readings=(
-        "pitchpoint.published.xu2021.printed:readings",
-        "pitchpoint.published.conjugate:readings",
+        "pitchpoint.published.xu2021.readings:readings",
+        "pitchpoint.published.xu2021.kinematics:readings",
         _films,
     ),
     variables={
         **_VARIABLES,
         **OF_CONJUGATES,
+        **_OF_ENVELOPE,
         **_AXES,
+        **_ZONE,
+        **_LOADS,
+        **_TEETH,
+        **_OF_TEETH,
+        "teeth_status": _plain("status of the films of the teeth", ""),
         **_of_points(_OF_POINT),
         **_of_points({"films_status": _plain("status of the films", "")}),
         **_of_points({k: v for courses in _COURSES.values() for k, v in courses.items()}),
     },
-    beside=(_FILMS,),
+    beside=(_ZONE_BESIDE, _ENVELOPE, _FILMS, _TEETH_BESIDE),
     courses={
-        name: f"{along}_place"
-        for along, courses in _COURSES.items()
-        for name in (along, *(one for course in courses for one in _pair(course)))
+        **{along: f"{along}_place" for along in _AXES},
+        **{
+            name: f"{along}_place"
+            for along, courses in _COURSES.items()
+            for course in courses
+            for name in _pair(course)
+        },
+        **dict.fromkeys(_ZONE, "zone_angle_place"),
+        **dict.fromkeys(_LOADS, "counted_angle_place"),
+        **dict.fromkeys(_TEETH, "tooth_angle_place"),
     },
 )

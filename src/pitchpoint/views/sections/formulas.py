@@ -10,7 +10,7 @@ import xarray as xr
 
 from pitchpoint.analyses.studies import PREFIX, is_study
 from pitchpoint.cases.schema import quantity_at
-from pitchpoint.published.publication import Beside, Curves
+from pitchpoint.published.publication import Beside, Curves, Maps
 from pitchpoint.published.registry import PUBLICATIONS, publication_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.status import Code
@@ -95,9 +95,11 @@ def _blocks(page: Page) -> Iterator[Block]:
             yield Paragraph(beside.calibrated, "warning")
         studies = _studies(page, beside)
         name = f"formulas{number}"
+        alone = [*studies.values()]
         drawn = [
-            _panel(name, [*studies.values()], beside),
-            _side_by_side(f"{name}_each", [*studies.values()], beside),
+            _panel(name, alone, beside),
+            _maps(f"{name}_map", alone, beside),
+            _side_by_side(f"{name}_each", alone, beside),
             _families(name, studies, beside),
         ]
         yield from (panel for panel in drawn if panel.figures)
@@ -238,6 +240,34 @@ def _figure(name: str, one: Curves, points: list[tuple[xr.Dataset, int]], beside
     for trace in traces:
         trace["line"]["width"] = 1  # of vibrations that lie close
     return _drawn(name, one, traces, keys)
+
+
+def _maps(name: str, studies: list[xr.Dataset], beside: Beside) -> Panel:
+    """Fields in colours at the first point of the first study that holds them."""
+    figures = []
+    for k, one in enumerate(beside.maps):
+        there = [data for data in studies if one.name in data]
+        figures += [_map(f"{name}{k}", one, data) for data in there[:1]]
+    return Panel("", figures)
+
+
+def _map(name: str, one: Maps, data: xr.Dataset) -> Figure:
+    x, y = (_shown(axis, data, 0) for axis in one.axes)
+    values = display(one.name, data[one.name].values[0]).reshape(len(y), len(x))
+    unit = show.unit_of(one.name)
+    heat: Trace = {
+        "type": "heatmap",
+        "x": x,
+        "y": y,
+        "z": rounded(values, 4),
+        "colorscale": "Viridis",
+        "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
+        "hovertemplate": f"%{{z:.4~g}} {unit}<extra></extra>",
+    }
+    shows = f" ({one.shows} of the publication)" if one.shows else ""
+    title = f"{one.title[0].upper()}{one.title[1:]}{shows}"
+    axes = layout(*(show.axis_title(axis) for axis in one.axes))
+    return Figure(name, title, [heat], axes, missing="No numbers were found.")
 
 
 def _table(data: xr.Dataset, beside: Beside) -> Table:
