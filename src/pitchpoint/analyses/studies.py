@@ -139,8 +139,8 @@ def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
         return {}
     read, courses = PUBLICATIONS[source].read, PUBLICATIONS[source].courses
     found = [
-        read(Point(point.case.gears, point.design, point.operation, point.case.formulas))
-        for point in alone
+        read(Point(it.case.gears, it.design, it.operation, it.terms, it.case.formulas))
+        for it in alone
     ]
 
     def variable(name: str) -> tuple[tuple[str, str], np.ndarray]:

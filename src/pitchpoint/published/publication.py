@@ -16,6 +16,7 @@ from pitchpoint.results.variables import VARIABLES
 if TYPE_CHECKING:
     from pitchpoint.efficiency.quasi_static import Design, Operation
     from pitchpoint.input.tables import Table
+    from pitchpoint.loading.tooth_compliance import Terms
 
 __all__ = ["Beside", "Curves", "Point", "Publication", "Read", "Reading"]
 
@@ -28,12 +29,14 @@ class Point:
         gears: as the case gives them.
         design: as it is built.
         operation: one operating point.
+        terms: of the model by which teeth yield.
         formulas: inputs of the formulas beside all that, where the publication has a table of them.
     """
 
     gears: Table
     design: Design
     operation: Operation
+    terms: Terms
     formulas: Table | None = None
 
 
@@ -100,6 +103,8 @@ class Publication:
         variables: of the readings.
         beside: those that the report sets beside each other; none for most.
         courses: dimension of each reading that is a course, by name.
+        stiffness: on which stiffness of the teeth its formulas run, told beside that of the library; empty
+            where they run on that or on none.
     """
 
     name: str
@@ -107,6 +112,7 @@ class Publication:
     variables: Mapping[str, Variable] = field(default_factory=dict)
     beside: tuple[Beside, ...] = ()
     courses: Mapping[str, str] = field(default_factory=dict)
+    stiffness: str = ""
 
     def __post_init__(self) -> None:
         if taken := [key for key, one in self.variables.items() if VARIABLES.get(key, one) != one]:
