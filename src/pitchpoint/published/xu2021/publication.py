@@ -279,8 +279,8 @@ _ENVELOPE = Beside(
     note=(
         "Films that the envelope's radius and entrainment make by Moes' law, under the load that closes "
         "the torque, fully flooded and isothermal: an upper bound. Entrainment is some 60 times what eq. "
-        "3 gives on the long axis, and the film as thick as the roughness at a few turns a minute, where "
-        "the paper has 300 and 2500 rpm: no motion of the teeth that was tried leads to its speeds."
+        "3 gives on the long axis, and the film as thick as the roughness at 28 and 19 rpm at 40 °C, "
+        "where the paper has 300 and 2500 rpm: no motion of the teeth that was tried leads to its speeds."
     ),
 )
 
