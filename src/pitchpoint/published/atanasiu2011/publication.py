@@ -32,7 +32,7 @@ _NUMBERS = {
     "other_error_range": deviation(
         "variation of the transmission error at the second torque", "Δδ_b"
     ),
-    "pair_largest_factor": Variable("largest dynamic factor of a pair", "c_d", "1"),
+    "pair_largest_factor": Variable("largest dynamic factor of a pair of teeth", "c_d", "1"),
     "pair_status": Variable("status of the vibration", "", "1"),
 }
 
@@ -157,4 +157,9 @@ PUBLICATION = Publication(
     },
     beside=(_MOTION,),
     courses=dict.fromkeys(("pair_time", *_COURSES), "mesh_place"),
+    answers=(
+        *("pair_mean_stiffness_middle", "pair_stiffness_variation_middle"),
+        *("pair_mean_error_middle", "pair_error_range_middle", "pair_largest_factor_middle"),
+    ),
+    sections=("stiffness", "vibration", "studies"),
 )

@@ -184,4 +184,5 @@ PUBLICATION = Publication(
     },
     beside=(_ON_PATH, _BY_METHOD),
     courses=dict.fromkeys(("pair_path", *_ALONG, *_COMPARED), "path_place"),
+    sections=("path", "cycle", "studies"),
 )
