@@ -110,6 +110,8 @@ class Publication:
         answers: readings that it is about, for the answer at the top.
         sections: of the report that show what the publication is about; a reader opens the others. All
             are open where none is named.
+        stiffness: on which stiffness of the teeth its formulas run, told beside that of the library; empty
+            where they run on that or on none.
     """
 
     name: str
@@ -119,6 +121,7 @@ class Publication:
     courses: Mapping[str, str] = field(default_factory=dict)
     answers: tuple[str, ...] = ()
     sections: tuple[str, ...] = ()
+    stiffness: str = ""
 
     def __post_init__(self) -> None:
         if taken := [key for key, one in self.variables.items() if VARIABLES.get(key, one) != one]:

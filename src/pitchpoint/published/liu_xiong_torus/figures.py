@@ -1,15 +1,16 @@
-"""What Liu and Xiong tabulate of a motion: Tables 4 to 7, section 4, and the balance of energy."""
+"""What Liu and Xiong draw and tabulate of a motion: Figs. 5 to 23, Tables 4 to 7 and the balance of energy."""
 
 import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.ellipse import hamrock_brewe_1983
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
-from pitchpoint.lubrication.rolling_resistance import wu_cheng_1991
+from pitchpoint.lubrication.rolling_resistance import wu_cheng_1991, wu_cheng_1991_strips
 from pitchpoint.programs import program
-from pitchpoint.published.liu_xiong_torus.motion import Course, Drive
+from pitchpoint.published.liu_xiong_torus.motion import Course, Drive, friction_forces, pairs
 
-__all__ = ["Oil", "figures"]
+__all__ = ["CYCLE_COURSES", "Oil", "cycle_places", "figures"]
 
 BINS = 2**14
 """Instants of equal distance of which the spectrum is taken."""
@@ -20,12 +21,10 @@ class Oil(eqx.Module):
 
     Attributes:
         pressure_viscosity: alpha [1/Pa].
-        transverse_radius: relative radius R_y across the profile [m].
         whole: mesh cycles of the mean force and of its spectrum.
     """
 
     pressure_viscosity: Float[Array, ""]
-    transverse_radius: Float[Array, ""]
     whole: Float[Array, ""]
 
 
@@ -34,6 +33,26 @@ LINES = 480
 
 INSTANTS = 2400
 """Places of equal distance from the start on at which a course is kept."""
+
+CYCLE = 1000
+"""Places of equal distance in a mesh cycle at which what pairs of teeth carry is kept."""
+
+CYCLE_COURSES = (
+    *(
+        f"{name}_{pair}"
+        for name in ("stiffness", "force", "friction")
+        for pair in ("0", "1", "both")
+    ),
+    "film_course_0",
+    "film_course_1",
+    "efficiency_course",
+)
+"""Courses of the pairs of teeth over a mesh cycle; not a number where a pair is out of contact."""
+
+
+def cycle_places() -> Float[Array, " place"]:
+    """Parts of a mesh cycle at which these are kept, none of them at a hand-over."""
+    return (jnp.arange(CYCLE) + 0.5) / CYCLE
 
 
 @program
@@ -47,18 +66,15 @@ def figures(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..
         moved: from rest on.
         oil: and mesh cycles.
     """
-    presses = moved.pairs.active & (moved.force > 0.0)
-    heat = jnp.sum(jnp.abs(moved.friction * moved.pairs.sliding), axis=1)
-    rolling = jnp.sum(_rolling(drive, moved, oil, presses), axis=1)
-    put_in = drive.input_torque * drive.speed
+    heat, put_in = _heat(moved), drive.input_torque * drive.speed
     friction = jnp.abs(jnp.sum(moved.friction, axis=1))
-    film = _films(drive, moved, oil, presses)
+    film = _mean_films(drive, moved, oil)
     driven = _mean(moved, _friction_power(drive, moved))
     return {
         "largest_error": jnp.max(moved.error),
         "least_error": jnp.min(moved.error),
         "sliding_friction": _mean(moved, friction),
-        "printed_efficiency": _mean(moved, 1.0 - (heat + rolling) / put_in),
+        "printed_efficiency": _mean(moved, _efficiency(drive, moved, oil)),
         "film_0": film[0],
         "film_1": film[1],
         "film_parts": film[0] / film[1],
@@ -67,7 +83,63 @@ def figures(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..
         "energy_imbalance": (driven + _mean(moved, heat)) / put_in,
         **_force(drive, moved, oil),
         **_courses(drive, moved),
+        **_cycle_courses(drive, moved, oil),
     }
+
+
+def _heat(moved: Course) -> Float[Array, " time"]:
+    """Power lost to sliding by both pairs [W]."""
+    return jnp.sum(jnp.abs(moved.friction * moved.pairs.sliding), axis=1)
+
+
+def _presses(moved: Course) -> Bool[Array, "time 2"]:
+    return moved.pairs.active & (moved.force > 0.0)
+
+
+def _efficiency(drive: Drive, moved: Course, oil: Oil) -> Float[Array, " time"]:
+    """Efficiency of each moment, eq. 23 with the sliding friction in its first term."""
+    lost = _heat(moved) + jnp.sum(_rolling(drive, moved, oil), axis=1)
+    return 1.0 - lost / (drive.input_torque * drive.speed)
+
+
+def _cycle_courses(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, " place"]]:
+    """What both pairs carry over the last whole mesh cycle, by the names of `CYCLE_COURSES`."""
+    last = _last_cycle(drive, moved, oil)
+    found, touches = last.pairs, last.pairs.active
+    film = jnp.where(_presses(last), _films(drive, last, oil), jnp.nan)
+    courses = {"efficiency_course": _efficiency(drive, last, oil)}
+    each = {"stiffness": found.stiffness, "force": last.force, "friction": last.friction}
+    for name, values in each.items():
+        courses[f"{name}_both"] = jnp.sum(values, axis=1)
+    shown = {name: jnp.where(touches, values, jnp.nan) for name, values in each.items()}
+    for name, values in {**shown, "film_course": film}.items():
+        courses |= {f"{name}_{pair}": values[:, pair] for pair in (0, 1)}
+    return courses
+
+
+def _last_cycle(drive: Drive, moved: Course, oil: Oil) -> Course:
+    """The last whole mesh cycle, at places of equal distance."""
+    part = cycle_places()
+    time = (oil.whole - 1.0 + part) * drive.period
+
+    def read(values: Float[Array, " time"]) -> Float[Array, " place"]:
+        return jnp.interp(time, moved.time, values)
+
+    def columns(values: Float[Array, "time column"]) -> Float[Array, "place column"]:
+        return jax.vmap(read, 1, 1)(values)
+
+    older = read(1.0 * moved.pairs.active[:, 0]) > 0.5
+    found = jax.vmap(pairs, (None, 0, 0))(drive, part, older)
+    force = jnp.where(found.active, columns(moved.force), 0.0)
+    return Course(
+        time=time,
+        weight=jnp.full(CYCLE, 1.0 / CYCLE),
+        error=read(moved.error),
+        rate=columns(moved.rate),
+        force=force,
+        friction=jax.vmap(friction_forces, (None, 0, 0))(drive, force, found),
+        pairs=found,
+    )
 
 
 def _courses(drive: Drive, moved: Course) -> dict[str, Float[Array, " instant"]]:
@@ -82,48 +154,62 @@ def _mean(moved: Course, values: Float[Array, " time"]) -> Float[Array, ""]:
     return jnp.sum(moved.weight * values) / jnp.sum(moved.weight)
 
 
-def _rolling(
-    drive: Drive, moved: Course, oil: Oil, presses: Bool[Array, "time 2"]
-) -> Float[Array, "time 2"]:
-    """Rolling power of both pairs: F_pr of eq. 24 taken as a force, times v_p + v_g [W].
+def _rolling(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "time 2"]:
+    """Rolling power of both pairs: F_pr of eq. 24 times v_p + v_g [W].
 
-    W = F/(E' R'^2) is the printed group. R' is that of the profile on both pairs.
+    As published F_pr is taken as a force, with the group W = F/(E' R'^2); by Hertz's radii it is one per
+    length, over the face or the ellipse. The radius is that of the profile on both pairs.
     """
-    place = moved.pairs.place
-    radius = place * (drive.tangent - place) / drive.tangent
-    force = wu_cheng_1991(
-        line_load=jnp.where(presses, moved.force, 0.0) / radius,
-        entrainment=moved.pairs.entrainment,
-        viscosity=drive.viscosity,
-        pressure_viscosity=oil.pressure_viscosity,
-        radius=radius,
-        modulus=drive.modulus,
+    load, radius = jnp.where(_presses(moved), moved.force, 0.0), _profile(drive, moved)
+    given = {**_oil(drive, moved, oil), "radius": radius}
+    if drive.radii == "printed":
+        force = wu_cheng_1991(line_load=load / radius, **given)
+        return 2.0 * force * moved.pairs.entrainment
+    ellipse = hamrock_brewe_1983(
+        load=load, radius=radius, transverse_radius=drive.transverse_radius, modulus=drive.modulus
     )
+    points = wu_cheng_1991_strips(load=load, semi_axis_across=ellipse.across, **given)
+    width = drive.face_width
+    lines = width * wu_cheng_1991(line_load=load / width, **given)
+    force = jnp.where(drive.pointed > 0.0, points, lines)
     return 2.0 * force * moved.pairs.entrainment
 
 
-def _films(
-    drive: Drive, moved: Course, oil: Oil, presses: Bool[Array, "time 2"]
-) -> Float[Array, "2"]:
-    """Mean least film of both pairs while they press, eq. 25 or 26 [m].
+def _profile(drive: Drive, moved: Course) -> Float[Array, "time 2"]:
+    """Relative radius of curvature of the profiles [m]."""
+    place = moved.pairs.place
+    return place * (drive.tangent - place) / drive.tangent
 
-    R' and W = F/(E' R'^2) are those printed, kappa is that of R_y over the radius of the profile.
-    """
-    place, radius = moved.pairs.place, moved.pairs.radius
-    profile = place * (drive.tangent - place) / drive.tangent
-    given = {
+
+def _oil(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..."]]:
+    return {
         "entrainment": moved.pairs.entrainment,
         "viscosity": drive.viscosity,
         "pressure_viscosity": oil.pressure_viscosity,
-        "radius": radius,
         "modulus": drive.modulus,
     }
-    load = jnp.where(presses, moved.force, 0.0)
-    slender = radius * oil.transverse_radius / profile
+
+
+def _films(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "time 2"]:
+    """Least film of both pairs, eq. 25 or 26 [m]; of no meaning where they do not press.
+
+    As published R' and W = F/(E' R'^2) are those printed, and kappa that of R_y over the radius of the
+    profile; by Hertz's radii R_x and R_y are those of the flanks, and the line has the load over the face.
+    """
+    load, radius = jnp.where(_presses(moved), moved.force, 0.0), moved.pairs.radius
+    given = {**_oil(drive, moved, oil), "radius": radius}
+    slender = radius * drive.transverse_radius / _profile(drive, moved)
+    width = radius if drive.radii == "printed" else drive.face_width
     points = hamrock_dowson_1977(load=load, transverse_radius=slender, **given)
-    lines = dowson_higginson_1959(line_load=load / radius, **given)
-    film = jnp.where(drive.pointed > 0.0, points, lines)
+    lines = dowson_higginson_1959(line_load=load / width, **given)
+    return jnp.where(drive.pointed > 0.0, points, lines)
+
+
+def _mean_films(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "2"]:
+    """Mean least film of both pairs while they press [m]."""
+    presses = _presses(moved)
     weight = moved.weight[:, None] * presses
+    film = jnp.where(presses, _films(drive, moved, oil), 0.0)
     return jnp.sum(weight * film, axis=0) / jnp.sum(weight, axis=0)
 
 
@@ -140,14 +226,14 @@ def _friction_power(drive: Drive, moved: Course) -> Float[Array, " time"]:
 
 
 def _force(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..."]]:
-    """Mean of the whole normal force over whole mesh cycles, its spectrum and where it is highest [N, Hz].
-
-    Of the spectrum only what lies below one and a half of the mesh frequency counts.
-    """
+    """Mean of the whole normal force over whole mesh cycles, its spectrum, and its highest line [N, Hz]."""
     force, last = jnp.sum(moved.force, axis=1), oil.whole * drive.period
     even = jnp.interp(jnp.arange(BINS) / BINS * last, moved.time, force)
     height = 2.0 / BINS * jnp.abs(jnp.fft.rfft(even)[1 : BINS // 2])
     rate = jnp.arange(1, BINS // 2) / oil.whole
-    peak = rate[jnp.argmax(jnp.where(rate < 1.5, height, 0.0))]
-    found = {"mean_force": jnp.mean(even), "force_peak": peak / drive.period}
+    found = {
+        "mean_force": jnp.mean(even),
+        "force_peak": rate[jnp.argmax(height)] / drive.period,
+        "highest_line": jnp.max(height),
+    }
     return {**found, "spectrum": height[:LINES]}

@@ -1,17 +1,19 @@
 """The motion in six coordinates as Liu and Xiong print it, from rest, by diffrax."""
 
 from functools import partial
+from typing import Literal
 
 import diffrax
 import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.ellipse import hamrock_brewe_1983
 from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.lubrication.friction_coefficient import xu_2007
 from pitchpoint.programs import fast_program
 
-__all__ = ["Course", "Drive", "Pairs", "Piece", "course"]
+__all__ = ["Course", "Drive", "Pairs", "Piece", "course", "friction_forces", "pairs"]
 
 UNIT = 1e-6
 """Length in which places and speeds are integrated [m, m/s]."""
@@ -48,6 +50,9 @@ class Drive(eqx.Module):
         torque: on the gear [N m].
         teeth: of the pinion.
         modulus, viscosity, roughness: E' [Pa], eta_0 [Pa s], composite Rq [m].
+        transverse_radius, face_width: R_y of the ellipse and the face that the line has [m].
+        radii: static; "printed" for R' = c rho_1 and pressures without a face width, "hertz" for the relative
+            radii of the flanks and the pressures of ellipse and line.
     """
 
     base_radii: Float[Array, "2"]
@@ -69,6 +74,9 @@ class Drive(eqx.Module):
     modulus: Float[Array, ""]
     viscosity: Float[Array, ""]
     roughness: Float[Array, ""]
+    transverse_radius: Float[Array, ""]
+    face_width: Float[Array, ""]
+    radii: Literal["printed", "hertz"] = eqx.field(static=True, default="printed")
 
     @property
     def period(self) -> Float[Array, ""]:
@@ -130,15 +138,15 @@ def pairs(drive: Drive, cycle: Float[Array, ""], older: Bool[Array, ""]) -> Pair
     active = jnp.stack([older, jnp.ones_like(older)])
     first = drive.speed * place
     second = drive.speed * drive.base_radii[0] / drive.base_radii[1] * other
+    profile = place * other / drive.tangent
+    longer = drive.pointed if drive.radii == "printed" else jnp.zeros(())
     return Pairs(
         place=place,
         stiffness=jnp.where(active, powers @ drive.coefficients, 0.0),
         active=active,
         sliding=first - second,
         entrainment=(first + second) / 2.0,
-        radius=jnp.where(
-            drive.pointed > 0.0, drive.radius_factor * place, place * other / drive.tangent
-        ),
+        radius=jnp.where(longer > 0.0, drive.radius_factor * place, profile),
     )
 
 
@@ -159,14 +167,11 @@ def _error(values: Float[Array, "6"]) -> Float[Array, ""]:
 
 
 def friction_forces(drive: Drive, force: Float[Array, "2"], found: Pairs) -> Float[Array, "2"]:
-    """Friction of both pairs with the sign of the nominal sliding, none where they pull, eqs. 6, 13, 21 [N].
-
-    P_h is that of eq. 21 without a face width.
-    """
+    """Friction of both pairs with the sign of the nominal sliding, none where they pull, eqs. 6, 13, 21 [N]."""
     pushing = force > 0.0
     pressed = jnp.where(pushing, force, _LEAST_FORCE)
     coefficient = xu_2007(
-        pressure=line_pressure(line_load=pressed, radius=found.radius, modulus=drive.modulus),
+        pressure=_pressure(drive, pressed, found),
         slide_roll_ratio=jnp.abs(found.sliding) / found.entrainment,
         entrainment=found.entrainment,
         viscosity=drive.viscosity,
@@ -174,6 +179,16 @@ def friction_forces(drive: Drive, force: Float[Array, "2"], found: Pairs) -> Flo
         roughness_rq=drive.roughness,
     )
     return jnp.where(pushing, coefficient * pressed, 0.0) * jnp.sign(found.sliding)
+
+
+def _pressure(drive: Drive, force: Float[Array, "2"], found: Pairs) -> Float[Array, "2"]:
+    """Pressure of both pairs [Pa]: that of eq. 21 without a face width, or of Hertz's ellipse and line."""
+    both = {"radius": found.radius, "modulus": drive.modulus}
+    if drive.radii == "printed":
+        return line_pressure(line_load=force, **both)
+    points = hamrock_brewe_1983(load=force, transverse_radius=drive.transverse_radius, **both)
+    lines = line_pressure(line_load=force / drive.face_width, **both)
+    return jnp.where(drive.pointed > 0.0, points.pressure, lines)
 
 
 class Course(eqx.Module):

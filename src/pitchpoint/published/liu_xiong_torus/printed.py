@@ -14,16 +14,27 @@ from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.torus.family import middle_pair
 from pitchpoint.gears.torus.pair import TorusPair
 from pitchpoint.gears.torus.table import TorusGears
+from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
+from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
 from pitchpoint.published.liu_xiong_torus import steady
-from pitchpoint.published.liu_xiong_torus.figures import INSTANTS, LINES, Oil, figures
+from pitchpoint.published.liu_xiong_torus.figures import (
+    CYCLE_COURSES,
+    INSTANTS,
+    LINES,
+    Oil,
+    cycle_places,
+    figures,
+)
 from pitchpoint.published.liu_xiong_torus.motion import Drive, Piece, course
 from pitchpoint.published.liu_xiong_torus.publication import PAIRS
 from pitchpoint.published.liu_xiong_torus.steady import Springs
+from pitchpoint.published.liu_xiong_torus.stiffness import library_stiffness, straight
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.publication import Point, Read
 
@@ -37,6 +48,12 @@ Known = dict[str, Float[Arrays, "..."]]
 _DEGREE = 4
 
 _PINION = "gear 1"
+
+_ROLLS = 313
+"""Roll angles at which the stiffness of a pair is kept, some 0.05 deg apart."""
+
+_INSIDE = 1e-9
+"""Relative distance of these from the ends of the path."""
 
 _SEMI_AXIS = 2e-3
 """Of the ellipse for which the reference calculation tells the largest tilt [m]."""
@@ -193,23 +210,60 @@ def _literal(point: Point, mesh: TorusPair) -> Read:
     given = point.formulas
     if not isinstance(given, TorusFormulas):
         return {}
-    known: Known = jax.device_get(_conditions(point.design, point.operation))
-    line: Known = jax.device_get(_line(mesh))
-    turn = _pieces(line, given)
+    known: Known = jax.device_get({**_conditions(point.design, point.operation), **_line(mesh)})
+    turn = _pieces(known, given)
     whole = float(floor(given.mesh_cycles))
-    oil = Oil(
-        array(known.pop("pressure_viscosity")), array(line["transverse_radius"]), array(whole)
-    )
+    oil = Oil(array(known["pressure_viscosity"]), array(whole))
     found: dict[str, float | Values] = {
         "start_cycles": np.linspace(0.0, given.mesh_cycles, INSTANTS),
         "start_orders": np.arange(1.0, LINES + 1.0) / whole,
+        "cycle_part": np.asarray(cycle_places()),
     }
     for name in PAIRS:
-        drive = _drive(name, given, {**known, **line}, point.operation)
+        drive = _drive(name, point, known)
         told = jax.device_get(figures(drive, course(drive, turn), oil))
         _check_found(name, told)
         found |= _named(name, told)
-    return {**found, **_beside(found)}
+    return {**found, **_beside(found), **_stiffness(point, known)}
+
+
+def _stiffness(point: Point, known: Known) -> Read:
+    """Stiffness of a pair of teeth over its path: of the library, as given, and as the motion has it."""
+    given = point.formulas
+    assert isinstance(given, TorusFormulas)
+    path = np.linspace(_INSIDE, 1.0 - _INSIDE, _ROLLS) * float(known["ratio"])
+    roll = path * _roll_of(known)
+    found: dict[str, Values] = {"stiffness_roll": roll}
+    for name in PAIRS:
+        rolls, springs = (
+            np.asarray(getattr(given, f"{name}_{of}")) for of in ("roll", "stiffness")
+        )
+        if name != "torus":
+            springs = given.standard_scale * springs
+        library = library_stiffness(*_teeth(name, point), float(point.operation.load), path)
+        curve = [0.0, *_coefficients(name, point, known)]
+        each = {
+            "given": straight(roll, rolls, springs),
+            "motion": np.polynomial.polynomial.polyval(roll, curve),
+            **library,
+        }
+        found |= {f"{name}_{told}_stiffness": values for told, values in each.items()}
+    return found
+
+
+def _roll_of(known: Known) -> float:
+    """Roll angle of the pinion for one base pitch [rad]."""
+    return float(known["base_pitch"] / known["base_radii"][0])
+
+
+def _teeth(name: str, point: Point) -> tuple[Mesh, tuple[Solid, Solid], Terms]:
+    """Pair of gears, materials and terms by which its teeth yield."""
+    return _mesh(name, point), point.design.solids, point.terms
+
+
+def _mesh(name: str, point: Point) -> Mesh:
+    assert isinstance(point.gears, TorusGears)
+    return point.design.mesh if name == "torus" else middle_pair(point.gears, _PINION)
 
 
 def _named(pair: str, told: Mapping[str, Values | Array]) -> dict[str, float | Values]:
@@ -221,7 +275,8 @@ def _named(pair: str, told: Mapping[str, Values | Array]) -> dict[str, float | V
 
 
 def _check_found(name: str, told: Known) -> None:
-    if not all(np.all(np.isfinite(value)) for value in told.values()):
+    numbers = [value for key, value in told.items() if key not in CYCLE_COURSES]
+    if not all(np.all(np.isfinite(value)) for value in numbers):
         raise ConvergenceError(
             f"the motion of the {name} pair by the printed equations was not found: it grows without bound, "
             "or takes more steps than are allowed"
@@ -235,25 +290,30 @@ def _beside(found: Read) -> Read:
         "error_ratio": found["torus_largest_error"] / found["standard_largest_error"],
         "friction_ratio": found["torus_sliding_friction"] / found["standard_sliding_friction"],
         "printed_film_ratio": torus / standard,
+        **{
+            f"torus_less_standard_{told}": found[f"torus_{name}"] - found[f"standard_{name}"]
+            for told, name in _LESS.items()
+        },
     }
+
+
+_LESS = {"friction": "sliding_friction", "efficiency": "printed_efficiency"}
+"""What is told of the torus pair less the standard pair."""
 
 
 def _steady(point: Point, mesh: TorusPair) -> Read:
     """The motion of both pairs in steady state by the corrected equations, where it is asked for."""
-    given, gears = point.formulas, point.gears
-    if not isinstance(given, TorusFormulas) or not isinstance(gears, TorusGears):
-        return {}
-    if given.steady_pinion is None:
+    given = point.formulas
+    if not isinstance(given, TorusFormulas) or given.steady_pinion is None:
         return {}
     known: Known = jax.device_get({**_conditions(point.design, point.operation), **_line(mesh)})
-    meshes = {"torus": mesh, "standard": middle_pair(gears, _PINION)}
     found: dict[str, float | Values] = {
         "steady_cycles": np.linspace(0.0, 1.0, steady.INSTANTS),
         "steady_orders": np.arange(1.0, steady.ORDERS + 1.0),
     }
     for name in PAIRS:
-        springs = _springs(_drive(name, given, known, point.operation), known, given)
-        own = replace(point.design, mesh=meshes[name])
+        springs = _springs(_drive(name, point, known), known, given)
+        own = replace(point.design, mesh=_mesh(name, point))
         found |= _named(name, steady.steady_figures(own, point.operation, springs))
     over = {name: found[f"torus_{name}"] / found[f"standard_{name}"] for name in _OVER}
     return {**found, **{f"{name}_ratio": value for name, value in over.items()}}
@@ -264,7 +324,7 @@ _OVER = ("steady_friction", "steady_film")
 
 def _springs(drive: Drive, known: Known, given: TorusFormulas) -> Springs:
     """Bodies and springs of the corrected equations; a place on the path is counted in base pitches."""
-    roll = float(known["base_pitch"] / known["base_radii"][0])
+    roll = _roll_of(known)
     first, powers = np.asarray(drive.coefficients), np.arange(1, _DEGREE + 1)
     coefficients, ratio = first * roll**powers, float(known["ratio"])
     return Springs(
@@ -303,26 +363,23 @@ def _conditions(design: Design, operation: Operation) -> Known:
         "inertia": mass * radii**2 / 2.0,
         "mass": mass,
         "teeth": mesh.teeth[0],
+        "face_width": mesh.face_width,
         "modulus": design.modulus,
         "viscosity": oil.viscosity(temperature),
         "pressure_viscosity": oil.pressure_viscosity(temperature),
     }
 
 
-_OF_LINE = ("base_radii", "tangent", "entry", "base_pitch")
-_OF_CONDITIONS = ("inertia", "mass", "teeth", "modulus", "viscosity")
+_OF_LINE = ("base_radii", "tangent", "entry", "base_pitch", "transverse_radius")
+_OF_CONDITIONS = ("inertia", "mass", "teeth", "modulus", "viscosity", "face_width")
 
 
-def _drive(name: str, given: TorusFormulas, known: Known, operation: Operation) -> Drive:
-    torus = name == "torus"
-    rolls, springs = (getattr(given, f"{name}_{what}") for what in ("roll", "stiffness"))
-    if not torus:
-        rolls, springs = _filled(given, np.asarray(rolls), np.asarray(springs))
-    coefficients = pair_stiffness(roll=rolls, stiffness=springs)
-    _check_stiffness(name, coefficients, known)
+def _drive(name: str, point: Point, known: Known) -> Drive:
+    given, operation = point.formulas, point.operation
+    assert isinstance(given, TorusFormulas)
     numbers: dict[str, ArrayLike] = {
-        "coefficients": coefficients,
-        "pointed": float(torus),
+        "coefficients": _coefficients(name, point, known),
+        "pointed": float(name == "torus"),
         "radius_factor": given.radius_factor,
         "bearing": given.bearing_stiffness,
         "bearing_damping": given.bearing_damping,
@@ -333,7 +390,29 @@ def _drive(name: str, given: TorusFormulas, known: Known, operation: Operation) 
         "torque": operation.load,
     }
     own = {key: known[key] for key in (*_OF_LINE, *_OF_CONDITIONS)}
-    return Drive(**{key: jnp.asarray(value, float) for key, value in {**own, **numbers}.items()})
+    values = {key: jnp.asarray(value, float) for key, value in {**own, **numbers}.items()}
+    return Drive(**values, radii=given.radius)
+
+
+def _coefficients(name: str, point: Point, known: Known) -> Values:
+    """Polynomial on which the motion runs, see `pair_stiffness`; InputError if it is negative somewhere.
+
+    The library's stiffness is taken at the roll angles of Table 1 that lie on the path, as the table has it.
+    """
+    given = point.formulas
+    assert isinstance(given, TorusFormulas)
+    rolls, springs = (np.asarray(getattr(given, f"{name}_{of}")) for of in ("roll", "stiffness"))
+    if given.stiffness == "library":
+        rolls = np.asarray(given.torus_roll)
+        path = rolls / _roll_of(known)
+        there = path < float(known["ratio"])
+        rolls, load = rolls[there], float(point.operation.load)
+        springs = library_stiffness(*_teeth(name, point), load, path[there])["secant"]
+    elif name != "torus":
+        rolls, springs = _filled(given, rolls, springs)
+    coefficients = pair_stiffness(roll=rolls, stiffness=springs)
+    _check_stiffness(name, coefficients, known)
+    return coefficients
 
 
 def _check_stiffness(name: str, coefficients: Values, known: Known) -> None:

@@ -4,7 +4,16 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from pitchpoint.published.publication import Beside, Curves, Publication
-from pitchpoint.results.variable import Variable, deviation, force, length, percent, power
+from pitchpoint.results.variable import (
+    Variable,
+    angle,
+    deviation,
+    force,
+    length,
+    percent,
+    power,
+    stiffness,
+)
 
 __all__ = ["PAIRS", "PUBLICATION"]
 
@@ -66,6 +75,8 @@ _BESIDE = {
     "printed_film_ratio": _plain(
         "film of the torus pair over that of the standard pair, R' as published", "h/h"
     ),
+    "torus_less_standard_friction": force("sliding friction, torus less standard pair", "ΔF"),
+    "torus_less_standard_efficiency": percent("efficiency, torus less standard pair", "Δχ"),
 }
 
 
@@ -84,6 +95,7 @@ _OF_MOTION = {
     "force_peak": Variable(
         "frequency of the highest line of the normal force", "f", "1/s", "Hz", "frequency"
     ),
+    "highest_line": force("highest line of the normal force", "F_n"),
 }
 """Numbers of the motion by the printed equations, of one pair."""
 
@@ -106,6 +118,8 @@ _STEADY = {
 
 _PLACES = {
     "start_cycles": _plain("mesh cycles from the start on", "t/t_c"),
+    "cycle_part": _plain("part of the last whole mesh cycle", "t/t_c"),
+    "stiffness_roll": angle("roll of the pinion since the pair entered", "θ"),
     "steady_cycles": _plain("mesh cycles in steady state", "t/t_c"),
     "start_orders": _plain("order of the mesh frequency", "f t_c"),
     "steady_orders": _plain("order of the mesh frequency", "f t_c"),
@@ -115,7 +129,28 @@ _COURSES = {
     "error": deviation("dynamic transmission error", "ε_d"),
     "gear_speed": Variable("speed of the gear", "ω_g", "rad/s", "rad/s", "rotational speed"),
     "spectrum": force("amplitude of the normal force", "F_n"),
+    "force_both": force("normal force of both pairs of teeth", "F_n"),
+    **{f"force_{pair}": force(f"normal force of pair {pair}", "F_n") for pair in (0, 1)},
+    **{f"friction_{pair}": force(f"sliding friction of pair {pair}", "F_f") for pair in (0, 1)},
+    **{f"film_course_{pair}": deviation(f"least film of pair {pair}", "h_min") for pair in (0, 1)},
+    "efficiency_course": percent("efficiency of the moment", "χ"),
 }
+"""Courses that the motion as published and that in steady state have, of one pair of gears."""
+
+_PRINTED_COURSES = {
+    "friction_both": force("sliding friction of both pairs of teeth", "ΣF_f"),
+    **{f"stiffness_{pair}": stiffness(f"stiffness of pair {pair}", "k") for pair in (0, 1)},
+    "stiffness_both": stiffness("stiffness of both pairs of teeth", "k"),
+}
+"""Courses of the motion as published alone."""
+
+_STIFFNESS = {
+    "given_stiffness": stiffness("stiffness of a pair of teeth, as given", "k"),
+    "motion_stiffness": stiffness("stiffness of a pair of teeth on which the motion runs", "k"),
+    "secant_stiffness": stiffness("stiffness of a pair of teeth, library, secant F_n/δ", "k"),
+    "slope_stiffness": stiffness("stiffness of a pair of teeth, library, slope dF_n/dδ", "k"),
+}
+"""Courses over the path of a pair of teeth."""
 
 _STATUS = {"steady_status": _plain("status of the solve", "")}
 
@@ -128,24 +163,76 @@ _STEADY_RATIOS = {
     ),
 }
 
-_HIDDEN = ("film_parts", "mean_force", "force_peak")
+_HIDDEN = ("film_parts", "mean_force", "force_peak", "highest_line")
+
+
+_PATH_COLUMNS = {
+    "torus": "given: Table 1, straight between its values",
+    "standard": "given: derived, not in the paper",
+}
+
+_IN_ORDER = (
+    ("force_both", "cycle_part", "Figure 7"),
+    ("force_0", "cycle_part", ""),
+    ("force_1", "cycle_part", ""),
+    ("gear_speed", "start_cycles", "Figure 8"),
+    ("spectrum", "start_orders", "Figure 9"),
+    ("error", "start_cycles", "Figures 11 to 13"),
+    ("friction_0", "cycle_part", "Figures 14a to 16a"),
+    ("friction_1", "cycle_part", "Figures 14b to 16b"),
+    ("efficiency_course", "cycle_part", "Figures 17 to 20"),
+    ("film_course_0", "cycle_part", "Figures 21a to 23a"),
+    ("film_course_1", "cycle_part", "Figures 21b to 23b"),
+)
+"""Courses of the motion as published, in the order of the paper."""
 
 
 def _curves() -> Iterator[Curves]:
-    """Courses of both pairs over each other, from the start on and in steady state."""
-    for begin, which in (("", "as published"), ("steady_", "steady state")):
-        for name, one in _COURSES.items():
-            along = "orders" if name == "spectrum" else "cycles"
-            yield Curves(
-                f"{one.long_name}, {which}",
-                f"{begin or 'start_'}{along}",
-                tuple(f"{pair}_{begin}{name}" for pair in PAIRS),
-            )
+    """Courses over each other: stiffness, then both pairs from the start on, then in steady state."""
+    yield from _of_the_path()
+    yield _of_torus_pair("stiffness", "stiffness on which the motion runs", "Figure 5")
+    for name, along, shows in _IN_ORDER:
+        yield _of_both(name, along, "as published", "", shows)
+        if name == "spectrum":
+            yield _of_torus_pair("friction", "sliding friction", "Figure 10")
+    for name, along, _ in _IN_ORDER:
+        place = "steady_orders" if along == "start_orders" else "steady_cycles"
+        yield _of_both(name, place, "steady state", "steady_", "")
+
+
+def _of_both(name: str, along: str, which: str, begin: str, shows: str) -> Curves:
+    """A course of the torus pair over that of the standard pair."""
+    names = tuple(f"{pair}_{begin}{name}" for pair in PAIRS)
+    return Curves(f"{_COURSES[name].long_name}, {which}", along, names, shows=shows)
+
+
+def _of_torus_pair(name: str, title: str, shows: str) -> Curves:
+    """A course of both pairs of teeth of the torus pair, and of both together."""
+    names = tuple(f"torus_{name}_{which}" for which in ("0", "1", "both"))
+    columns = ("pair 0", "pair 1", "both")
+    return Curves(f"{title}, torus pair, as published", "cycle_part", names, columns, shows=shows)
+
+
+def _of_the_path() -> Iterator[Curves]:
+    """Stiffness of a pair of teeth as given, as the motion has it, and as the library has it."""
+    for pair in PAIRS:
+        names = tuple(f"{pair}_{name}" for name in _STIFFNESS)
+        columns = (
+            _PATH_COLUMNS[pair],
+            "the motion runs on this polynomial",
+            "library, secant F_n/δ",
+            "library, slope dF_n/dδ",
+        )
+        shows = "Table 1" if pair == "torus" else ""
+        title = f"stiffness of a pair of teeth, {pair} pair"
+        yield Curves(title, "stiffness_roll", names, columns, shows=shows)
 
 
 def _dimensions() -> dict[str, str]:
     """Dimension of every course, and of the places that it runs over."""
-    return {name: f"{one.along}_place" for one in _curves() for name in (one.along, *one.names)}
+    drawn = {name: f"{one.along}_place" for one in _curves() for name in (one.along, *one.names)}
+    beside = {f"standard_{name}": "cycle_part_place" for name in _PRINTED_COURSES}
+    return {**drawn, **beside}
 
 
 def _of(pair: str, numbers: dict[str, Variable], which: str) -> dict[str, Variable]:
@@ -206,11 +293,18 @@ PUBLICATION = Publication(
         **_BESIDE,
         **_every(_OF_MOTION, "as published"),
         **_every({**_STEADY, **_STATUS}, "steady state"),
-        **_every(_COURSES, "as published"),
+        **_every({**_COURSES, **_PRINTED_COURSES}, "as published"),
+        **_every(_STIFFNESS, "of the case"),
         **_every({f"steady_{name}": one for name, one in _COURSES.items()}, "steady state"),
         **_PLACES,
         **_STEADY_RATIOS,
     },
     beside=(_SIDE_BY_SIDE,),
     courses=_dimensions(),
+    stiffness=(
+        "The motion of the publication does not run on this stiffness but on the values of its Table 1 (those "
+        'given for the standard pair), unless formulas.stiffness is "library". Both are drawn over each '
+        "other among the formulas of the publication; the mesh stiffness here is a slope dF_n/dδ at the torque "
+        "of the case."
+    ),
 )

@@ -164,6 +164,7 @@ def _told(moving: Moving, moved: Motion, law: FilmThickness) -> dict[str, Array]
     friction = jnp.abs(total(found.drawn))
     heat = found.drawn * found.slip
     put_in, now = moved.power_in, moved.instantaneous_efficiency
+    films = jnp.nanmin(film(moving, moved, law), axis=1)
     pushed = found.on_coordinates[2:].reshape(2, 2, *friction.shape)
     return {
         "steady_largest_error": jnp.max(error),
@@ -176,19 +177,38 @@ def _told(moving: Moving, moved: Motion, law: FilmThickness) -> dict[str, Array]
         "steady_energy_left": moved.energy.closure,
         "steady_reaction_left": jnp.max(jnp.abs(pushed[0] + pushed[1])) / jnp.max(found.force),
         "steady_pulled": moved.mean(jnp.where(total(found.force) < 0.0, 1.0, 0.0)),
-        "steady_film": _film(moving, moved, law),
-        **_courses(moved, error),
+        "steady_film": _film(moved, films),
+        **_courses(moved, error, films),
     }
 
 
-def _courses(moved: Motion, error: Float[Array, "element node"]) -> dict[str, Array]:
-    """Transmission error and speed of the gear over a mesh cycle, and orders of the mesh force."""
+def _courses(
+    moved: Motion, error: Float[Array, "element node"], films: Float[Array, "pair element node"]
+) -> dict[str, Array]:
+    """What goes over a mesh cycle, and orders of the mesh force; pair 0 is the older one."""
+    found = moved.found
+    kept = {
+        "error": error,
+        "gear_speed": jnp.abs(moved.rate[1]),
+        "force_both": total(found.force),
+        "efficiency_course": moved.instantaneous_efficiency,
+    }
+    touches = jnp.any(found.contacts.active, axis=1)
+    carried = {"force": jnp.sum(found.force, axis=1), "friction": jnp.sum(found.drawn, axis=1)}
+    shown = {name: jnp.where(touches, values, jnp.nan) for name, values in carried.items()}
+    for name, values in {**shown, "film_course": films}.items():
+        kept |= {f"{name}_{told}": values[lane] for told, lane in _LANES.items()}
     places = jnp.arange(INSTANTS) / (INSTANTS - 1.0) * moved.bounds[-1]
     turned = moved.turned.ravel()
-    kept = {"steady_error": error, "steady_gear_speed": jnp.abs(moved.rate[1])}
-    spectrum = moved.spectrum(total(moved.found.force), range(1, ORDERS + 1))
-    courses = {name: jnp.interp(places, turned, values.ravel()) for name, values in kept.items()}
-    return {**courses, "steady_spectrum": spectrum}
+    courses = {
+        f"steady_{name}": jnp.interp(places, turned, values.ravel())
+        for name, values in kept.items()
+    }
+    return {**courses, "steady_spectrum": moved.spectrum(kept["force_both"], range(1, ORDERS + 1))}
+
+
+_LANES = {"0": 1, "1": 0}
+"""Lane of the contacts by the number that the paper has for a pair."""
 
 
 def _parted(moving: Moving, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
@@ -197,9 +217,9 @@ def _parted(moving: Moving, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
     return moving.error.at(phase)
 
 
-def _film(moving: Moving, moved: Motion, law: FilmThickness) -> Float[Array, ""]:
-    """Mean over time of the thinnest film of both pairs of teeth, while they press [m]."""
-    thinnest = jnp.nanmin(film(moving, moved, law), axis=(0, 1))
+def _film(moved: Motion, films: Float[Array, "pair element node"]) -> Float[Array, ""]:
+    """Mean over time of the thinner film of both pairs of teeth, while they press [m]."""
+    thinnest = jnp.nanmin(films, axis=0)
     presses = jnp.isfinite(thinnest)
     mean = moved.mean(jnp.where(presses, thinnest, 0.0))
     return mean / moved.mean(jnp.where(presses, 1.0, 0.0))

@@ -47,6 +47,10 @@ class TorusFormulas(Table):
     """Factor c of R' = c ρ_1, the effective radius of the torus pair."""
     roughness: Annotated[float, ROUGHNESS]
     """Composite Rq S of eq. 22."""
+    radius: Literal["printed", "hertz"] = "printed"
+    """Radii of pressure, film and rolling: R' = c ρ_1 as published, or those of Hertz's contact, per width."""
+    stiffness: Literal["table", "library"] = "table"
+    """Stiffness on which both pairs run: the values given here, or the secant of the library at the torque."""
     torus_roll: Rolls
     """Roll angles of the pinion at which the stiffness of the torus pair is given."""
     torus_stiffness: Springs

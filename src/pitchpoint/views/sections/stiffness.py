@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import xarray as xr
 
+from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -165,8 +166,15 @@ def stiffness_blocks(page: Page) -> Iterator[Block]:
         "Along the transverse line of action: force there over the approach of the teeth. Pair I entered in "
         "this period, II one period before, and so on; the mesh is their sum."
     )
+    if told := _of_publication(page.first.get("source", "")):
+        yield Paragraph(told, "note")
     yield _table(page)
     yield from tabbed((it.title, _of_variant(it)) for it in stiffness_panels(page.outcomes))
+
+
+def _of_publication(source: str) -> str:
+    """On which stiffness the formulas of a publication run, where that is another one."""
+    return PUBLICATIONS[source].stiffness if source in PUBLICATIONS else ""
 
 
 def _of_variant(it: Panel) -> Iterator[Block]:
@@ -178,7 +186,9 @@ def _of_variant(it: Panel) -> Iterator[Block]:
 def stiffness_facts(outcome: Outcome) -> list[tuple[str, str]]:
     """Lines for the answer at the top."""
     told = stiffness_answer(outcome)
-    return [("Mesh stiffness", told)] if told else []
+    other = _of_publication(outcome.manifest.get("source", ""))
+    title = "Mesh stiffness of the library, not of the motion" if other else "Mesh stiffness"
+    return [(title, told)] if told else []
 
 
 def stiffness_warnings(outcome: Outcome) -> list[str]:
