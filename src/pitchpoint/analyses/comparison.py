@@ -203,9 +203,18 @@ def _axis(data: xr.Dataset, dim: str) -> _Axis:
         places = data["axis"].values
         return _Axis(told["sweep_key"], places, told["axis_kind"], told["axis_unit"])
     if dim not in data.coords or dim not in VARIABLES:
-        return _Axis(dim, np.full(data.sizes.get(dim, 1), np.nan))
+        return _along(dim, data)
     variable = VARIABLES[dim]
     return _Axis(dim, data[dim].values, variable.kind, variable.usual)
+
+
+def _along(dim: str, data: xr.Dataset) -> _Axis:
+    """Places of a course of a publication at one point, by their variable; unknown of any other dimension."""
+    name = dim.removesuffix("_place")
+    if name == dim or name not in data or name not in VARIABLES or data.sizes.get("point") != 1:
+        return _Axis(dim, np.full(data.sizes.get(dim, 1), np.nan))
+    variable = VARIABLES[name]
+    return _Axis(name, data[name].values[0], variable.kind, variable.usual)
 
 
 def _demand_places(target: Target, axis: _Axis) -> None:

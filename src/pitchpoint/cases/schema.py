@@ -1584,6 +1584,10 @@ def _check_places(target: Target, sweep: Sweep | None) -> None:
     """InputError if places are no values of the key that is swept."""
     if not target.at:
         return
+    if sweep is None and (kind := _along(target.variable)):
+        for place in target.at:
+            units.parse(place, kind)
+        return
     try:
         quantity = quantity_at(sweep.key) if sweep is not None else None
     except InputError:
@@ -1592,6 +1596,13 @@ def _check_places(target: Target, sweep: Sweep | None) -> None:
         raise InputError(f"{shown(target.study)} has no axis of numbers to be read at")
     for place in target.at:
         quantity.read(place)
+
+
+def _along(variable: str) -> str:
+    """Kind of the places that a course of a publication runs over; empty for what is none."""
+    over = next((one.courses[variable] for one in PUBLICATIONS.values() if variable in one.courses), "")
+    places = over.removesuffix("_place")
+    return VARIABLES[places].kind if places in VARIABLES else ""
 
 
 def _given(table: Table, key: str) -> bool:

@@ -1,4 +1,4 @@
-"""What Liu and Xiong draw and tabulate of a motion: Figs. 5 to 23, Tables 4 to 7 and the balance of energy."""
+"""What Liu and Xiong draw and tabulate of a motion, Figs. 5 to 23 and Tables 4 to 7, and the energy."""
 
 import equinox as eqx
 from jaxtyping import Array, Bool, Float
@@ -81,6 +81,7 @@ def figures(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..
         "friction_power": driven,
         "friction_heat": _mean(moved, heat),
         "energy_imbalance": (driven + _mean(moved, heat)) / put_in,
+        "mean_gear_speed": _mean(moved, _gear_speed(drive, moved)),
         **_force(drive, moved, oil),
         **_courses(drive, moved),
         **_cycle_courses(drive, moved, oil),
@@ -145,9 +146,13 @@ def _last_cycle(drive: Drive, moved: Course, oil: Oil) -> Course:
 def _courses(drive: Drive, moved: Course) -> dict[str, Float[Array, " instant"]]:
     """Transmission error and speed of the gear from the start on [m, rad/s]."""
     times = jnp.arange(INSTANTS) / (INSTANTS - 1.0) * moved.time[-1]
-    turning = (moved.rate[:, 5] + drive.speed * drive.base_radii[0]) / drive.base_radii[1]
-    kept = {"error": moved.error, "gear_speed": turning}
+    kept = {"error": moved.error, "gear_speed": _gear_speed(drive, moved)}
     return {name: jnp.interp(times, moved.time, values) for name, values in kept.items()}
+
+
+def _gear_speed(drive: Drive, moved: Course) -> Float[Array, " time"]:
+    """Speed of the gear: that beside the nominal motion, and the nominal one [rad/s]."""
+    return (moved.rate[:, 5] + drive.speed * drive.base_radii[0]) / drive.base_radii[1]
 
 
 def _mean(moved: Course, values: Float[Array, " time"]) -> Float[Array, ""]:

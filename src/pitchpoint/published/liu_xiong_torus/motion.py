@@ -167,7 +167,10 @@ def _error(values: Float[Array, "6"]) -> Float[Array, ""]:
 
 
 def friction_forces(drive: Drive, force: Float[Array, "2"], found: Pairs) -> Float[Array, "2"]:
-    """Friction of both pairs with the sign of the nominal sliding, none where they pull, eqs. 6, 13, 21 [N]."""
+    """Friction of both pairs with the sign of the nominal sliding, none where they pull [N].
+
+    Source: Liu and Xiong, eqs. 6, 13 and 21.
+    """
     pushing = force > 0.0
     pressed = jnp.where(pushing, force, _LEAST_FORCE)
     coefficient = xu_2007(

@@ -92,6 +92,9 @@ _OF_MOTION = {
     "friction_heat": power("mean loss by sliding", "P_v"),
     "energy_imbalance": percent("energy that the printed signs create, of the input", "ΔE/E"),
     "mean_force": force("mean normal force over whole mesh cycles", "F_n"),
+    "mean_gear_speed": Variable(
+        "mean speed of the gear", "ω_g", "rad/s", "rad/s", "rotational speed"
+    ),
     "force_peak": Variable(
         "frequency of the highest line of the normal force", "f", "1/s", "Hz", "frequency"
     ),
@@ -163,7 +166,7 @@ _STEADY_RATIOS = {
     ),
 }
 
-_HIDDEN = ("film_parts", "mean_force", "force_peak", "highest_line")
+_HIDDEN = ("film_parts", "mean_force", "mean_gear_speed", "force_peak", "highest_line")
 
 
 _PATH_COLUMNS = {
@@ -302,9 +305,9 @@ PUBLICATION = Publication(
     beside=(_SIDE_BY_SIDE,),
     courses=_dimensions(),
     stiffness=(
-        "The motion of the publication does not run on this stiffness but on the values of its Table 1 (those "
-        'given for the standard pair), unless formulas.stiffness is "library". Both are drawn over each '
-        "other among the formulas of the publication; the mesh stiffness here is a slope dF_n/dδ at the torque "
-        "of the case."
+        "The motion of the publication does not run on this stiffness but on the values of its Table 1, and on "
+        "those given for the standard pair, unless formulas.stiffness is \"library\". Both are drawn over each "
+        "other among the formulas of the publication. The mesh stiffness here is the slope dF_n/dδ of the "
+        "library at the torque of the case."
     ),
 )

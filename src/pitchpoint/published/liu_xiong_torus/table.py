@@ -48,9 +48,9 @@ class TorusFormulas(Table):
     roughness: Annotated[float, ROUGHNESS]
     """Composite Rq S of eq. 22."""
     radius: Literal["printed", "hertz"] = "printed"
-    """Radii of pressure, film and rolling: R' = c ρ_1 as published, or those of Hertz's contact, per width."""
+    """Radii of pressure, film and rolling: R' = c ρ_1 as printed, or those of Hertz's contact."""
     stiffness: Literal["table", "library"] = "table"
-    """Stiffness on which both pairs run: the values given here, or the secant of the library at the torque."""
+    """Stiffness on which both pairs run: the values of this table, or the secant of the library."""
     torus_roll: Rolls
     """Roll angles of the pinion at which the stiffness of the torus pair is given."""
     torus_stiffness: Springs
