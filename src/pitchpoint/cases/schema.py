@@ -1600,7 +1600,9 @@ def _check_places(target: Target, sweep: Sweep | None) -> None:
 
 def _along(variable: str) -> str:
     """Kind of the places that a course of a publication runs over; empty for what is none."""
-    over = next((one.courses[variable] for one in PUBLICATIONS.values() if variable in one.courses), "")
+    over = next(
+        (one.courses[variable] for one in PUBLICATIONS.values() if variable in one.courses), ""
+    )
     places = over.removesuffix("_place")
     return VARIABLES[places].kind if places in VARIABLES else ""
 

@@ -34,7 +34,7 @@ LINES = 480
 INSTANTS = 2400
 """Places of equal distance from the start on at which a course is kept."""
 
-CYCLE = 1000
+CYCLE = 600
 """Places of equal distance in a mesh cycle at which what pairs of teeth carry is kept."""
 
 CYCLE_COURSES = (

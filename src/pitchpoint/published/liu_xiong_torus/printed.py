@@ -49,8 +49,8 @@ _DEGREE = 4
 
 _PINION = "gear 1"
 
-_ROLLS = 313
-"""Roll angles at which the stiffness of a pair is kept, some 0.05 deg apart."""
+_ROLLS = 157
+"""Roll angles at which the stiffness of a pair is kept, some 0.1 deg apart."""
 
 _INSIDE = 1e-9
 """Relative distance of these from the ends of the path."""

@@ -71,9 +71,9 @@ _AT_PITCH = {
 
 _BESIDE = {
     "error_ratio": _plain("largest transmission error, torus over standard pair", "ε/ε"),
-    "friction_ratio": _plain("sliding friction, torus over standard pair, as published", "F/F"),
+    "friction_ratio": _plain("sliding friction, torus over standard pair, from rest", "F/F"),
     "printed_film_ratio": _plain(
-        "film of the torus pair over that of the standard pair, R' as published", "h/h"
+        "film of the torus pair over that of the standard pair, from rest", "h/h"
     ),
     "torus_less_standard_friction": force("sliding friction, torus less standard pair", "ΔF"),
     "torus_less_standard_efficiency": percent("efficiency, torus less standard pair", "Δχ"),
@@ -195,7 +195,7 @@ def _curves() -> Iterator[Curves]:
     yield from _of_the_path()
     yield _of_torus_pair("stiffness", "stiffness on which the motion runs", "Figure 5")
     for name, along, shows in _IN_ORDER:
-        yield _of_both(name, along, "as published", "", shows)
+        yield _of_both(name, along, "from rest", "", shows)
         if name == "spectrum":
             yield _of_torus_pair("friction", "sliding friction", "Figure 10")
     for name, along, _ in _IN_ORDER:
@@ -213,7 +213,7 @@ def _of_torus_pair(name: str, title: str, shows: str) -> Curves:
     """A course of both pairs of teeth of the torus pair, and of both together."""
     names = tuple(f"torus_{name}_{which}" for which in ("0", "1", "both"))
     columns = ("pair 0", "pair 1", "both")
-    return Curves(f"{title}, torus pair, as published", "cycle_part", names, columns, shows=shows)
+    return Curves(f"{title}, torus pair, from rest", "cycle_part", names, columns, shows=shows)
 
 
 def _of_the_path() -> Iterator[Curves]:
@@ -253,7 +253,7 @@ _SIDE_BY_SIDE = Beside(
     columns=("torus pair", "standard pair"),
     rows={
         **{
-            f"{one.long_name}, as published": (f"torus_{name}", f"standard_{name}")
+            f"{one.long_name}, from rest": (f"torus_{name}", f"standard_{name}")
             for name, one in _OF_MOTION.items()
             if name not in _HIDDEN
         },
@@ -271,17 +271,20 @@ _SIDE_BY_SIDE = Beside(
         ),
     },
     note=(
-        "As published: start from rest by the printed equations with the fitted inputs. The thicker film of "
-        "the torus pair follows from its effective radius alone, R' = c rho_1; with the radii of Hertz, in "
-        "the last rows, its film is the thinner one. By the printed signs friction drives both gears behind "
-        "the pitch point and brakes both before it: its power is 2 mu F v_e with the sign of the sliding, "
-        "not the loss -mu F |v_s|, and what lies between the two is energy from nothing. In steady state, "
-        "of variant physical: the corrected equations with the same springs, the error once in a mesh "
-        "cycle, friction against the sliding, pressures and films by the radii of Hertz, and rolling per "
-        "width; the stiffness follows the place of the pinion and not time, and the energy balances. There "
-        "the friction of the torus pair is the larger one. At 10 rad/s the speed of the pinion is held: "
-        "under the heavy load the teeth store a third of the kinetic energy of the discs, and a constant "
-        "torque does not keep these turning."
+        "From rest: start by the printed equations with the fitted inputs, as published. What a pair of "
+        "teeth carries is drawn over the last whole mesh cycle; pair 0 is the older one. The motion runs on "
+        "the stiffness of Table 1; that of the library, secant and slope, is drawn over it and is not used, "
+        "but in variant hertz, which has the library's secant and the radii of Hertz: there the torus radii "
+        "act. The thicker film of the torus pair follows from its effective radius alone, R' = c rho_1; "
+        "with the radii of Hertz, in the last rows, its film is the thinner one. By the printed signs "
+        "friction drives both gears behind the pitch point and brakes both before it: its power is 2 mu F "
+        "v_e with the sign of the sliding, not the loss -mu F |v_s|, and what lies between the two is "
+        "energy from nothing. In steady state: the corrected equations with the same springs, the error "
+        "once in a mesh cycle, friction against the sliding, pressures and films by the radii of Hertz, and "
+        "rolling per width; the stiffness follows the place of the pinion and not time, and the energy "
+        "balances. There the friction of the torus pair is the larger one. At 10 rad/s the speed of the "
+        "pinion is held: under the heavy load the teeth store a third of the kinetic energy of the discs, "
+        "and a constant torque does not keep these turning."
     ),
     curves=tuple(_curves()),
     solves={"steady state": tuple(f"{pair}_steady_status" for pair in PAIRS)},
@@ -294,9 +297,9 @@ PUBLICATION = Publication(
         **_GEOMETRY,
         **_AT_PITCH,
         **_BESIDE,
-        **_every(_OF_MOTION, "as published"),
+        **_every(_OF_MOTION, "from rest"),
         **_every({**_STEADY, **_STATUS}, "steady state"),
-        **_every({**_COURSES, **_PRINTED_COURSES}, "as published"),
+        **_every({**_COURSES, **_PRINTED_COURSES}, "from rest"),
         **_every(_STIFFNESS, "of the case"),
         **_every({f"steady_{name}": one for name, one in _COURSES.items()}, "steady state"),
         **_PLACES,
@@ -305,9 +308,9 @@ PUBLICATION = Publication(
     beside=(_SIDE_BY_SIDE,),
     courses=_dimensions(),
     stiffness=(
-        "The motion of the publication does not run on this stiffness but on the values of its Table 1, and on "
-        "those given for the standard pair, unless formulas.stiffness is \"library\". Both are drawn over each "
-        "other among the formulas of the publication. The mesh stiffness here is the slope dF_n/dδ of the "
-        "library at the torque of the case."
+        "The motion of the publication does not run on this stiffness but on the values of its Table 1, "
+        'and on those given for the standard pair, unless formulas.stiffness is "library". Both are drawn '
+        "over each other among the formulas of the publication. The mesh stiffness here is the slope "
+        "dF_n/dδ of the library at the torque of the case."
     ),
 )

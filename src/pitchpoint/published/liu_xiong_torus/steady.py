@@ -28,7 +28,7 @@ __all__ = ["Springs", "corrected", "steady_figures"]
 LEAST, NODES = 16, 20
 """Elements of a mesh cycle, and nodes in each of them; more elements where the mesh is slow."""
 
-INSTANTS = 1200
+INSTANTS = 600
 """Places of equal distance in a mesh cycle at which a course is kept."""
 
 ORDERS = 160
