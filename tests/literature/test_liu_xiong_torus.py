@@ -96,10 +96,10 @@ def missed(study, variant="as_published", data=None, **changes):
 def test_rows_of_the_paper_are_counted_for_each_kind():
     assert {kind: dict(found) for kind, found in counts(rows("as_published")).items()} == {
         "predicted": {"miss": 22},
-        "fitted": {"pass": 79, "miss": 15},
+        "fitted": {"pass": 77, "miss": 17},
         "calibrated": {"pass": 3, "miss": 3},
         "definition": {"pass": 1},
-        "trend": {"pass": 45},
+        "trend": {"pass": 51},
         "reference": {"pass": 36},
     }
 
@@ -164,8 +164,8 @@ LOSSLESS = {
 }
 
 
-@pytest.mark.parametrize("study", ["light", "heavy"])
-def test_a_lossless_gear_misses_every_row_on_friction_and_efficiency(study):
+@pytest.mark.parametrize(("study", "count"), [("light", 3 * 6 + 4), ("heavy", 3 * 6 + 4 + 6)])
+def test_a_lossless_gear_misses_every_row_on_friction_and_efficiency(study, count):
     lossless = read(study)
     lossless = lossless.assign({name: 0.0 * lossless[name] + v for name, v in LOSSLESS.items()})
     aims = {one.quantity: one for one in case().targets if one.study == study}
@@ -174,7 +174,7 @@ def test_a_lossless_gear_misses_every_row_on_friction_and_efficiency(study):
         for row in compared(study, data=lossless)
         if aims[row.quantity].variable in LOSSLESS
     }
-    assert len(found) == 3 * 6 + 4
+    assert len(found) == count
     assert set(found.values()) == {"miss"}
 
 
@@ -184,7 +184,8 @@ def test_a_torus_pair_that_is_a_standard_pair_misses_the_differences():
     same["torus_less_standard_friction"] = 0.0 * same["torus_less_standard_friction"]
     same["torus_sliding_friction"] = same["standard_sliding_friction"]
     told = missed("heavy", data=same)
-    assert told >= {f"#{n}, sliding friction, torus less standard pair" for n in (2, 4, 6)}
+    assert told >= {f"#{n}, sliding friction, torus pair below standard pair" for n in (2, 4, 6)}
+    assert told >= {"#6, sliding friction, torus less standard pair"}
     assert told >= {f"#{n} torus, sliding friction" for n in (2, 6)}
 
 

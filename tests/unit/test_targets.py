@@ -11,6 +11,7 @@ from pitchpoint.cases.document import Document
 from pitchpoint.cases.library import find, names
 from pitchpoint.cases.schema import Target, validate
 from pitchpoint.errors import InputError
+from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.store import dataset
 from pitchpoint.results.target_rows import Row, in_words
 from pitchpoint.runs.run import describe
@@ -168,6 +169,46 @@ def test_no_shipped_case_passes_a_number_within_its_whole_size():
         assert given
         wide = [t for t in given if t.get("tolerance", 0.0) >= 0.5 * abs(t["printed"]) > 0.0]
         assert not [t for t in wide if t.get("expect", "within") == "within"]
+
+
+def course(*points):
+    """A course of a publication over places of its own, at some points."""
+    roll = np.array([np.radians([0.0, 1.0, 2.0])] * len(points))
+    along = ("point", "stiffness_roll_place")
+    values = {"stiffness_roll": (along, roll), "torus_secant_stiffness": (along, np.array(points))}
+    return {"study_one": dataset(values, {})}
+
+
+ON_COURSE = {"study": "one", "variable": "torus_secant_stiffness", "unit": "N/um"}
+
+
+def test_a_course_of_a_publication_is_read_along_its_places():
+    assert (
+        PUBLICATIONS["liu_xiong_2017"].courses["torus_secant_stiffness"] == "stiffness_roll_place"
+    )
+    rising = course([1e8, 2e8, 4e8])
+    rows = [
+        compare([target(**ON_COURSE, **given)], rising)[0].computed
+        for given in ({"at": "1.5 deg"}, {"reduce": "least_rise"}, {"reduce": "max"})
+    ]
+    np.testing.assert_allclose(rows, [300.0, 100.0, 400.0])
+    (row,) = compare([target(**ON_COURSE, at="3 deg")], rising)
+    assert row.verdict == "miss"
+    assert "stiffness_roll runs from 0 deg to 2 deg" in row.reason
+    with pytest.raises(InputError, match="over point and stiffness_roll_place"):
+        compare([target(**ON_COURSE, at="1 deg")], course([1e8] * 3, [2e8] * 3))
+
+
+@pytest.mark.parametrize(("at", "told"), [("1 deg", ""), ("1 N m", "torque"), (1.0, "no unit")])
+def test_places_on_a_course_of_a_publication_are_those_of_its_kind(at, told):
+    tree = {"targets": [{**ON_COURSE, "quantity": "q", "where": "w", "kind": "trend", "at": at}]}
+    tree["targets"][0] |= {"printed": 1.0, "study": "plain"}
+    document = Document("case.toml", {**tree, **REST, "source": "liu_xiong_2017"})
+    if not told:
+        assert validate(document).targets[0].at == ("1 deg",)
+        return
+    with pytest.raises(InputError, match=rf"targets\.0\.at: .*{told}"):
+        validate(document)
 
 
 def test_a_part_that_the_case_does_not_compute_is_told_before_it_runs():
