@@ -258,7 +258,7 @@ def _roll_of(known: Known) -> float:
 
 def _teeth(name: str, point: Point) -> tuple[Mesh, tuple[Solid, Solid], Terms]:
     """Pair of gears, materials and terms by which its teeth yield."""
-    return _mesh(name, point), point.design.solids, point.terms
+    return _mesh(name, point), point.design.solids, point.models[0].compliance
 
 
 def _mesh(name: str, point: Point) -> Mesh:
