@@ -307,6 +307,11 @@ PUBLICATION = Publication(
     },
     beside=(_SIDE_BY_SIDE,),
     courses=_dimensions(),
+    answers=(
+        *("error_ratio", "friction_ratio", "torus_less_standard_efficiency"),
+        *("printed_film_ratio", "film_ratio"),
+    ),
+    sections=("formulas",),
     stiffness=(
         "The motion of the publication does not run on this stiffness but on the values of its Table 1, "
         'and on those given for the standard pair, unless formulas.stiffness is "library". Both are drawn '
