@@ -41,6 +41,8 @@ from pitchpoint.gears.torus import table as torus
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table, tag
 from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.published.atanasiu2011.table import PairInMotion
+from pitchpoint.published.tian2024.table import PairOnPath
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.results.store import dataset, save
@@ -285,7 +287,7 @@ preload = "300 N"
 form = "films"
 map_angle = ["0 deg", "22.5 deg"]
 map_distance = [-0.9, 0.9]
-points = ["0 deg", "7 deg"]
+angles = ["0 deg", "7 deg"]
 entrainment_factor = [1.0, 0.03]
 speeds = ["300 rpm", "3000 rpm"]
 temperatures = ["20 degC", "60 degC"]
@@ -330,6 +332,13 @@ INVOLUTE["gears"]["circular_spline"] = {"form": "involute", "profile_shift": 3.6
 
 CONJUGATE = copy.deepcopy(INVOLUTE)
 CONJUGATE["formulas"] = {"form": "conjugate wear", "rate": "5e-18 1/Pa", "cycles": 6.5e9}
+
+ON_PATH, IN_MOTION = copy.deepcopy(BASE), copy.deepcopy(BASE)
+ON_PATH |= {"source": "tian_2024", "formulas": {"form": "pair on path", "places": 9}}
+IN_MOTION |= {
+    "source": "atanasiu_2011",
+    "formulas": {"form": "pair in motion", "input_torques": ["10 N m", "20 N m"]},
+}
 
 RIG = {key: BASE[key] for key in ("lubricant", "roughness")} | tomllib.loads(
     """
@@ -477,6 +486,8 @@ BASES = {
     "strain wave": STRAIN_WAVE,
     "involute": INVOLUTE,
     "conjugate": CONJUGATE,
+    "on path": ON_PATH,
+    "in motion": IN_MOTION,
     "rack": GANTRY,
     "torus": TORUS,
     "rig": RIG,
@@ -488,6 +499,8 @@ WALKS = [
     ("strain wave", ZoneFilms, ("formulas",)),
     ("involute", FlankWear, ("formulas",)),
     ("conjugate", ConjugateWear, ("formulas",)),
+    ("on path", PairOnPath, ("formulas",)),
+    ("in motion", PairInMotion, ("formulas",)),
     ("involute", strain_wave.InvoluteTooth, ("gears", "tooth")),
     ("involute", strain_wave.InvoluteGroove, ("gears", "circular_spline")),
     ("rack", rack_and_pinion.RackAndPinionGears, ("gears",)),

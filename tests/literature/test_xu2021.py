@@ -351,7 +351,7 @@ def test_stiffness_by_eq_16_is_that_of_a_film_that_sinks():
 def test_a_place_without_contact_is_refused():
     with pytest.raises(InputError, match=r"eqs\. 1 to 5 give no contact") as told:
         teeth().patch(np.deg2rad(15.0), 314.0, 293.15, 33)
-    assert told.value.key == "formulas.points"
+    assert told.value.key == "formulas.angles"
 
 
 def test_entrainment_is_that_of_eq_3_times_its_factor():
@@ -366,7 +366,7 @@ def test_entrainment_is_that_of_eq_3_times_its_factor():
     [
         ("map_angle", ["10 deg", "5 deg"], "the angles have to rise"),
         ("map_distance", [0.0, 0.1, 0.2], "3 distances were given for 2 angles"),
-        ("points", ["7 deg", "7 deg"], "B lies further from the long axis than A"),
+        ("angles", ["7 deg", "7 deg"], "B lies further from the long axis than A"),
         ("temperatures", ["30 degC", "20 degC"], "the temperatures have to rise"),
         ("course_nodes", 100, "33, 65, 129 or 257"),
     ],

@@ -21,6 +21,7 @@ from pitchpoint.views.inputs import input_rows, set_for_run
 LAW = {"name": "constant", "title": "constant", "note": ""}
 ROW = {"quantity": "q", "where": "Table 1", "printed": 1.0, "computed": None, "unit": "W"}
 ROW |= {"tolerance": 0.1, "kind": "predicted", "verdict": "excluded", "reason": "", "bound": ""}
+ROW |= {"expected_miss": False}
 GOOD: dict[str, Any] = {
     "case": "pair.toml",
     "variant": "default",

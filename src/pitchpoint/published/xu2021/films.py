@@ -91,7 +91,7 @@ class ToothFilms:
         """Entrainment at the operating speed: eq. 3 times the calibrated factor [m/s]."""
         logs = np.log(np.asarray(self.given.entrainment_factor))
         return np.asarray(
-            self.zone.speed(angle) * np.exp(np.interp(angle, self.given.points, logs))
+            self.zone.speed(angle) * np.exp(np.interp(angle, self.given.angles, logs))
         )
 
     def fluid(self, temperature: float | Course) -> Fluid:
@@ -203,7 +203,7 @@ class ToothFilms:
             raise InputError(
                 f"at {beyond:.4g} degrees from the long axis eqs. 1 to 5 give no contact: relative radius, "
                 "entrainment and load have to be positive",
-                key="formulas.points",
+                key="formulas.angles",
             )
         return angle
 
@@ -247,7 +247,7 @@ def films_at(point: Point) -> Read:
         "film_map_x": _MAP[0],
         "film_map_y": _MAP[1],
     }
-    for angle, name in zip(teeth.given.points, POINTS, strict=True):
+    for angle, name in zip(teeth.given.angles, POINTS, strict=True):
         own = _of_point(teeth, angle, speed, temperature)
         found |= {f"{key}_{name}": value for key, value in own.items()}
     return found

@@ -40,7 +40,7 @@ class ZoneFilms(Table):
     """R1 there less the pitch radius of the flexspline, in modules; straight lines lie between."""
     tangential: Literal["added", "opposed"] = "added"
     """Sense in which carried and elastic tangential velocity go together in eq. 3."""
-    points: tuple[Annotated[float, ANGLE], Annotated[float, ANGLE]]
+    angles: tuple[Annotated[float, ANGLE], Annotated[float, ANGLE]]
     """Angles from the long axis of the points A and B."""
     entrainment_factor: tuple[Annotated[float, FACTOR], Annotated[float, FACTOR]]
     """Entrainment over that of eq. 3 at A and B; geometric between them, and as there beyond them."""
@@ -81,8 +81,8 @@ class ZoneFilms(Table):
 
     @model_validator(mode="after")
     def _ordered(self) -> "ZoneFilms":
-        if self.points[1] <= self.points[0]:
-            raise InputError("B lies further from the long axis than A", key="points")
+        if self.angles[1] <= self.angles[0]:
+            raise InputError("B lies further from the long axis than A", key="angles")
         return self
 
     @model_validator(mode="after")
