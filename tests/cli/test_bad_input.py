@@ -44,6 +44,7 @@ from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.published.atanasiu2011.table import PairInMotion
 from pitchpoint.published.tian2024.table import PairOnPath
 from pitchpoint.published.xu2021.table import ZoneFilms
+from pitchpoint.published.zhao2022 import table as wear_table
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.results.store import dataset, save
 from pitchpoint.runs.jobs import jobs
@@ -1153,6 +1154,7 @@ def test_the_walk_reaches_every_table() -> None:
             rack_and_pinion,
             strain_wave,
             torus,
+            wear_table,
         )
         for each in vars(module).values()
         if isinstance(each, type) and issubclass(each, BaseModel)
