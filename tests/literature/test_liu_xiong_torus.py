@@ -613,12 +613,12 @@ def test_report_tells_what_became_of_solves():
         f"{pair}_steady_status": (("law", "point"), np.array([[float(code)]]))
         for pair, code in status.items()
     }
-    outcome = outcome_of({"steady": xr.Dataset(every, attrs={"title": "at one point"})})
-    _, _, table, *told = FORMULAS.blocks(Page({"physical": outcome}, {}))
+    outcome = outcome_of({"steady": xr.Dataset(every, attrs={"title": "one point"})})
+    _, *told, _, table = FORMULAS.blocks(Page({"physical": outcome}, {}))
     assert {cell for row in table.rows for cell in row[1:]} == {"not found"}
     assert [one.words for one in told] == [
-        f"Steady state, torus pair: {Code.SEPARATES.sentence}.",
-        f"Steady state, standard pair: {Code.UNRESOLVED.sentence}.",
+        f"Steady state, torus pair at one point: {Code.SEPARATES.sentence}.",
+        f"Steady state, standard pair at one point: {Code.UNRESOLVED.sentence}.",
     ]
 
 
@@ -648,8 +648,10 @@ def test_report_shows_a_point_once_where_most_is_told_of_it():
         }
     )
     blocks = [*FORMULAS.blocks(Page({"as_published": first, "physical": second}, {}))]
-    assert [one.words for one in blocks[1::2]] == ["slow", "other"]
-    more, fewer = (len(table.rows) for table in blocks[2::2])
+    _, slow, first_table, folded = blocks
+    other, second_table = folded.inside
+    assert [slow.words, other.words] == ["slow", "other"]
+    more, fewer = len(first_table.rows), len(second_table.rows)
     assert more == fewer + 11
 
 
