@@ -108,7 +108,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield from _numbers(first, beside)
         if others:
             inside = [block for data in others for block in _numbers(data, beside)]
-            yield Folded(f"The numbers of {len(others)} further studies", inside)
+            more = f"{len(others)} further studies" if len(others) > 1 else "one further study"
+            yield Folded(f"The numbers of {more}", inside)
 
 
 def _numbers(data: xr.Dataset, beside: Beside) -> Iterator[Block]:
