@@ -383,4 +383,9 @@ PUBLICATION = Publication(
         **dict.fromkeys(_LOADS, "counted_angle_place"),
         **dict.fromkeys(_TEETH, "tooth_angle_place"),
     },
+    answers=(
+        *("speed_of_one_a", "speed_of_one_b", "temperature_of_one_a", "temperature_of_one_b"),
+        *("slow_share_a", "slow_share_b"),
+    ),
+    sections=("drive", "film"),
 )

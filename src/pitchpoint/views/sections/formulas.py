@@ -1,9 +1,10 @@
 """What the formulas of a publication give, side by side as it compares them."""
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -50,22 +51,35 @@ def _besides(page: Page) -> tuple[Beside, ...]:
     return tuple(one for one in every if _studies(page, one))
 
 
-def _studies(page: Page, beside: Beside) -> dict[str, xr.Dataset]:
+class _Study(NamedTuple):
+    """A study of a variant; its title names the variant where another has one of the same title."""
+
+    name: str
+    title: str
+    data: xr.Dataset
+
+
+def _studies(page: Page, beside: Beside) -> list[_Study]:
     """Studies that hold readings, without those whose points all stand in one with as much to tell."""
     found = [
-        (part.removeprefix(PREFIX), data)
-        for one in page.outcomes.values()
-        for part, data in one.parts.items()
+        (variant, _Study(part.removeprefix(PREFIX), str(data.attrs["title"]), data))
+        for variant, outcome in page.outcomes.items()
+        for part, data in outcome.parts.items()
         if is_study(part) and _rows(data, beside)
     ]
     kept: list[int] = []
     seen: list[_Told] = []
-    for place in sorted(range(len(found)), key=lambda one: -len(_rows(found[one][1], beside))):
-        points = _points(found[place][1], beside)
+    for place in sorted(range(len(found)), key=lambda one: -len(_rows(found[one][1].data, beside))):
+        points = _points(found[place][1].data, beside)
         if not all(any(point <= other for other in seen) for point in points):
             kept.append(place)
             seen += points
-    return dict(found[place] for place in sorted(kept))
+    left = [found[place] for place in sorted(kept)]
+    titles = Counter(study.title for _, study in left)
+    return [
+        study._replace(title=f"{study.title} ({variant})") if titles[study.title] > 1 else study
+        for variant, study in left
+    ]
 
 
 _Told = frozenset[tuple[str, float]]
@@ -95,38 +109,37 @@ def _blocks(page: Page) -> Iterator[Block]:
             yield Paragraph(beside.calibrated, "warning")
         studies = _studies(page, beside)
         name = f"formulas{number}"
-        alone = [*studies.values()]
         drawn = [
-            _panel(name, alone, beside),
-            _maps(f"{name}_map", alone, beside),
-            _side_by_side(f"{name}_each", alone, beside),
+            _panel(name, studies, beside),
+            _maps(f"{name}_map", studies, beside),
+            _side_by_side(f"{name}_each", studies, beside),
             _families(name, studies, beside),
         ]
         yield from (panel for panel in drawn if panel.figures)
         yield from _solves(studies, beside)
-        first, *others = studies.values()
+        first, *others = studies
         yield from _numbers(first, beside)
         if others:
-            inside = [block for data in others for block in _numbers(data, beside)]
+            inside = [block for study in others for block in _numbers(study, beside)]
             more = f"{len(others)} further studies" if len(others) > 1 else "one further study"
             yield Folded(f"The numbers of {more}", inside)
 
 
-def _numbers(data: xr.Dataset, beside: Beside) -> Iterator[Block]:
-    yield Heading(str(data.attrs["title"]))
-    yield _table(data, beside)
+def _numbers(study: _Study, beside: Beside) -> Iterator[Block]:
+    yield Heading(study.title)
+    yield _table(study.data, beside)
 
 
-def _solves(studies: Mapping[str, xr.Dataset], beside: Beside) -> Iterator[Block]:
+def _solves(studies: list[_Study], beside: Beside) -> Iterator[Block]:
     """What became of solves that are not plainly solved, and where."""
     for told, names in beside.solves.items():
         found: dict[Code, list[str]] = {}
-        for data in studies.values():
+        for study in studies:
             for column, name in zip(beside.columns, names, strict=True):
-                codes = data[name].values[0] if name in data else np.zeros(0)
+                codes = study.data[name].values[0] if name in study.data else np.zeros(0)
                 for point, code in enumerate(codes):
                     where = f"{column} at" * (len(beside.columns) > 1)
-                    found.setdefault(Code(int(code)), []).append(f"{where} {_point(data, point)}")
+                    found.setdefault(Code(int(code)), []).append(f"{where} {_point(study, point)}")
         for code, places in found.items():
             if not code.ok:
                 where = "everywhere" if len(found) == 1 else _listed(places)
@@ -140,34 +153,46 @@ def _listed(places: list[str]) -> str:
     return shown + f"; and {len(places) - _FEW} more" * (len(places) > _FEW)
 
 
-def _panel(name: str, studies: list[xr.Dataset], beside: Beside) -> Panel:
-    """Courses at a point, with a menu of the points of all studies; empty where there are none."""
-    points = [(data, k) for data in studies for k in range(data.sizes["point"])]
-    there = {
-        f"{name}_{k}": one
-        for k, one in enumerate(beside.curves)
-        if any(_holds(data, one) for data in studies)
-    }
-    figures = [_figure(each, one, points, beside) for each, one in there.items()]
+_At = tuple[_Study, int]
+"""A point of a study."""
+
+
+def _panel(name: str, studies: list[_Study], beside: Beside) -> Panel:
+    """Courses at a point, with a menu of the points of all studies; it begins where most are known."""
+    points = [(study, k) for study in studies for k in range(study.data.sizes["point"])]
+    known = {k: [_known(one, *point) for point in points] for k, one in enumerate(beside.curves)}
+    there = {f"{name}_{k}": beside.curves[k] for k, them in known.items() if any(them)}
+    if not there:
+        return Panel("", [])
+    at = int(np.argmax(np.sum([*known.values()], axis=0)))
+    figures = [_figure(each, one, points[at], beside) for each, one in there.items()]
     choices = [
         Choice(_point(*point), {each: [_at(one, *point), {}] for each, one in there.items()})
         for point in points
     ]
-    several = len(choices) > 1 and bool(figures)
-    return Panel("", figures, choices=choices if several else [], menu="Shown at")
+    several = choices if len(choices) > 1 else []
+    return Panel("", figures, choices=several, menu="Shown at", at=at if several else 0)
+
+
+def _known(one: Curves, study: _Study, point: int) -> bool:
+    """True if a study holds a number of the courses at a point."""
+    if not _holds(study.data, one):
+        return False
+    return any(np.isfinite(study.data[name].values[point]).any() for name in one.names)
 
 
 def _holds(data: xr.Dataset, one: Curves) -> bool:
     return all(each in data for each in one.names)
 
 
-def _point(data: xr.Dataset, point: int) -> str:
+def _point(study: _Study, point: int) -> str:
     """A point of a study in words."""
-    return ": ".join(filter(None, (str(data.attrs["title"]), _places(data)[point])))
+    return ": ".join(filter(None, (study.title, _places(study.data)[point])))
 
 
-def _at(one: Curves, data: xr.Dataset, point: int) -> dict[str, list[Any]]:
+def _at(one: Curves, study: _Study, point: int) -> dict[str, list[Any]]:
     """Places and values of courses at a point; empty where the study does not hold them."""
+    data = study.data
     if not _holds(data, one):
         return dict.fromkeys("xy", [[]] * len(one.names))
     return {
@@ -176,41 +201,43 @@ def _at(one: Curves, data: xr.Dataset, point: int) -> dict[str, list[Any]]:
     }
 
 
-def _families(name: str, studies: Mapping[str, xr.Dataset], beside: Beside) -> Panel:
+def _families(name: str, studies: list[_Study], beside: Beside) -> Panel:
     """Courses of all points of each sweep over each other; a sweep beyond all colours is left out."""
     figures = []
-    for of, data in studies.items():
-        places = _places(data)
-        each = [(data, point) for point in range(len(places))]
-        asked = [one for one in beside.families if not one.studies or of in one.studies]
+    for number, study in enumerate(studies):
+        places = _places(study.data)
+        each = [(study, point) for point in range(len(places))]
+        asked = [one for one in beside.families if not one.studies or study.name in one.studies]
         for k, one in enumerate(asked):
-            if 1 < len(places) <= len(PALETTE) and _holds(data, one):
-                titled = replace(one, title=f"{one.title}; {str(data.attrs['title']).lower()}")
-                figures.append(_family(f"{name}_{of}{k}", titled, each, places))
+            if 1 < len(places) <= len(PALETTE) and _holds(study.data, one):
+                titled = replace(
+                    one, title=f"{one.title}; {study.title[0].lower()}{study.title[1:]}"
+                )
+                figures.append(_family(f"{name}_{number}_{k}", titled, each, places))
     return Panel("", figures)
 
 
-def _side_by_side(name: str, studies: list[xr.Dataset], beside: Beside) -> Panel:
+def _side_by_side(name: str, studies: list[_Study], beside: Beside) -> Panel:
     """Courses of all studies of one point over each other."""
     figures = []
     for k, one in enumerate(beside.over_studies):
-        alone = [data for data in studies if data.sizes["point"] == 1 and _holds(data, one)]
-        titles = [str(data.attrs["title"]) for data in alone]
+        alone = [
+            study for study in studies if study.data.sizes["point"] == 1 and _holds(study.data, one)
+        ]
+        titles = [study.title for study in alone]
         if 1 < len(alone) <= len(PALETTE):
-            figures.append(_family(f"{name}{k}", one, [(data, 0) for data in alone], titles))
+            figures.append(_family(f"{name}{k}", one, [(study, 0) for study in alone], titles))
     return Panel("", figures)
 
 
-def _family(
-    name: str, one: Curves, points: list[tuple[xr.Dataset, int]], titles: list[str]
-) -> Figure:
+def _family(name: str, one: Curves, points: list[_At], titles: list[str]) -> Figure:
     """One course at each of several points."""
     (variable,) = one.names
     keys = [Key(title, PALETTE[k]) for k, title in enumerate(titles)]
     unit = show.unit_of(variable)
     traces = [
-        plain(key, _shown(one.along, *point), _shown(variable, *point), unit)
-        for key, point in zip(keys, points, strict=True)
+        plain(key, _shown(one.along, study.data, point), _shown(variable, study.data, point), unit)
+        for key, (study, point) in zip(keys, points, strict=True)
     ]
     return _drawn(name, one, traces, keys)
 
@@ -229,11 +256,11 @@ def _shown(name: str, data: xr.Dataset, point: int) -> list[Any]:
     return rounded(display(name, data[name].values[point]))
 
 
-def _figure(name: str, one: Curves, points: list[tuple[xr.Dataset, int]], beside: Beside) -> Figure:
-    """Courses over each other at the first point; empty where only other studies hold them."""
+def _figure(name: str, one: Curves, point: _At, beside: Beside) -> Figure:
+    """Courses over each other at a point; empty where only other studies hold them."""
     columns = one.columns or beside.columns
     keys = [Key(column, PALETTE[k]) for k, column in enumerate(columns)]
-    first, unit = _at(one, *points[0]), show.unit_of(one.names[0])
+    first, unit = _at(one, *point), show.unit_of(one.names[0])
     traces = [
         plain(key, x, y, unit, opacity=0.75)
         for key, x, y in zip(keys, first["x"], first["y"], strict=True)
@@ -243,11 +270,11 @@ def _figure(name: str, one: Curves, points: list[tuple[xr.Dataset, int]], beside
     return _drawn(name, one, traces, keys)
 
 
-def _maps(name: str, studies: list[xr.Dataset], beside: Beside) -> Panel:
+def _maps(name: str, studies: list[_Study], beside: Beside) -> Panel:
     """Fields in colours at the first point of the first study that holds them."""
     figures = []
     for k, one in enumerate(beside.maps):
-        there = [data for data in studies if one.name in data]
+        there = [study.data for study in studies if one.name in study.data]
         figures += [_map(f"{name}{k}", one, data) for data in there[:1]]
     return Panel("", figures)
 
@@ -323,7 +350,8 @@ def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
         for data in itertools.islice(held, 1):
             value = float(data[name].values[0, 0])
             words = show.quantity(name, value) if np.isfinite(value) else "not found"
-            yield show.described(name).long_name, f"{words} ({_point(data, 0)})"
+            at = _Study("", str(data.attrs["title"]), data)
+            yield show.described(name).long_name, f"{words} ({_point(at, 0)})"
 
 
 def _lacks(page: Page) -> str | None:
