@@ -34,6 +34,7 @@ class Code(IntEnum):
     FILM_LOST = 17
     NO_NUMBER = 18
     HELD = 19
+    LIES_FLAT = 20
 
     @property
     def sentence(self) -> str:
@@ -68,6 +69,7 @@ _SENTENCES = {
     Code.NO_STEADY_HEAT: "surfaces that both stand still in their contact have no steady temperature",
     Code.FILM_LOST: "the film of a contact that carries was not solved",
     Code.NO_NUMBER: "an input of the contact is not a finite number",
+    Code.LIES_FLAT: "the worn flank comes to lie flat before the cycles are over, and has no depth then",
     Code.HELD: "a law gives more than can be, and its value is held at the limit: what it hangs on does "
     "not move it",
 }

@@ -76,7 +76,7 @@ def main(case: str, variant: str = "as_published") -> None:
     """Print what feels nothing."""
     name, tree = find(case)
     base = rows_of(Variant(tree, name, variant))
-    steady, deaf = {row.quantity for row in base if row.computed is not None}, []
+    steady, deaf = {place for place, row in enumerate(base) if row.computed is not None}, []
     for path in inputs(tree, variant):
         key = ".".join(str(part) for part in path if part != "value")
         try:
@@ -84,13 +84,19 @@ def main(case: str, variant: str = "as_published") -> None:
         except PitchpointError as error:
             print(f"{key}: {error}")
             continue
-        pairs = [(one, other) for one, other in zip(base, rows, strict=True) if one.computed]
-        steady -= {one.quantity for one, other in pairs if one.verdict != other.verdict}
-        moved = [abs(other.computed / one.computed - 1.0) for one, other in pairs]
+        steady -= {place for place, row in enumerate(rows) if row.verdict != base[place].verdict}
+        pairs = [
+            (one, other) for one, other in zip(base, rows, strict=True) if one.computed is not None
+        ]
+        moved = [
+            abs(other.computed - one.computed) / max(abs(one.computed), one.tolerance, 1e-30)
+            for one, other in pairs
+        ]
         if not any(not change <= FELT for change in moved):
             deaf.append(key)
         print(f"{key}: {sum(not change <= FELT for change in moved)} rows move", flush=True)
-    for title, found in (("Rows that keep their verdict", sorted(steady)), ("Inputs unfelt", deaf)):
+    kept = [f"{base[place].quantity} ({base[place].kind})" for place in sorted(steady)]
+    for title, found in (("Rows that keep their verdict", kept), ("Inputs unfelt", deaf)):
         print(f"\n{title}:", *(found or ["none"]), sep="\n  ")
 
 

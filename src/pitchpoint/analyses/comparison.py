@@ -80,7 +80,7 @@ def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
         verdict=_verdict(target, computed),
         reason=reason,
         bound=_bound(target),
-        expected_miss=bool(target.missed),
+        expected_miss=bool(target.missed) and (computed is None or not np.isnan(computed)),
     )
 
 

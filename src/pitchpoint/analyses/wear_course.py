@@ -331,6 +331,11 @@ def _warnings(
             f"Wear: the march ends at {HOLDS:g} modules, beyond which flanks no longer touch where they did "
             "as new."
         )
+    if np.isinf(_hardness(built)):
+        told.append(
+            "Wear: the hardness of neither flank is known, so that nothing ends the march where a surface "
+            "would yield; give wear.hardness, or that of the materials."
+        )
     if end == "hardness":
         told.append(
             f"Wear: the march ends where the largest pressure on worn flanks reaches the hardness of the "

@@ -1105,6 +1105,10 @@ class Target(Table):
             )
         if self.missed and self.kind == "excluded":
             raise InputError("a number that is left out is not missed; give a reason", key="missed")
+        if self.missed and self.reason:
+            raise InputError(
+                "reason and missed were both given; a known miss has one", key="reason"
+            )
         if self.times != 1.0 and self.expect == "within":
             raise InputError('belongs to a bound, expect = "above" or "below"', key="times")
         return self

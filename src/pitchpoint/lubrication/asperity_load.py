@@ -8,7 +8,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Numbers
 from pitchpoint.lubrication.groups import line_groups
 
-__all__ = ["masjedi_khonsari_2012", "none", "regression_of_masjedi_khonsari"]
+__all__ = ["masjedi_khonsari_2012", "masjedi_khonsari_2012_regression", "none"]
 
 Each = Float[Numbers, "*#b"]
 
@@ -56,7 +56,7 @@ def masjedi_khonsari_2012(
         >>> round(float(share), 4)
         0.6488
     """
-    share = regression_of_masjedi_khonsari(
+    share = masjedi_khonsari_2012_regression(
         line_load=line_load,
         entrainment=entrainment,
         viscosity=viscosity,
@@ -69,7 +69,7 @@ def masjedi_khonsari_2012(
     return jnp.where(share > 1.0, 1.0, share)
 
 
-def regression_of_masjedi_khonsari(
+def masjedi_khonsari_2012_regression(
     *,
     line_load: Each,
     entrainment: Each,
@@ -80,9 +80,19 @@ def regression_of_masjedi_khonsari(
     roughness_rq: Each,
     hardness: Each,
 ) -> Each:
-    """What the regression behind `masjedi_khonsari_2012` gives, which may be more than all of the load [1].
+    """What the regression behind `masjedi_khonsari_2012` gives [1]; above 1 it is outside its range.
 
-    Args and source: as `masjedi_khonsari_2012`. Above 1 it is asked outside its range.
+    Args:
+        line_load: w [N/m].
+        entrainment: mean surface speed u [m/s].
+        viscosity: eta0 [Pa s].
+        pressure_viscosity: alpha [1/Pa].
+        radius: R [m].
+        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+        roughness_rq: sigma, composite Rq [m].
+        hardness: Vickers hardness of the softer flank [Pa].
+
+    Source: Masjedi and Khonsari (2012), as Zhao et al. (2022) print it in equation 9.
     """
     film = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
     own = {"s": roughness_rq / radius, "V": hardness / modulus}

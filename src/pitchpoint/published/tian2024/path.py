@@ -89,6 +89,9 @@ def _places(mesh: InvolutePair, count: int) -> Course:
     if not 1.0 < found[-1] < 2.0:
         told = f"{found[-1]:.4g} is the contact ratio; these courses are those of ratios between 1 and 2"
         raise InputError(told, key="gears")
+    if not found[1] < found[2] < found[3]:
+        told = "the pitch point lies in double contact; these courses have it in single contact"
+        raise InputError(f"{told}, change the profile shifts", key="gears.profile_shift")
     return np.concatenate(
         [np.linspace(low + _BESIDE, high - _BESIDE, count) for low, high in pairwise(found)]
     )
@@ -96,13 +99,11 @@ def _places(mesh: InvolutePair, count: int) -> Course:
 
 @program
 def _zones(mesh: InvolutePair) -> Float[Array, "5"]:
-    """Ends of the path, of single contact, and the pitch point [base pitches]; rising."""
+    """Start of the path and of single contact, pitch point, ends of both [base pitches]."""
     line = mesh.line
     ratio = mesh.transverse_contact_ratio
     pitch = (line.pitch_position - line.limits[0]) / line.base_pitch
-    return jnp.sort(
-        jnp.stack([jnp.zeros_like(ratio), ratio - 1.0, pitch, jnp.ones_like(ratio), ratio])
-    )
+    return jnp.stack([jnp.zeros_like(ratio), ratio - 1.0, pitch, jnp.ones_like(ratio), ratio])
 
 
 def _at_ends(courses: dict[str, Course]) -> dict[str, float]:

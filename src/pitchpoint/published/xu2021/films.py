@@ -387,6 +387,9 @@ def _of_teeth(teeth: ToothFilms, speed: float, temperature: float) -> Read:
     zone = teeth.zone
     angle = zone.tooth_angles
     there = zone.touches(angle)
+    if there.sum() < 2:
+        told = f"eq. 2 gives contact to {there.sum()} teeth of the zone, and their films take two at least"
+        raise InputError(f"{told}; change the map of the mesh point", key="formulas.map_distance")
     fast, hot = (np.full(int(there.sum()), one) for one in (speed, temperature))
     films, printed = teeth.lines_and_stiffness(angle[there], fast, hot)
     codes = [Code(int(one)) for one in films.ended.code]

@@ -14,7 +14,7 @@ import numpy as np
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.lubrication.asperity_load import regression_of_masjedi_khonsari
+from pitchpoint.lubrication.asperity_load import masjedi_khonsari_2012_regression
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
 from pitchpoint.programs import program
 from pitchpoint.published.publication import Point
@@ -154,7 +154,7 @@ def _laws(
             molecule_diameter=own["molecule_diameter"],
             vibration_period=own["vibration_period"],
         ),
-        "asperity_regression": regression_of_masjedi_khonsari(
+        "asperity_regression": masjedi_khonsari_2012_regression(
             line_load=contact["line_load"],
             entrainment=sliding / 2.0,
             viscosity=contact["viscosity"],

@@ -94,6 +94,7 @@ _WEAR = {
     "tip_asperity_share": percent("the same, held at all of the load", "L_a"),
     "asperity_share_ratio": _plain("part of the load on asperities over the reference", "L_a/L_a"),
     "asperity_regression_status": _plain("status of eq. 9", ""),
+    "wear_march_status": _plain("status of the march of wear", ""),
     "lubricated_over_dry": _plain("wear depth lubricated over dry", "h/h"),
     "dry_coefficient": _plain("wear coefficient of dry flanks", "K"),
     "dry_depth": length("largest wear depth of dry flanks", "h"),
@@ -331,7 +332,10 @@ _MIXED = Beside(
         "asperities. The load in them is that of the reference whatever the torque, unless the case says "
         "otherwise. Dry flanks have the K of the reference."
     ),
-    solves={"load on asperities by eq. 9": ("asperity_regression_status",)},
+    solves={
+        "load on asperities by eq. 9": ("asperity_regression_status",),
+        "march of wear": ("wear_march_status",),
+    },
 )
 
 _ON_BRANCHES = {

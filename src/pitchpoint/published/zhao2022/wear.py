@@ -30,6 +30,7 @@ from pitchpoint.published.zhao2022.printed import (
     largest_tangential_load,
 )
 from pitchpoint.published.zhao2022.table import FlankWear
+from pitchpoint.status import Code
 
 __all__ = ["LATER", "March", "Strips", "march", "marched", "readings", "severe"]
 
@@ -121,8 +122,9 @@ class March:
 
     def at(self, cycles: float, name: str) -> Array:
         """One of the fields at so many cycles, shape (point); NaN beyond the end."""
-        values = getattr(self, name)
-        return np.array([np.interp(cycles, self.cycles, each, right=np.nan) for each in values.T])
+        values, last = getattr(self, name), float(self.cycles[-1])
+        place = min(cycles, last) if cycles <= last * (1.0 + 1e-12) else np.inf
+        return np.array([np.interp(place, self.cycles, each, right=np.nan) for each in values.T])
 
 
 def march(
@@ -160,7 +162,10 @@ def marched(strips: Strips, *, rate: float, cycles: float) -> March:
 def severe(strips: Strips, *, rate: float, limit: float) -> March:
     """March until the deepest point passes a limit [m], where the stage of severe wear begins."""
     _, pressure, step = strips.worn(np.zeros_like(strips.angle))
-    block = limit / float(np.max(rate * pressure * step)) / SEVERE_BLOCKS
+    fastest = float(np.max(rate * pressure * step))
+    if not fastest > 0.0:  # without load nothing wears, and no depth is ever reached
+        return march(strips, rate=rate, block=1.0, blocks=1)
+    block = limit / fastest / SEVERE_BLOCKS
     return march(strips, rate=rate, block=block, blocks=_PATIENCE * SEVERE_BLOCKS, limit=limit)
 
 
@@ -318,6 +323,7 @@ def _depths(strips: Strips, rate: float, given: FlankWear) -> dict[str, Any]:
         "wear_course": course[0],
         "wear_course_without_offset": course[1],
         "wear_offset_error": course[0] - course[1],
+        "wear_march_status": float(Code.SOLVED if np.isfinite(course[0][-1]) else Code.LIES_FLAT),
     }
 
 

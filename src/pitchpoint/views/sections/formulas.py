@@ -110,8 +110,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         studies = _studies(page, beside)
         name = f"formulas{number}"
         drawn = [
-            _panel(name, studies, beside),
             _maps(f"{name}_map", studies, beside),
+            _panel(name, studies, beside),
             _side_by_side(f"{name}_each", studies, beside),
             _families(name, studies, beside),
         ]
