@@ -127,6 +127,25 @@ def test_what_cannot_be_read_is_one_sentence(given, key, words):
         assert word in told
 
 
+def test_a_number_that_was_not_solved_for_is_no_known_miss():
+    parts = results()
+    parts["torsion"]["wind_up"] = np.nan * parts["torsion"]["wind_up"]
+    known = target(**{**WOUND, "at": "15 N m"}, missed="the shaft is not in the model")
+    (row,) = compare([known], parts)
+    assert row.surprises
+    assert row.reason.startswith("not computed")
+    (solved,) = compare([known], results())
+    assert (solved.verdict, solved.surprises) == ("miss", False)
+
+
+@pytest.mark.parametrize(
+    "given", [{"missed": "m", "kind": "excluded"}, {"missed": "m", "reason": "r"}]
+)
+def test_a_known_miss_is_computed_and_has_one_cause(given):
+    with pytest.raises(ValueError, match="known miss has one|not missed"):
+        target(**given)
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [

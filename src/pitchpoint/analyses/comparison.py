@@ -59,7 +59,7 @@ class _OutsideError(InputError):
 
 
 def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
-    reason = target.missed or target.reason
+    reason, unsolved = target.missed or target.reason, False
     try:
         left_out = target.kind == "excluded"
         computed = None if left_out else _computed(target, results) - target.less
@@ -67,7 +67,8 @@ def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
         # Nothing that was computed is lost for it: the row misses and says why.
         computed, reason = float("nan"), f"not computed: {error.message}. {reason}"
     else:
-        if computed is not None and np.isnan(computed):
+        unsolved = computed is not None and bool(np.isnan(computed))
+        if unsolved:
             reason = f"not computed: no solution was found there. {reason}".strip()
     return Row(
         quantity=target.quantity,
@@ -80,7 +81,7 @@ def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
         verdict=_verdict(target, computed),
         reason=reason,
         bound=_bound(target),
-        expected_miss=bool(target.missed) and (computed is None or not np.isnan(computed)),
+        expected_miss=bool(target.missed) and not unsolved,
     )
 
 
