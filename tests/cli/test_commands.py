@@ -29,7 +29,7 @@ from pitchpoint.views.report import render
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COLUMNS = ["quantity", "where", "printed", "computed", "tolerance", "kind", "verdict", "reason"]
-COLUMNS += ["unit", "bound"]
+COLUMNS += ["expected_miss", "unit", "bound"]
 PARTS = {
     "teeth",
     "inspection",

@@ -75,8 +75,7 @@ class FlankWear(Table):
     severe_depth: Annotated[float, DEPTH]
     """Depth at which wear is severe unless the tip land is gone before, in modules."""
     area: Literal["strip", "new strip", "cumulative"] = "strip"
-    """Area that carries the force of a point: its strip of the worn flank, that of the new flank (eq. 25,
-    so that the pressure follows the worn slope), or all from the tip to it, eq. 26."""
+    """Area under a point: its strip of the worn or of the new flank, or all from the tip on, eq. 26."""
     offset: Literal["mean", "none"] = "mean"
     """Offset of the mesh by the oval ring, eq. 28: the mean of both sides, or none."""
     adsorption_heat: Annotated[float, HEAT]
