@@ -227,6 +227,7 @@ def test_small_errors_vibrate_on_the_tangent(times: float) -> None:
         assert getattr(whole, name) == pytest.approx(expected, rel=2e-4)
 
 
+@pytest.mark.whole
 def test_a_free_motor_vibrates_as_the_tangent_says() -> None:
     """From its steady state on, over some periods: the error works on the motor by its slope."""
     made, small = joint(motor=MOTOR), 1e-7

@@ -580,6 +580,7 @@ def test_films_that_draw_oil_from_further_away_than_their_radius_are_told():
     assert not any("flooded film draws" in text for text in given)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [

@@ -255,6 +255,7 @@ def test_energy_of_a_transient_closes_with_every_effect(combination):
         assert float(energy.drag[-1]) > 0.0
 
 
+@pytest.mark.whole
 def test_a_gear_on_a_steady_one_swings_about_its_deflection():
     stiff = 3e8
     way = passage(SPUR, operation(), models().compliance, polynomial([stiff]))

@@ -228,6 +228,7 @@ def test_points_of_a_sweep_have_films_by_their_own_choices():
     assert swept[2] != pytest.approx(swept[1], rel=1e-3)
 
 
+@pytest.mark.whole
 def test_a_film_that_was_not_solved_gives_no_numbers(monkeypatch):
     def losing(contacts, **asked):
         films = solve_lines(contacts, **asked)

@@ -114,6 +114,7 @@ def test_flank_is_its_own_arc_length_angle_and_curvature(drives, name):
         np.testing.assert_allclose(there, outline.place(joints), atol=1e-11)
 
 
+@pytest.mark.whole
 def test_involute_of_the_wear_paper_has_its_figures():
     """200 teeth, m = 0.3 mm, x = 3.32: r_a 31.296, r_f 30.591 mm, tip land 0.123 mm."""
     flank = build(form=INVOLUTE).flank

@@ -228,6 +228,7 @@ def test_a_pair_without_friction_swings_about_its_deflection():
     assert energy.closure < 1e-8
 
 
+@pytest.mark.whole
 def test_bodies_apart_move_as_if_alone():
     mass, bearing, damping, brake = 2.0, 2e8, 4e3, 12.0
     bodies = (

@@ -152,6 +152,7 @@ def test_the_warmer_surface_takes_less_of_the_heat():
 # ---- whole contacts
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("texture", quick_first(["sliding", "rough"]))
 def test_all_heat_that_is_made_goes_into_the_surfaces(texture, request):
     case, found = request.getfixturevalue(texture)

@@ -158,6 +158,7 @@ def test_wheel_without_tip_shortening_misses_every_contact_ratio():
         built("gp2", **changes)
 
 
+@pytest.mark.whole
 def test_another_fillet_of_the_tool_misses_the_undercut_limits():
     changed = missed(lambda _: {"gears.fillet_radius": 0.35})
     assert changed >= {f"GP{n}, least profile shift, exact form" for n in (1, 3)}
@@ -226,6 +227,7 @@ def in_motion():
     return {name: np.asarray(values)[0] for name, (_, values) in read.items()}
 
 
+@pytest.mark.whole
 def test_courses_of_a_pair_in_motion_add_up(in_motion):
     time = in_motion["pair_time"]
     ratio = dimensions("gp2")["contact_ratio"]

@@ -229,6 +229,7 @@ def test_efficiency_rises_with_temperature_and_torque_and_falls_with_speed():
     assert np.all(part > at_load(0.1 * RATED))
 
 
+@pytest.mark.whole
 def test_part_load_lowers_the_efficiency_about_as_a_manual_says_of_another_size():
     """HFUC-20-80, 1000 rpm, 20 degC: 0.93 of it is left at 57 % of the torque."""
     ratio = (at_load(0.57 * RATED) / at_load())[1, 6]

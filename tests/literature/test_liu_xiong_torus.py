@@ -112,6 +112,7 @@ def test_rows_miss_where_a_cause_is_known_and_nowhere_else():
         assert all(len(row.reason) > 60 for row in found if row.verdict == "miss")
 
 
+@pytest.mark.whole
 def test_no_row_of_the_standard_pair_misses():
     assert {kind: dict(each) for kind, each in counts(rows("standard")).items()} == {
         "reference": {"pass": 12}
@@ -165,6 +166,7 @@ LOSSLESS = {
 }
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(("study", "count"), [("light", 3 * 6 + 4), ("heavy", 3 * 6 + 4 + 6)])
 def test_a_lossless_gear_misses_every_row_on_friction_and_efficiency(study, count):
     lossless = read(study)
@@ -237,6 +239,7 @@ def changed_by_the_torus(variant):
     return {name: float(after[name][1].item() / before[name][1].item() - 1.0) for name in names}
 
 
+@pytest.mark.whole
 def test_torus_radii_act_on_error_friction_and_efficiency():
     found = changed_by_the_torus("hertz")
     error, friction, efficiency = (found[name] for name in OF_RADII)
@@ -307,6 +310,7 @@ def test_slope_of_the_library_is_that_of_its_deflection():
         assert np.all(middle[f"{pair}_slope_stiffness"] > middle[f"{pair}_secant_stiffness"])
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("convex", [30.0, 33.0, 34.0, 35.5, 37.0, 38.5, 40.0, 45.0, 54.0])
 def test_a_convex_radius_with_its_offset_kept_is_known_or_refused_in_one_sentence(convex):
     change = {"gears.torus_radius": [f"{convex} mm", "55 mm"]}
