@@ -36,8 +36,13 @@ install()  # before anything of the package is imported
 
 from pitchpoint import programs  # noqa: E402
 
-MOST_MAPS = 55_000
+MOST_MAPS = 45_000
 """Memory maps of a process (Linux allows 65,530) beyond which compiled programs are given back."""
+
+OFTEN = 20
+"""Programs after which maps are counted within a file: some files alone take more than the rest allows."""
+
+_counted_at = 0
 
 # Here their maps are counted, and programs shared across a thousand.
 programs.MOST_PROGRAMS = programs.MOST_MEMORY = 10**12
@@ -78,8 +83,20 @@ def pytest_collection_finish() -> None:
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     before = METER.read()
     done = yield
-    SPENT[item.location[0]] += METER.read() - before
+    spent = METER.read()
+    SPENT[item.location[0]] += spent - before
+    global _counted_at
+    if spent.programs - _counted_at >= OFTEN:
+        _counted_at = spent.programs
+        if _crowded():
+            programs.forget()
     return done
+
+
+def _crowded() -> bool:
+    """True where the memory maps of the process could be exhausted, or where they are not known."""
+    maps = Path("/proc/self/maps")
+    return not maps.exists() or maps.read_bytes().count(b"\n") > MOST_MAPS
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -87,9 +104,7 @@ def _programs_within_the_memory_maps(request: pytest.FixtureRequest) -> Iterator
     """Files share what they compile until it could exhaust the memory maps of the process."""
     yield
     METER.calibrate()
-    maps = Path("/proc/self/maps")
-    crowded = not maps.exists() or maps.read_bytes().count(b"\n") > MOST_MAPS
-    if crowded or request.config.option.record_budget:
+    if _crowded() or request.config.option.record_budget:
         programs.forget()
 
 
