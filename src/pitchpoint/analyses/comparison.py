@@ -22,7 +22,7 @@ from pitchpoint.results.reductions import (
     SPANS,
 )
 from pitchpoint.results.target_rows import Row
-from pitchpoint.results.variables import VARIABLES
+from pitchpoint.results.variables import VARIABLES, places_of
 
 __all__ = ["compare", "demand_parts"]
 
@@ -211,8 +211,8 @@ def _axis(data: xr.Dataset, dim: str) -> _Axis:
 
 def _along(dim: str, data: xr.Dataset) -> _Axis:
     """Places of a course of a publication at one point, by their variable; unknown of any other dimension."""
-    name = dim.removesuffix("_place")
-    if name == dim or name not in data or name not in VARIABLES or data.sizes.get("point") != 1:
+    name = places_of(dim)
+    if not name or name not in data or data.sizes.get("point") != 1:
         return _Axis(dim, np.full(data.sizes.get(dim, 1), np.nan))
     variable = VARIABLES[name]
     return _Axis(name, data[name].values[0], variable.kind, variable.usual)

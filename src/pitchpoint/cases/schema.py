@@ -51,7 +51,7 @@ from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.registry import alike, letters, nearest
 from pitchpoint.results.chosen_units import unit_choice
 from pitchpoint.results.reductions import REDUCTIONS
-from pitchpoint.results.variables import VARIABLES
+from pitchpoint.results.variables import VARIABLES, places_of
 from pitchpoint.strength.treatments import TREATMENTS
 from pitchpoint.wear.registry import WEAR_LAWS
 
@@ -1373,7 +1373,7 @@ class Case(Table):
     def _of_family(self) -> "Case":
         """What is not given stands as is usual for the family; bodies are those that it has."""
         wrong = Complaints()
-        wrong.tried(_check_aims, self.targets, self.studies)
+        wrong.tried(_check_aims, self.targets, self.studies, self.source)
         wrong.tried(_check_load, self, self.gears)
         wrong.tried(_check_losses, self.losses, self.gears.shafts, self.bodies)
         for check in (_check_meant, _check_formulas, _check_driver):
@@ -1534,7 +1534,7 @@ class DriveCase(Table):
             if models.averaging != "base_pitch":
                 told = "the path of one pair does not stand for several meshes; leave it out"
                 wrong.add(InputError(told, key=f"{key}.averaging"))
-        wrong.tried(_check_aims, self.targets, self.studies)
+        wrong.tried(_check_aims, self.targets, self.studies, self.source)
         wrong.demand_none()
         return self
 
@@ -1567,7 +1567,7 @@ def bearings_of(losses: Mapping[str, Loss], body: str) -> dict[str, Loss]:
     }
 
 
-def _check_aims(targets: Sequence[Target], studies: Mapping[str, Study]) -> None:
+def _check_aims(targets: Sequence[Target], studies: Mapping[str, Study], source: str) -> None:
     """InputError if a target reads a study that does not exist, or no place of its axis."""
     wrong = Complaints()
     for position, target in enumerate(targets):
@@ -1578,17 +1578,17 @@ def _check_aims(targets: Sequence[Target], studies: Mapping[str, Study]) -> None
             wrong.add(InputError(told, key=f"targets.{position}.study"))
             continue
         try:
-            _check_places(target, studies[target.study].sweep)
+            _check_places(target, studies[target.study].sweep, source)
         except InputError as error:
             wrong.add(InputError(error.message, key=f"targets.{position}.at"))
     wrong.demand_none()
 
 
-def _check_places(target: Target, sweep: Sweep | None) -> None:
+def _check_places(target: Target, sweep: Sweep | None, source: str) -> None:
     """InputError if places are no values of the key that is swept."""
     if not target.at:
         return
-    if sweep is None and (kind := _along(target.variable)):
+    if sweep is None and (kind := _along(target.variable, source)):
         for place in target.at:
             units.parse(place, kind)
         return
@@ -1602,13 +1602,12 @@ def _check_places(target: Target, sweep: Sweep | None) -> None:
         quantity.read(place)
 
 
-def _along(variable: str) -> str:
-    """Kind of the places that a course of a publication runs over; empty for what is none."""
-    over = next(
-        (one.courses[variable] for one in PUBLICATIONS.values() if variable in one.courses), ""
-    )
-    places = over.removesuffix("_place")
-    return VARIABLES[places].kind if places in VARIABLES else ""
+def _along(variable: str, source: str) -> str:
+    """Kind of the places that a course of the publication runs over; empty for what is none."""
+    publication = publication_of(source)
+    courses = publication.courses if publication else {}
+    places = places_of(courses.get(variable, ""))
+    return VARIABLES[places].kind if places else ""
 
 
 def _given(table: Table, key: str) -> bool:

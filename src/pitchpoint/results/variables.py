@@ -22,7 +22,7 @@ from pitchpoint.results.variable import (
     torsional_stiffness,
 )
 
-__all__ = ["VARIABLES", "variable_of"]
+__all__ = ["VARIABLES", "places_of", "variable_of"]
 
 
 VARIABLES: dict[str, Variable] = {
@@ -584,6 +584,12 @@ _OF_ENDS: dict[End, tuple[str, ...]] = {
 VARIABLES.update(
     (name, replace(VARIABLES[name], end=end)) for end, names in _OF_ENDS.items() for name in names
 )
+
+
+def places_of(dimension: str) -> str:
+    """Name of the variable whose values are the places along a dimension of courses; empty for none."""
+    name = dimension.removesuffix("_place")
+    return name if name != dimension and name in VARIABLES else ""
 
 
 def variable_of(data: Any, name: str) -> Variable:

@@ -219,15 +219,15 @@ def _literal(point: Point, mesh: TorusPair) -> Read:
         "start_orders": np.arange(1.0, LINES + 1.0) / whole,
         "cycle_part": np.asarray(cycle_places()),
     }
-    for name in PAIRS:
-        drive = _drive(name, point, known)
+    drives = {name: _drive(name, point, known) for name in PAIRS}
+    for name, drive in drives.items():
         told = jax.device_get(figures(drive, course(drive, turn), oil))
         _check_found(name, told)
         found |= _named(name, told)
-    return {**found, **_beside(found), **_stiffness(point, known)}
+    return {**found, **_beside(found), **_stiffness(point, known, drives)}
 
 
-def _stiffness(point: Point, known: Known) -> Read:
+def _stiffness(point: Point, known: Known, drives: Mapping[str, Drive]) -> Read:
     """Stiffness of a pair of teeth over its path: of the library, as given, and as the motion has it."""
     given = point.formulas
     assert isinstance(given, TorusFormulas)
@@ -241,7 +241,7 @@ def _stiffness(point: Point, known: Known) -> Read:
         if name != "torus":
             springs = given.standard_scale * springs
         library = library_stiffness(*_teeth(name, point), float(point.operation.load), path)
-        curve = [0.0, *_coefficients(name, point, known)]
+        curve = [0.0, *np.asarray(drives[name].coefficients)]
         each = {
             "given": straight(roll, rolls, springs),
             "motion": np.polynomial.polynomial.polyval(roll, curve),

@@ -198,8 +198,8 @@ class ToothFilms:
 
     def _touching(self, angle: Course) -> Course:
         """The angles, each of which has a contact."""
-        if not np.all(self.zone.touches(angle)):
-            beyond = np.rad2deg(angle[~self.zone.touches(angle)][0])
+        if not np.all(there := self.zone.touches(angle)):
+            beyond = np.rad2deg(angle[~there][0])
             raise InputError(
                 f"at {beyond:.4g} degrees from the long axis eqs. 1 to 5 give no contact: relative radius, "
                 "entrainment and load have to be positive",

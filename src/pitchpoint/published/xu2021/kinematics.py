@@ -50,17 +50,17 @@ def _ratio(point: Point, radius: float, speed: float) -> Callable[[float], float
     assert isinstance(gears, StrainWaveGears)
     oil, load = oil_of(design.lubricant), zone_of(point).closed_load
     rough = float(design.roughness.composite_rq)
+    given = {
+        "line_load": load / gears.face_width,
+        "viscosity": viscosity(temperature=at, **oil),
+        "pressure_viscosity": pressure_viscosity(temperature=at, **oil),
+        "radius": radius,
+        "modulus": modulus_of(design),
+    }
+    held = {name: jnp.asarray(one) for name, one in given.items()}
 
     def ratio(part: float) -> float:
-        given = {
-            "line_load": load / gears.face_width,
-            "entrainment": speed * part,
-            "viscosity": viscosity(temperature=at, **oil),
-            "pressure_viscosity": pressure_viscosity(temperature=at, **oil),
-            "radius": radius,
-            "modulus": modulus_of(design),
-        }
-        return float(moes_1992(**{name: jnp.asarray(one) for name, one in given.items()})) / rough
+        return float(moes_1992(entrainment=jnp.asarray(speed * part), **held)) / rough
 
     return ratio
 

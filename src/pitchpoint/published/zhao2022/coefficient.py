@@ -24,38 +24,24 @@ from pitchpoint.status import Code
 from pitchpoint.wear.film_defect import fractional_film_defect
 from pitchpoint.wear.laws import janakiraman_2013
 
-__all__ = ["READINGS", "MixedLubrication", "mixed_lubrication"]
+__all__ = ["MixedLubrication", "mixed_lubrication"]
 
 
 @dataclass(frozen=True)
 class MixedLubrication:
-    """Coefficients of a contact and what carried them there.
+    """Coefficients of a contact.
 
     Attributes:
         coefficient: K ψ L_a / 100 of the contact [1].
-        reference_coefficient: the same of the reference [1].
-        dry_coefficient: K of dry flanks, which knows of no oil [1].
-        regression_ratio: K by eq. 29 over that of the reference [1].
-        film_defect: ψ, eq. 10 [1].
-        film_defect_ratio: over that of the reference [1].
-        asperity_share: L_a / 100, held at 1 [1].
-        asperity_share_ratio: over that of the reference [1].
-        asperity_regression: what eq. 9 gives, also above 1 [1].
-        asperity_status: `Code.HELD` where the share is held at 1.
-        flash: rise of the contact over the oil, at most [K].
+        reference: the same of the reference [1].
+        dry: K of dry flanks, which knows of no oil [1].
+        readings: these and what moved them, by the names of result variables.
     """
 
     coefficient: float
-    reference_coefficient: float
-    dry_coefficient: float
-    regression_ratio: float
-    film_defect: float
-    film_defect_ratio: float
-    asperity_share: float
-    asperity_share_ratio: float
-    asperity_regression: float
-    asperity_status: float
-    flash: float
+    reference: float
+    dry: float
+    readings: Mapping[str, float]
 
 
 def mixed_lubrication(point: Point, *, tip_angle: float, tip_force: float) -> MixedLubrication:
@@ -112,18 +98,23 @@ def mixed_lubrication(point: Point, *, tip_angle: float, tip_force: float) -> Mi
         if name != "flash"
     }
     moved = ratios["regression"] * ratios["defect"] * ratios["share"]
+    dry = given.coefficient / float(laws["defect"][0] * share[0])
+    beyond = laws["asperity_regression"][1] > 1.0
     return MixedLubrication(
         coefficient=given.coefficient * moved,
-        reference_coefficient=given.coefficient,
-        dry_coefficient=given.coefficient / float(laws["defect"][0] * share[0]),
-        regression_ratio=ratios["regression"],
-        film_defect=float(laws["defect"][1]),
-        film_defect_ratio=ratios["defect"],
-        asperity_share=float(share[1]),
-        asperity_share_ratio=ratios["share"],
-        asperity_regression=float(laws["asperity_regression"][1]),
-        asperity_status=float(Code.HELD if laws["asperity_regression"][1] > 1.0 else Code.SOLVED),
-        flash=float(laws["flash"][1]),
+        reference=given.coefficient,
+        dry=dry,
+        readings={
+            "dry_coefficient": dry,
+            "wear_regression_ratio": ratios["regression"],
+            "adsorbed_film_defect": float(laws["defect"][1]),
+            "film_defect_ratio": ratios["defect"],
+            "tip_asperity_share": float(share[1]),
+            "asperity_share_ratio": ratios["share"],
+            "asperity_regression": float(laws["asperity_regression"][1]),
+            "asperity_regression_status": float(Code.HELD if beyond else Code.SOLVED),
+            "tip_flash": float(laws["flash"][1]),
+        },
     )
 
 
@@ -171,17 +162,3 @@ def _laws(
             **oil,
         ),
     }
-
-
-READINGS = {
-    "dry_coefficient": "dry_coefficient",
-    "wear_regression_ratio": "regression_ratio",
-    "adsorbed_film_defect": "film_defect",
-    "film_defect_ratio": "film_defect_ratio",
-    "tip_asperity_share": "asperity_share",
-    "asperity_share_ratio": "asperity_share_ratio",
-    "asperity_regression": "asperity_regression",
-    "asperity_regression_status": "asperity_status",
-    "tip_flash": "flash",
-}
-"""What a result keeps of them, by the name of its variable."""

@@ -18,11 +18,7 @@ from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.published.publication import Point, Read
-from pitchpoint.published.zhao2022.coefficient import (
-    READINGS,
-    MixedLubrication,
-    mixed_lubrication,
-)
+from pitchpoint.published.zhao2022.coefficient import MixedLubrication, mixed_lubrication
 from pitchpoint.published.zhao2022.printed import (
     ENGAGED_HEIGHT,
     HALF_ZONE,
@@ -287,18 +283,19 @@ def readings(point: Point) -> Read:
     )
     rate = mixed.coefficient / given.hardness
     found: dict[str, Any] = {"wear_rate": rate}
-    found |= _depths(strips, rate, given)
+    whole = marched(strips, rate=rate, cycles=given.cycles)
+    found |= _depths(whole, strips, rate, given)
     finer = strips_of(point, mesh.flank, neutral, finer=2)
     twice = marched(finer, rate=rate, cycles=given.cycles).at(given.cycles, "depth")
     found["wear_depth_change"] = float(np.max(twice)) - found["wear_depth"]
     found |= _stages(strips, rate, _limit(strips, given, gears.module))
     found |= _flank_courses(strips, rate, neutral)
     found |= _dry(strips, found, mixed, given)
-    found |= {name: getattr(mixed, held) for name, held in READINGS.items()}
-    found["contact_temperature"] = float(point.operation.temperature) + mixed.flash
+    found |= mixed.readings
+    found["contact_temperature"] = float(point.operation.temperature) + found["tip_flash"]
     found["depth_growth"] = found["tip_depth_late"] / found["tip_depth_early"]
     if isinstance(mesh.flank, DoubleArcFlank):
-        found |= _beside_involute(found, strips, point, rate)
+        found |= _beside_involute(found, whole, point, rate)
     return found
 
 
@@ -307,12 +304,10 @@ def _limit(strips: Strips, given: FlankWear, module: float) -> float:
     return min(strips.tip_land, given.severe_depth * module)
 
 
-def _depths(strips: Strips, rate: float, given: FlankWear) -> dict[str, Any]:
+def _depths(whole: March, strips: Strips, rate: float, given: FlankWear) -> dict[str, Any]:
     """Depth with and without the offset over the cycles."""
     cycles = np.linspace(0.0, given.cycles, BLOCKS + 1)
-    both = [
-        marched(one, rate=rate, cycles=given.cycles) for one in (strips, strips.without_offset())
-    ]
+    both = whole, marched(strips.without_offset(), rate=rate, cycles=given.cycles)
     course = [_over(cycles, one.cycles, one.depth.max(axis=1)) for one in both]
     return {
         "wear_depth": float(course[0][-1]),
@@ -358,8 +353,7 @@ def _dry(
 
     A march with the dry coefficient itself would end within a thousandth of the cycles.
     """
-    deeper = mixed.dry_coefficient / mixed.reference_coefficient
-    rate = mixed.reference_coefficient / given.hardness
+    deeper, rate = mixed.dry / mixed.reference, mixed.reference / given.hardness
     late, all_cycles = (
         deeper * marched(strips, rate=rate, cycles=one).at(one, "depth")
         for one in (LATER["late"], given.cycles)
@@ -419,7 +413,7 @@ def _profile(strips: Strips, depth: Array) -> Array:
 
 
 def _beside_involute(
-    found: dict[str, Any], strips: Strips, point: Point, rate: float
+    found: dict[str, Any], ours: March, point: Point, rate: float
 ) -> dict[str, Any]:
     """Double arc beside the involute flank of Table 1 with the same coefficient, eqs. 11 to 33."""
     mesh, gears, given = point.design.mesh, point.gears, point.formulas
@@ -431,7 +425,7 @@ def _beside_involute(
     involute = strips_of(point, flank, float(flank.neutral_radius))
     limit = _limit(involute, given, gears.module)
     whole = severe(involute, rate=rate, limit=limit)
-    ours, theirs = (marched(one, rate=rate, cycles=given.cycles) for one in (strips, involute))
+    theirs = marched(involute, rate=rate, cycles=given.cycles)
     ratios = {
         name: float(np.max(ours.at(given.cycles, name) / theirs.at(given.cycles, name)))
         for name in ("pressure", "step", "depth")

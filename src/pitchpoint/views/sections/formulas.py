@@ -12,7 +12,7 @@ import xarray as xr
 from pitchpoint.analyses.studies import PREFIX, is_study
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.published.publication import Beside, Curves, Maps
-from pitchpoint.published.registry import PUBLICATIONS, publication_of
+from pitchpoint.published.registry import publication_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.status import Code
 from pitchpoint.views import show
@@ -44,11 +44,12 @@ _MANY = 1e6
 """Cycles from which on an axis counts them in powers of ten."""
 
 
-def _besides(page: Page) -> tuple[Beside, ...]:
-    """What the publication sets beside each other, as far as a study holds it."""
-    source = page.first.get("source", "")
-    every = PUBLICATIONS[source].beside if source in PUBLICATIONS else ()
-    return tuple(one for one in every if _studies(page, one))
+def _besides(page: Page) -> Iterator[tuple[Beside, "list[_Study]"]]:
+    """What the publication sets beside each other, with the studies that hold it, where there are any."""
+    publication = publication_of(page.first.get("source", ""))
+    for beside in publication.beside if publication else ():
+        if studies := _studies(page, beside):
+            yield beside, studies
 
 
 class _Study(NamedTuple):
@@ -103,11 +104,10 @@ def _points(data: xr.Dataset, beside: Beside) -> list[_Told]:
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    for number, beside in enumerate(_besides(page)):
+    for number, (beside, studies) in enumerate(_besides(page)):
         yield Paragraph(beside.note, "note")
         if beside.calibrated:
             yield Paragraph(beside.calibrated, "warning")
-        studies = _studies(page, beside)
         name = f"formulas{number}"
         drawn = [
             _maps(f"{name}_map", studies, beside),
@@ -153,7 +153,7 @@ def _listed(places: list[str]) -> str:
     return shown + f"; and {len(places) - _FEW} more" * (len(places) > _FEW)
 
 
-_At = tuple[_Study, int]
+_Where = tuple[_Study, int]
 """A point of a study."""
 
 
@@ -230,7 +230,7 @@ def _side_by_side(name: str, studies: list[_Study], beside: Beside) -> Panel:
     return Panel("", figures)
 
 
-def _family(name: str, one: Curves, points: list[_At], titles: list[str]) -> Figure:
+def _family(name: str, one: Curves, points: list[_Where], titles: list[str]) -> Figure:
     """One course at each of several points."""
     (variable,) = one.names
     keys = [Key(title, PALETTE[k]) for k, title in enumerate(titles)]
@@ -247,16 +247,21 @@ def _drawn(name: str, one: Curves, traces: list[Trace], keys: list[Key]) -> Figu
     if max(filter(None, traces[0]["x"]), default=0.0) > _MANY:
         scales["xaxis"] = {"exponentformat": "power", "separatethousands": False}
     axes = layout(show.axis_title(one.along), short_axis(one.names[0]), **scales)
+    return Figure(
+        name, _title(one), traces, axes, keys=tuple(keys), missing="No numbers were found."
+    )
+
+
+def _title(one: Curves | Maps) -> str:
     shows = f" ({one.shows} of the publication)" if one.shows else ""
-    title = f"{one.title[0].upper()}{one.title[1:]}{shows}"
-    return Figure(name, title, traces, axes, keys=tuple(keys), missing="No numbers were found.")
+    return f"{one.title[0].upper()}{one.title[1:]}{shows}"
 
 
 def _shown(name: str, data: xr.Dataset, point: int) -> list[Any]:
     return rounded(display(name, data[name].values[point]))
 
 
-def _figure(name: str, one: Curves, point: _At, beside: Beside) -> Figure:
+def _figure(name: str, one: Curves, point: _Where, beside: Beside) -> Figure:
     """Courses over each other at a point; empty where only other studies hold them."""
     columns = one.columns or beside.columns
     keys = [Key(column, PALETTE[k]) for k, column in enumerate(columns)]
@@ -292,10 +297,8 @@ def _map(name: str, one: Maps, data: xr.Dataset) -> Figure:
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~g}} {unit}<extra></extra>",
     }
-    shows = f" ({one.shows} of the publication)" if one.shows else ""
-    title = f"{one.title[0].upper()}{one.title[1:]}{shows}"
     axes = layout(*(show.axis_title(axis) for axis in one.axes))
-    return Figure(name, title, [heat], axes, missing="No numbers were found.")
+    return Figure(name, _title(one), [heat], axes, missing="No numbers were found.")
 
 
 def _table(data: xr.Dataset, beside: Beside) -> Table:
@@ -355,7 +358,7 @@ def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
 
 
 def _lacks(page: Page) -> str | None:
-    return None if _besides(page) else ""
+    return None if any(_besides(page)) else ""
 
 
 FORMULAS = Section(

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import xarray as xr
 
-from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.published.registry import publication_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -174,7 +174,8 @@ def stiffness_blocks(page: Page) -> Iterator[Block]:
 
 def _of_publication(source: str) -> str:
     """On which stiffness the formulas of a publication run, where that is another one."""
-    return PUBLICATIONS[source].stiffness if source in PUBLICATIONS else ""
+    publication = publication_of(source)
+    return publication.stiffness if publication else ""
 
 
 def _of_variant(it: Panel) -> Iterator[Block]:
