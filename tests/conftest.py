@@ -36,11 +36,14 @@ install()  # before anything of the package is imported
 
 from pitchpoint import programs  # noqa: E402
 
-MOST_MAPS = 45_000
-"""Memory maps of a process (Linux allows 65,530) beyond which compiled programs are given back."""
+MOST_MAPS = 55_000
+"""Memory maps of a process (Linux allows 65,530) beyond which compiled programs are given back after a file."""
+
+LAST_MAPS = 60_000
+"""Those beyond which they are given back within a file, where tests that follow may still share them."""
 
 OFTEN = 20
-"""Programs after which maps are counted within a file: some files alone take more than the rest allows."""
+"""Programs after which maps are counted within a file."""
 
 _counted_at = 0
 
@@ -88,15 +91,15 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     global _counted_at
     if spent.programs - _counted_at >= OFTEN:
         _counted_at = spent.programs
-        if _crowded():
+        if _more_maps_than(LAST_MAPS):
             programs.forget()
     return done
 
 
-def _crowded() -> bool:
-    """True where the memory maps of the process could be exhausted, or where they are not known."""
+def _more_maps_than(most: int) -> bool:
+    """True also where the memory maps of the process are not known."""
     maps = Path("/proc/self/maps")
-    return not maps.exists() or maps.read_bytes().count(b"\n") > MOST_MAPS
+    return not maps.exists() or maps.read_bytes().count(b"\n") > most
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -104,7 +107,7 @@ def _programs_within_the_memory_maps(request: pytest.FixtureRequest) -> Iterator
     """Files share what they compile until it could exhaust the memory maps of the process."""
     yield
     METER.calibrate()
-    if _crowded() or request.config.option.record_budget:
+    if _more_maps_than(MOST_MAPS) or request.config.option.record_budget:
         programs.forget()
 
 
