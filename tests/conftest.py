@@ -37,7 +37,7 @@ install()  # before anything of the package is imported
 from pitchpoint import programs  # noqa: E402
 
 MOST_MAPS = 55_000
-"""Memory maps of a process (Linux allows 65,530) beyond which compiled programs are given back after a file."""
+"""Memory maps (Linux allows 65,530) beyond which compiled programs are given back after a file."""
 
 LAST_MAPS = 60_000
 """Those beyond which they are given back within a file, where tests that follow may still share them."""
