@@ -30,7 +30,16 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.inputs import in_words
-from pitchpoint.views.section import Block, Folded, Heading, Page, Paragraph, Section, Table
+from pitchpoint.views.section import (
+    Block,
+    Folded,
+    Heading,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Section,
+    Table,
+)
 
 __all__ = ["FORMULAS"]
 
@@ -345,7 +354,7 @@ def _places(data: xr.Dataset) -> list[str]:
     ]
 
 
-def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
+def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
     """What the publication is about, at the first point of the first study."""
     publication = publication_of(str(outcome.manifest.get("source", "")))
     for name in publication.answers if publication else ():
@@ -354,7 +363,7 @@ def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
             value = float(data[name].values[0, 0])
             words = show.quantity(name, value) if np.isfinite(value) else "not found"
             at = _Study("", str(data.attrs["title"]), data)
-            yield show.described(name).long_name, f"{words} ({_point(at, 0)})"
+            yield KeyFigure(5.0, show.described(name).long_name, words, f"({_point(at, 0)})")
 
 
 def _lacks(page: Page) -> str | None:
