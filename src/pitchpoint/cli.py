@@ -427,15 +427,20 @@ def _compare_designs(
 
 def _differences(outcomes: "dict[str, Outcome]") -> None:
     """What cannot be, results with their differences, inputs that differ, and what warns of each design."""
-    from pitchpoint.views.designs import differing, law_words, result_table
+    from pitchpoint.views.designs import differing, law_words, of_several, result_table
 
     for name, outcome in outcomes.items():
         _failing(f"{name}: {text}" for text in outcome.manifest["implausible"])
     _console().print(_plain(law_words(outcomes)))
     results = result_table(outcomes, differences=len(outcomes) <= _FEW_DESIGNS)
-    for title, table in {"Results": results, **differing(outcomes)}.items():
-        _console().print(f"\n[bold]{title}[/]" if table.rows else f"\n[bold]{title}[/]: none")
+    for title, whole in {"Results": results, **differing(outcomes)}.items():
+        table, alone = of_several(whole, len(outcomes))
+        _console().print(f"\n[bold]{title}[/]" if whole.rows else f"\n[bold]{title}[/]: none")
         _table([dict(zip(table.head, row, strict=True)) for row in table.rows], tuple(table.head))
+        if alone:
+            _console().print(
+                f"{alone} more that one design alone has are in the report.", style="dim"
+            )
     for name, outcome in outcomes.items():
         _warn([f"{name}: {text}" for text in outcome.manifest["warnings"]])
 
