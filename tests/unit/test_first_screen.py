@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
 from pitchpoint.views.columns import fitted
 from pitchpoint.views.first_screen import (
     FEW_LINES,
     beside_each_other,
-    first_clauses,
     first_screen,
     key_figures,
 )
@@ -98,7 +98,7 @@ def test_key_figures_are_named_once(pair: dict[str, Outcome]) -> None:
 @given(st.text("ab 1.5,;(", max_size=60), st.integers(10, 40))
 def test_clauses_fit_and_end_at_a_word(sentence: str, width: int) -> None:
     whole = " ".join(sentence.split())
-    cut = first_clauses(sentence, width)
+    cut = show.first_clauses(sentence, width)
     begin = cut.removesuffix(" …")
     assert whole.startswith(begin)
     assert cut == whole or whole[len(begin)] in " ;,(" or " " not in begin

@@ -1,6 +1,5 @@
 """The first screen of a run: what fails or is doubtful, then figures that answer, in a dozen short lines."""
 
-import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from pitchpoint.views.inputs import words as input_words
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import KeyFigure
 
-__all__ = ["FEW_LINES", "Line", "beside_each_other", "first_clauses", "first_screen", "key_figures"]
+__all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen", "key_figures"]
 
 FEW_LINES = 12
 """Lines of a first screen."""
@@ -25,16 +24,8 @@ _DOUBTS = 3
 
 Style = Literal["title", "fails", "doubt", "figure", "note"]
 
-_CLAUSE = re.compile(r"(?<=[^\d\s]),? \(|[;,.] | – ")
-"""Where a sentence can end early; not within a number, nor before its unit."""
-
 _LEAST_DETAIL = 6
 """Characters below which what is left of a detail says nothing."""
-
-_MOST_OF = 0.6
-"""Part of a line that clauses must fill; else a sentence ends within one."""
-
-_NUMBER = re.compile(r"[−+-]?\d[\d.,]*(e[−+-]?\d+)?")
 
 
 @dataclass(frozen=True)
@@ -54,9 +45,9 @@ def first_screen(outcomes: Mapping[str, Outcome], report: Path, width: int) -> l
         width: of the screen, in characters; no line is longer, and no number cut.
     """
     outcome = next(iter(outcomes.values()))
-    title = [Line(first_clauses(_title(outcome, len(outcomes)), width), "title")]
+    title = [Line(show.first_clauses(_title(outcome, len(outcomes)), width), "title")]
     at = _operation(outcome) if len(outcomes) == 1 else ""
-    head = [*title, *([Line(first_clauses(at, width))] if at else [])]
+    head = [*title, *([Line(show.first_clauses(at, width))] if at else [])]
     doubts = _doubts(outcomes, width)
     foot = [*_rows_met(outcomes, width), *_more(outcomes, report, width)]
     room = FEW_LINES - len(head) - len(doubts) - len(foot)
@@ -81,32 +72,6 @@ def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
         {"": name} | {variant: own.get(name, "–") for variant, own in values.items()}
         for name in names
     ]
-
-
-def first_clauses(sentence: str, width: int) -> str:
-    """As many clauses of a sentence as there is room for, else words; a number and its unit stay whole.
-
-    Example:
-        >>> first_clauses("Tips are thin, 0.2 modules: case-hardened teeth may break there.", 40)
-        'Tips are thin, 0.2 modules …'
-        >>> first_clauses("friction 0.31 reaches the 0.29 at which this mesh locks", 32)
-        'friction 0.31 reaches the …'
-    """
-    sentence = _one_line(sentence)
-    if len(sentence) <= width:
-        return sentence
-    ends = [found.start() for found in _CLAUSE.finditer(sentence) if found.start() <= width - 2]
-    if ends and ends[-1] >= _MOST_OF * width:
-        return f"{sentence[: ends[-1]]} …"
-    words = sentence[: width - 1].rsplit(" ", 1)[0].split(" ")
-    while len(words) > 1 and _NUMBER.fullmatch(words[-1]):
-        words.pop()  # its unit is what was cut off
-    return f"{' '.join(words)} …"
-
-
-def _one_line(text: str) -> str:
-    """Text with plain spaces alone."""
-    return " ".join(text.split())
 
 
 def _title(outcome: Outcome, variants: int) -> str:
@@ -137,8 +102,8 @@ def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
     fails = _of_variants(outcomes, "implausible")
     doubts = _of_variants(outcomes, "warnings")
     lines = [
-        *(Line(first_clauses(text, width), "fails") for text in fails),
-        *(Line(first_clauses(f"Doubtful: {text}", width), "doubt") for text in doubts),
+        *(Line(show.first_clauses(text, width), "fails") for text in fails),
+        *(Line(show.first_clauses(f"Doubtful: {text}", width), "doubt") for text in doubts),
     ]
     if len(lines) <= _DOUBTS:
         return lines
@@ -162,8 +127,8 @@ def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
     """Names, values, and what goes with them."""
     if not figures:
         return []
-    names = [_one_line(figure.name) for figure in figures]
-    values = [_one_line(figure.value) for figure in figures]
+    names = [show.one_line(figure.name) for figure in figures]
+    values = [show.one_line(figure.value) for figure in figures]
     name_width = max(map(len, names))
     value_width = max((len(value) for value in values if len(value) <= width // 5), default=0)
     lines = []
@@ -171,9 +136,9 @@ def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
         begin = f"{name:<{name_width}}  {value:<{value_width}}  "
         room = width - len(begin)
         if room < 0:  # words in place of a number
-            lines.append(first_clauses(f"{name:<{name_width}}  {value}", width))
+            lines.append(show.first_clauses(f"{name:<{name_width}}  {value}", width))
             continue
-        detail = first_clauses(figure.detail.lstrip(",; "), room) if figure.detail else ""
+        detail = show.first_clauses(figure.detail.lstrip(",; "), room) if figure.detail else ""
         lines.append(f"{begin}{detail if len(detail) > _LEAST_DETAIL else ''}".rstrip())
     return [Line(text, "figure") for text in lines]
 
@@ -202,4 +167,4 @@ def _more(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Lin
         and any(set(section.parts) <= set(outcome.parts) for outcome in outcomes.values())
     ]
     every = f"Tables by --full: answer, {', '.join(titles).lower()}"
-    return [Line(f"Report: {report}"), Line(first_clauses(every, width))]
+    return [Line(f"Report: {report}"), Line(show.first_clauses(every, width))]

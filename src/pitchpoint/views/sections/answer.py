@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -44,7 +45,8 @@ def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
     values = {
         "variants": variants,
-        "warnings": _warned(page),
+        "warnings": (warnings := _warned(page)),
+        "first_doubt": show.first_clauses(next(iter(warnings), ""), _SUMMED_UP),
         "several": page.several,
         "designs": page.designs,
         "sums": _sums(page),
@@ -96,16 +98,16 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
     """What the top of the page says about one variant."""
     manifest, parts = outcome.manifest, outcome.parts
     single = of_contact(parts.get("operation", ()))
+    each = (figure for section in page.sections for figure in section.answer(outcome))
+    figures = sorted(each, key=lambda figure: figure.order)
     return {
         "name": name,
         "oil": manifest["oil"],
         "oil_note": _oil_note(outcome),
         "sharing": "" if single else _sharing(manifest),
+        "tiles": [_tile(figure) for figure in figures],
         "facts": [
-            (figure.name, figure.words)
-            for section in page.sections
-            if section.name != ANSWER.name  # the cards say it by law
-            for figure in section.answer(outcome)
+            (figure.name, figure.words) for figure in figures if len(figure.detail) > _IN_A_TILE
         ],
         "averaging": "" if single else _averaging(outcome),
         "operation": _operation(outcome),
@@ -122,6 +124,19 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         if "operation" in parts
         else [],
     }
+
+
+def _tile(figure: KeyFigure) -> KeyFigure:
+    """A key figure with as much beside its value as a tile has room for."""
+    detail = show.first_clauses(figure.detail.lstrip(",; "), _IN_A_TILE) if figure.detail else ""
+    return replace(figure, detail=detail)
+
+
+_IN_A_TILE = 56
+"""Characters beside a value; what is longer stands in the list below the tiles."""
+
+_SUMMED_UP = 100
+"""Characters of the first doubt, the others are unfolded with it."""
 
 
 def _holding_first(parts: Mapping[str, xr.Dataset]) -> list[tuple[int, str]]:
