@@ -961,7 +961,7 @@ def _plain_line(text: str) -> str:
     """The same of a line whose spaces align it with others."""
     from rich.markup import escape
 
-    return escape(visible(text))
+    return escape(visible(text.replace("\u00a0", " ")))
 
 
 def _console(stderr: bool = False) -> Any:

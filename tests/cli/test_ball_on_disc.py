@@ -134,8 +134,13 @@ def test_a_barrel_touches_in_a_wider_ellipse(outcome: Outcome) -> None:
 
 def test_tables_and_json_tell_the_contact(outcome: Outcome) -> None:
     (row,) = summary(outcome).rows
-    assert [*row][:4] == ["friction law", "h [um]", "Λ", "p_H [MPa]"]
-    assert row["p_H [MPa]"] == "1109.6"
+    assert [*row][:4] == [
+        "friction law",
+        "film thickness [µm]",
+        "film thickness over composite Rq",
+        "largest Hertz pressure [MPa]",
+    ]
+    assert row["largest Hertz pressure [MPa]"] == "1109.6"
     assert summary(outcome).line == "No power is transmitted: the efficiency is undefined."
     told = figures(outcome)
     assert told["back_driving"] == {}
@@ -144,7 +149,7 @@ def test_tables_and_json_tell_the_contact(outcome: Outcome) -> None:
     swept = Outcome({}, {"study_sweep_force": outcome.parts["study_force"]})
     (printed,) = SECTIONS["studies"].screen(swept)
     assert [row["operation.force"] for row in printed.rows] == ["5 N", "50 N", "400 N"]
-    assert all(float(row["h [um]"]) > 0.0 for row in printed.rows)
+    assert all(float(row["film thickness [µm]"]) > 0.0 for row in printed.rows)
 
 
 def test_the_report_shows_the_contact_and_leaves_out_what_gears_have(outcome: Outcome) -> None:

@@ -254,6 +254,7 @@ def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
 
     monkeypatch.setattr(run, "run", prepare)
     monkeypatch.setattr(cli, "_write_report", lambda outcomes, folder: None)
+    monkeypatch.setattr(cli, "_first_screen", lambda outcomes, report: None)
     program, *arguments = shlex.split(line)
     assert program == ".venv/bin/pitchpoint"
     monkeypatch.setattr(sys, "argv", ["pitchpoint", *arguments])

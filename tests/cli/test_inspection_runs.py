@@ -124,17 +124,19 @@ def test_the_report_and_the_screen_show_it(asked, data) -> None:
     words = " ".join(str(one.words) for one in blocks if isinstance(one, Paragraph))
     assert "come on top" in words
     assert "0.5 mm do not touch" in words
-    ((term, answer),) = SECTION.answer(outcome)
-    assert term == "Backlash by tolerances"
-    assert answer.endswith("arcmin at gear 2")
+    (backlash,) = SECTION.answer(outcome)
+    assert backlash.name == "Backlash by tolerances"
+    assert " to " in backlash.value and backlash.detail.endswith("arcmin at gear 2")
     (printed,) = SECTION.screen(outcome)
     assert [row["inspection"] for row in printed.rows] == ["gear 1", "gear 2"]
-    assert " to " in printed.rows[0]["W_k [mm]"]
+    assert " to " in printed.rows[0]["span measurement [mm]"]
 
 
 def test_the_screen_keeps_silent_where_nobody_asked(plain) -> None:
     outcome = Outcome({}, {"inspection": inspection_part(plain)})
-    assert [*SECTION.screen(outcome)] == [*SECTION.answer(outcome)] == []
+    assert [*SECTION.screen(outcome)] == []
+    (backlash,) = SECTION.answer(outcome)
+    assert backlash.detail.startswith("nominal, ")
 
 
 def test_balls_stand_out_of_deep_spaces() -> None:

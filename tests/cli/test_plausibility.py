@@ -136,7 +136,7 @@ def test_what_cannot_be_stands_above_every_number(
 def test_a_law_out_of_its_range_gives_no_headline(
     printed: Callable[..., str], tmp_path: Path
 ) -> None:
-    lines = printed([], report=True).splitlines()
+    lines = printed([], "--full", report=True).splitlines()
     apart = lines.index("Out of their range here: extrapolations")
     assert next(line for line in lines if line.startswith(("iso_tr", "xu_"))).startswith(ISO)
     assert lines[apart + 2].startswith("xu_2007")

@@ -1,6 +1,7 @@
 """Analyses as entries: what each lacks, pieces that other processes compute, one of a user's own."""
 
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -30,7 +31,7 @@ from pitchpoint.views.figures import PALETTE, Figure, Key, Panel, display, layou
 from pitchpoint.views.registry import SECTIONS, register_section
 from pitchpoint.views.report import render
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section, Table
+from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Section, Table
 
 DOCS = Path(__file__).parents[2] / "docs"
 SWEPT = f"""{PAIR}
@@ -266,7 +267,7 @@ def shown_passing() -> Section:
         order=350.0,
         parts=("passing",),
         blocks=blocks,
-        answer=lambda outcome: [("Teeth", f"{len(rows(outcome))} speeds")],
+        answer=lambda outcome: [KeyFigure(95.0, "Teeth", f"{len(rows(outcome))} speeds")],
         screen=lambda outcome: [Printed("Teeth that pass", rows(outcome))],
     )
 
@@ -289,15 +290,16 @@ def test_an_analysis_and_a_section_of_ones_own_are_all_that_is_needed(
     register_section(shown_passing())
     case, out = tmp_path / "pair.toml", tmp_path / "out"
     case.write_text(PAIR + TARGET, "utf-8")
-    assert command("run", str(case), "-o", str(out), monkeypatch=monkeypatch) == 0
+    assert command("run", str(case), "-o", str(out), "--full", monkeypatch=monkeypatch) == 0
     screen = capsys.readouterr().out
-    assert "Teeth that pass\nn [rpm]  n z [1/s]\n954.93   2300" in screen
+    assert re.search(r"Teeth that pass\n.*teeth that pass \[1/s\]\n954\.93 +2300", screen)
+    assert re.search(r"\nTeeth +2 speeds\n", screen)
     assert "predicted: 1 pass" in screen
     page = (out / "report.html").read_text("utf-8")
     assert '<a href="#passing">Passing</a>' in page
     assert '<section id="passing">\n<h2>Teeth that pass</h2>' in page
     assert '<div class="plot" id="passing_speed">' in page
-    assert "<dt>Teeth</dt><dd>2 speeds</dd>" in page
+    assert "<dt>Teeth</dt><dd><strong>2 speeds</strong></dd>" in page
     assert '<th scope="row">954.93</th><td class="n">2300</td>' in page
     assert page.index('id="inputs"') < page.index('id="passing"') < page.index('id="compared"')
     assert command("run", str(case), "-o", str(out), "--json", monkeypatch=monkeypatch) == 0

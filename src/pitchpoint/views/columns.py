@@ -30,9 +30,9 @@ def fitted(rows: Sequence[Mapping[str, str]], names: Sequence[str], width: int) 
         >>> fitted(rows, ["law", "loss [W]", "note"], 40)
         [{'law': 3, 'loss [W]': 8, 'note': 24}]
         >>> fitted(rows, ["law", "loss [W]", "note"], 28)
-        [{'law': 3, 'loss [W]': 6, 'note': 17}]
+        [{'law': 3, 'loss [W]': 5, 'note': 18}]
         >>> fitted(rows, ["law", "loss [W]", "note"], 12)
-        [{'law': 3, 'loss [W]': 5}, {'law': 3, 'note': 8}]
+        [{'law': 3, 'loss [W]': 8}, {'law': 3, 'note': 8}]
     """
     cells = {name: [str(row.get(name, "")) for row in rows] for name in names}
     least = {name: _least(name, cells[name]) for name in names}

@@ -99,7 +99,8 @@ def result_table(outcomes: Mapping[str, Outcome], *, differences: bool = True) -
             *(_value(one, design) for design in outcomes),
             *(
                 _UNLIKE
-                if _unlike(one, outcomes[first], outcomes[design])
+                if {first, design} <= {*one.values}
+                and _unlike(one, outcomes[first], outcomes[design])
                 else _difference(one, first, design)
                 for design in others
             ),

@@ -52,7 +52,8 @@ def first_screen(outcomes: Mapping[str, Outcome], report: Path, width: int) -> l
     foot = [*_rows_met(outcomes, width), *_more(outcomes, report, width)]
     room = FEW_LINES - len(head) - len(doubts) - len(foot)
     figures = _aligned(key_figures(outcome)[:room], width) if len(outcomes) == 1 else []
-    return [*head, *doubts, *figures, *foot]
+    fails = [line for line in doubts if line.style == "fails"]
+    return [*fails, *head, *(line for line in doubts if line not in fails), *figures, *foot]
 
 
 def key_figures(outcome: Outcome) -> list[KeyFigure]:

@@ -218,15 +218,15 @@ def axis_title(name: str, of: Any = None) -> str:
 
 
 def one_line(text: str) -> str:
-    """Text with plain spaces alone."""
-    return " ".join(text.split())
+    """Text without line breaks and repeated spaces; those that hold a number and its unit together stay."""
+    return re.sub(r"[ \t\r\n]+", " ", text).strip()
 
 
 def first_clauses(sentence: str, width: int) -> str:
     """As many clauses of a sentence as there is room for, else words; a number and its unit stay whole.
 
     Example:
-        >>> first_clauses("Tips are thin, 0.2 modules: case-hardened teeth may break there.", 40)
+        >>> first_clauses("Tips are thin, 0.2 modules; case-hardened teeth may break there.", 40)
         'Tips are thin, 0.2 modules …'
         >>> first_clauses("friction 0.31 reaches the 0.29 at which this mesh locks", 32)
         'friction 0.31 reaches the …'
@@ -240,4 +240,4 @@ def first_clauses(sentence: str, width: int) -> str:
     words = sentence[: width - 1].rsplit(" ", 1)[0].split(" ")
     while len(words) > 1 and _NUMBER.fullmatch(words[-1]):
         words.pop()  # its unit is what was cut off
-    return f"{' '.join(words)} …"
+    return f"{' '.join(words).rstrip()} …"
