@@ -27,7 +27,7 @@ from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
 from pitchpoint.views.registry import FINITE_FILM as SECTION
 from pitchpoint.views.report import render
-from pitchpoint.views.screen import shown
+from pitchpoint.views.screen import head, shown
 
 MODELS = '[models]\nfriction = { name = "constant", coefficient = 0.05 }\n'
 FINITE = '[film]\nsolver = "finite_line"\nphases = 3\nnodes = 33\n'
@@ -277,7 +277,7 @@ def test_a_report_has_the_temperatures_and_no_word_of_isothermal_films(warm: Out
     assert "films are isothermal" not in page.lower() and "With heat (mean film)" in page
     for words in ("Temperature above the inlet, in the warmest row", "patch0_0_rise"):
         assert words in page
-    told = dict(SECTION.answer(warm))["Films of finite contacts"]
+    told = next(iter(SECTION.answer(warm))).words
     assert "warmer than their inlet" in told
     assert figures(warm)["finite_film"]["largest_flash_rise"] > 0.0
 
@@ -374,7 +374,7 @@ def test_what_rounding_leaves_is_zero_on_the_screen() -> None:
 @pytest.mark.whole
 def test_without_a_torque_nothing_is_loaded(case: str) -> None:
     one = running.run(case, settings={"operation.torque": "0 N m"})["default"]
-    words = dict(SECTION.answer(one))["Films of finite contacts"]
+    words = next(iter(SECTION.answer(one))).words
     first, *_ = SECTION.screen(one)
     assert words.startswith("Nothing is loaded") and first.line == words
     page = render({"default": one})
@@ -390,9 +390,12 @@ def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
     assert ends.sum() == 1
     assert data.attrs["sharp"].startswith("The lines end sharply: the largest pressure")
     first, *_ = SECTION.screen(one)
-    assert "p_max [MPa]" not in first.rows[0] and "h_c min [um]" not in first.rows[0]
+    assert all(
+        head(name) not in first.rows[0]
+        for name in ("largest_film_pressure", "smallest_central_film")
+    )
     assert "12 of 12 contact lines touch at one end only" in first.line
-    words = dict(SECTION.answer(one))["Films of finite contacts"]
+    words = next(iter(SECTION.answer(one))).words
     assert " at least, " in words and "undefined" not in words
     page = render({"default": one})
     assert "not compared" in page and "undefined, no power" not in page
