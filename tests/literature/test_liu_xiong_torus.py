@@ -163,6 +163,7 @@ LOSSLESS = {
     **{f"{pair}_printed_efficiency": 1.0 for pair in ("torus", "standard")},
     "torus_less_standard_friction": 0.0,
     "torus_less_standard_efficiency": 0.0,
+    "torus_less_standard_sliding_efficiency": 0.0,
 }
 
 
