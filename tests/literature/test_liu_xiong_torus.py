@@ -691,6 +691,13 @@ def test_a_negative_stiffness_is_refused():
     assert told.value.key == "formulas.torus_stiffness"
 
 
+def test_few_places_of_the_library_on_the_path_are_refused():
+    beyond = [f"{roll} deg" for roll in (3, 6, 9, *range(20, 37))]
+    with pytest.raises(InputError, match="3 of these roll angles lie on the path") as told:
+        read("validation", **{"formulas.stiffness": "library", "formulas.torus_roll": beyond})
+    assert told.value.key == "formulas.torus_roll"
+
+
 def test_a_motion_that_is_not_found_is_told(monkeypatch):
     monkeypatch.setattr(printed, "figures", lambda *_: {"largest_error": np.array(np.inf)})
     with pytest.raises(ConvergenceError, match="motion of the torus pair"):
