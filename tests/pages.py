@@ -1,32 +1,37 @@
-"""README and documentation as tests read them: their blocks, by page."""
+"""What the script of a page reads."""
 
+import base64
+import gzip
+import itertools
+import json
 import re
-from pathlib import Path
+from typing import Any
 
-ROOT = Path(__file__).parents[1]
-RUN_WHILE_BUILT = ("gallery", "reference")
-"""Folders of pages whose cells run while the site is built, or that are made from the code."""
+__all__ = ["payload", "unpacked"]
 
 
-def _pages() -> dict[str, str]:
-    found = {"README.md": (ROOT / "README.md").read_text("utf-8")}
-    for path in sorted((ROOT / "docs").rglob("*.md")):
-        name = path.relative_to(ROOT / "docs")
-        if not {"_build", *RUN_WHILE_BUILT} & set(name.parts):
-            found[name.as_posix()] = path.read_text("utf-8")
-    return found
+def unpacked(page: str, name: str) -> Any:
+    """Content that a page holds compressed."""
+    (held,) = re.findall(rf'<script type="text/plain" id="{name}">(.*?)</script>', page)
+    return json.loads(gzip.decompress(base64.b64decode(held)))
 
 
-PAGES = _pages()
+def payload(page: str) -> dict[str, Any]:
+    """Figures and menus of a report, as its script has them."""
+    content = unpacked(page, "figures")
+    lists = [_numbers(*steps) for steps in content.pop("lists")]
+
+    def placed(part: Any) -> Any:
+        if isinstance(part, list):
+            return [placed(value) for value in part]
+        if isinstance(part, dict):
+            return lists[part["list"]] if "list" in part else {k: placed(part[k]) for k in part}
+        return part
+
+    return dict(placed(content))
 
 
-def blocks(page: str, kind: str) -> list[str]:
-    """Blocks of a kind on a page, in order."""
-    fenced = re.findall(r"^```(\w+)\n(.*?)^```$", PAGES[page], re.DOTALL | re.MULTILINE)
-    return [text for own, text in fenced if own == kind]
-
-
-def block(page: str, kind: str, holding: str) -> str:
-    """The one block of a kind on a page that holds some words."""
-    (found,) = (text for text in blocks(page, kind) if holding in text)
-    return found
+def _numbers(decimals: int, *steps: int | None) -> list[float | None]:
+    """Numbers by the steps from one to the next."""
+    sums = iter(itertools.accumulate(step for step in steps if step is not None))
+    return [None if step is None else next(sums) / 10**decimals for step in steps]

@@ -1,8 +1,5 @@
 """One page with inputs on sliders: its numbers, what is not possible, and how it is driven in a browser."""
 
-import base64
-import gzip
-import json
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -12,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from browser import CHROMIUM, Browser, browser
+from pages import unpacked
 from sound import SMOOTH, quick_first
 
 from pitchpoint import cli
@@ -94,10 +92,7 @@ def held(page: Path) -> dict[str, Any]:
 
 
 def held_by(page: Path) -> dict[str, Any]:
-    (found,) = re.findall(
-        r'<script type="text/plain" id="explored">(.*?)</script>', page.read_text("utf-8")
-    )
-    return dict(json.loads(gzip.decompress(base64.b64decode(found))))
+    return dict(unpacked(page.read_text("utf-8"), "explored"))
 
 
 def computed(folder: Path, **changes: str) -> Outcome:

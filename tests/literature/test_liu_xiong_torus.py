@@ -163,6 +163,7 @@ LOSSLESS = {
     **{f"{pair}_printed_efficiency": 1.0 for pair in ("torus", "standard")},
     "torus_less_standard_friction": 0.0,
     "torus_less_standard_efficiency": 0.0,
+    "torus_less_standard_sliding_efficiency": 0.0,
 }
 
 
@@ -688,6 +689,13 @@ def test_a_negative_stiffness_is_refused():
     with pytest.raises(InputError, match="needs a positive stiffness") as told:
         read("validation", **{"formulas.torus_stiffness": springs})
     assert told.value.key == "formulas.torus_stiffness"
+
+
+def test_few_places_of_the_library_on_the_path_are_refused():
+    beyond = [f"{roll} deg" for roll in (3, 6, 9, *range(20, 37))]
+    with pytest.raises(InputError, match="3 of these roll angles lie on the path") as told:
+        read("validation", **{"formulas.stiffness": "library", "formulas.torus_roll": beyond})
+    assert told.value.key == "formulas.torus_roll"
 
 
 def test_a_motion_that_is_not_found_is_told(monkeypatch):

@@ -15,6 +15,7 @@ import bank
 import numpy as np
 import pytest
 import xarray as xr
+from pages import payload
 from plotly.offline import get_plotlyjs
 from records import entries
 from sound import quick_first
@@ -190,12 +191,6 @@ class Words(HTMLParser):
     @property
     def text(self) -> str:
         return " ".join(" ".join(self.words).split())
-
-
-def payload(page: str) -> dict[str, Any]:
-    found = re.search(r'<script type="application/json" id="figures">(.*?)</script>', page, re.S)
-    assert found
-    return dict(json.loads(found.group(1)))
 
 
 CHOSEN = {

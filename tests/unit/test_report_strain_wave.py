@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from pages import payload
 from records import entries
 
 from pitchpoint.analyses.kinematic_error import _turns
@@ -330,10 +331,7 @@ def words(page: str) -> str:
 
 
 def drawn(page: str) -> dict[str, Any]:
-    found = re.search(r'id="figures">(.*?)</script>', page, re.S)
-    assert found
-    figures: dict[str, Any] = json.loads(found.group(1))["figures"]
-    return figures
+    return dict(payload(page)["figures"])
 
 
 def figure(panel: Panel, ending: str) -> Figure:

@@ -10,6 +10,7 @@ import equinox as eqx
 import numpy as np
 import pytest
 import xarray as xr
+from pages import payload
 from records import entries
 
 from pitchpoint._jax import jnp
@@ -261,9 +262,7 @@ def test_page_has_every_section_and_figure(whole: Outcome) -> None:
     text = words(page)
     for part in ("Plane of action", "Mesh stiffness", "Vibration", "Against speed"):
         assert part in text
-    found = re.search(r'id="figures">(.*?)</script>', page, re.S)
-    assert found
-    drawn = json.loads(found.group(1))["figures"]
+    drawn = payload(page)["figures"]
     assert sorted(drawn) == sorted(re.findall(r'class="plot" id="([^"]*)"', page))
     assert len(drawn) == 1 + 2 + 3 + 2
     assert not re.search(r"\b(nan|none|inf)\b", text, re.I)

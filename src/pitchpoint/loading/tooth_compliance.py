@@ -251,12 +251,8 @@ def _as_stiff(contacts: Contacts, terms: Terms) -> Contacts:
     """Contacts where the stiffness of their lines is that of the teeth."""
     if contacts.path.shape[1] == 1:
         return contacts
-    middle = middle_of_lines(contacts)
-    return replace(
-        contacts,
-        flank=jnp.where(terms.middle, middle.flank, contacts.flank),
-        curvature=jnp.where(terms.middle, middle.curvature, contacts.curvature),
-    )
+    there: Contacts = jax.lax.cond(terms.middle, middle_of_lines, lambda them: them, contacts)
+    return there
 
 
 def _bending(contacts: Contacts, sections: Sections, solids: Solids, terms: Terms) -> list[Field]:

@@ -1,7 +1,5 @@
 """The explorer: one HTML file whose sliders change inputs of a case, from points computed beforehand."""
 
-import base64
-import gzip
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,7 +22,7 @@ from pitchpoint.views.inputs import recorded_units
 from pitchpoint.views.lines import folded, gapped, titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.report import environment, packed_plotly
+from pitchpoint.views.report import environment, packed, packed_plotly
 from pitchpoint.views.section import Moving
 
 __all__ = ["Point", "Reader", "render", "write_explorer"]
@@ -219,15 +217,10 @@ def _rendered(found: Explored[Point], drawings: Sequence[Moving]) -> str:
             impossible=int(sum(np.all(data["reason"].values != "", axis=0).ravel())),
             errors=_error_words(found),
             midpoints=found.midpoints,
-            explored=_packed(content),
+            explored=packed(content),
             plotly=packed_plotly(),
         )
     )
-
-
-def _packed(content: Mapping[str, Any]) -> str:
-    text = json.dumps(content, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
 
 
 def _axis(axis: Axis, found: Explored[Point]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ computing a case.
 import html
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import floor, isfinite, log10
+from math import ceil, floor, isfinite, log10
 from typing import Any, ClassVar
 
 import numpy as np
@@ -40,6 +40,7 @@ __all__ = [
     "layout",
     "level",
     "line",
+    "line_heights",
     "merged",
     "pair_key",
     "plain",
@@ -223,6 +224,19 @@ def rounded(values: Any, digits: int = 5) -> list[Any]:
 
     told: list[Any] = plain(array.tolist())
     return told
+
+
+def line_heights(values: Any) -> list[Any]:
+    """List of numbers for a line on an axis without decades: finer than a page of 1280 px can show."""
+    numbers = rounded(values)
+    finite = [value for value in numbers if value is not None]
+    span = max(finite, default=0.0) - min(finite, default=0.0)
+    decimals = ceil(log10(_LEVELS / span)) if span else None
+    return [v if v is None or decimals is None else round(v, decimals) + 0.0 for v in numbers]
+
+
+_LEVELS = 4000
+"""Heights that a line has at least: a figure is 300 px high, and may be enlarged."""
 
 
 def _decimals(value: float, digits: int) -> int:

@@ -10,6 +10,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from pitchpoint.kept import base_folder, prepared, read, write
 from pitchpoint.published.registry import publication_of
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
     import jinja2
     import markupsafe
 
-__all__ = ["environment", "packed_plotly", "render", "write_report"]
+__all__ = ["environment", "packed", "packed_plotly", "render", "write_report"]
 
 
 def write_report(
@@ -80,8 +82,6 @@ def render(
 
 
 def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
-    from markupsafe import Markup
-
     bare = Page(outcomes, curves(outcomes), designs=designs)
     lacking = {section: section.lacking(bare) for section in in_order()}
     page = replace(bare, sections=[one for one, why in lacking.items() if why is None])
@@ -104,7 +104,7 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
             version=page.version,
             pictured=next((one for one in page.sections if one.picture), None),
             glimpse=next(iter(figures), None),
-            data=Markup(_payload(shown)),
+            data=packed(_shared(_payload(shown))),
             plotly=packed_plotly(),
         )
     )
@@ -223,9 +223,9 @@ def _marked(words: str) -> "markupsafe.Markup":
     return Markup("").join(code.format(p) if k % 2 else p for k, p in enumerate(parts))
 
 
-def _payload(each: Sequence[Panel]) -> str:
-    """Figures and menus for the script, with nothing in it that could end the script element."""
-    content = {
+def _payload(each: Sequence[Panel]) -> dict[str, Any]:
+    """Figures and menus for the script."""
+    return {
         "figures": {
             figure.name: {"data": figure.data, "layout": figure.layout}
             for panel in each
@@ -238,7 +238,50 @@ def _payload(each: Sequence[Panel]) -> str:
             if panel.choices
         },
     }
+
+
+def packed(content: Mapping[str, Any]) -> str:
+    """Content of a page for its script, compressed: `opened` in figures.js reads it."""
     text = json.dumps(content, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    for sign in "<>&\u2028\u2029":
-        text = text.replace(sign, f"\\u{ord(sign):04x}")
-    return text
+    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
+
+
+_LONG = 8
+"""Length from which on a list of numbers stands apart."""
+
+
+def _shared(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Content whose long lists of numbers stand once in front, by their steps; `held` in page.js reads them.
+
+    Courses at many points of studies share their places, and compress to a quarter by steps.
+    """
+    lists: dict[tuple[int | None, ...], int] = {}
+
+    def placed(part: Any) -> Any:
+        if isinstance(part, Mapping):
+            return {key: placed(value) for key, value in part.items()}
+        if not isinstance(part, list):
+            return part
+        steps = _steps(part) if len(part) >= _LONG else None
+        if steps is None:
+            return [placed(value) for value in part]
+        return {"list": lists.setdefault(steps, len(lists))}
+
+    shown = placed(content)
+    return {"lists": [*lists], **shown}
+
+
+def _steps(values: list[Any]) -> tuple[int | None, ...] | None:
+    """Decimals of numbers, then the step to each in units of the last decimal; None if this is not exact."""
+    if not all(value is None or isinstance(value, int | float) for value in values):
+        return None
+    numbers = np.array([value for value in values if value is not None], dtype=float)
+    for decimals in range(_DECIMALS):
+        whole = np.round(numbers * 10.0**decimals)
+        if np.array_equal(whole / 10.0**decimals, numbers) and np.all(np.abs(whole) < 2**53):
+            steps = iter(np.diff(whole, prepend=0.0).astype(int).tolist())
+            return (decimals, *(None if value is None else next(steps) for value in values))
+    return None
+
+
+_DECIMALS = 16

@@ -224,7 +224,8 @@ def _literal(point: Point, mesh: TorusPair) -> Read:
         told = jax.device_get(figures(drive, course(drive, turn), oil))
         _check_found(name, told)
         found |= _named(name, told)
-    return {**found, **_beside(found), **_stiffness(point, known, drives)}
+    power = float(point.operation.speed) * float(drives["torus"].input_torque)
+    return {**found, **_beside(found, power), **_stiffness(point, known, drives)}
 
 
 def _stiffness(point: Point, known: Known, drives: Mapping[str, Drive]) -> Read:
@@ -283,13 +284,15 @@ def _check_found(name: str, told: Known) -> None:
         )
 
 
-def _beside(found: Read) -> Read:
-    """Torus pair over standard pair."""
+def _beside(found: Read, power: float) -> Read:
+    """Torus pair over standard pair, and less it; of the power put in [W]."""
+    sliding = np.subtract(found["standard_friction_heat"], found["torus_friction_heat"]) / power
     torus, standard = (found[f"{name}_film_0"] + found[f"{name}_film_1"] for name in PAIRS)
     return {
         "error_ratio": found["torus_largest_error"] / found["standard_largest_error"],
         "friction_ratio": found["torus_sliding_friction"] / found["standard_sliding_friction"],
         "printed_film_ratio": torus / standard,
+        "torus_less_standard_sliding_efficiency": float(sliding),
         **{
             f"torus_less_standard_{told}": found[f"torus_{name}"] - found[f"standard_{name}"]
             for told, name in _LESS.items()
@@ -406,16 +409,29 @@ def _coefficients(name: str, point: Point, known: Known) -> Values:
         rolls = np.asarray(given.torus_roll)
         path = rolls / _roll_of(known)
         there = path < float(known["ratio"])
+        _check_places(int(there.sum()), known)
         rolls, load = rolls[there], float(point.operation.load)
         springs = library_stiffness(*_teeth(name, point), load, path[there])["secant"]
     elif name != "torus":
         rolls, springs = _filled(given, rolls, springs)
     coefficients = pair_stiffness(roll=rolls, stiffness=springs)
-    _check_stiffness(name, coefficients, known)
+    key = "stiffness" if given.stiffness == "library" else f"{name}_stiffness"
+    _check_stiffness(key, coefficients, known)
     return coefficients
 
 
-def _check_stiffness(name: str, coefficients: Values, known: Known) -> None:
+def _check_places(there: int, known: Known) -> None:
+    """InputError if fewer roll angles lie on the path than the polynomial has coefficients."""
+    if there < _DEGREE:
+        end = np.rad2deg(_roll_of(known) * float(known["ratio"]))
+        raise InputError(
+            f"{there} of these roll angles lie on the path of a pair, which ends at {end:.4g} deg; the "
+            f"library's stiffness is taken at {_DEGREE} of them at least",
+            key="formulas.torus_roll",
+        )
+
+
+def _check_stiffness(key: str, coefficients: Values, known: Known) -> None:
     """InputError if the polynomial is negative somewhere on the way of a pair."""
     end = float(known["ratio"] * known["base_pitch"] / known["base_radii"][0])
     roll = np.linspace(0.0, end, 201)[1:]
@@ -424,7 +440,7 @@ def _check_stiffness(name: str, coefficients: Values, known: Known) -> None:
         raise InputError(
             f"the polynomial through these stiffnesses is {1e-6 * values.min():.4g} N/um at "
             f"{np.rad2deg(roll[values.argmin()]):.4g} deg; a pair of teeth needs a positive stiffness",
-            key=f"formulas.{name}_stiffness",
+            key=f"formulas.{key}",
         )
 
 

@@ -77,6 +77,9 @@ _BESIDE = {
     ),
     "torus_less_standard_friction": force("sliding friction, torus less standard pair", "ΔF"),
     "torus_less_standard_efficiency": percent("efficiency, torus less standard pair", "Δχ"),
+    "torus_less_standard_sliding_efficiency": percent(
+        "efficiency by sliding alone, torus less standard pair", "Δχ_f"
+    ),
 }
 
 

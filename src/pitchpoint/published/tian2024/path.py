@@ -1,5 +1,6 @@
 """What Tian et al. (2024) draw over the path of contact of one pair of teeth: Figs. 4 to 7 and 12."""
 
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -17,8 +18,11 @@ from pitchpoint.published.tian2024.table import PairOnPath
 
 __all__ = ["METHODS", "readings"]
 
-METHODS = ("average", "varying")
-"""The first two friction laws of the case: one coefficient for the mesh, one for every place."""
+METHODS = {
+    "average": ("tian2024.method_1", "iso_tr_14179_2"),
+    "varying": ("tian2024.method_2", "xu_2007"),
+}
+"""Methods I and II with the laws that stand for them: as the paper prints them, and as their authors did."""
 
 _BESIDE = 1e-9
 """Distance in base pitches from where single contact begins or ends: shares jump there."""
@@ -30,8 +34,8 @@ def readings(point: Point) -> dict[str, float | Course]:
     """Courses of a pair that begins its mesh at A, and the numbers that the paper tells of them.
 
     Args:
-        point: with two friction laws at least, as `METHODS` names them; with four, the third one is that
-            of the loss factor and the fourth Method I without its factor, as Table 3 has them.
+        point: with a friction law for each of `METHODS`, in any order; Table 3 takes Method I with the
+            nominal load and without its factor beside both.
 
     Raises:
         InputError: the contact ratio does not lie between 1 and 2, or there are fewer laws.
@@ -39,18 +43,28 @@ def readings(point: Point) -> dict[str, float | Course]:
     assert isinstance(point.formulas, PairOnPath)
     mesh = point.design.mesh
     assert isinstance(mesh, InvolutePair)
-    if len(point.models) < len(METHODS):
-        told = "the courses of a pair compare two friction laws, and one was given"
-        raise InputError(told, key="models.friction")
+    laws = {models.law.name: models for models in point.models}
+    methods = {method: _law_of(method, laws) for method in METHODS}
     places = _places(mesh, int(point.formulas.places))
     given = point.design, point.operation, array(places)
-    found = [jax.device_get(_along(*given, models)) for models in point.models]
-    courses = {"pair_path": places, "pair_share": found[0]["share"]}
-    for method, course in zip(METHODS, found, strict=False):
-        courses |= {f"pair_{name}_{method}": course[name] for name in _OF_METHODS}
+    found = {name: jax.device_get(_along(*given, models)) for name, models in laws.items()}
+    courses = {"pair_path": places, "pair_share": found[methods["average"]]["share"]}
+    for method, law in methods.items():
+        courses |= {f"pair_{name}_{method}": found[law][name] for name in _OF_METHODS}
     numbers = _at_ends(courses) | _statements(courses)
-    table = _table_3(point, [course["efficiency"] for course in found])
+    table = _table_3(point, {law: course["efficiency"] for law, course in found.items()})
     return {**courses, **numbers, **table}
+
+
+def _law_of(method: str, laws: Mapping[str, Models]) -> str:
+    for law in METHODS[method]:
+        if law in laws:
+            return law
+    raise InputError(
+        f"the courses of a pair compare two friction laws; for the {method} coefficient "
+        f"{' or '.join(METHODS[method])} is needed",
+        key="models.friction",
+    )
 
 
 _OF_METHODS = ("force", "friction", "other_friction", "efficiency", "input_torque")
@@ -148,20 +162,29 @@ def _along(
     }
 
 
-def _table_3(point: Point, efficiency: list[Course]) -> dict[str, float | Course]:
+_TABLE_3 = {
+    "hohn": "tian2024.method_1_nominal",
+    "diez_ibarbia": "tian2024.method_1_factor_1",
+    "average": "tian2024.method_1",
+    "varying": "tian2024.method_2",
+}
+"""Methods of Table 3 and their laws; the first one is a loss factor times a mean coefficient."""
+
+
+def _table_3(point: Point, efficiency: Mapping[str, Course]) -> dict[str, float | Course]:
     """Mean and instantaneous efficiency by the methods of Table 3; nothing without its four laws."""
-    if len(point.models) != 4:
+    if not efficiency.keys() >= {*_TABLE_3.values()}:
         return {}
-    means = [summarise([(point.design, point.operation)], models) for models in point.models]
-    average, varying, nominal, single = means
+    operation = [(point.design, point.operation)]
+    means = {models.law.name: summarise(operation, models) for models in point.models}
+    nominal = means[_TABLE_3["hohn"]]
     hohn = 1.0 - float(nominal["mean_friction"][0] * nominal["loss_factor"][0])
-    return {
+    table: dict[str, float | Course] = {
         "table_3_hohn": hohn,
-        "table_3_diez_ibarbia": float(single["mean_efficiency_path"][0]),
-        "table_3_average": float(average["mean_efficiency_path"][0]),
-        "table_3_varying": float(varying["mean_efficiency_path"][0]),
-        "compared_hohn": np.full_like(efficiency[0], hohn),
-        "compared_diez_ibarbia": efficiency[3],
-        "compared_average": efficiency[0],
-        "compared_varying": efficiency[1],
+        "compared_hohn": np.full_like(efficiency[_TABLE_3["hohn"]], hohn),
     }
+    for method, law in _TABLE_3.items():
+        if method != "hohn":
+            table[f"table_3_{method}"] = float(means[law]["mean_efficiency_path"][0])
+            table[f"compared_{method}"] = efficiency[law]
+    return table

@@ -12,7 +12,7 @@ from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.published.conjugate import readings as of_envelope
 from pitchpoint.published.publication import Point
-from pitchpoint.published.xu2021.printed import oil_of, pressure_viscosity, viscosity
+from pitchpoint.published.xu2021.printed import ZONE_END, oil_of, pressure_viscosity, viscosity
 from pitchpoint.published.xu2021.readings import modulus_of
 from pitchpoint.published.xu2021.zone import zone_of
 
@@ -39,8 +39,7 @@ def readings(point: Point) -> dict[str, float]:
         found[f"conjugate_speed_of_one_{end}"] = zone.wave_speed * _part_of_one(ratio)
     return found | {
         "axis_speed": float(zone.speed(axis)[0]),
-        "conjugate_radius_ratio": found["deep_radius_root"] / float(zone.radius(axis)[0]),
-        "conjugate_entrainment_ratio": found["deep_entrainment_root"] / float(zone.speed(axis)[0]),
+        "zone_end_speed": float(zone.speed(np.full(1, ZONE_END))[0]),
     }
 
 

@@ -74,12 +74,7 @@ def _radius(long_name: str) -> Variable:
 
 _OF_ENVELOPE = {
     "axis_speed": speed("mesh point speed on the long axis, eq. 3", "u"),
-    "conjugate_radius_ratio": _plain(
-        "relative radius of the envelope at the root over that of eq. 2", "R/R"
-    ),
-    "conjugate_entrainment_ratio": _plain(
-        "entrainment of the envelope at the root over the speed of eq. 3", "u/u"
-    ),
+    "zone_end_speed": speed("mesh point speed at the end of the zone", "u"),
     "conjugate_film_ratio_root": _plain("film of the envelope over roughness, root", "λ"),
     "conjugate_film_ratio_tip": _plain("film of the envelope over roughness, tip", "λ"),
     "conjugate_speed_of_one_root": _turning(
@@ -229,7 +224,7 @@ _ZONE_BESIDE = Beside(
             "deep_entrainment_root",
         ),
         "mesh point speed at the end of the zone, and entrainment of the envelope at the tip": (
-            "largest_added_speed",
+            "zone_end_speed",
             "deep_entrainment_tip",
         ),
     },

@@ -25,6 +25,7 @@ from pitchpoint.views.figures import (
     Trace,
     display,
     layout,
+    line_heights,
     plain,
     rounded,
     short_axis,
@@ -209,7 +210,7 @@ def _at(one: Curves, study: _Study, point: int) -> dict[str, list[Any]]:
         return dict.fromkeys("xy", [[]] * len(one.names))
     return {
         "x": [_shown(one.along, data, point)] * len(one.names),
-        "y": [_shown(each, data, point) for each in one.names],
+        "y": [_heights(each, data, point, one) for each in one.names],
     }
 
 
@@ -248,7 +249,12 @@ def _family(name: str, one: Curves, points: list[_Where], titles: list[str]) -> 
     keys = [Key(title, PALETTE[k]) for k, title in enumerate(titles)]
     unit = show.unit_of(variable)
     traces = [
-        plain(key, _shown(one.along, study.data, point), _shown(variable, study.data, point), unit)
+        plain(
+            key,
+            _shown(one.along, study.data, point),
+            _heights(variable, study.data, point, one),
+            unit,
+        )
         for key, (study, point) in zip(keys, points, strict=True)
     ]
     return _drawn(name, one, traces, keys)
@@ -281,6 +287,12 @@ def _title(one: Curves | Maps) -> str:
 
 def _shown(name: str, data: xr.Dataset, point: int) -> list[Any]:
     return rounded(display(name, data[name].values[point]))
+
+
+def _heights(name: str, data: xr.Dataset, point: int, one: Curves) -> list[Any]:
+    """Values of a course; on decades small ones keep their digits."""
+    values = display(name, data[name].values[point])
+    return rounded(values) if one.decades else line_heights(values)
 
 
 def _figure(name: str, one: Curves, point: _Where, beside: Beside) -> Figure:

@@ -6,9 +6,22 @@
 
 {% include "drive.js" %}
 
-  const page = JSON.parse(document.getElementById("figures").textContent, dressed);
+  let page;
+  let lists = [];
   const drawn = new Map();
   const seen = document.documentElement.dataset;
+
+  // Lists of numbers stand in front, each with its decimals and the steps from one number to the next.
+  function held(key, value) {
+    if (key === "lists") lists = value.map(([decimals, ...steps]) => summed(steps, 10 ** decimals));
+    if (value && value.list !== undefined) return lists[value.list];
+    return dressed(key, value);
+  }
+
+  function summed(steps, scale) {
+    let sum = 0;
+    return steps.map((step) => (step === null ? null : (sum += step) / scale));
+  }
 
   function draw(place) {
     if (drawn.has(place.id)) return drawn.get(place.id);
@@ -248,6 +261,7 @@
     box.addEventListener("change", () => show(box.dataset.curve, box.checked))
   );
   try {
+    page = JSON.parse(await opened("figures"), held);
     await unpack("plotly");
   } catch (error) {
     for (const place of places) place.textContent = "This browser is too old to draw this figure.";
