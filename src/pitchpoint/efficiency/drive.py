@@ -9,7 +9,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import demand_double, jnp
 from pitchpoint.efficiency.drag import Drag, bearing_loads
 from pitchpoint.efficiency.meetings import FEW, Meetings, meetings, unmet
 from pitchpoint.efficiency.quasi_static import (
@@ -358,6 +358,7 @@ def drive_cycle(
 
     From the balance of torques on every shaft, see `balance`.
     """
+    demand_double()
     if len(models) != len(drive.stages):
         raise InputError(f"{len(models)} models were given for {len(drive.stages)} stages")
     states: list[State] = []

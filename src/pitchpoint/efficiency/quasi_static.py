@@ -8,7 +8,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from pitchpoint._jax import array, jax, jnp
+from pitchpoint._jax import array, demand_double, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
@@ -444,6 +444,7 @@ def state(
 
     Source: Tian et al. (2024), eqs. 1, 2, 5 and 16; see `balance`.
     """
+    demand_double()
     rank = max(jnp.ndim(x) for x in (phase, *jax.tree.leaves(operation)))
     phase, operation = jax.tree.map(lambda x: _of_rank(x, rank), (phase, operation))
     contacts, share = (None, None) if engaged is None else engaged.of_rank(rank)
@@ -706,6 +707,7 @@ def cycle(
         nodes: Gauss-Lobatto nodes in each segment; its ends lie beside the events.
         engaged: contacts and shares with their nodes, where they are known already.
     """
+    demand_double()
     if engaged is None:
         phase, weight = cycle_nodes(design.mesh, models.sharing, nodes)
     else:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
+from pitchpoint._jax import double_precision
 from pitchpoint.cases.record import MANIFEST
 from pitchpoint.cases.schema import Study
 from pitchpoint.errors import InputError, shorten
@@ -102,6 +103,7 @@ class Result(Mapping[str, Outcome]):
         """Figures of the report, by section: `result.plot.cycle()`; `dir(result.plot)` lists them."""
         return self.plot_in(self._units)
 
+    @double_precision()
     def plot_in(self, units: UnitsByKind) -> Plots:
         """The same figures in units by kind of quantity: `result.plot_in("angle=arcmin").torsion()`."""
         with shown_in(unit_choice(units)):

@@ -13,7 +13,7 @@ from uuid import uuid4
 
 import xarray as xr
 
-from pitchpoint._jax import jax
+from pitchpoint._jax import double_precision, jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Unasked
 from pitchpoint.analyses.comparison import compare, demand_parts
 from pitchpoint.analyses.plausibility import unlikely
@@ -120,6 +120,7 @@ class Outcome:
         self.manifest.update(apart([*known, *sentences]))
 
 
+@double_precision()
 def run(
     case: CaseLike,
     *,
@@ -227,6 +228,7 @@ _LEFT = ("study_*", "loss_map", "four_quadrants")
 """Parts of which pieces are dropped that were not asked for again."""
 
 
+@double_precision()
 def compute_alone(
     analysis: Analysis, variant: Variant, *, told: Any, folder: Path | None, progress: Progress
 ) -> xr.Dataset:
@@ -298,6 +300,7 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
     return opened
 
 
+@double_precision()
 def keep(
     outcomes: Mapping[str, Outcome],
     cases: Mapping[str, Variant],
@@ -328,6 +331,7 @@ def keep(
             _note(outcome, folder / variant, finished=bool(outcome.manifest["finished"]))
 
 
+@double_precision()
 def manifests(result: str) -> list[dict[str, Any]]:
     """Manifests of a result, one for each variant, or of a case that has not been computed.
 
@@ -348,6 +352,7 @@ def manifests(result: str) -> list[dict[str, Any]]:
     return describe(result)
 
 
+@double_precision()
 def load_case(
     case: CaseLike, variant: str | None = None, settings: Mapping[str, Any] | None = None
 ) -> Ready:
@@ -364,6 +369,7 @@ def load_case(
     return held(case, [variant] if variant else [], settings)[0].built({})
 
 
+@double_precision()
 def describe(
     case: CaseLike,
     only: Sequence[str] = (),
@@ -382,6 +388,7 @@ def describe(
     return [_manifest(variant, variant.built({}), studies or {}) for variant in made]
 
 
+@double_precision()
 def compare_case(
     case: str,
     variant: str | None = None,
@@ -420,6 +427,7 @@ def rows_of(
     return compare(built.case.targets, parts, made.name)
 
 
+@double_precision()
 def run_piece(
     case: str, description: Piece, *, variant: str | None = None, last: xr.Dataset | None = None
 ) -> xr.Dataset | None:
@@ -444,6 +452,7 @@ def run_piece(
         return job.compute(description) if last is None else job.onward(last)
 
 
+@double_precision()
 def pieces_of(case: str, *, variant: str | None = None) -> list[Piece]:
     """Descriptions of all pieces of a case, each less than 1 kB of plain data, see `run_piece`."""
     made = held(case, [variant] if variant else [])[0]
