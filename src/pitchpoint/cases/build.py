@@ -313,9 +313,7 @@ class Built:
     @cached_property
     def bodies(self) -> tuple[Coordinate, ...]:
         """Coordinates of the mesh without their places."""
-        found: tuple[Coordinate, ...] = eqx.filter_eval_shape(
-            lambda mesh: mesh.coordinates, self.design.mesh
-        )
+        found: tuple[Coordinate, ...] = eqx.filter_eval_shape(_coordinates, self.design.mesh)
         return found
 
     @cached_property
@@ -379,6 +377,12 @@ class Built:
 
 
 _ENDS: tuple[End, ...] = ("driver", "loaded")
+
+
+@eqx.filter_jit
+def _coordinates(mesh: Mesh) -> Any:
+    """Of a mesh; traced once for gears of one form, and never compiled."""
+    return mesh.coordinates
 
 
 def operation_at(point: Operating) -> Operation:

@@ -193,6 +193,7 @@ def run(
     *,
     folder: str | Path | None = None,
     only: Sequence[str] = (),
+    analyses: Sequence[str] | None = None,
     settings: Mapping[str, Any] | None = None,
     studies: Mapping[str, Study] | None = None,
     friction: Callable[..., Any] | None = None,
@@ -206,6 +207,7 @@ def run(
             result, or tables as a case file has them.
         folder: where parts and manifests go; nothing is written without one.
         only: variants to run; all by default.
+        analyses: names of the parts to compute, `["operation", "cycle"]`; all that the case has by default.
         settings: values by dotted key that replace those of the case, SI numbers or texts with a unit.
         studies: further studies, as `--sweep` makes them.
         friction: a law of one's own in place of those of the case: a function of JAX arrays whose
@@ -227,6 +229,7 @@ def run(
         case,
         folder=folder,
         only=only,
+        analyses=analyses,
         settings=given,
         studies=studies,
         friction=friction,

@@ -60,7 +60,7 @@ from pitchpoint.results.store import (
 )
 from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.case import Case, CaseLike, as_case, held
-from pitchpoint.runs.jobs import Job, job_of, jobs
+from pitchpoint.runs.jobs import Job, chosen_jobs, job_of, jobs
 
 if TYPE_CHECKING:
     from pitchpoint.lubrication.ehl.model import FilmModel
@@ -126,6 +126,7 @@ def run(
     *,
     folder: str | Path | None = None,
     only: Sequence[str] = (),
+    analyses: Sequence[str] | None = None,
     settings: Mapping[str, Any] | None = None,
     studies: Mapping[str, Study] | None = None,
     friction: Callable[..., Any] | None = None,
@@ -139,6 +140,7 @@ def run(
             result; a `Case`, or tables as a case file has them.
         folder: where parts and manifests go; nothing is written without one.
         only: variants to run; all by default.
+        analyses: names of the parts to compute, all that the case has by default.
         settings: values by dotted key that replace those of the file.
         studies: further studies, as `--sweep` makes them.
         friction: a law of one's own in place of those of the case: a function of JAX arrays whose
@@ -157,7 +159,7 @@ def run(
     """
     given = case if isinstance(case, str) else as_case(case)
     made = held(given, only, settings, None if friction is None else _own(friction))
-    work = {variant.variant: (variant, _jobs(variant, studies or {})) for variant in made}
+    work = {variant.variant: (variant, _jobs(variant, studies or {}, analyses)) for variant in made}
     where = None if folder is None else Path(folder)
     watching = progress or Progress()
     watching.expect(sum(len(parts) for _, parts in work.values()))
@@ -205,7 +207,7 @@ def run_variant(
     progress: Progress,
 ) -> Outcome:
     """Compute all parts of one variant; finished parts found in the folder are read."""
-    built = variant.built({})
+    built = work[0].built if work else variant.built({})
     outcome = Outcome(_manifest(variant, built, studies) | {"lacks": _lacking(built)})
     if folder is not None:
         _hand_over(variant, outcome.manifest["title"], folder, studies)
@@ -585,13 +587,15 @@ def _note(outcome: Outcome, folder: Path | None, *, finished: bool) -> None:
         )
 
 
-def _jobs(variant: Variant, studies: Mapping[str, Study]) -> list[Job]:
-    """Parts of a variant; InputError if a target reads one that is not among them."""
+def _jobs(
+    variant: Variant, studies: Mapping[str, Study], analyses: Sequence[str] | None = None
+) -> list[Job]:
+    """Parts of a variant, or those of some names; InputError if a target reads one that the case has not."""
     made = jobs(variant, studies)
     if _measured(variant):
         targets = validate(variant.document()).targets
         demand_parts(targets, [job.name for job in made], variant.name)
-    return made
+    return made if analyses is None else chosen_jobs(made, analyses, variant)
 
 
 def _measured(variant: Variant) -> bool:
@@ -601,7 +605,10 @@ def _measured(variant: Variant) -> bool:
 
 
 def _rows(built: Ready, variant: Variant, parts: Mapping[str, xr.Dataset]) -> list[Row]:
-    return compare(built.case.targets, parts, variant.name) if _measured(variant) else []
+    if not _measured(variant):
+        return []
+    targets = [one for one in built.case.targets if one.kind == "excluded" or one.reads in parts]
+    return compare(targets, parts, variant.name)
 
 
 def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> dict[str, Any]:
