@@ -51,7 +51,7 @@ except ImportError:  # JAX 0.6
 try:
     from jax import enable_x64
 except ImportError:  # JAX 0.6
-    from jax.experimental import enable_x64
+    from jax.experimental import enable_x64  # type: ignore[attr-defined,no-redef]
 
 from pitchpoint.errors import PitchpointError  # noqa: E402
 from pitchpoint.kept import base_folder, prepared  # noqa: E402
@@ -87,7 +87,7 @@ def double_precision() -> Iterator[None]:
 
 def demand_double() -> None:
     """PitchpointError in single precision, in which balances are lost in rounding."""
-    if not jax.config.jax_enable_x64:
+    if not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
         raise PitchpointError(
             "functions of arrays compute in double precision, and JAX is in single: call them within "
             '`with pitchpoint.double_precision():`, or after jax.config.update("jax_enable_x64", True)'
@@ -124,7 +124,8 @@ def array(value: ArrayLike | Sequence[float], dtype: DTypeLike | None = None) ->
         return jnp.asarray(numbers, dtype)
     if numbers.size > FEW_NUMBERS:
         return jnp.asarray(numbers, numbers.dtype)  # without its type a program is compiled
-    key = jax.config.jax_enable_x64, numbers.dtype.char, numbers.shape, numbers.tobytes()
+    double: bool = jax.config.jax_enable_x64  # type: ignore[attr-defined]
+    key = double, numbers.dtype.char, numbers.shape, numbers.tobytes()
     if key not in _ARRAYS:
         if len(_ARRAYS) >= MOST_KEPT:
             _ARRAYS.clear()
@@ -140,7 +141,7 @@ def kept_folder() -> Path | None:
 
 def _keeps_programs() -> bool:
     """True where the host has a folder for the compiled programs of JAX, which stays as it is."""
-    return jax.config.jax_compilation_cache_dir is not None
+    return jax.config.jax_compilation_cache_dir is not None  # type: ignore[attr-defined]
 
 
 def _enable_cache() -> Path | None:

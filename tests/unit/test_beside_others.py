@@ -18,7 +18,8 @@ def step(x):
 assert step(1.0).dtype == jnp.float32
 import pitchpoint as pp
 
-found = pp.run("tian2024", only=["physical"])["physical"].parts["operation"].mean_efficiency
+found = pp.run("tian2024", only=["physical"], analyses=["operation"])["physical"].parts["operation"]
+found = found.mean_efficiency
 assert found.dtype == np.float64
 assert step(1.0).dtype == jnp.zeros(1).dtype == jnp.float32
 assert step(found.values[0, 0]).dtype == jnp.float32

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.brief import brief
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets, named_set
@@ -140,6 +141,9 @@ class Built:
     told: tuple[str, ...]
     warming: Status | None = None
     fitted: tuple[float, float] | None = None
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import demand_double, jnp
+from pitchpoint.brief import brief
 from pitchpoint.efficiency.drag import Drag, bearing_loads
 from pitchpoint.efficiency.meetings import FEW, Meetings, meetings, unmet
 from pitchpoint.efficiency.quasi_static import (
@@ -83,6 +84,9 @@ class Drive(eqx.Module):
     drag: tuple[Drag, ...]
     links: tuple[tuple[int, int], ...] = eqx.field(static=True)
     owners: tuple[int, ...] = eqx.field(static=True)
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def ratios(self) -> Float[Array, " stage"]:

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, demand_double, jax, jnp
+from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
@@ -80,6 +81,9 @@ class Design(eqx.Module):
     roughness: Roughness
     drag: tuple[Drag, ...] = ()
     elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT[USUAL_ELLIPSE])
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def modulus(self) -> Float[Array, ""]:
@@ -171,6 +175,9 @@ class Models(eqx.Module):
     compliance: Terms = eqx.field(default_factory=lambda: terms_of("beam_foundation_weber"))
     held: Lanes | None = None
     held_rolling: Lanes | None = None
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def law(self) -> FrictionLaw:
@@ -580,6 +587,9 @@ class Cycle(eqx.Module):
     state: State
     nodes: int = eqx.field(static=True)
     smooth: bool = eqx.field(static=True, default=True)
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     def mean(self, values: Float[Array, "*b node"]) -> Each:
         """Mean over one period."""

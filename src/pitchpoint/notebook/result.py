@@ -18,7 +18,7 @@ from pitchpoint.notebook.figures import Plots
 from pitchpoint.notebook.gradients import gradients
 from pitchpoint.registry import nearest
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
-from pitchpoint.results.labelled import Units, demand_units, labelled
+from pitchpoint.results.labelled import Units, attributes, demand_units, labelled
 from pitchpoint.runs import run as runs
 from pitchpoint.runs.case import Case, CaseLike, written
 from pitchpoint.runs.run import Outcome, Progress
@@ -56,8 +56,33 @@ class Result(Mapping[str, Outcome]):
         self._studies = studies
         self._units = recorded_units(outcomes)
 
-    def __getitem__(self, variant: str) -> Outcome:
-        return self._outcomes[variant]
+    def __getitem__(self, name: str) -> Any:
+        """Outcome of a variant, else the dataset of a part, as `dataset` gives it.
+
+        Raises:
+            KeyError: neither.
+        """
+        if name in self._outcomes:
+            return self._outcomes[name]
+        try:
+            return self.dataset(name)
+        except InputError as error:
+            raise KeyError(str(error)) from None
+
+    def __getattr__(self, part: str) -> xr.Dataset:
+        """Dataset of a part: `result.cycle` is `result.dataset("cycle")`."""
+        if part.startswith("_"):
+            raise AttributeError(part)
+        try:
+            return self.dataset(part)
+        except InputError as error:
+            raise AttributeError(str(error)) from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.parts]
+
+    def __contains__(self, variant: object) -> bool:
+        return variant in self._outcomes
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._outcomes)
@@ -135,6 +160,14 @@ class Result(Mapping[str, Outcome]):
         with shown_in(self._units):
             return labelled(self._part(part, variant), units)
 
+    def attributes(self, part: str, *, variant: str | None = None) -> dict[str, Any]:
+        """Attributes of a part as data: how it was solved, warnings, what it was computed with.
+
+        Attributes of a NetCDF file are texts, numbers and lists of them, as those of `dataset`; nested ones,
+        which a file holds as JSON, are dictionaries here.
+        """
+        return attributes(self._part(part, variant))
+
     def to_dataframe(
         self, part: str, *, units: Units = "si", variant: str | None = None
     ) -> "pd.DataFrame":
@@ -180,7 +213,7 @@ class Result(Mapping[str, Outcome]):
         name = variant or next(iter(self))
         if name not in self:
             raise InputError(f"{shown(name)} is not a variant of this result{nearest(name, self)}")
-        outcome = self[name]
+        outcome = self._outcomes[name]
         if part not in outcome.parts:
             why = outcome.manifest.get("lacks", {}).get(part, "")
             told = f": {why}" if why else nearest(part, outcome.parts)

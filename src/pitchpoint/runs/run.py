@@ -83,6 +83,10 @@ MEETINGS = "all meetings of phases"
 """Over what figures of several meshes are averaged."""
 
 
+LONGEST_LIST = 400
+"""Longest list of parts in a repr [characters]."""
+
+
 class Progress:
     """What a caller may want to hear; this one is silent."""
 
@@ -108,6 +112,11 @@ class Outcome:
 
     manifest: dict[str, Any]
     parts: dict[str, xr.Dataset] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        told = f"{len(self.manifest['warnings'])} warnings, {len(self.rows)} rows compared"
+        title, listed = shorten(str(self.manifest["title"])), ", ".join(self.parts)
+        return f"Outcome({title!r})\n  {told}\n  parts {shorten(listed, LONGEST_LIST)}"
 
     @property
     def rows(self) -> list[Row]:
