@@ -23,6 +23,8 @@ from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.designs import Designs
 from pitchpoint.gears.strain_wave.design import build_strain_wave, build_strain_waves
 
+jax.config.update("jax_enable_x64", True)
+
 PAIR: dict[str, Any] = {
     "teeth": (23, 61),
     "module": 2e-3,

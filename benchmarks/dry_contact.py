@@ -26,6 +26,8 @@ from pitchpoint.contact.dry_contact import dry_contact
 from pitchpoint.contact.gaps import elliptic_gap, line_gap
 from pitchpoint.contact.half_space import HalfSpace, graded_edges, half_space
 
+jax.config.update("jax_enable_x64", True)
+
 SIZES = bench.sizes(__doc__, rival="tamaas", cells=(129, 33), rollers=(128, 32), turns=(5, 1))
 CELLS, WIDTH = SIZES.cells, 3.0
 RIVAL = bench.RIVALS / "tamaas_hertz.py"

@@ -15,12 +15,15 @@ from typing import Any
 
 import bench
 import ehl_line as rival
+import jax
 import numpy as np
 
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.materials.fluid import Fluid
+
+jax.config.update("jax_enable_x64", True)
 
 MODULUS, RADIUS, VISCOSITY, ALPHA = 2.26e11, 0.01, 0.04, 2.2e-8
 SIZES = bench.sizes(

@@ -18,6 +18,7 @@ from typing import Any
 
 import bench
 import equinox as eqx
+import jax
 import numpy as np
 from scipy.optimize import least_squares
 
@@ -31,6 +32,8 @@ from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.runs.run import load_case
+
+jax.config.update("jax_enable_x64", True)
 
 SET, PLACE = "strain_wave_component", "wave_generator_bearing"
 RATIO_160 = "ratio_160"

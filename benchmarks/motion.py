@@ -35,6 +35,8 @@ from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 
+jax.config.update("jax_enable_x64", True)
+
 TEETH, MODULE, ANGLE, WIDTH = (18, 36), 3e-3, float(np.radians(20.0)), 26.7e-3
 INERTIA, MASS = (1e-3, 6e-3), (2.0, 4.0)
 BEARING, BEARING_DAMPING, VISCOUS = 2e8, 4e3, 0.1

@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable, Iterator
 
 import bench
+import jax
 import numpy as np
 
 from pitchpoint._jax import array
@@ -23,6 +24,8 @@ from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_cont
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH
 from pitchpoint.lubrication.ehl.patch.solve import Solved, solve
 from pitchpoint.materials.fluid import Fluid
+
+jax.config.update("jax_enable_x64", True)
 
 MODULUS, OIL = 2.26e11, Fluid(viscosity=0.04, pressure_viscosity=2.2e-8)
 LONG = 56.5

@@ -34,6 +34,8 @@ from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE, FrictionLa
 from pitchpoint.materials.solids import Solid
 from pitchpoint.materials.surfaces import Roughness
 
+jax.config.update("jax_enable_x64", True)
+
 AGREEMENT = 1e-10
 """Most that forces may differ from those of the rival, and torques from their balance."""
 

@@ -40,6 +40,8 @@ from pitchpoint.loading.foundation import sainsot_2004
 from pitchpoint.loading.tooth_compliance import beam_compliance, interpolate, terms_of
 from pitchpoint.materials.solids import Solid
 
+jax.config.update("jax_enable_x64", True)
+
 RIVAL = bench.RIVALS / "ross_mesh_stiffness.py"
 STEEL = Solid(young=206e9, poisson=0.3, density=7810.0)
 TERMS = terms_of("beam_foundation_hertz")

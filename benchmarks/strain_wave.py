@@ -48,6 +48,8 @@ from pitchpoint.gears.strain_wave.groove import swept
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.runs.run import load_case
 
+jax.config.update("jax_enable_x64", True)
+
 OUTLINE = 400_001
 
 AGREEMENT = 1e-9

@@ -37,6 +37,8 @@ from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.materials.solids import Solid
 
+jax.config.update("jax_enable_x64", True)
+
 SOLIDS = (
     Solid(young=206e9, poisson=0.3, density=7830.0),
     Solid(young=3.54e9, poisson=0.4, density=1140.0),

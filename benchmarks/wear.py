@@ -37,6 +37,8 @@ from pitchpoint.wear.march import Limit, Rate, after
 from pitchpoint.wear.march import as_new as unworn
 from pitchpoint.wear.together import worn_together
 
+jax.config.update("jax_enable_x64", True)
+
 TEETH, TURNS, TOLERANCE = (23, 61), 3e6, 3e-4
 CELLS, PARTS = 40, 24
 AGREE = 1e-6

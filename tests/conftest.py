@@ -32,6 +32,7 @@ import pytest  # noqa: E402
 from budget import Meter, Spent  # noqa: E402
 from shapes import install  # noqa: E402
 
+jax.config.update("jax_enable_x64", True)
 install()  # before anything of the package is imported
 
 from pitchpoint import programs  # noqa: E402

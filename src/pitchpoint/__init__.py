@@ -63,6 +63,7 @@ _LAZY: dict[str, str] = {
     "patch_dataset": "pitchpoint.results.films",
     "film_dataset": "pitchpoint.results.films",
     "films_of_dataset": "pitchpoint.results.films",
+    "double_precision": "pitchpoint._jax",
     "PitchpointError": "pitchpoint.errors",
     "InputError": "pitchpoint.errors",
     "ConvergenceError": "pitchpoint.errors",

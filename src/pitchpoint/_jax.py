@@ -1,8 +1,12 @@
-"""The one place that configures JAX: double precision and a private, persistent compilation cache."""
+"""The one place that configures JAX: a scope of double precision and a private, persistent compilation cache.
+
+What else a process does with JAX keeps its precision: results come from within the scope.
+"""
 
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 # From 128 rows on the library behind a factorisation divides it among threads that spin while they wait:
@@ -44,9 +48,50 @@ try:
 except ImportError:  # JAX 0.6
     from jax.core import get_opaque_trace_state
 
+try:
+    from jax import enable_x64
+except ImportError:  # JAX 0.6
+    from jax.experimental import enable_x64  # type: ignore[attr-defined,no-redef]
+
+from pitchpoint.errors import PitchpointError  # noqa: E402
 from pitchpoint.kept import base_folder, prepared  # noqa: E402
 
-__all__ = ["array", "cache_folder", "jax", "jnp", "kept_folder"]
+__all__ = [
+    "array",
+    "cache_folder",
+    "demand_double",
+    "double_precision",
+    "jax",
+    "jnp",
+    "kept_folder",
+]
+
+
+@contextmanager
+def double_precision() -> Iterator[None]:
+    """Double precision for what this thread does within `with`, or within a function under this decorator.
+
+    The precision of JAX is that of the host again afterwards. `run`, `study` and whatever else takes a case
+    are within it by themselves; functions of arrays, such as `cycle`, are called within it, or after
+    `jax.config.update("jax_enable_x64", True)`.
+
+    Example:
+        >>> import jax.numpy as jnp
+        >>> with double_precision():
+        ...     print(jnp.zeros(1).dtype)
+        float64
+    """
+    with enable_x64(True):
+        yield
+
+
+def demand_double() -> None:
+    """PitchpointError in single precision, in which balances are lost in rounding."""
+    if not jax.config.jax_enable_x64:  # type: ignore[attr-defined]
+        raise PitchpointError(
+            "functions of arrays compute in double precision, and JAX is in single: call them within "
+            '`with pitchpoint.double_precision():`, or after jax.config.update("jax_enable_x64", True)'
+        )
 
 
 def cache_folder() -> Path:
@@ -62,7 +107,7 @@ FEW_NUMBERS = 16
 MOST_KEPT = 10_000
 """Arrays of few numbers that are kept, some 500 bytes each."""
 
-_ARRAYS: dict[tuple[str, tuple[int, ...], bytes], jax.Array] = {}
+_ARRAYS: dict[tuple[bool, str, tuple[int, ...], bytes], jax.Array] = {}
 _UNTRACED = get_opaque_trace_state()
 
 
@@ -79,7 +124,8 @@ def array(value: ArrayLike | Sequence[float], dtype: DTypeLike | None = None) ->
         return jnp.asarray(numbers, dtype)
     if numbers.size > FEW_NUMBERS:
         return jnp.asarray(numbers, numbers.dtype)  # without its type a program is compiled
-    key = numbers.dtype.char, numbers.shape, numbers.tobytes()
+    double: bool = jax.config.jax_enable_x64  # type: ignore[attr-defined]
+    key = double, numbers.dtype.char, numbers.shape, numbers.tobytes()
     if key not in _ARRAYS:
         if len(_ARRAYS) >= MOST_KEPT:
             _ARRAYS.clear()
@@ -93,19 +139,25 @@ def kept_folder() -> Path | None:
     return _KEPT
 
 
+def _keeps_programs() -> bool:
+    """True where the host has a folder for the compiled programs of JAX, which stays as it is."""
+    return jax.config.jax_compilation_cache_dir is not None  # type: ignore[attr-defined]
+
+
 def _enable_cache() -> Path | None:
-    """The folder, if only the user can write to it, as that of JAX's compiled programs too."""
+    """The folder, if only the user can write to it; for JAX too where it has none."""
     try:
         folder = prepared(cache_folder())
     except RuntimeError:
         return None
     if folder is None:
         return None
+    if _keeps_programs():
+        return folder
     jax.config.update("jax_compilation_cache_dir", str(folder))
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
     return folder
 
 
-jax.config.update("jax_enable_x64", True)
 _KEPT = _enable_cache()

@@ -159,6 +159,7 @@ def _look_for_garbage() -> None:
 
 def main() -> None:
     """Run a command: one sentence for what went wrong, and the exit status that goes with it."""
+    os.environ["JAX_ENABLE_X64"] = "1"  # a process of its own, where no function needs the scope
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a terminal need not know every letter of a title
             stream.reconfigure(errors="backslashreplace")

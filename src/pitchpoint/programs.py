@@ -32,7 +32,7 @@ import equinox as eqx
 import numpy as np
 from jax import export
 
-from pitchpoint._jax import jax, kept_folder
+from pitchpoint._jax import demand_double, jax, kept_folder
 from pitchpoint.kept import read, write
 from pitchpoint.reach import Sources
 
@@ -111,7 +111,12 @@ class Program(Generic[P, R]):
         _MADE.add(self)
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
-        """Results of the function; NumPy and JAX arrays count alike as arguments."""
+        """Results of the function; NumPy and JAX arrays count alike as arguments.
+
+        Raises:
+            PitchpointError: JAX is in single precision.
+        """
+        demand_double()
         leaves, structure = jax.tree.flatten((args, kwargs))
         kinds = [*map(type, leaves)]
         # To ask each leaf what it is takes three times as long.

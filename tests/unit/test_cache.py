@@ -20,6 +20,7 @@ def enabled(
     """Cache folder in a cache of one's own, and what is set when it is enabled."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     told: dict[str, object] = {}
+    monkeypatch.setattr(_jax, "_keeps_programs", lambda: False)
     monkeypatch.setattr(_jax.jax.config, "update", told.__setitem__)
     caplog.set_level(logging.WARNING)
     return _jax.cache_folder(), told

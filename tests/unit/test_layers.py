@@ -20,6 +20,7 @@ FLOW = (
         "registry",
         "roots",
         "_jax",
+        "brief",
         "kept",
         "pages",
         "programs",

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.brief import brief
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets, named_set
@@ -140,6 +141,9 @@ class Built:
     told: tuple[str, ...]
     warming: Status | None = None
     fitted: tuple[float, float] | None = None
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -313,9 +317,7 @@ class Built:
     @cached_property
     def bodies(self) -> tuple[Coordinate, ...]:
         """Coordinates of the mesh without their places."""
-        found: tuple[Coordinate, ...] = eqx.filter_eval_shape(
-            lambda mesh: mesh.coordinates, self.design.mesh
-        )
+        found: tuple[Coordinate, ...] = eqx.filter_eval_shape(_coordinates, self.design.mesh)
         return found
 
     @cached_property
@@ -379,6 +381,12 @@ class Built:
 
 
 _ENDS: tuple[End, ...] = ("driver", "loaded")
+
+
+@eqx.filter_jit
+def _coordinates(mesh: Mesh) -> Any:
+    """Of a mesh; traced once for gears of one form, and never compiled."""
+    return mesh.coordinates
 
 
 def operation_at(point: Operating) -> Operation:

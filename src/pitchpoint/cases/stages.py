@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from pitchpoint._jax import array
+from pitchpoint.brief import brief
 from pitchpoint.cases.build import (
     BEARING_FREE,
     TEETH_ALONE,
@@ -59,6 +60,9 @@ class Acting:
     law: FrictionLaw
     stages: tuple[Models, ...]
 
+    def __repr__(self) -> str:
+        return brief(self)
+
 
 @dataclass(frozen=True, eq=False)
 class BuiltDrive:
@@ -81,6 +85,9 @@ class BuiltDrive:
     design: Drive
     operation: Operation
     told: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -9,7 +9,8 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import demand_double, jnp
+from pitchpoint.brief import brief
 from pitchpoint.efficiency.drag import Drag, bearing_loads
 from pitchpoint.efficiency.meetings import FEW, Meetings, meetings, unmet
 from pitchpoint.efficiency.quasi_static import (
@@ -83,6 +84,9 @@ class Drive(eqx.Module):
     drag: tuple[Drag, ...]
     links: tuple[tuple[int, int], ...] = eqx.field(static=True)
     owners: tuple[int, ...] = eqx.field(static=True)
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def ratios(self) -> Float[Array, " stage"]:
@@ -358,6 +362,7 @@ def drive_cycle(
 
     From the balance of torques on every shaft, see `balance`.
     """
+    demand_double()
     if len(models) != len(drive.stages):
         raise InputError(f"{len(models)} models were given for {len(drive.stages)} stages")
     states: list[State] = []

@@ -5,7 +5,7 @@ import dataclasses
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import demand_double, jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.programs import program
@@ -40,6 +40,7 @@ def mean_loss_gradient(design: Design, operation: Operation, models: Models) -> 
 
     By automatic differentiation of the cycle in reverse, no differences are taken.
     """
+    demand_double()
     return _told(*_gradient((design, operation), "mean_loss", models))
 
 
@@ -49,6 +50,7 @@ def ripple_gradient(design: Design, operation: Operation, models: Models) -> Inp
     The ripple is piecewise differentiable: where the extreme state moves from one segment of the
     cycle to another, the derivative jumps. Arguments and result as in `mean_loss_gradient`.
     """
+    demand_double()
     return _told(*_gradient((design, operation), "ripple", models))
 
 
@@ -62,6 +64,7 @@ def input_torque_gradient(
 
     By automatic differentiation of the state in reverse.
     """
+    demand_double()
     return _told(*_at_phase((design, operation), models, phase))
 
 

@@ -9,7 +9,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import array, jax, jnp
+from pitchpoint._jax import array, demand_double, jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, state
 from pitchpoint.programs import fast_program
 
@@ -63,6 +63,7 @@ def state_grid(
         bounds the memory. Two steps solve the balance, the first one in single precision; a block that
         has then a residual above 1e-10 is solved again, iterating to convergence.
     """
+    demand_double()
     count, places = int(operation.load.shape[0]), int(phase.shape[0])
     rows = min(ROWS, 1 << (count - 1).bit_length())
     columns = min(COLUMNS, places)

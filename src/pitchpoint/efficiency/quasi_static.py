@@ -8,7 +8,8 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from pitchpoint._jax import array, jax, jnp
+from pitchpoint._jax import array, demand_double, jax, jnp
+from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
@@ -80,6 +81,9 @@ class Design(eqx.Module):
     roughness: Roughness
     drag: tuple[Drag, ...] = ()
     elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT[USUAL_ELLIPSE])
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def modulus(self) -> Float[Array, ""]:
@@ -171,6 +175,9 @@ class Models(eqx.Module):
     compliance: Terms = eqx.field(default_factory=lambda: terms_of("beam_foundation_weber"))
     held: Lanes | None = None
     held_rolling: Lanes | None = None
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     @property
     def law(self) -> FrictionLaw:
@@ -444,6 +451,7 @@ def state(
 
     Source: Tian et al. (2024), eqs. 1, 2, 5 and 16; see `balance`.
     """
+    demand_double()
     rank = max(jnp.ndim(x) for x in (phase, *jax.tree.leaves(operation)))
     phase, operation = jax.tree.map(lambda x: _of_rank(x, rank), (phase, operation))
     contacts, share = (None, None) if engaged is None else engaged.of_rank(rank)
@@ -580,6 +588,9 @@ class Cycle(eqx.Module):
     nodes: int = eqx.field(static=True)
     smooth: bool = eqx.field(static=True, default=True)
 
+    def __repr__(self) -> str:
+        return brief(self)
+
     def mean(self, values: Float[Array, "*b node"]) -> Each:
         """Mean over one period."""
         return jnp.sum(values * self.weight, axis=-1)
@@ -706,6 +717,7 @@ def cycle(
         nodes: Gauss-Lobatto nodes in each segment; its ends lie beside the events.
         engaged: contacts and shares with their nodes, where they are known already.
     """
+    demand_double()
     if engaged is None:
         phase, weight = cycle_nodes(design.mesh, models.sharing, nodes)
     else:

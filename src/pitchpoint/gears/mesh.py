@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jnp
+from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surface, Surfaces, with_surfaces
 from pitchpoint.contact.worn import new_and_worn, with_worn
@@ -168,6 +169,9 @@ class Mesh(eqx.Module):
     goes_round: ClassVar[bool] = True
     inner_bearing: ClassVar[frozenset[str]] = frozenset()
     chosen: ClassVar[tuple[str, ...]] = ()
+
+    def __repr__(self) -> str:
+        return brief(self)
 
     def completed(self) -> Self:
         """The same mesh with dimensions that follow from others computed from them again.

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Plots", "SectionPlots"]
 
+_SHOWN = 8
+"""Figures of a section that its repr names."""
+
 
 class Plots:
     """Figures by section.
@@ -39,8 +42,7 @@ class Plots:
         return [*self._sections]
 
     def __repr__(self) -> str:
-        lines = [f"{name}: {', '.join(dir(one))}" for name, one in self._sections.items()]
-        return "\n".join(["Plots", *(f"  {line}" for line in lines)])
+        return f"Plots of {', '.join(f'{name} ({len(dir(one))})' for name, one in self._sections.items())}"
 
     def _near(self, name: str) -> str:
         return nearest(name, self._sections)
@@ -79,7 +81,8 @@ class SectionPlots:
 
     def __repr__(self) -> str:
         lines = [f"{name}: {figure.title}" for name, (_, figure) in self._found.items()]
-        return "\n".join(["Figures", *(f"  {line}" for line in lines)])
+        more = [f"{len(lines) - _SHOWN} more"] * (len(lines) > _SHOWN)
+        return "\n  ".join(["Figures", *lines[:_SHOWN], *more])
 
 
 def _sections(

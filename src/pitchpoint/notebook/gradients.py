@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from pitchpoint import units
-from pitchpoint._jax import jax
+from pitchpoint._jax import double_precision, jax
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.schema import quantity_at
@@ -44,6 +44,7 @@ _LEAST = 1e-3
 Leaves = list[np.ndarray]
 
 
+@double_precision()
 def gradients(
     case: CaseLike,
     of: str = "mean_loss",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
+from pitchpoint._jax import double_precision
 from pitchpoint.cases.record import MANIFEST
 from pitchpoint.cases.schema import Study
 from pitchpoint.errors import InputError, shorten
@@ -17,7 +18,7 @@ from pitchpoint.notebook.figures import Plots
 from pitchpoint.notebook.gradients import gradients
 from pitchpoint.registry import nearest
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
-from pitchpoint.results.labelled import Units, demand_units, labelled
+from pitchpoint.results.labelled import Units, attributes, demand_units, labelled
 from pitchpoint.runs import run as runs
 from pitchpoint.runs.case import Case, CaseLike, written
 from pitchpoint.runs.run import Outcome, Progress
@@ -55,8 +56,33 @@ class Result(Mapping[str, Outcome]):
         self._studies = studies
         self._units = recorded_units(outcomes)
 
-    def __getitem__(self, variant: str) -> Outcome:
-        return self._outcomes[variant]
+    def __getitem__(self, name: str) -> Any:
+        """Outcome of a variant, else the dataset of a part, as `dataset` gives it.
+
+        Raises:
+            KeyError: neither.
+        """
+        if name in self._outcomes:
+            return self._outcomes[name]
+        try:
+            return self.dataset(name)
+        except InputError as error:
+            raise KeyError(str(error)) from None
+
+    def __getattr__(self, part: str) -> xr.Dataset:
+        """Dataset of a part: `result.cycle` is `result.dataset("cycle")`."""
+        if part.startswith("_"):
+            raise AttributeError(part)
+        try:
+            return self.dataset(part)
+        except InputError as error:
+            raise AttributeError(str(error)) from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.parts]
+
+    def __contains__(self, variant: object) -> bool:
+        return variant in self._outcomes
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._outcomes)
@@ -102,6 +128,7 @@ class Result(Mapping[str, Outcome]):
         """Figures of the report, by section: `result.plot.cycle()`; `dir(result.plot)` lists them."""
         return self.plot_in(self._units)
 
+    @double_precision()
     def plot_in(self, units: UnitsByKind) -> Plots:
         """The same figures in units by kind of quantity: `result.plot_in("angle=arcmin").torsion()`."""
         with shown_in(unit_choice(units)):
@@ -132,6 +159,14 @@ class Result(Mapping[str, Outcome]):
         demand_units(units)
         with shown_in(self._units):
             return labelled(self._part(part, variant), units)
+
+    def attributes(self, part: str, *, variant: str | None = None) -> dict[str, Any]:
+        """Attributes of a part as data: how it was solved, warnings, what it was computed with.
+
+        Attributes of a NetCDF file are texts, numbers and lists of them, as those of `dataset`; nested ones,
+        which a file holds as JSON, are dictionaries here.
+        """
+        return attributes(self._part(part, variant))
 
     def to_dataframe(
         self, part: str, *, units: Units = "si", variant: str | None = None
@@ -178,7 +213,7 @@ class Result(Mapping[str, Outcome]):
         name = variant or next(iter(self))
         if name not in self:
             raise InputError(f"{shown(name)} is not a variant of this result{nearest(name, self)}")
-        outcome = self[name]
+        outcome = self._outcomes[name]
         if part not in outcome.parts:
             why = outcome.manifest.get("lacks", {}).get(part, "")
             told = f": {why}" if why else nearest(part, outcome.parts)
@@ -191,6 +226,7 @@ def run(
     *,
     folder: str | Path | None = None,
     only: Sequence[str] = (),
+    analyses: Sequence[str] | None = None,
     settings: Mapping[str, Any] | None = None,
     studies: Mapping[str, Study] | None = None,
     friction: Callable[..., Any] | None = None,
@@ -204,6 +240,7 @@ def run(
             result, or tables as a case file has them.
         folder: where parts and manifests go; nothing is written without one.
         only: variants to run; all by default.
+        analyses: names of the parts to compute, `["operation", "cycle"]`; all that the case has by default.
         settings: values by dotted key that replace those of the case, SI numbers or texts with a unit.
         studies: further studies, as `--sweep` makes them.
         friction: a law of one's own in place of those of the case: a function of JAX arrays whose
@@ -225,6 +262,7 @@ def run(
         case,
         folder=folder,
         only=only,
+        analyses=analyses,
         settings=given,
         studies=studies,
         friction=friction,

@@ -1,7 +1,8 @@
 """Parts of a result as people of xarray expect them: labelled, in the units asked for, NaN off contact."""
 
+import json
 from collections.abc import Mapping
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, nullcontext, suppress
 from typing import Any, Literal
 
 import numpy as np
@@ -13,7 +14,7 @@ from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES, variable_of
 
-__all__ = ["Units", "demand_units", "in_units", "labelled", "showing"]
+__all__ = ["Units", "attributes", "demand_units", "in_units", "labelled", "showing"]
 
 Units = Literal["si", "shown"] | UnitsByKind
 """Units of a dataset: SI, those in which tables and figures show each variable, or a choice by kind."""
@@ -41,7 +42,29 @@ def labelled(data: xr.Dataset, unit: Units = "si") -> xr.Dataset:
     for name in [*made.dims]:
         if name not in made.coords:
             made = _labelled(made, str(name))
-    return in_units(made, unit)
+    lists = {name: value for name, value in attributes(made).items() if _plain_list(value)}
+    return in_units(made.assign_attrs(lists), unit)
+
+
+def attributes(data: xr.Dataset) -> dict[str, Any]:
+    """Attributes as data: lists and mappings, which the files hold as JSON, and what is no JSON as it is."""
+    return {str(name): _data(value) for name, value in data.attrs.items()}
+
+
+def _data(value: Any) -> Any:
+    if isinstance(value, str) and value.startswith(("[", "{")):
+        with suppress(json.JSONDecodeError):
+            return json.loads(value)
+    return value
+
+
+def _plain_list(value: Any) -> bool:
+    """True for texts alone or numbers alone, one at least, which attributes of NetCDF may be."""
+    if not isinstance(value, list) or not value:
+        return False
+    return len({isinstance(one, str) for one in value}) == 1 and all(
+        isinstance(one, str | int | float) for one in value
+    )
 
 
 def demand_units(unit: Any) -> None:

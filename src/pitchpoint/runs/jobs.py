@@ -12,9 +12,10 @@ from pitchpoint.cases.schema import Study
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import Complaints, InputError, shorten
+from pitchpoint.input.quantities import shown
 from pitchpoint.registry import nearest
 
-__all__ = ["Job", "job_of", "jobs"]
+__all__ = ["Job", "chosen_jobs", "job_of", "jobs"]
 
 
 @dataclass(frozen=True)
@@ -82,6 +83,20 @@ def jobs(variant: Variant, studies: Mapping[str, Study]) -> list[Job]:
     return [Job(part, built) for parts in made for part in parts or ()]
 
 
+def chosen_jobs(every: Sequence[Job], names: Sequence[str], variant: Variant) -> list[Job]:
+    """Parts of those names, in their order among all.
+
+    Raises:
+        InputError: no name, or one that is no part of the case, with what it lacks where that is known.
+    """
+    if isinstance(names, str) or not names:
+        told = 'analyses are a list of names of parts, ["operation", "cycle"]'
+        raise InputError(f"{shown(names)} was given; {told}", file=variant.name)
+    for name in names:
+        _demand_part(name, [job.name for job in every], variant)
+    return [job for job in every if job.name in names]
+
+
 def _parts(entry: Analysis | Several, subject: Subject) -> list[Analysis]:
     return [*entry.parts(subject)]
 
@@ -89,9 +104,15 @@ def _parts(entry: Analysis | Several, subject: Subject) -> list[Analysis]:
 def job_of(variant: Variant, name: str) -> Job:
     """The part of that name; InputError if the case has none, with what it lacks where that is known."""
     made = {job.name: job for job in jobs(variant, {})}
-    if name in made:
-        return made[name]
-    known = dict(ANALYSES)
-    why = known[name].why_not(variant.built({})) if name in known else None
-    told = f": {why}" if why else nearest(name, made)
+    _demand_part(name, [*made], variant)
+    return made[name]
+
+
+def _demand_part(name: str, known: Sequence[str], variant: Variant) -> None:
+    """InputError for what is no part of the case."""
+    if name in known:
+        return
+    analyses = dict(ANALYSES)
+    why = analyses[name].why_not(variant.built({})) if name in analyses else None
+    told = f": {why}" if why else nearest(name, known)
     raise InputError(f"this case computes no part '{shorten(name)}'{told}", file=variant.name)

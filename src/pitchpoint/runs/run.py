@@ -13,7 +13,7 @@ from uuid import uuid4
 
 import xarray as xr
 
-from pitchpoint._jax import jax
+from pitchpoint._jax import double_precision, jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Unasked
 from pitchpoint.analyses.comparison import compare, demand_parts
 from pitchpoint.analyses.plausibility import unlikely
@@ -60,7 +60,7 @@ from pitchpoint.results.store import (
 )
 from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.case import Case, CaseLike, as_case, held
-from pitchpoint.runs.jobs import Job, job_of, jobs
+from pitchpoint.runs.jobs import Job, chosen_jobs, job_of, jobs
 
 if TYPE_CHECKING:
     from pitchpoint.lubrication.ehl.model import FilmModel
@@ -81,6 +81,10 @@ __all__ = [
 
 MEETINGS = "all meetings of phases"
 """Over what figures of several meshes are averaged."""
+
+
+LONGEST_LIST = 400
+"""Longest list of parts in a repr [characters]."""
 
 
 class Progress:
@@ -109,6 +113,11 @@ class Outcome:
     manifest: dict[str, Any]
     parts: dict[str, xr.Dataset] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        told = f"{len(self.manifest['warnings'])} warnings, {len(self.rows)} rows compared"
+        title, listed = shorten(str(self.manifest["title"])), ", ".join(self.parts)
+        return f"Outcome({title!r})\n  {told}\n  parts {shorten(listed, LONGEST_LIST)}"
+
     @property
     def rows(self) -> list[Row]:
         """Printed against computed."""
@@ -120,11 +129,13 @@ class Outcome:
         self.manifest.update(apart([*known, *sentences]))
 
 
+@double_precision()
 def run(
     case: CaseLike,
     *,
     folder: str | Path | None = None,
     only: Sequence[str] = (),
+    analyses: Sequence[str] | None = None,
     settings: Mapping[str, Any] | None = None,
     studies: Mapping[str, Study] | None = None,
     friction: Callable[..., Any] | None = None,
@@ -138,6 +149,7 @@ def run(
             result; a `Case`, or tables as a case file has them.
         folder: where parts and manifests go; nothing is written without one.
         only: variants to run; all by default.
+        analyses: names of the parts to compute, all that the case has by default.
         settings: values by dotted key that replace those of the file.
         studies: further studies, as `--sweep` makes them.
         friction: a law of one's own in place of those of the case: a function of JAX arrays whose
@@ -156,7 +168,7 @@ def run(
     """
     given = case if isinstance(case, str) else as_case(case)
     made = held(given, only, settings, None if friction is None else _own(friction))
-    work = {variant.variant: (variant, _jobs(variant, studies or {})) for variant in made}
+    work = {variant.variant: (variant, _jobs(variant, studies or {}, analyses)) for variant in made}
     where = None if folder is None else Path(folder)
     watching = progress or Progress()
     watching.expect(sum(len(parts) for _, parts in work.values()))
@@ -204,7 +216,7 @@ def run_variant(
     progress: Progress,
 ) -> Outcome:
     """Compute all parts of one variant; finished parts found in the folder are read."""
-    built = variant.built({})
+    built = work[0].built if work else variant.built({})
     outcome = Outcome(_manifest(variant, built, studies) | {"lacks": _lacking(built)})
     if folder is not None:
         _hand_over(variant, outcome.manifest["title"], folder, studies)
@@ -227,6 +239,7 @@ _LEFT = ("study_*", "loss_map", "four_quadrants")
 """Parts of which pieces are dropped that were not asked for again."""
 
 
+@double_precision()
 def compute_alone(
     analysis: Analysis, variant: Variant, *, told: Any, folder: Path | None, progress: Progress
 ) -> xr.Dataset:
@@ -298,6 +311,7 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
     return opened
 
 
+@double_precision()
 def keep(
     outcomes: Mapping[str, Outcome],
     cases: Mapping[str, Variant],
@@ -328,6 +342,7 @@ def keep(
             _note(outcome, folder / variant, finished=bool(outcome.manifest["finished"]))
 
 
+@double_precision()
 def manifests(result: str) -> list[dict[str, Any]]:
     """Manifests of a result, one for each variant, or of a case that has not been computed.
 
@@ -348,6 +363,7 @@ def manifests(result: str) -> list[dict[str, Any]]:
     return describe(result)
 
 
+@double_precision()
 def load_case(
     case: CaseLike, variant: str | None = None, settings: Mapping[str, Any] | None = None
 ) -> Ready:
@@ -364,6 +380,7 @@ def load_case(
     return held(case, [variant] if variant else [], settings)[0].built({})
 
 
+@double_precision()
 def describe(
     case: CaseLike,
     only: Sequence[str] = (),
@@ -382,6 +399,7 @@ def describe(
     return [_manifest(variant, variant.built({}), studies or {}) for variant in made]
 
 
+@double_precision()
 def compare_case(
     case: str,
     variant: str | None = None,
@@ -420,6 +438,7 @@ def rows_of(
     return compare(built.case.targets, parts, made.name)
 
 
+@double_precision()
 def run_piece(
     case: str, description: Piece, *, variant: str | None = None, last: xr.Dataset | None = None
 ) -> xr.Dataset | None:
@@ -444,6 +463,7 @@ def run_piece(
         return job.compute(description) if last is None else job.onward(last)
 
 
+@double_precision()
 def pieces_of(case: str, *, variant: str | None = None) -> list[Piece]:
     """Descriptions of all pieces of a case, each less than 1 kB of plain data, see `run_piece`."""
     made = held(case, [variant] if variant else [])[0]
@@ -576,13 +596,15 @@ def _note(outcome: Outcome, folder: Path | None, *, finished: bool) -> None:
         )
 
 
-def _jobs(variant: Variant, studies: Mapping[str, Study]) -> list[Job]:
-    """Parts of a variant; InputError if a target reads one that is not among them."""
+def _jobs(
+    variant: Variant, studies: Mapping[str, Study], analyses: Sequence[str] | None = None
+) -> list[Job]:
+    """Parts of a variant, or those of some names; InputError if a target reads one that the case has not."""
     made = jobs(variant, studies)
     if _measured(variant):
         targets = validate(variant.document()).targets
         demand_parts(targets, [job.name for job in made], variant.name)
-    return made
+    return made if analyses is None else chosen_jobs(made, analyses, variant)
 
 
 def _measured(variant: Variant) -> bool:
@@ -592,7 +614,10 @@ def _measured(variant: Variant) -> bool:
 
 
 def _rows(built: Ready, variant: Variant, parts: Mapping[str, xr.Dataset]) -> list[Row]:
-    return compare(built.case.targets, parts, variant.name) if _measured(variant) else []
+    if not _measured(variant):
+        return []
+    targets = [one for one in built.case.targets if one.kind == "excluded" or one.reads in parts]
+    return compare(targets, parts, variant.name)
 
 
 def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> dict[str, Any]:

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units as units_of_numbers
+from pitchpoint._jax import double_precision
 from pitchpoint.analyses.designs import Designs
 from pitchpoint.analyses.studies import SWEPT, demand_films, demand_one
 from pitchpoint.cases.record import OUTPUT
@@ -29,6 +30,7 @@ __all__ = ["study"]
 How = Literal["grid", "zip", "latin_hypercube"]
 
 
+@double_precision()
 def study(
     case: CaseLike,
     over: Mapping[str, Any],

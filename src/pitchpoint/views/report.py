@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pitchpoint._jax import double_precision
 from pitchpoint.kept import base_folder, prepared, read, write
 from pitchpoint.published.registry import publication_of
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 __all__ = ["environment", "packed", "packed_plotly", "render", "write_report"]
 
 
+@double_precision()
 def write_report(
     outcomes: Mapping[str, Outcome],
     path: str | Path,

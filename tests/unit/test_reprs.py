@@ -1,0 +1,95 @@
+"""Short words of what a prompt shows, and access to the parts of a result."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import pitchpoint as pp
+from pitchpoint.cases.library import names
+from pitchpoint.materials.lubricants import find
+
+MOST = 1000
+
+
+@pytest.fixture(scope="module")
+def result() -> pp.Result:
+    return pp.run("tian2024", only=["physical"], analyses=["operation", "cycle", "laws"])
+
+
+def test_reprs_of_a_result_are_short(result):
+    every = [
+        result,
+        result["physical"],
+        result.plot,
+        *(getattr(result.plot, n) for n in dir(result.plot)),
+    ]
+    for one in every:
+        assert len(repr(one)) < MOST, type(one)
+        assert repr(one).count("\n") < 12
+    assert "'Tian" in repr(result["physical"]) and "parts cycle" in repr(result["physical"])
+
+
+@pytest.mark.parametrize("name", [*names()])
+def test_reprs_of_a_case_are_short(name):
+    built = pp.load_case(name)
+    models = [model for mesh in built.meshes for model in mesh.models]
+    meshes = [mesh.design.mesh for mesh in built.meshes]
+    designs = [mesh.design for mesh in built.meshes]
+    for one in [pp.Case(name), built, built.operation, built.design, *designs, *meshes, *models]:
+        assert len(repr(one)) < MOST, type(one)
+        assert type(one).__name__ in repr(one)
+
+
+def test_reprs_of_arrays_and_laws_are_short():
+    model = pp.FilmModel()
+    oil = find("pao-vg-150").build()
+    line = model.contacts(
+        line_load=np.linspace(5e4, 4e5, 8),
+        radius=0.01,
+        modulus=226e9,
+        speed_a=3.0,
+        speed_b=2.0,
+        oil=oil,
+        temperature=333.0,
+        roughness_rq=0.4e-6,
+    )
+    sweep = pp.Sweep(key="operation.torque", start="5 N m", stop="60 N m", count=12)
+    for one in [model, line, sweep, pp.Study(sweep=sweep), oil]:
+        assert len(repr(one)) < MOST, type(one)
+
+
+def test_parts_are_attributes_and_keys(result, tmp_path):
+    cycle = result.cycle
+    xr.testing.assert_identical(cycle, result["cycle"])
+    xr.testing.assert_identical(cycle, result.dataset("cycle"))
+    assert {"cycle", "operation", "summary"} <= {*dir(result)}
+    assert [*result] == ["physical"] and "cycle" not in result
+    with pytest.raises(AttributeError, match="did you mean cycle"):
+        _ = result.cycel
+    with pytest.raises(KeyError, match="no part"):
+        _ = result["vibration"]
+    assert result.get("cycel") is None
+
+
+def test_attributes_are_data(result, tmp_path):
+    events = result.cycle.attrs["events"]
+    assert isinstance(events, list) and all(isinstance(one, float) for one in events)
+    kept = result["physical"].parts["cycle"].attrs["events"]  # as files have it
+    assert events == json.loads(kept)
+    result.cycle.to_netcdf(tmp_path / "cycle.nc", engine="h5netcdf")
+    again = xr.load_dataset(tmp_path / "cycle.nc", engine="h5netcdf")
+    assert [*again.attrs["events"]] == events
+    assert result.attributes("cycle")["solve"]["sentence"] == "a solution was found"
+    assert result.attributes("laws")["outside"][0]["law"] == "xu_2007"
+
+
+def test_a_run_of_chosen_analyses_gives_the_same_numbers(result):
+    assert result.parts == ["cycle", "operation", "laws"]
+    other = pp.run("tian2024", only=["physical"], analyses=["operation"])
+    xr.testing.assert_equal(other.operation, result.operation)
+    with pytest.raises(pp.InputError, match="did you mean cycle"):
+        pp.run("tian2024", analyses=["cylce"])
+    with pytest.raises(pp.InputError, match="list of names"):
+        pp.run("tian2024", analyses="cycle")
