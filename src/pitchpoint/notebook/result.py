@@ -23,6 +23,7 @@ from pitchpoint.runs.case import Case, CaseLike, written
 from pitchpoint.runs.run import Outcome, Progress
 from pitchpoint.views.inputs import recorded_units
 from pitchpoint.views.report import write_report
+from pitchpoint.views.show import number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -71,7 +72,7 @@ class Result(Mapping[str, Outcome]):
 
     def _repr_html_(self) -> str:
         told = "".join(f"<li>{html.escape(text)}</li>" for text in self.warnings)
-        table = self.summary().to_html(na_rep="undefined", border=0)
+        table = self.summary().to_html(na_rep="undefined", border=0, float_format=number)
         parts = html.escape(", ".join(self.parts))
         title = f"<strong>{html.escape(self.title)}</strong>"
         return f"<div>{title}{table}<ul>{told}</ul><small>parts: {parts}</small></div>"
