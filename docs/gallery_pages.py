@@ -108,11 +108,9 @@ def _without_elsewhere(app: Sphinx, document: nodes.document) -> None:
         node.rawsource = kept
     if figures:
         document["thumbnail"] = thumbnail(figure_of(figures[0].astext()))
-
-
-def _with_plotly(app: Sphinx, name: str, *event: Any) -> None:
-    if event[-1] is not None and "plotly-graph-div" in event[-2].get("body", ""):
-        app.add_js_file("plotly.min.js")
+        up = "../" * app.env.docname.count("/")
+        library = f'<script src="{up}_static/plotly.min.js"></script>'
+        figures[0].insert(0, nodes.Text(library))
 
 
 def _write(app: Sphinx, failed: Exception | None) -> None:
@@ -135,5 +133,4 @@ def setup(app: Sphinx) -> None:
     app.add_directive("teeth", MovingTeeth)
     app.connect("source-read", _offer)
     app.connect("doctree-read", _without_elsewhere)
-    app.connect("html-page-context", _with_plotly)
     app.connect("build-finished", _write)
