@@ -1,5 +1,6 @@
 """Site of the documentation, read without a network: `sphinx-build -W -n docs docs/_build/html`."""
 
+import os
 import re
 import sys
 from importlib.metadata import version as installed
@@ -14,12 +15,22 @@ from sphinx.writers.html5 import HTML5Translator
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+# Cells run for seconds: their programs are compiled quickly, as those of the tests, from whose cache they
+# come where these ran before.
+QUICKLY = (
+    "--xla_backend_optimization_level=0 --xla_llvm_disable_expensive_passes=true "
+    "--xla_cpu_use_fusion_emitters=false"
+)
+os.environ.setdefault("XLA_FLAGS", QUICKLY)
+os.environ.setdefault("JAX_TRACEBACK_IN_LOCATIONS_LIMIT", "0")
+os.environ["PLOTLY_RENDERER"] = "notebook_connected"  # as HTML without its library
+
 project = "Pitchpoint"
 author = "The Pitchpoint authors"
 copyright = author
 version = release = installed("pitchpoint")
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "gallery_pages"]
 exclude_patterns = ["_build"]
 html_theme = "furo"
 html_title = "Pitchpoint"

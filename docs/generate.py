@@ -1,7 +1,8 @@
 """Pages of the reference that come from the schema and the registries: `python docs/generate.py FOLDER`."""
 
+import re
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
@@ -15,34 +16,73 @@ from pitchpoint.cases.loss_sets import SET, SET_TOLD
 from pitchpoint.cases.schema import Case, DriveCase, StageTable, quantity_of, usual_words
 from pitchpoint.input.tables import alternatives, sentences
 from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.results.strength import EXTREMES, STRENGTH
+from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.catalogue import entries
 
-__all__ = ["PAGES", "keys_page", "models_page", "variables_page", "write"]
+__all__ = ["keys_pages", "models_page", "pages", "variables_pages", "write"]
 
 Row = Sequence[str]
 
 
-def keys_page() -> str:
-    """Every key of a case file, by table."""
+def keys_pages() -> dict[str, str]:
+    """Every key of a case file: a page for each table with those in it, and one that leads to them."""
+    pages = {f"keys_{name}.md": "\n".join(parts) for name, parts in _keys_by_table().items()}
     intro = (
-        'Every table of a case file and its keys. A quantity is written with its unit (`"2 mm"`), in that of '
-        "the column or any other of its kind. `pitchpoint show FILE` lists what a file leaves open."
+        "Every table of a case file has a page with its keys and the tables in it. A quantity is written "
+        'with its unit (`"2 mm"`), in that of the column or any other of its kind. '
+        "`pitchpoint show FILE` lists what a file leaves open."
     )
-    parts = [_page_head("Keys of a case file", intro)]
+    rows = [(f"[{_title_of(text)}]({path})", _first_words(text)) for path, text in pages.items()]
+    lines = [_page_head("Keys of a case file", intro), _table(("table", "what it is"), rows)]
+    return {"keys.md": "\n".join([*lines, _toctree(pages)]), **pages}
+
+
+def _keys_by_table() -> dict[str, list[str]]:
+    """Text of each page."""
+    pages: dict[str, list[str]] = {}
     for path, model in _tables("", Case):
+        parts = _of_table(_titled(path), model)
         if path.startswith("losses"):
-            parts += _section("`[losses]`", LOSSES, [(f"`{SET}`", SET_TOLD, "a name", "", "")])
-        parts += _of_table(_titled(path), model)
-    parts += _of_table("A file of several stages", DriveCase)
-    parts += _of_table("`[[stages]]`", StageTable)
+            rows = [(f"`{SET}`", SET_TOLD, "a name", "", "")]
+            parts = _section("`[losses]`", LOSSES, rows) + parts
+        name = _page_of(path)
+        pages[name] = pages[name] + parts if name in pages else [parts[0][1:], *parts[1:]]
+    pages["file"] += _of_table("A file of several stages", DriveCase)
+    pages["file"] += _of_table("`[[stages]]`", StageTable)
+    return {**pages, "marks": _marks()}
+
+
+def _marks() -> list[str]:
     rows = [("`value`", "The value itself.", "as without marks", "", "needed")]
     kinds = {"status": ", ".join(f'`"{one}"`' for one in STATUSES)}
     rows += [(f"`{key}`", told, kinds.get(key, "text"), "", "") for key, told in MARKS.items()]
-    parts += _section("A value with marks", OF_MARKS, rows)
-    return "\n".join(parts)
+    return [f"# A value with marks\n\n{OF_MARKS}\n", _table(KEYS, rows)]
 
 
+def _page_of(path: str) -> str:
+    """Name of the page of a table: its outermost one, or one of several forms of that."""
+    first = re.match(r"\w*( \([\w ]+\))?", path)
+    return re.sub(r"\W+", "_", first.group() if first else "").strip("_") or "file"
+
+
+def _title_of(page: str) -> str:
+    return page.partition("\n")[0].removeprefix("# ")
+
+
+def _first_words(page: str) -> str:
+    """First sentence under the title."""
+    words = page.partition("\n\n")[2].partition("\n\n")[0].strip()
+    return re.split(r"(?<=[.;]) (?=[A-Z`])", words)[0].rstrip(";.") + "."
+
+
+def _toctree(pages: Iterable[str]) -> str:
+    names = "\n".join(path.removesuffix(".md") for path in pages)
+    return f"```{{toctree}}\n:hidden:\n{names}\n```\n"
+
+
+KEYS = ("key", "what it is", "value", "allowed", "unless given")
 LOSSES = "Losses beside the teeth, each a table under a name of one's own, or those of a named set."
 OF_MARKS = (
     "In place of any value may stand a table with the value and how it was come by, "
@@ -58,25 +98,68 @@ def _of_table(title: str, model: type[BaseModel]) -> list[str]:
 
 
 def _section(title: str, words: str, rows: Sequence[Row]) -> list[str]:
-    head = ("key", "what it is", "value", "allowed", "unless given")
-    return [f"## {title}\n\n{words}\n", _table(head, rows)]
+    return [f"## {title}\n\n{words}\n", _table(KEYS, rows)]
 
 
-def variables_page() -> str:
-    """Every variable that a result may hold."""
-    every = (*ANALYSES.values(), *PUBLICATIONS.values())
-    own = {name: one for each in every for name, one in each.variables.items()}
+def variables_pages() -> dict[str, str]:
+    """Every variable that a result may hold: by kind of quantity, and a page for each publication's own."""
+    own = {name: one for each in ANALYSES.values() for name, one in each.variables.items()}
+    intro = (
+        "Names in the datasets of a result, in SI, by kind of quantity. `shown in` is the unit in which "
+        "screen and report show them, unless `--units` or `[output]` of the case chose another. `side` says "
+        "which side of the drive a torque, speed, angle or stiffness counts at: none is reduced to the "
+        "other one."
+    )
+    parts, pages, printed = [_page_head("Variables of a result", intro)], {}, set()
+    for name, publication in PUBLICATIONS.items():
+        words = "Those of its formulas, in SI, beside those of every [result](variables.md)."
+        head = _page_head(f"Variables of {name}", words)
+        pages[f"variables_{name}.md"] = f"{head}\n{_of_variables(publication.variables)}"
+        printed |= {*publication.variables}
+    shared = {name: one for name, one in {**VARIABLES, **own}.items() if name not in printed}
+    for title, chosen in _by_kind(shared).items():
+        parts += [f"## {title}\n", _of_variables(chosen)]
+    parts += [f"## Of publications\n\n{_links(pages)}\n", _toctree(pages)]
+    return {"variables.md": "\n".join(parts), **pages}
+
+
+def _links(pages: Mapping[str, str]) -> str:
+    return "\n".join(f"- [{_title_of(text)}]({path})" for path, text in pages.items())
+
+
+STRENGTH_TITLE, OTHERS = "Strength of the teeth", "Other quantities"
+KINDS: dict[str, tuple[str, ...]] = {
+    "Shares, factors and other plain numbers": ("dimensionless",),
+    "Lengths, films and deviations": ("length",),
+    "Angles": ("angle",),
+    "Forces and pressures": ("force", "pressure", "line load"),
+    "Torques": ("torque",),
+    "Powers and energies": ("power", "energy"),
+    "Stiffness and damping": ("stiffness", "torsional stiffness", "viscous damping"),
+    "Speeds, times and frequencies": ("velocity", "rotational speed", "time", "frequency"),
+    "Temperatures": ("temperature", "temperature difference"),
+}
+
+
+def _by_kind(variables: Mapping[str, Variable]) -> dict[str, dict[str, Variable]]:
+    """Variables under titles."""
+    rated = {*STRENGTH, *EXTREMES}
+    titles = {kind: title for title, kinds in KINDS.items() for kind in kinds}
+    found: dict[str, dict[str, Variable]] = {
+        title: {} for title in (*KINDS, OTHERS, STRENGTH_TITLE)
+    }
+    for name, one in variables.items():
+        title = STRENGTH_TITLE if name in rated else titles.get(one.kind, OTHERS)
+        found[title][name] = one
+    return found
+
+
+def _of_variables(variables: Mapping[str, Variable]) -> str:
     rows = [
         (f"`{name}`", one.long_name, one.symbol, one.unit, one.usual, _SIDES.get(one.end, ""))
-        for name, one in sorted({**VARIABLES, **own}.items())
+        for name, one in sorted(variables.items())
     ]
-    intro = (
-        "Names in the datasets of a result, in SI. `shown in` is the unit in which screen and report show "
-        "them, unless `--units` or `[output]` of the case chose another. `side` says which side of the drive "
-        "a torque, speed, angle or stiffness counts at: none is reduced to the other one."
-    )
-    head = ("name", "what it is", "symbol", "unit", "shown in", "side")
-    return _page_head("Variables of a result", intro) + "\n" + _table(head, rows)
+    return _table(("name", "what it is", "symbol", "unit", "shown in", "side"), rows)
 
 
 _SIDES = {"driver": "input", "loaded": "output"}
@@ -102,32 +185,57 @@ def _note(entry: Mapping[str, str]) -> str:
     return " ".join(filter(None, (entry["note"], entry["sources"] and f"({entry['sources']})")))
 
 
+TASKS: dict[str, str] = {
+    "Run a case and read its result": "Case run Result open_result load_case write_report models cite",
+    "Vary a case": "study Study Sweep gradients",
+    "Describe gears": (
+        "CylindricalPair build_cylindrical_pair build_cylindrical_pairs StrainWave build_strain_wave "
+        "build_strain_waves BallOnDisc TwinDisc Contacts"
+    ),
+    "Compute a mesh from arrays": "Design Operation Models FrictionLaw cycle state state_grid",
+    "Differentiate a mesh": "mean_loss_gradient input_torque_gradient ripple_gradient",
+    "Solve films of line contacts": (
+        "FilmModel LineContact Fluid Rough Conduction Conductor solve_lines film_dataset films_of_dataset"
+    ),
+    "Solve films of ellipses and finite lines": (
+        "finite_line elliptic_contact HeightMap solve_patch film_near march_patches patch_dataset "
+        "march_dataset"
+    ),
+    "Catch errors": "PitchpointError InputError ConvergenceError",
+}
+"""Public names by what they are for; those that are not here come under a title of their own."""
+
+
 def api_page() -> str:
-    """Every public name, from its docstring."""
+    """Every public name by task, from its docstring."""
     intro = "What `import pitchpoint as pp` has. Names are loaded when they are first asked for."
     parts = [_page_head("Python", intro)]
-    for name in sorted(pitchpoint._LAZY, key=str.lower):
-        what = getattr(pitchpoint, name)
-        kind = "class" if isinstance(what, type) else "function"
-        options = "\n   :members:" if kind == "class" else ""
-        directive = f".. auto{kind}:: {what.__module__}.{name}{options}"
-        parts.append(f"## pp.{name}\n\n```{{eval-rst}}\n{directive}\n```\n")
+    tasks = {title: names.split() for title, names in TASKS.items()}
+    known = {name for names in tasks.values() for name in names}
+    for title, names in {**tasks, "More": sorted({*pitchpoint._LAZY} - known)}.items():
+        parts += [f"## {title}\n"] * bool(names) + [_documented(name) for name in names]
     return "\n".join(parts)
 
 
-PAGES = {
-    "keys.md": keys_page,
-    "variables.md": variables_page,
-    "models.md": models_page,
-    "api.md": api_page,
-}
+def _documented(name: str) -> str:
+    what = getattr(pitchpoint, name)
+    kind = "class" if isinstance(what, type) else "function"
+    options = "\n   :members:" if kind == "class" else ""
+    directive = f".. auto{kind}:: {what.__module__}.{name}{options}"
+    return f"### pp.{name}\n\n```{{eval-rst}}\n{directive}\n```\n"
+
+
+def pages() -> dict[str, str]:
+    """Text of every page by the name of its file."""
+    plain = {"models.md": models_page(), "api.md": api_page()}
+    return {**keys_pages(), **variables_pages(), **plain}
 
 
 def write(folder: Path) -> None:
     """Write all pages into a folder, those that have not changed left alone."""
     folder.mkdir(exist_ok=True)
-    for name, page in PAGES.items():
-        path, text = folder / name, page()
+    for name, text in pages().items():
+        path = folder / name
         if not path.exists() or path.read_text("utf-8") != text:
             path.write_text(text, "utf-8")
 

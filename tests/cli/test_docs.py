@@ -16,6 +16,7 @@ import pytest
 import typer
 from pages import PAGES, ROOT, block, blocks
 
+import pitchpoint
 from pitchpoint import cli
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.analyses.engagement import check_heights
@@ -31,7 +32,8 @@ from pitchpoint.runs import run
 from pitchpoint.runs.designs import wanted
 from pitchpoint.runs.jobs import jobs
 
-(PAIR,) = blocks("README.md", "toml")
+PAIR, VARIANTS = blocks("README.md", "toml")
+(WHOLE_WITH_VARIANTS,) = blocks("guide/variants.md", "toml")
 _, MODIFIED = blocks("guide/pairs.md", "toml")
 STRENGTH, INSPECTION, LIMITS = blocks("guide/sizing.md", "toml")
 (PLASTIC,) = blocks("guide/stiffness.md", "toml")
@@ -101,12 +103,16 @@ def tree(name: str) -> dict[str, Any]:
     return merged(first, second)
 
 
+OF_THE_SITE = ("{toctree}", "{cards}", "{teeth}")
+"""Blocks that are run while the site is built."""
+
+
 def test_every_block_is_known() -> None:
     kinds = re.findall(r"^```([^`\s]+)$", "\n".join(PAGES.values()), re.MULTILINE)
-    assert set(kinds) <= {"sh", "toml", "python", "{toctree}"}
+    assert set(kinds) <= {"sh", "toml", "python", *OF_THE_SITE}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 20
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 22
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 
@@ -145,14 +151,79 @@ def test_the_reference_is_that_of_the_code(tmp_path: Path) -> None:
 
 def test_every_key_and_variable_has_its_line() -> None:
     generate = runpy.run_path(str(ROOT / "docs" / "generate.py"))
-    lines = rows(generate["keys_page"]())
+    lines = [line for text in generate["keys_pages"]().values() for line in rows(text)]
     for table in (Case, DriveCase):
         assert {key.rpartition(".")[2] for key in keys(table)} <= {line[0] for line in lines}
+    assert "set" in {line[0] for line in rows(generate["keys_pages"]()["keys_losses.md"])}
     assert all(told.endswith(".") for _, told, *_ in lines)
     own = [one.variables for one in (*ANALYSES.values(), *PUBLICATIONS.values())]
-    listed = {name: line for name, *line in rows(generate["variables_page"]())}
+    every = [line for text in generate["variables_pages"]().values() for line in rows(text)]
+    listed = {name: line for name, *line in every}
     assert {name for each in (VARIABLES, *own) for name in each} == listed.keys()
     assert all(told and unit and shown for told, _, unit, shown, *_ in listed.values())
+
+
+def test_every_public_name_stands_under_one_task() -> None:
+    generate = runpy.run_path(str(ROOT / "docs" / "generate.py"))
+    documented = re.findall(r"^### pp\.(\w+)$", generate["api_page"](), re.MULTILINE)
+    assert sorted(documented) == sorted(pitchpoint._LAZY)
+    assert "## More" not in generate["api_page"]()
+
+
+GALLERY = sorted((ROOT / "docs" / "gallery").glob("*.md"))
+
+
+def test_every_page_of_the_gallery_has_its_card() -> None:
+    index = PAGES["index.md"]
+    cards, tree = (
+        re.findall(r"^gallery/(\w+)$", part, re.MULTILINE) for part in cards_and_tree(index)
+    )
+    assert sorted(cards) == [path.stem for path in GALLERY]
+    assert cards == tree
+    assert len(cards) >= 14
+
+
+def cards_and_tree(index: str) -> tuple[str, str]:
+    """Cards of the first page, and what stands behind them."""
+    cards, _, rest = index.partition("```{cards}")[2].partition("```")
+    return cards, rest
+
+
+@pytest.fixture(scope="module")
+def gallery() -> dict[str, Any]:
+    return runpy.run_path(str(ROOT / "docs" / "notebooks.py"))
+
+
+@pytest.mark.parametrize("path", GALLERY, ids=lambda path: path.stem)
+def test_a_page_as_a_notebook(path: Path, gallery: dict[str, Any]) -> None:
+    """Its cells are those of the page, in order, and its words lead to no files."""
+    page = path.read_text("utf-8")
+    book = json.loads(gallery["notebook"](page))
+    code = ["".join(cell["source"]) for cell in book["cells"] if cell["cell_type"] == "code"]
+    assert code == [
+        text.strip() for text in re.findall(r"\{code-cell\} ipython3\n(.*?)```", page, re.DOTALL)
+    ]
+    assert all(compile(text, path.name, "exec") for text in code)
+    assert not re.search(r"\]\([^)]*\.md", json.dumps(book["cells"]))
+
+
+def test_the_data_of_a_figure_are_read_from_its_page(gallery: dict[str, Any]) -> None:
+    data, layout = [{"y": [1.0, None, 3.0]}], {"title": {"text": "a, \u003cb\u003e"}}
+    page = f'x(1); Plotly.newPlot( "id",  {json.dumps(data)}, {json.dumps(layout)}, {{}} )'
+    assert gallery["figure_of"](page) == {"data": data, "layout": layout}
+
+
+def test_a_thumbnail_is_drawn_of_curves_and_of_maps(gallery: dict[str, Any]) -> None:
+    thumbnail = gallery["thumbnail"]
+    curve = {"x": [1.0, 10.0, 100.0], "y": [0.0, float("nan"), 2.0]}
+    assert thumbnail({"data": [curve]}).count("<polyline") == 0  # two points, each alone
+    curve["y"] = [0.0, 1.0, 2.0]
+    drawn = thumbnail({"data": [curve], "layout": {"xaxis": {"type": "log"}}})
+    assert 'points="12.0,138.0 140.0,75.0 268.0,12.0"' in drawn
+    assert (
+        thumbnail({"data": [{"type": "heatmap", "z": [[0.0, 1.0], [2.0, 3.0]]}]}).count("<rect")
+        == 5
+    )
 
 
 def rows(page: str) -> list[list[str]]:
@@ -173,6 +244,20 @@ def test_a_case(name: str) -> None:
     assert ("running" in made) == (name in ("wave", "limits", "targets", "stages"))
     assert ("load_limits" in made) == (name in ("wave", "limits", "targets"))
     assert ("kinematic_error" in made) == (name in ("modified", "wave", "limits", "targets"))
+
+
+@pytest.mark.parametrize(
+    "text", [f"{PAIR}\n{VARIANTS}", WHOLE_WITH_VARIANTS], ids=["README", "guide"]
+)
+def test_the_variants_of_the_text(text: str) -> None:
+    given = tomllib.loads(text)
+    built = {name: Variant(given, "README.md", name).built({}) for name in given["variants"]}
+    assert next(iter(built)) == "as_drawn"
+    cold, drawn = built["cold"].operation.temperature, built["as_drawn"].operation.temperature
+    assert float(drawn - cold) == pytest.approx(40.0)
+    polished = built["polished"].case
+    assert polished.gears.teeth == built["cold"].case.gears.teeth
+    assert polished.roughness != built["cold"].case.roughness
 
 
 @pytest.mark.whole

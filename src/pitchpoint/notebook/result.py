@@ -24,6 +24,7 @@ from pitchpoint.runs.case import Case, CaseLike, written
 from pitchpoint.runs.run import Outcome, Progress
 from pitchpoint.views.inputs import recorded_units
 from pitchpoint.views.report import write_report
+from pitchpoint.views.show import number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -96,8 +97,11 @@ class Result(Mapping[str, Outcome]):
         return "\n  ".join([f"Result({self.title!r})", *lines, f"parts {', '.join(self.parts)}"])
 
     def _repr_html_(self) -> str:
+        from pandas import option_context
+
         told = "".join(f"<li>{html.escape(text)}</li>" for text in self.warnings)
-        table = self.summary().to_html(na_rep="undefined", border=0)
+        with option_context("display.max_colwidth", None):
+            table = self.summary().to_html(na_rep="undefined", border=0, float_format=number)
         parts = html.escape(", ".join(self.parts))
         title = f"<strong>{html.escape(self.title)}</strong>"
         return f"<div>{title}{table}<ul>{told}</ul><small>parts: {parts}</small></div>"

@@ -18,8 +18,8 @@ _SEVERAL = resources.files("pitchpoint.cases") / "stages.toml"
 _PAGE = """# Families and analyses
 
 What is computed for a case of each family, and for a drive of several stages, that holds every table which
-analyses ask for, with every solver of films: yes, or why not.
-Printed by `pitchpoint models --matrix` from the registries of families and analyses.
+analyses ask for, with every solver of films: ✓, or – with the number of the sentence below that says why not.
+`pitchpoint models --matrix` prints it with its sentences, from the registries of families and analyses.
 
 """
 
@@ -65,8 +65,18 @@ def _why_not(analysis: Analysis | Several, cases: Sequence[Ready]) -> str:
 
 
 def page() -> str:
-    """The matrix as a page of the documentation."""
+    """The matrix as a page of the documentation: marks, and below them each reason once."""
     rows = matrix()
-    _, *columns = rows[0]
-    cells = [columns, ["---"] * len(columns), *([row[name] for name in columns] for row in rows)]
-    return _PAGE + "".join(f"| {' | '.join(row)} |\n" for row in cells)
+    _, title, *columns = rows[0]
+    reasons = [*dict.fromkeys(row[name] for row in rows for name in columns if row[name] != "yes")]
+    marks = {text: f"–{str(n).translate(_RAISED)}" for n, text in enumerate(reasons, 1)}
+    marks["yes"] = "✓"
+    heads = ["", *(name.replace("_", " ") for name in columns)]
+    cells = [[row[title], *(marks[row[name]] for name in columns)] for row in rows]
+    lines = [heads, ["---", *(":---:" for _ in columns)], *cells]
+    table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
+    told = "".join(f"{n}. {text[0].upper()}{text[1:]}.\n" for n, text in enumerate(reasons, 1))
+    return f"{_PAGE}{table}\n{told}"
+
+
+_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
