@@ -561,7 +561,7 @@ def test_report_sets_torus_beside_standard():
     page = Page({"as_published": outcome}, {})
     assert FORMULAS.lacking(page) is None
     note, panel, heading, table = FORMULAS.blocks(page)  # points that were seen are not shown again
-    assert "follows from its effective radius alone" in note.words
+    assert "takes the effective radius" in note.words
     assert heading.words == title
     assert [one.rpartition(", ")[2] for one in table.head[1:]] == [
         "torus pair",

@@ -294,20 +294,18 @@ _SIDE_BY_SIDE = Beside(
     },
     note=(
         "From rest: start by the printed equations with the fitted inputs, as published. What a pair of "
-        "teeth carries is drawn over the last whole mesh cycle; pair 0 is the older one. Odd "
-        "conditions have 49 N m, even ones 245 N m; the validation is at 20 N m. The motion runs on "
+        "teeth carries is drawn over the last whole mesh cycle; pair 0 is the older one. The motion runs on "
         "the stiffness of Table 1; that of the library, secant and slope, is drawn over it and is not used, "
         "but in variant hertz, which has the library's secant and the radii of Hertz: there the torus radii "
-        "act. The thicker film of the torus pair follows from its effective radius alone, R' = c rho_1; "
-        "with the radii of Hertz, in the last rows, its film is the thinner one. By the printed signs "
-        "friction drives both gears behind the pitch point and brakes both before it: its power is 2 mu F "
-        "v_e with the sign of the sliding, not the loss -mu F |v_s|, and what lies between the two is "
-        "energy from nothing. In steady state: the corrected equations with the same springs, the error "
-        "once in a mesh cycle, friction against the sliding, pressures and films by the radii of Hertz, and "
-        "rolling per width; the stiffness follows the place of the pinion and not time, and the energy "
-        "balances. There the friction of the torus pair is the larger one. At 10 rad/s the speed of the "
-        "pinion is held: under the heavy load the teeth store a third of the kinetic energy of the discs, "
-        "and a constant torque does not keep these turning."
+        "act. As published the film of the torus pair takes the effective radius R' = c rho_1 of the pinion "
+        "alone; the last rows have the films with the radii of Hertz. By the printed signs friction drives "
+        "both gears behind the pitch point and brakes both before it: its power is 2 mu F v_e with the sign "
+        "of the sliding, not the loss -mu F |v_s|, and what lies between the two is energy from nothing. In "
+        "steady state: the corrected equations with the same springs, the error once in a mesh cycle, "
+        "friction against the sliding, pressures and films by the radii of Hertz, and rolling per width; the "
+        "stiffness follows the place of the pinion and not time, and the energy balances. A pinion held at "
+        "speed, formulas.steady_pinion, is for slow drives: teeth that store much of the kinetic energy of "
+        "the discs stop them under a constant torque."
     ),
     curves=tuple(_curves()),
     solves={"steady state": tuple(f"{pair}_steady_status" for pair in PAIRS)},

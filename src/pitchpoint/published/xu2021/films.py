@@ -9,8 +9,10 @@ from jaxtyping import Float
 from pitchpoint._jax import jax
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
+from pitchpoint.lubrication.ehl.fields import STANDS_OUT
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import finite_line
+from pitchpoint.lubrication.ehl.patch.fields import PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough
@@ -294,6 +296,8 @@ def _of_point(teeth: ToothFilms, angle: float, speed: float, temperature: float)
         # Films hang on speed times viscosity.
         "misprinted_speed_of_one": of_one / teeth.misprint,
         "temperature_of_one": _place_of_one(temperatures, warm_ratio),
+        "late_film_gain": _late_gain(speeds, ratio),
+        "late_share_gain": _late_gain(speeds, at_speeds["asperity_share"]),
         "slow_share": float(np.interp(_SLOW, speeds, at_speeds["asperity_share"])),
         **{f"rated_{key}": float(one[0]) for key, one in _course(teeth, [rated]).items()},
         "coarse_film_ratio": float(_course(teeth, [coarse])["film_ratio"][0]),
@@ -337,6 +341,13 @@ def _place_of_one(places: Course, ratio: Course) -> float:
     return float(np.interp(0.0, over[ends][order], places[ends][order]))
 
 
+def _late_gain(speeds: Course, values: Course) -> float:
+    """Change by a turn in the last step of the speed over that in the step before; NaN of two speeds."""
+    slopes = np.diff(values) / np.diff(speeds)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(slopes[-1] / slopes[-2]) if slopes.size > 1 else float("nan")
+
+
 def _fields(films: PatchFilms, face_width: float) -> Read:
     """Pressure and film over the contact, along the face and across, and near the ends over the middle."""
     film = jax.tree.map(np.asarray, films.film)
@@ -357,7 +368,35 @@ def _fields(films: PatchFilms, face_width: float) -> Read:
         "cut_film": np.interp(across, film.x, film.gap[middle]),
         "end_pressure": near / float(ridge[middle]),
         "end_film": thin / float(gap[middle]),
+        **_across(film, middle),
     }
+
+
+def _across(film: PatchFilm, middle: int) -> Read:
+    """What section 3.1 tells of pressure and film across the contact, in the middle of the face."""
+    pressure, gap = np.asarray(film.pressure[middle]), np.asarray(film.gap[middle])
+    half = float(film.half_width)
+    before, inner, after = np.interp([-half, 0.0, half], film.x, gap)
+    flat = np.interp(np.linspace(-0.5, 0.5, 51) * half, film.x, gap)
+    solved = 1.0 if np.all(np.isfinite(pressure)) else float("nan")
+    return {
+        "peak_place": solved * float(film.x[np.argmax(pressure)]) / half,
+        "pressure_peaks": solved * _peaks(pressure),
+        "entry_film": float(before / after),
+        "film_spread": float(np.ptp(flat) / inner),
+    }
+
+
+def _peaks(pressure: Float[np.ndarray, " x"]) -> int:
+    """Maxima of a course that stand out by `STANDS_OUT` of the largest one on both sides."""
+    step = STANDS_OUT * float(pressure.max())
+    count, turn, rising = 0, float(pressure[0]), True
+    for value in map(float, pressure):
+        if (value >= turn) == rising:
+            turn = value
+        elif abs(value - turn) > step:
+            count, turn, rising = count + rising, value, not rising
+    return count
 
 
 def _on(
@@ -400,6 +439,7 @@ def _of_teeth(teeth: ToothFilms, speed: float, temperature: float) -> Read:
         return found
 
     line = films.film
+    mean = float(np.mean(printed))
     stiffness = np.asarray(line.stiffness) * teeth.face_width
     courses = {
         "tooth_angle": angle,
@@ -412,10 +452,13 @@ def _of_teeth(teeth: ToothFilms, speed: float, temperature: float) -> Read:
     return {
         **courses,
         "teeth_status": float(next((one for one in codes if not one.ok), Code.SOLVED)),
+        "teeth_of_zone": 2.0 * angle.size - 1.0,
         "teeth_with_films": float(there.sum()),
         "mean_tooth_film_ratio": float(np.mean(courses["tooth_film_ratio"][there])),
         "mean_tooth_asperity_share": float(np.mean(courses["tooth_asperity_share"][there])),
         "mean_tooth_film_stiffness": float(np.mean(stiffness)),
-        "mean_tooth_printed_stiffness": float(np.mean(printed)),
+        "mean_tooth_printed_stiffness": mean,
+        "thick_film_stiffness": float(printed[np.argmax(line.mean_film)]) / mean,
+        "high_pressure_stiffness": float(printed[np.argmax(line.largest_pressure)]) / mean,
         "tooth_printed_stiffness_step": float(np.max(np.abs(np.diff(printed)))),
     }

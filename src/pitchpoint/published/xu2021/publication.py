@@ -144,6 +144,7 @@ _TEETH = {
 }
 
 _OF_TEETH = {
+    "teeth_of_zone": _plain("teeth of a zone that eq. 5 loads", "2N + 1"),
     "teeth_with_films": _plain(
         "teeth from the long axis on for which eqs. 1 to 5 give a contact", "n"
     ),
@@ -155,6 +156,14 @@ _OF_TEETH = {
         "stiffness, load over mean film, mean of these teeth", "k"
     ),
     "mean_tooth_printed_stiffness": stiffness("stiffness by eq. 16, mean of these teeth", "k_oil"),
+    "thick_film_stiffness": _plain(
+        "stiffness by eq. 16 at the tooth with the thickest film, over the mean of these teeth",
+        "k/k",
+    ),
+    "high_pressure_stiffness": _plain(
+        "stiffness by eq. 16 at the tooth with the highest pressure, over the mean of these teeth",
+        "k/k",
+    ),
     "tooth_printed_stiffness_step": stiffness(
         "stiffness by eq. 16, largest change from a tooth to the next", "Δk_oil"
     ),
@@ -183,6 +192,19 @@ _OF_POINT = {
         "pressure a quarter of a half-width from the ends over that in the middle", "p/p"
     ),
     "end_film": _plain("film there over that in the middle", "h/h"),
+    "peak_place": _plain("place of the highest pressure across, over the half-width", "x/a"),
+    "pressure_peaks": _plain("peaks of the pressure across, middle of the face", "n"),
+    "entry_film": _plain("film where the dry contact begins over that where it ends", "h/h"),
+    "film_spread": _plain(
+        "spread of the film within half the half-width, over that at x = 0", "Δh/h"
+    ),
+    "late_film_gain": _plain(
+        "film that a turn adds in the last step of the speed, over that in the step before", "Δλ/Δλ"
+    ),
+    "late_share_gain": _plain(
+        "load that a turn takes off asperities in the last step of the speed, over that in the step before",
+        "ΔW/ΔW",
+    ),
 }
 """Numbers of a point."""
 
@@ -273,9 +295,7 @@ _ENVELOPE = Beside(
     },
     note=(
         "Films that the envelope's radius and entrainment make by Moes' law, under the load that closes "
-        "the torque, fully flooded and isothermal: an upper bound. Entrainment is some 60 times what eq. "
-        "3 gives on the long axis, and the film as thick as the roughness at 28 and 19 rpm at 40 °C, "
-        "where the paper has 300 and 2500 rpm: no motion of the teeth that was tried leads to its speeds."
+        "the torque, fully flooded and isothermal: an upper bound."
     ),
 )
 
@@ -287,13 +307,13 @@ _FILMS = Beside(
         "line, with load and radius by eqs. 1 to 6 and the oil of the case. Stiffness stands by two "
         "definitions: the load over the separation that the film adds to the dry contact, which wavers "
         "with the grid, and by eq. 16 the load step over the fall of the mean film, on a line without "
-        "ends. Radii of a metre make contacts as wide as the flank, which half spaces do not hold for. "
+        "ends. Half spaces hold where the half-width is small against the height of a tooth. "
         "The maps end two and a half half-widths ahead of the contact."
     ),
     calibrated=(
-        "The factor on eq. 3 is set so that the film is as thick as the roughness at the speeds of "
-        "section 3.2: in A it is 1, in B a thirtieth. The density of summits is set for the load on "
-        "asperities in A."
+        "The factors on eq. 3, formulas.entrainment_factor, are set so that the film is as thick as the "
+        "roughness at the speeds of section 3.2, and the density of summits, formulas.eta_beta_sigma, "
+        "for the load on asperities in A."
     ),
     curves=(
         *_curves("film_place", "Figure 8"),
@@ -320,8 +340,8 @@ _TEETH_BESIDE = Beside(
     note=(
         "Every tooth from the long axis on, those on its other side being alike: films on lines without "
         "ends. The factor on eq. 3 lies between those of A and B. Teeth beyond the angle at which eq. 2 "
-        "changes its sign have loads and no films. There is no place in the zone where one tooth carries "
-        "alone, and the stiffness does not jump."
+        "changes its sign have loads and no films. Stiffness can jump only where one tooth comes to carry "
+        "alone."
     ),
     families=tuple(
         Curves(one.long_name, "tooth_angle", (name,), shows=shows)
