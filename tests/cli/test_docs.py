@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import typer
-from pages import PAGES, ROOT, block, blocks
+from documentation import PAGES, ROOT, block, blocks
 
 import pitchpoint
 from pitchpoint import cli
