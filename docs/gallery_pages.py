@@ -43,7 +43,8 @@ def moving_teeth(gears: dict[str, Any]) -> str:
         gears: table `[gears]` of a case.
     """
     mesh = pitchpoint.load_case({"title": "Teeth", "gears": gears, **RUNNING}).design.mesh
-    drawn = {name: np.asarray(value) for name, value in mesh.drawing().items()}
+    with pitchpoint.double_precision():
+        drawn = {name: np.asarray(value) for name, value in mesh.drawing().items()}
     tip = 1e3 * drawn["tip_radius"][0]
     box = f"{-1.7 * tip:.1f} {-1.6 * tip:.1f} {3.4 * tip:.1f} {1.5 * tip:.1f}"
     bodies = "".join(_turning(drawn, body, side) for body, side in ((0, 1.0), (1, -1.0)))

@@ -192,7 +192,9 @@ TASKS: dict[str, str] = {
         "CylindricalPair build_cylindrical_pair build_cylindrical_pairs StrainWave build_strain_wave "
         "build_strain_waves BallOnDisc TwinDisc Contacts"
     ),
-    "Compute a mesh from arrays": "Design Operation Models FrictionLaw cycle state state_grid",
+    "Compute a mesh from arrays": (
+        "Design Operation Models FrictionLaw cycle state state_grid double_precision"
+    ),
     "Differentiate a mesh": "mean_loss_gradient input_torque_gradient ripple_gradient",
     "Solve films of line contacts": (
         "FilmModel LineContact Fluid Rough Conduction Conductor solve_lines film_dataset films_of_dataset"

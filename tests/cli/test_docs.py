@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import typer
-from pages import PAGES, ROOT, block, blocks
+from documentation import PAGES, ROOT, block, blocks
 
 import pitchpoint
 from pitchpoint import cli
@@ -80,6 +80,7 @@ PYTHON = {
     ("guide/python.md", "write_report"),
     ("guide/python.md", "strain_wave.toml"),
     ("guide/python.md", "plot_in"),
+    ("guide/python.md", "analyses="),
 }
 """Blocks of Python by page and by what they alone hold; each is run by a test."""
 
@@ -460,6 +461,11 @@ def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = capsys.readouterr().out
     assert "instantaneous efficiency" in out
     assert str(["teeth", "inspection", "cycle", "operation", "laws", "strength"])[:-1] in out
+
+
+def test_analyses_of_ones_choice(folder: Path) -> None:
+    left = ran("guide/python.md", "analyses=")
+    assert set(left["result"].parts) == {"operation", "cycle"}
 
 
 def test_units_of_ones_choice(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from pages import block
+from documentation import block
 from sound import PAIR, WAVE
 
 import pitchpoint as pp
