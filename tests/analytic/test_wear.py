@@ -13,7 +13,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import total
 from pitchpoint.contact.surface import Spot, missing
-from pitchpoint.contact.worn import Worn, WornAt
+from pitchpoint.contact.worn import WIDEST, Worn, WornAt, averaged
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.registry import LOAD_SHARING
@@ -564,3 +564,105 @@ def test_other_families_keep_their_volume(name):
     assert np.all(found.depth >= 0.0)
     middle = found.depth[:, :, cells.strips // 2]
     assert np.all(np.count_nonzero(middle, axis=1) > 0.8 * CELLS)
+
+
+# ---- pressure on worn flanks
+
+
+FLANK, MODULUS, CURVATURE = 2e-3, 2.3e11, 70.0
+SCAR = 0.25e-3  # m: standard deviation of a scar in the middle of the flank
+felt_over = eqx.filter_jit(averaged)
+
+
+def pressed_lines(
+    depths: np.ndarray, places: np.ndarray, line_load: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Half-widths by the curvature that contacts feel, and where these are no half spaces."""
+    contacts = discs()[0].mesh.contacts(jnp.zeros(places.size))
+    lanes = contacts.active.shape
+    given = replace(
+        contacts,
+        flank=jnp.broadcast_to(array(places), (2, *lanes)),
+        curvature=jnp.zeros((2, 2, *lanes)).at[:, 0].set(CURVATURE / 2.0),
+        felt=jnp.full(lanes, CURVATURE),
+    )
+    ends = array([0.0, FLANK]), array([-1.0, 1.0]), array([1e-4, 1.0])
+    worn = Worn(array(depths[:, None]), *ends), Worn(array(0.0 * depths[:, None]), *ends)
+    found, wide = felt_over(given, worn, array(line_load), array(MODULUS))
+    half = np.sqrt(8.0 * line_load * np.asarray(found.radius) / (np.pi * MODULUS))
+    return half[0, 0], np.asarray(wide)[0, 0]
+
+
+def scar(place: np.ndarray) -> np.ndarray:
+    return np.exp(-0.5 * ((place - FLANK / 2.0) / SCAR) ** 2)
+
+
+def in_cells(cells: int) -> np.ndarray:
+    """Means of the scar over the cells."""
+    return scar((np.arange(8 * cells) + 0.5) * FLANK / (8 * cells)).reshape(cells, 8).mean(axis=1)
+
+
+def half_space_pressure(depth: float, place: float, half: float, line_load: float) -> float:
+    """Largest pressure on the worn profile itself, leaned until the contact lies about its normal."""
+    nodes = 301
+    x = np.linspace(-2.5, 2.5, nodes) * half
+    step = x[1] - x[0]
+    gap = 0.5 * CURVATURE * x**2 + depth * scar(place + x)
+    angle = (np.arange(400) + 0.5) * np.pi / 400
+    s = place + half * np.cos(angle)
+    gap -= x * np.mean(-depth * scar(s) * (s - FLANK / 2.0) / SCAR**2)
+    away = np.subtract.outer(x, x)
+    sides = [away + side * step / 2.0 for side in (1.0, -1.0)]
+    log = [one * (np.log(np.abs(one)) - 1.0) for one in sides]
+    soft = -4.0 / (np.pi * MODULUS) * (log[0] - log[1])
+    held = np.abs(x) < half
+    for _ in range(200):
+        at = np.flatnonzero(held)
+        matrix = np.zeros((at.size + 1, at.size + 1))
+        matrix[:-1, :-1], matrix[:-1, -1], matrix[-1, :-1] = soft[np.ix_(at, at)], -1.0, step
+        found = np.linalg.solve(matrix, np.append(-gap[at], line_load))
+        pressure = np.zeros(nodes)
+        pressure[at] = found[:-1]
+        overlap = gap + soft @ pressure - found[-1] < -1e-15
+        after_ = (held & (pressure > 0.0)) | (~held & overlap)
+        if np.array_equal(after_, held):
+            return float(pressure.max())
+        held = after_
+    raise AssertionError("the active set did not settle")
+
+
+@pytest.mark.parametrize(("cells", "within"), [(20, 0.05), (40, 0.03), (80, 0.03)])
+def test_worn_flanks_have_the_pressure_of_a_half_space_solve(cells, within):
+    """Scars up to where their bottom is nearly as hollow as the flanks are round, narrow to wide contacts."""
+    places = FLANK / 2.0 + SCAR * np.array([0.0, 0.7, 1.2, 2.0])
+    off = []
+    for depth in 0.4 * CURVATURE * SCAR**2, 0.8 * CURVATURE * SCAR**2:
+        for line_load in (2e4, 1e5, 4e5):
+            half, wide = pressed_lines(depth * in_cells(cells), places, line_load)
+            assert not wide.any()
+            for place, b in zip(places, half, strict=True):
+                expected = half_space_pressure(depth, place, b, line_load)
+                off.append(2.0 * line_load / (np.pi * b) / expected - 1.0)
+    print(cells, np.array(off).reshape(2, 3, 4).round(4))
+    assert np.abs(off).max() < within
+
+
+def test_noise_of_single_cells_neither_sharpens_nor_flattens_contacts():
+    noise = 2e-8 * np.random.default_rng(7).standard_normal(80)
+    places, line_load = np.linspace(0.4, 0.6, 40) * FLANK, 2e5
+    new, _ = pressed_lines(np.zeros(80), places, line_load)
+    half, _ = pressed_lines(1e-6 + noise, places, line_load)
+    raw = np.abs(np.diff(noise, n=2)).max() / (FLANK / 80) ** 2
+    print(raw, np.abs(half / new - 1.0).max())
+    assert raw > 0.5 * CURVATURE
+    assert np.abs(half / new - 1.0).max() < 0.03
+
+
+def test_flanks_that_conform_are_no_half_spaces():
+    """A scar that is hollower than the flanks are round carries beyond its edges or not at all."""
+    places = np.array([FLANK / 2.0])
+    hollow = 4.0 * np.linspace(-1.0, 1.0, 40)
+    depths = 0.6 * CURVATURE * (FLANK / 2.0) ** 2 * (1.0 - (hollow / 4.0) ** 2)
+    half, wide = pressed_lines(depths, places, 1e6)
+    assert wide.all()
+    assert half == pytest.approx(WIDEST / (CURVATURE / 2.0), rel=1e-6)

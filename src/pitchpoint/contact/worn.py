@@ -4,6 +4,7 @@ from dataclasses import replace
 from itertools import product
 from typing import ClassVar, Self
 
+import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
@@ -11,10 +12,19 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Lanes, Spot, Surface, Surfaces, with_surfaces
 from pitchpoint.factored import Arrays
 
-__all__ = ["FLATTEST", "Worn", "WornAt", "new_and_worn", "with_worn"]
+__all__ = ["FLATTEST", "WIDEST", "Worn", "WornAt", "averaged", "new_and_worn", "with_worn"]
 
 FLATTEST = 0.1
 """Part of their relative curvature as new that contacts keep at least: flatter flanks conform."""
+
+WIDEST = 0.3
+"""Half-width of a line contact over the radius of the sharper flank up to which it counts as one of half spaces."""
+
+BRIDGED = 2.0
+"""Cells to either side over which curvatures are averaged at least: what is narrower is noise of the grid."""
+
+_NARROWEST = 1e-4  # of the widest contact: the average has long been that over the cells
+_HALVINGS = 24  # of the logarithm between both: 6e-7 of a half-width
 
 
 class Worn(Surface):
@@ -56,6 +66,26 @@ class Worn(Surface):
         aside = self._depth_at(flank, _beside(across, self.span[1]), straight=True)
         return jnp.stack([_second(along, self.span[0]), _second(aside, self.span[1])])
 
+    def mean_bend(self, spot_flank: Lanes, across: Lanes) -> "_MeanBend":
+        """What averages the second derivative along the flank over contacts of any width.
+
+        Args:
+            spot_flank: arc lengths of their middles [m].
+            across: their places across the face [m].
+        """
+        count, (start, end) = self.depth.shape[0], self.flank
+        length = (end - start) / count
+        steps = jnp.diff(self.depth, axis=0)
+        still = jnp.zeros_like(self.depth[:1])
+        bends = jnp.concatenate([still, jnp.diff(steps, axis=0), still])[:count] / length**2
+        aside = _weights(across, self.across, self.depth.shape[1], straight=False)
+        own = sum(
+            (other[..., None] * jnp.moveaxis(bends, 0, -1)[j] for j, other in aside),
+            jnp.zeros((*jnp.shape(across), count)),
+        )
+        middles = start + length * (jnp.arange(count) + 0.5)
+        return _MeanBend(own, middles - spot_flank[..., None], length)
+
     def _depth_at(self, flank: Lanes, across: Lanes, *, straight: bool) -> Lanes:
         """Depth at places; beyond the middles of the last cells as there, or straight on."""
         along = _weights(flank, self.flank, self.depth.shape[0], straight)
@@ -64,6 +94,99 @@ class Worn(Surface):
             (one * other * self.depth[k, j] for (k, one), (j, other) in product(along, aside)),
             jnp.zeros(jnp.broadcast_shapes(flank.shape, across.shape)),
         )
+
+
+class _MeanBend(eqx.Module):
+    """Second derivative of a worn flank around contacts, linear between the middles of the cells.
+
+    Attributes:
+        bends: at the middles [1/m].
+        away: of the middles from each contact [m].
+        length: of a cell [m].
+    """
+
+    bends: Float[Array, "*b cell"]
+    away: Float[Array, "*b cell"]
+    length: Float[Array, ""]
+
+    def over(self, half_width: Lanes) -> Lanes:
+        """Average over contacts that wide [1/m], see `averaged`."""
+        half = jnp.maximum(half_width, BRIDGED * self.length)[..., None]
+        ends = self.away[..., :1] - self.length, self.away[..., -1:] + self.length
+        knots = jnp.concatenate([ends[0], self.away, ends[1]], axis=-1) / half
+        hats = jnp.diff(_ramp(knots), n=2, axis=-1) * half / self.length
+        return jnp.sum(self.bends * hats, axis=-1)
+
+
+def _ramp(knot: Array) -> Array:
+    """Average of max(x - knot, 0) over -1 < x < 1 by the weight 2/pi sqrt(1 - x^2)."""
+    u = jnp.clip(knot, -1.0, 1.0)
+    inside = jnp.abs(u) < 1.0
+    rest = jnp.where(inside, 1.0 - u**2, 1.0)
+    high = jnp.sqrt(rest)
+    area = 0.25 * jnp.pi - 0.5 * (u * high + jnp.arcsin(jnp.where(inside, u, 0.0)))
+    within = 2.0 / jnp.pi * (rest * high / 3.0 - u * area)
+    return jnp.where(inside, within, jnp.maximum(-knot, 0.0))
+
+
+def averaged(
+    contacts: Contacts, worn: tuple[Worn, Worn], line_load: Lanes, modulus: Float[Arrays, ""]
+) -> tuple[Contacts, Bool[Array, "pair slice *b"]]:
+    """Line contacts of worn flanks as they feel them over their width, and where they are no half spaces.
+
+    Args:
+        contacts: of flanks as new.
+        worn: what is gone from both members.
+        line_load: w [N/m].
+        modulus: E' [Pa].
+
+    Returns:
+        Contacts whose relative curvature k has the half-width b that the worn profile g has under this load,
+        and True where b would pass `WIDEST` of the radius of the sharper flank as new: b stays there.
+
+    A pressure that falls to zero at both ends of a contact has w = E'/4 int s g'(s) / sqrt(b^2 - s^2) ds. By
+    parts this is Hertz's w = pi E' b^2 k / 8 with the mean of g'' by the weight 2/(pi b^2) sqrt(b^2 - s^2) as
+    k: b is exact for any profile that one stretch touches. The largest pressure is then taken as Hertz's, 4/pi
+    of the mean. The contact stays on the normal of flanks as new.
+
+    Source: Johnson, Contact Mechanics (1985), section 2.7, the inverse of the integral equation, and eq. 4.43.
+    """
+    new = 1.0 / contacts.radius
+    lanes = contacts.active.shape
+    bends = [
+        surface.mean_bend(*(jnp.broadcast_to(one, lanes) for one in (flank, contacts.width)))
+        for surface, flank in zip(worn, contacts.flank, strict=True)
+    ]
+    target = jnp.broadcast_to(8.0 * line_load / (jnp.pi * modulus), lanes)
+    loaded = contacts.active & (target > 0.0)
+    target = jnp.where(loaded, target, 1.0)
+    sharper = jnp.maximum(contacts.curvature[0, 0], contacts.curvature[1, 0])
+    widest = jnp.broadcast_to(WIDEST / jnp.where(loaded, sharper, 1.0), lanes)
+
+    def curvature(half: Lanes) -> Lanes:
+        return new + bends[0].over(half) + bends[1].over(half)
+
+    def lacks(half: Lanes) -> Lanes:
+        return half**2 * curvature(half) - target
+
+    def halved(_: int, ends: tuple[Array, Array]) -> tuple[Array, Array]:
+        low, high = ends
+        middle = jnp.sqrt(low * high)
+        narrow = lacks(middle) < 0.0
+        return jnp.where(narrow, middle, low), jnp.where(narrow, high, middle)
+
+    stay = jax.lax.stop_gradient
+    least = _NARROWEST * widest
+    low, high = jax.lax.fori_loop(0, _HALVINGS, halved, (least, widest))
+    half = stay(jnp.sqrt(low * high))
+    small, wide = lacks(least) >= 0.0, loaded & (lacks(widest) < 0.0)
+    # One step of Newton at the root has its derivatives.
+    slope = stay(jax.jvp(lacks, (half,), (jnp.ones_like(half),))[1])
+    steep = jnp.maximum(slope, 1e-3 * stay(target) / half)
+    polished = half - jnp.where(wide, 0.0, lacks(half) / steep)
+    few = jnp.where(small, curvature(least), 1.0)
+    found = jnp.where(small, few, target / jnp.where(small, 1.0, polished) ** 2)
+    return replace(contacts, felt=jnp.where(loaded, found, new)), wide
 
 
 class WornAt(Surface):
