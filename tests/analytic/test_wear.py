@@ -661,8 +661,8 @@ def test_noise_of_single_cells_neither_sharpens_nor_flattens_contacts():
 def test_flanks_that_conform_are_no_half_spaces():
     """A scar that is hollower than the flanks are round carries beyond its edges or not at all."""
     places = np.array([FLANK / 2.0])
-    hollow = 4.0 * np.linspace(-1.0, 1.0, 40)
-    depths = 0.6 * CURVATURE * (FLANK / 2.0) ** 2 * (1.0 - (hollow / 4.0) ** 2)
+    away = np.linspace(-1.0, 1.0, 40)
+    depths = 0.6 * CURVATURE * (FLANK / 2.0) ** 2 * (1.0 - away**2)
     half, wide = pressed_lines(depths, places, 1e6)
     assert wide.all()
     assert half == pytest.approx(WIDEST / (CURVATURE / 2.0), rel=1e-6)

@@ -18,7 +18,7 @@ FLATTEST = 0.1
 """Part of their relative curvature as new that contacts keep at least: flatter flanks conform."""
 
 WIDEST = 0.3
-"""Half-width of a line contact over the radius of the sharper flank up to which it counts as one of half spaces."""
+"""Half-width of a line contact over the radius of the sharper flank, up to which both are half spaces."""
 
 BRIDGED = 2.0
 """Cells to either side over which curvatures are averaged at least: what is narrower is noise of the grid."""
@@ -146,10 +146,10 @@ def averaged(
 
     A pressure that falls to zero at both ends of a contact has w = E'/4 int s g'(s) / sqrt(b^2 - s^2) ds. By
     parts this is Hertz's w = pi E' b^2 k / 8 with the mean of g'' by the weight 2/(pi b^2) sqrt(b^2 - s^2) as
-    k: b is exact for any profile that one stretch touches. The largest pressure is then taken as Hertz's, 4/pi
-    of the mean. The contact stays on the normal of flanks as new.
+    k: b is exact for any profile that one stretch touches. The largest pressure is then taken as Hertz's,
+    4/pi of the mean. The contact stays on the normal of flanks as new.
 
-    Source: Johnson, Contact Mechanics (1985), section 2.7, the inverse of the integral equation, and eq. 4.43.
+    Source: Johnson, Contact Mechanics (1985), section 2.7, inverse of the integral equation, and eq. 4.43.
     """
     new = 1.0 / contacts.radius
     lanes = contacts.active.shape
@@ -169,7 +169,7 @@ def averaged(
     def lacks(half: Lanes) -> Lanes:
         return half**2 * curvature(half) - target
 
-    def halved(_: int, ends: tuple[Array, Array]) -> tuple[Array, Array]:
+    def halved(_: Array, ends: tuple[Array, Array]) -> tuple[Array, Array]:
         low, high = ends
         middle = jnp.sqrt(low * high)
         narrow = lacks(middle) < 0.0
