@@ -16,7 +16,7 @@ from pitchpoint.cases.schema import HARDNESS, WEAR_LAND, WearTable
 from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
-from pitchpoint.contact.worn import WIDEST
+from pitchpoint.contact.worn import BRIDGED, WIDEST
 from pitchpoint.efficiency.quasi_static import contacts_at
 from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
@@ -354,10 +354,18 @@ def _warnings(
             f"softer one, {HARDNESS.show(_hardness(built))}: beyond it the surface yields, which no law of "
             "wear here knows of."
         )
+    cells = _course(built).cells
+    longest, span = float(np.max(np.asarray(cells.lengths))), float(cells.span[0])
+    if line and span < BRIDGED * longest:
+        told.append(
+            f"Wear: contacts reach {1e6 * span:.2g} um to each side on average, less than {BRIDGED:g} cells of "
+            f"{1e6 * longest:.2g} um: curvatures are averaged over these, and pressures on worn flanks depend "
+            "on wear.cells."
+        )
     if end == "outgrown" and line:
         told.append(
             f"Wear: the march ends where a contact would grow wider to each side than {WIDEST:g} of the "
-            "radius of the sharper flank as new: worn flanks conform there, and pressures of half spaces end."
+            "radius of the sharper flank as new, or than a flank is long: worn flanks conform there, and pressures of half spaces end."
         )
     elif end == "outgrown":
         told.append(

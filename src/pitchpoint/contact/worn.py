@@ -12,7 +12,16 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Lanes, Spot, Surface, Surfaces, with_surfaces
 from pitchpoint.factored import Arrays
 
-__all__ = ["FLATTEST", "WIDEST", "Worn", "WornAt", "averaged", "new_and_worn", "with_worn"]
+__all__ = [
+    "BRIDGED",
+    "FLATTEST",
+    "WIDEST",
+    "Worn",
+    "WornAt",
+    "averaged",
+    "new_and_worn",
+    "with_worn",
+]
 
 FLATTEST = 0.1
 """Part of their relative curvature as new that contacts keep at least: flatter flanks conform."""
@@ -142,12 +151,14 @@ def averaged(
 
     Returns:
         Contacts whose relative curvature k has the half-width b that the worn profile g has under this load,
-        and True where b would pass `WIDEST` of the radius of the sharper flank as new: b stays there.
+        and True where b would pass `WIDEST` of the radius of the sharper flank as new, or the length of a
+        flank that wears: b stays there.
 
     A pressure that falls to zero at both ends of a contact has w = E'/4 int s g'(s) / sqrt(b^2 - s^2) ds. By
     parts this is Hertz's w = pi E' b^2 k / 8 with the mean of g'' by the weight 2/(pi b^2) sqrt(b^2 - s^2) as
     k: b is exact for any profile that one stretch touches. The largest pressure is then taken as Hertz's,
-    4/pi of the mean. The contact stays on the normal of flanks as new.
+    4/pi of the mean: on scars 0.4 and 0.8 times as hollow as flanks are round, 7 and 15 % off at the most.
+    The contact stays on the normal of flanks as new.
 
     Source: Johnson, Contact Mechanics (1985), section 2.7, inverse of the integral equation, and eq. 4.43.
     """
@@ -161,7 +172,9 @@ def averaged(
     loaded = contacts.active & (target > 0.0)
     target = jnp.where(loaded, target, 1.0)
     sharper = jnp.maximum(contacts.curvature[0, 0], contacts.curvature[1, 0])
-    widest = jnp.broadcast_to(WIDEST / jnp.where(loaded, sharper, 1.0), lanes)
+    flank = jnp.min(jnp.stack([one.flank[1] - one.flank[0] for one in worn]))
+    widest = jnp.minimum(WIDEST / jnp.where(loaded, sharper, 1.0), flank)
+    widest = jnp.broadcast_to(widest, lanes)
 
     def curvature(half: Lanes) -> Lanes:
         return new + bends[0].over(half) + bends[1].over(half)
