@@ -605,7 +605,7 @@ def in_cells(cells: int) -> np.ndarray:
 def half_space_solve(
     depth: float, place: float, half: float, line_load: float
 ) -> tuple[float, float]:
-    """Largest pressure and half-width on the worn profile itself, leaned until the contact lies about its normal."""
+    """Largest pressure and half-width on the worn profile itself, leaned until it lies about its normal."""
     nodes = 301
     x = np.linspace(-2.5, 2.5, nodes) * half
     step = x[1] - x[0]
@@ -635,7 +635,7 @@ def half_space_solve(
 
 @pytest.mark.parametrize(("hollow", "within"), [(0.4, 0.08), (0.8, 0.16)])
 def test_worn_flanks_have_the_pressure_of_a_half_space_solve(hollow, within):
-    """Half-widths are exact, pressures nearly, from the bottom of a scar to its edge, narrow to wide contacts."""
+    """Half-widths are exact, pressures nearly, from the bottom of a scar to its edge."""
     places = FLANK / 2.0 + SCAR * np.array([0.0, 0.7, 1.2, 2.0])
     depth = hollow * CURVATURE * SCAR**2
     for line_load in (2e4, 1e5, 4e5):

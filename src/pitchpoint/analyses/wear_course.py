@@ -358,14 +358,15 @@ def _warnings(
     longest, span = float(np.max(np.asarray(cells.lengths))), float(cells.span[0])
     if line and span < BRIDGED * longest:
         told.append(
-            f"Wear: contacts reach {1e6 * span:.2g} um to each side on average, less than {BRIDGED:g} cells of "
-            f"{1e6 * longest:.2g} um: curvatures are averaged over these, and pressures on worn flanks depend "
-            "on wear.cells."
+            f"Wear: contacts reach {1e6 * span:.2g} um to each side on average, less than {BRIDGED:g} cells "
+            f"of {1e6 * longest:.2g} um: curvatures are averaged over these, and pressures on worn flanks "
+            "depend on wear.cells."
         )
     if end == "outgrown" and line:
         told.append(
             f"Wear: the march ends where a contact would grow wider to each side than {WIDEST:g} of the "
-            "radius of the sharper flank as new, or than a flank is long: worn flanks conform there, and pressures of half spaces end."
+            "radius of the sharper flank as new, or than a flank is long: worn flanks conform there, and "
+            "pressures of half spaces end."
         )
     elif end == "outgrown":
         told.append(

@@ -139,14 +139,17 @@ def _ramp(knot: Array) -> Array:
 
 
 def averaged(
-    contacts: Contacts, worn: tuple[Worn, Worn], line_load: Lanes, modulus: Float[Arrays, ""]
+    contacts: Contacts,
+    worn: tuple[Worn, Worn],
+    line_load: Float[Arrays, "..."],
+    modulus: Float[Arrays, ""],
 ) -> tuple[Contacts, Bool[Array, "pair slice *b"]]:
     """Line contacts of worn flanks as they feel them over their width, and where they are no half spaces.
 
     Args:
         contacts: of flanks as new.
         worn: what is gone from both members.
-        line_load: w [N/m].
+        line_load: w, of a shape that broadcasts over the contacts [N/m].
         modulus: E' [Pa].
 
     Returns:
