@@ -3,6 +3,7 @@
 import gc
 import io
 import json
+import os
 import re
 import sys
 import tomllib
@@ -214,7 +215,7 @@ def cases(json_: AsJson = False) -> None:
 def show(
     case: CaseName, variant: Variants = None, set_: Settings = None, json_: AsJson = False
 ) -> None:
-    """Show the inputs of a case as resolved, with their status, and its issues."""
+    """Show the inputs of a case as resolved, and its issues."""
     from pitchpoint.runs.run import describe
 
     manifests = describe(case, only=variant or [], settings=_settings(set_ or []))
@@ -235,7 +236,7 @@ def show(
 
 @app.command()
 def check(case: CaseName, variant: Variants = None, set_: Settings = None) -> None:
-    """Tell everything that is wrong with a case, or what warns before it is computed."""
+    """Tell what is wrong with a case, or warns, before it is computed."""
     from pitchpoint.runs.check import check as checked
 
     warnings = checked(case, variant or [], _settings(set_ or []))
@@ -252,9 +253,12 @@ def run(
     sweep: Sweeps = None,
     units: UnitsByKind = None,
     overwrite: Overwrite = False,
+    full: Annotated[
+        bool, typer.Option("--full", help="Print the tables of all sections, not the first screen.")
+    ] = False,
     json_: AsJson = False,
 ) -> None:
-    """Compute a case: tables on screen, results and report.html in a folder."""
+    """Compute a case: the answer here, report.html in a folder."""
     from pitchpoint.cases.record import default_folder
     from pitchpoint.runs.run import run as compute
 
@@ -278,12 +282,33 @@ def run(
         _emit({name: _figures(outcome) for name, outcome in outcomes.items()})
         return
     with _shown_units(outcomes):
-        for number, outcome in enumerate(outcomes.values()):
-            _summary(outcome, number)
+        if full:
+            _in_full(outcomes)
+        _first_screen(outcomes, folder / "report.html")
+
+
+def _in_full(outcomes: "dict[str, Outcome]") -> None:
+    """Tables of all sections, and the verdicts on published numbers by their kind."""
+    for number, outcome in enumerate(outcomes.values()):
+        _summary(outcome, number)
     measured = {name: outcome.rows for name, outcome in outcomes.items() if outcome.rows}
     for name, rows in measured.items():
         _verdicts(rows, f"{name}, " if len(measured) > 1 else "")
-    _console().print(f"Report: {_plain(str(folder / 'report.html'))}")
+    _console().print()
+
+
+_STYLES = {"title": "bold", "fails": "bold red", "doubt": "yellow", "figure": "", "note": "dim"}
+
+
+def _first_screen(outcomes: "dict[str, Outcome]", report: Path) -> None:
+    """The answer; several variants side by side in a table."""
+    from pitchpoint.views.first_screen import beside_each_other, first_screen
+
+    console = _console()
+    for line in first_screen(outcomes, report, console.width):
+        console.print(_plain_line(line.text), style=_STYLES[line.style], soft_wrap=True)
+    if len(outcomes) > 1:
+        _table(beside_each_other(outcomes), ("", *outcomes))
 
 
 @app.command()
@@ -309,9 +334,9 @@ def explore(
     ] = None,
     units: UnitsByKind = None,
 ) -> None:
-    """Write one page that opens offline: the teeth moving, inputs on sliders, figures that follow.
+    """Write a page with inputs on sliders and teeth that move.
 
-    The page holds figures that were computed beforehand, and interpolates between them.
+    It opens offline. The page holds figures that were computed beforehand, and interpolates between them.
     """
     from pitchpoint.cases.record import default_folder
     from pitchpoint.results.store import make_folder
@@ -355,7 +380,7 @@ def compare(
     overwrite: Overwrite = False,
     json_: AsJson = False,
 ) -> None:
-    """Compare designs with each other, or a published case with its print.
+    """Compare designs, or a published case with its print.
 
     Several designs: inputs that differ, main results and their differences, and a report with their
     curves on the same axes. One published case: exit status 1 when a row misses without a known cause.
@@ -402,15 +427,20 @@ def _compare_designs(
 
 def _differences(outcomes: "dict[str, Outcome]") -> None:
     """What cannot be, results with their differences, inputs that differ, and what warns of each design."""
-    from pitchpoint.views.designs import differing, law_words, result_table
+    from pitchpoint.views.designs import differing, law_words, of_several, result_table
 
     for name, outcome in outcomes.items():
         _failing(f"{name}: {text}" for text in outcome.manifest["implausible"])
     _console().print(_plain(law_words(outcomes)))
     results = result_table(outcomes, differences=len(outcomes) <= _FEW_DESIGNS)
-    for title, table in {"Results": results, **differing(outcomes)}.items():
-        _console().print(f"\n[bold]{title}[/]" if table.rows else f"\n[bold]{title}[/]: none")
+    for title, whole in {"Results": results, **differing(outcomes)}.items():
+        table, alone = of_several(whole, len(outcomes))
+        _console().print(f"\n[bold]{title}[/]" if whole.rows else f"\n[bold]{title}[/]: none")
         _table([dict(zip(table.head, row, strict=True)) for row in table.rows], tuple(table.head))
+        if alone:
+            _console().print(
+                f"{alone} more that one design alone has are in the report.", style="dim"
+            )
     for name, outcome in outcomes.items():
         _warn([f"{name}: {text}" for text in outcome.manifest["warnings"]])
 
@@ -518,21 +548,58 @@ def cite(
         typer.echo(citations.bibtex(key) if bibtex else visible(f"{key}: {text}"))
 
 
+def _laws_from(incomplete: str) -> list[str]:
+    """Kinds and names of laws that begin so."""
+    from pitchpoint.runs.catalogue import entries
+
+    every = dict.fromkeys(word for row in entries() for word in (row["kind"], row["name"]))
+    return [word for word in every if word.startswith(incomplete)]
+
+
 @app.command()
 def models(
+    which: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[KIND|NAME]",
+            help="A kind, such as friction, lists its laws; a name shows the sheet of that law.",
+            autocompletion=_laws_from,
+        ),
+    ] = None,
     matrix: Annotated[
         bool, typer.Option("--matrix", help="Which analysis there is for which family, or why not.")
     ] = False,
     json_: AsJson = False,
 ) -> None:
-    """List the laws that can be chosen by name, with their ranges and sources."""
+    """List laws, oils and materials, or show one."""
     if matrix:
         _show_matrix(json_)
         return
-    from pitchpoint.runs.catalogue import entries
+    from pitchpoint.runs.catalogue import entries, matching
 
-    columns = ("kind", "name", "title", "range", "sources", "note")
-    _show(entries(), json_, columns)
+    rows = entries() if which is None else matching(which)
+    if json_:
+        _emit(rows)
+    elif which is None:
+        _kinds_of_laws(rows)
+    elif which in {row["kind"] for row in rows}:
+        _table(rows, ("name", "title", "range"))
+        _console().print(f"\nA law whole, with its sources: pitchpoint models {rows[0]['name']}")
+    else:
+        for row in rows:
+            _table([{"": key, "law": text} for key, text in row.items() if text], ("", "law"))
+
+
+def _kinds_of_laws(rows: Sequence[Mapping[str, str]]) -> None:
+    """Each kind with the names in it."""
+    kinds: dict[str, list[str]] = {}
+    for row in rows:
+        kinds.setdefault(row["kind"], []).append(row["name"])
+    _table(
+        [{"kind": kind, "names": ", ".join(names)} for kind, names in kinds.items()],
+        ("kind", "names"),
+    )
+    _console().print("\nOne kind with titles and ranges: pitchpoint models friction")
 
 
 @app.command()
@@ -541,9 +608,9 @@ def schema(
         Path | None, typer.Option("-o", "--output", metavar="FILE", help="Default: the screen.")
     ] = None,
 ) -> None:
-    """Print the JSON Schema of case files, by which editors complete and check TOML.
+    """Print the JSON Schema of case files.
 
-    A file names it in its first line: #:schema pitchpoint.json
+    Editors complete and check TOML by it. A file names it in its first line: #:schema pitchpoint.json
     """
     from pitchpoint.cases.json_schema import case_schema
 
@@ -567,7 +634,10 @@ def docs(
     ] = None,
     json_: AsJson = False,
 ) -> None:
-    """Read the documentation in the terminal; into a file or a pipe it goes as Markdown."""
+    """Read the documentation in the terminal.
+
+    Into a file or a pipe it goes as Markdown.
+    """
     from pitchpoint import pages
 
     if page is None:
@@ -607,7 +677,10 @@ def new(
         Path | None, typer.Option("-o", "--output", metavar="FILE", help="Default: the screen.")
     ] = None,
 ) -> None:
-    """Write a case file to begin with: it runs as it is, every optional key is a remark in it."""
+    """Write a case file to begin with.
+
+    It runs as it is; every optional key is a remark in it.
+    """
     from pitchpoint.cases.template import template
 
     _write(template(family), output)
@@ -842,13 +915,23 @@ def _show(rows: list[dict[str, str]], as_json: bool, columns: tuple[str, ...]) -
 
 
 def _table(rows: Sequence[Mapping[str, str]], columns: tuple[str, ...]) -> None:
-    from rich.table import Table
+    from rich.table import Column, Table
+
+    from pitchpoint.views.columns import fitted
 
     used = [name for name in columns if any(row.get(name) for row in rows)]
-    table = Table(*map(_plain, used), box=None, pad_edge=False, header_style="bold")
-    for row in rows:
-        table.add_row(*(_plain(str(row.get(name, ""))) for name in used))
-    _console().print(table)
+    if not used:
+        return
+    console = _console()
+    cells = [
+        {name: visible(" ".join(str(row.get(name, "")).split())) for name in used} for row in rows
+    ]
+    for block in fitted(cells, used, console.width):
+        heads = [Column(_plain(name), width=size, overflow="fold") for name, size in block.items()]
+        table = Table(*heads, box=None, padding=(0, 1, 0, 0), pad_edge=False, header_style="bold")
+        for row in cells:
+            table.add_row(*(_plain(row[name]) for name in block))
+        console.print(table)
 
 
 def _warn(warnings: list[str]) -> None:
@@ -874,10 +957,23 @@ def _plain(text: str) -> str:
     return escape(visible(" ".join(text.split())))
 
 
+def _plain_line(text: str) -> str:
+    """The same of a line whose spaces align it with others."""
+    from rich.markup import escape
+
+    return escape(visible(text))
+
+
 def _console(stderr: bool = False) -> Any:
     from rich.console import Console
 
     stream = sys.stderr if stderr else sys.stdout
-    # A file or a pipe has no width; tables there keep their rows whole.
-    width = None if stream.isatty() else 200
+    # A file or a pipe has no width of its own.
+    width = None if stream.isatty() else _columns()
     return Console(stderr=stderr, highlight=False, emoji=False, width=width)
+
+
+def _columns() -> int:
+    """Characters in a line where nothing else says how many."""
+    columns = os.environ.get("COLUMNS", "")
+    return int(columns) if columns.isdecimal() and 20 <= int(columns) <= 10_000 else 80

@@ -17,6 +17,7 @@ from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.tooth_section import FLANK_NODES, ToothSection, chebyshev_nodes
 from pitchpoint.loading import iso_6336_stiffness as iso
 from pitchpoint.loading.foundation import (
+    HALF_ANGLE_RANGE,
     foundation_compliance,
     foundation_in_range,
     foundation_warnings,
@@ -315,7 +316,26 @@ def test_foundation_says_where_it_does_not_hold():
     (sentence,) = foundation_warnings(small)
     assert "half angle of the tooth at its root" in sentence
     (sentence,) = foundation_warnings(section_of(gear(60, 2e-3), number(10.0)))
-    assert sentence.startswith("the root radius over bore radius is 10,")
+    assert sentence.startswith("the root radius over bore radius is 10, beyond the 1.4 to 7")
+
+
+def test_what_an_extrapolated_foundation_is_off_is_told_where_it_is_felt():
+    """The part that is told is that of `sainsot_2004` at the limit; a pinion of 17 teeth is off by 1.6 %."""
+    section = section_of(gear(12, 2e-3, shift=0.5))
+    width = 2.0 * section.root_half_angle * section.root_radius
+    half_thickness, height = section.flank
+    arm = height - half_thickness * jnp.tan(section.load_angle) - height[0] + jnp.sum(section.step)
+    at_limit = sainsot_2004(
+        load_angle=section.load_angle,
+        arm_ratio=arm / width,
+        rim_ratio=section.rim_ratio,
+        root_half_angle=jnp.asarray(HALF_ANGLE_RANGE[1]),
+    )
+    middle = at_limit.size // 2
+    off = abs(float(foundation(section)[middle] / at_limit[middle]) - 1.0)
+    (sentence,) = foundation_warnings(section)
+    assert f"differs by {100.0 * off:.2g} % from" in sentence
+    assert foundation_warnings(section_of(gear(17, 2e-3))) == ()
 
 
 def test_ring_has_no_foundation_and_says_so():

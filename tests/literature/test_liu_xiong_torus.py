@@ -577,7 +577,7 @@ def test_report_sets_torus_beside_standard():
     assert np.all(published[:, 0] > published[:, 1])
     assert np.all(hertz[:, 0] < hertz[:, 1])
     shown = [one.title.rpartition(" (")[2] for one in panel.figures if "(" in one.title]
-    assert [one.removesuffix(" of the publication)") for one in shown] == [
+    assert [one.partition(" of the publication")[0] for one in shown] == [
         "Table 1",
         *(f"Figure {number}" for number in (5, 7, 8, 9, 10)),
         "Figures 11 to 13",

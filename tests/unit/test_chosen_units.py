@@ -81,7 +81,7 @@ def test_numbers_and_their_units_change_together() -> None:
     with shown_in({"torsional stiffness": "N m/arcmin", "temperature": "K"}):
         assert show.quantity("torsional_stiffness", stiffness) == "25.71 N m/arcmin"
         assert (head("torsional_stiffness"), shown("torsional_stiffness", stiffness)) == (
-            "K [N m/arcmin]",
+            "torsional stiffness [N m/arcmin]",
             "25.715",
         )
         assert short_axis("torsional_stiffness") == "K [N m/arcmin]"

@@ -529,19 +529,22 @@ def test_no_law_in_its_range_is_said(wheel: Outcomes) -> None:
     assert "No fitted friction law of the library is in its range here" in summary(one).line
 
 
+LOCKS = "self-locking from a friction coefficient of"
+
+
 def test_the_coefficient_that_locks_stands_beside_the_efficiency(wheel: Outcomes) -> None:
     data = wheel["default"].parts["operation"]
     limit = float(data["jamming_coefficient"].values[0, 0])
     assert limit > float(data["nearest_friction"].values[0, 0]) == pytest.approx(0.05)
     assert limit > 1.0
     told = Words(render(wheel)).text
-    assert "locks from μ not below 1" in told
+    assert f"{LOCKS} not below 1" in told
     assert "friction does not lock the mesh (nor would it below μ = 1)" in told
-    assert summary(wheel["default"]).rows[0]["locks from μ"] == "not below 1"
+    assert summary(wheel["default"]).rows[0][LOCKS] == "not below 1"
     less = data.assign(jamming_coefficient=0.3 * data["jamming_coefficient"])
     rough = replace(wheel["default"], parts={**wheel["default"].parts, "operation": less})
-    assert summary(rough).rows[0]["locks from μ"] == f"{0.3 * limit:.4f}"
-    assert f"locks from μ {0.3 * limit:.3g}" in Words(render({"default": rough})).text
+    assert summary(rough).rows[0][LOCKS] == f"{0.3 * limit:.4f}"
+    assert f"{LOCKS} {0.3 * limit:.3g}" in Words(render({"default": rough})).text
 
 
 @pytest.mark.parametrize("kept", [(), ("teeth",), ("teeth", "cycle"), ("teeth", "operation")])

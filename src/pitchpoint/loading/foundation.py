@@ -21,6 +21,12 @@ RIM_RATIO_RANGE = (1.4, 7.0)
 HALF_ANGLE_RANGE = (0.01, 0.12)
 """Half the tooth's angle at the root circle [rad] for which the polynomial was fitted."""
 
+FELT = 0.03
+"""Relative difference from the compliance at the limit of its range from which on it is told.
+
+The body gives about a third of the compliance of a pair of teeth: the stiffness feels a third of it, 1 %.
+"""
+
 _POLYNOMIAL = np.array(
     [
         [-5.574e-5, -1.9986e-3, -2.3015e-4, 4.7702e-3, 0.0271, 6.8045],
@@ -106,14 +112,48 @@ def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
             f"the compliance of {section.stiff} under its teeth has no formula here and counts as zero",
         )
     named = (
-        ("root radius over bore radius", float(section.rim_ratio), RIM_RATIO_RANGE),
-        ("half angle of the tooth at its root", float(section.root_half_angle), HALF_ANGLE_RANGE),
+        ("root radius over bore radius", "", float(section.rim_ratio), RIM_RATIO_RANGE),
+        (
+            "half angle of the tooth at its root",
+            " rad",
+            float(section.root_half_angle),
+            HALF_ANGLE_RANGE,
+        ),
     )
+    beyond = _beyond_fit(section)
+    if beyond < FELT:
+        return ()
     return tuple(
-        f"the {name} is {value:.3g}, the compliance under the tooth was fitted for {low:g} to {high:g}"
-        for name, value, (low, high) in named
+        f"the {name} is {value:.3g}{unit}, beyond the {low:g} to {high:g} of the formula for the compliance "
+        f"under the tooth, which differs by {100.0 * beyond:.2g} % from that at the limit"
+        for name, unit, value, (low, high) in named
         if not low <= value <= high
     )
+
+
+def _beyond_fit(section: ToothSection) -> float:
+    """How far the formula, loaded in the middle of the flank, is from its value at the limits of its range.
+
+    In plain NumPy: a sentence is no reason to compile.
+    """
+    half_thickness, height, angle = (
+        float(np.asarray(values)[values.shape[-1] // 2])
+        for values in (*section.flank, section.load_angle)
+    )
+    ratio, half_angle = float(section.rim_ratio), float(section.root_half_angle)
+    clamped = float(section.flank[1][0]) - float(np.sum(section.step))
+    width = 2.0 * half_angle * float(section.root_radius)
+    arm = (height - half_thickness * np.tan(angle) - clamped) / width
+
+    def compliance(ratio: float, half_angle: float) -> float:
+        terms = (half_angle**-2, ratio**2, ratio / half_angle, 1.0 / half_angle, ratio, 1.0)
+        bending, coupling, sinking, shear = _POLYNOMIAL @ np.array(terms)
+        return float(
+            bending * arm**2 + coupling * arm + sinking * (1.0 + shear * np.tan(angle) ** 2)
+        )
+
+    limited = np.clip(ratio, *RIM_RATIO_RANGE), np.clip(half_angle, *HALF_ANGLE_RANGE)
+    return abs(compliance(ratio, half_angle) / compliance(*map(float, limited)) - 1.0)
 
 
 def _factors(rim_ratio: Float[Array, ""], half_angle: Float[Array, ""]) -> Float[Array, "4"]:

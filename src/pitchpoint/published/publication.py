@@ -60,6 +60,7 @@ class Curves:
         columns: what they are in words, where they are not those of the table beside them.
         decades: drawn on a logarithmic axis.
         shows: figure of the publication that it shows, as "Figure 9"; empty for none.
+        at: point at which the publication draws it, in words; empty where that is the first one shown.
         studies: names of those whose points it is drawn for, among families; all where none is named.
     """
 
@@ -69,6 +70,7 @@ class Curves:
     columns: tuple[str, ...] = ()
     decades: bool = False
     shows: str = ""
+    at: str = ""
     studies: tuple[str, ...] = ()
 
 
@@ -81,12 +83,14 @@ class Maps:
         axes: variables of the places along x and along y.
         name: variable of the values, row by row of y as one course.
         shows: figure of the publication that it shows; empty for none.
+        at: as of `Curves`.
     """
 
     title: str
     axes: tuple[str, str]
     name: str
     shows: str = ""
+    at: str = ""
 
 
 @dataclass(frozen=True)

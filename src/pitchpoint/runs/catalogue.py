@@ -28,11 +28,27 @@ from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.data import Datum
 from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.published.registry import LAWS_OF_CASES
+from pitchpoint.registry import unknown_name
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.wear.registry import WEAR_LAWS
 
-__all__ = ["entries", "figures"]
+__all__ = ["entries", "figures", "matching"]
+
+
+def matching(which: str) -> list[dict[str, str]]:
+    """Entries of a kind, or those of a name.
+
+    Raises:
+        InputError: no kind and no law is called so.
+    """
+    rows = entries()
+    of_kind = [row for row in rows if row["kind"] == which]
+    named = [row for row in rows if row["name"] == which]
+    if not of_kind and not named:
+        known = {word for row in rows for word in (row["kind"], row["name"])}
+        raise unknown_name(which, known, what="a kind or a name")
+    return of_kind or named
 
 
 def entries() -> list[dict[str, str]]:

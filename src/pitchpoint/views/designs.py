@@ -1,7 +1,7 @@
 """Designs beside each other in words: inputs that differ, main results and by how much they differ."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,15 @@ from pitchpoint.views import show
 from pitchpoint.views.figures import law_title
 from pitchpoint.views.inputs import FOLLOWING, input_rows
 
-__all__ = ["NOTHING", "Compared", "differing", "input_tables", "law_words", "result_table"]
+__all__ = [
+    "NOTHING",
+    "Compared",
+    "differing",
+    "input_tables",
+    "law_words",
+    "of_several",
+    "result_table",
+]
 
 NOTHING = "–"
 """Stands for what a design does not have."""
@@ -23,10 +31,17 @@ _ROUNDING = 1e-6
 
 @dataclass(frozen=True)
 class Compared:
-    """A table of a comparison: heads of its columns, and its rows."""
+    """A table of a comparison.
+
+    Attributes:
+        head: of its columns.
+        rows: cells in words.
+        names: columns before those of the designs.
+    """
 
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
+    names: int
 
 
 def input_tables(outcomes: Mapping[str, Outcome]) -> tuple[Compared, Compared]:
@@ -43,9 +58,8 @@ def input_tables(outcomes: Mapping[str, Outcome]) -> tuple[Compared, Compared]:
     ]
     head = ("table", "key", *outcomes)
     following = [row for row in differing if row[0] in FOLLOWING]
-    return Compared(head, [row for row in differing if row not in following]), Compared(
-        head, following
-    )
+    given = [row for row in differing if row not in following]
+    return Compared(head, given, 2), Compared(head, following, 2)
 
 
 def differing(outcomes: Mapping[str, Outcome]) -> dict[str, Compared]:
@@ -83,12 +97,45 @@ def result_table(outcomes: Mapping[str, Outcome], *, differences: bool = True) -
         (
             _title(one, by_law),
             *(_value(one, design) for design in outcomes),
-            *(_difference(one, first, design) for design in others),
+            *(
+                _UNLIKE
+                if _unlike(one, outcomes[first], outcomes[design])
+                else _difference(one, first, design)
+                for design in others
+            ),
         )
         for one in figures
     ]
     head = ("result", *outcomes, *(f"{one} against {first}" for one in others))
-    return Compared(head, [*_meant(outcomes, len(others)), *rows])
+    return Compared(head, [*_meant(outcomes, len(others)), *rows], 1)
+
+
+_UNLIKE = "of other things"
+
+_OF_POWER = ("efficiency", "loss", "input_torque", "torque_ripple")
+"""Parts of the names of figures that are of what the efficiency is of."""
+
+
+def _unlike(figure: Figure, first: Outcome, other: Outcome) -> bool:
+    """True for figures of which one design has those of its teeth and another those of its drive, say.
+
+    What is of other things has a difference, but it says nothing of the designs.
+    """
+    told: Callable[[Outcome], str]
+    if any(part in figure.name for part in _OF_POWER):
+        told = _efficiency
+    elif figure.part == "torsion" or "stiffness" in figure.name:
+        told = _yields
+    else:
+        return False
+    return told(first) != told(other)
+
+
+def of_several(table: Compared, designs: int) -> tuple[Compared, int]:
+    """Rows that at least two designs have, and how many one alone has."""
+    ends = table.names, table.names + designs
+    rows = [row for row in table.rows if sum(cell != NOTHING for cell in row[slice(*ends)]) > 1]
+    return replace(table, rows=rows), len(table.rows) - len(rows)
 
 
 def _meant(outcomes: Mapping[str, Outcome], more: int) -> Iterator[tuple[str, ...]]:

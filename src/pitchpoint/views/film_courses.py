@@ -29,7 +29,7 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import REGRESSED, folded, gapped, regimes, titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Paragraph, Printed, Table
+from pitchpoint.views.section import Block, KeyFigure, Paragraph, Printed, Table, key_figure
 
 __all__ = [
     "MOST",
@@ -41,6 +41,7 @@ __all__ = [
     "course_figure",
     "courses",
     "figures_table",
+    "film_key_figure",
     "film_laws",
     "gone",
     "of_most",
@@ -110,6 +111,11 @@ def answered(data: xr.Dataset) -> str:
         return f"{words}; loss and efficiency are withheld, some films were not found"
     friction, loss = (told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
     return f"{words}; friction coefficient {friction} in the mean, loss {loss}{_efficient(data)}"
+
+
+def film_key_figure(name: str, words: str) -> KeyFigure:
+    """Thinnest film, and the words that go with it."""
+    return key_figure(32.0, name, words.partition(" at least")[0], words)
 
 
 def _none(data: xr.Dataset) -> str:

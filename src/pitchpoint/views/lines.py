@@ -29,6 +29,9 @@ _REGIMES = (
     (3.0, np.inf, "#e7f2ea", "full film"),
 )
 
+_LEAST_BAND = 0.08
+"""Part of the axis under which a band has no room for its name."""
+
 REGRESSED = "The regimes are those of film laws for smooth surfaces."
 
 REGIMES = f"Below 1 boundary, 1 to 3 mixed, above 3 full film. {REGRESSED}"
@@ -89,6 +92,7 @@ def regimes(look: dict[str, Any], traces: list[Trace]) -> None:
         bottom, top = (10.0**end for end in look["yaxis"]["range"])
         top = max(top, 1.25)
     look["yaxis"]["range"] = [_place(bottom, bottom), _place(top, bottom)]
+    span = look["yaxis"]["range"][1] - look["yaxis"]["range"][0]
     bands = [band for band in _REGIMES if bottom < band[1] and band[0] < top]
     for low, high, colour, words in bands:
         ends = {"y0": max(low, bottom), "y1": min(high, top)}
@@ -97,6 +101,9 @@ def regimes(look: dict[str, Any], traces: list[Trace]) -> None:
             {"type": "rect", "xref": "paper", "x0": 0, "x1": 1, **ends}
             | {"fillcolor": colour, "line": {"width": 0}, "layer": "below"},
         )
+        part = (_place(ends["y1"], bottom) - _place(ends["y0"], bottom)) / span
+        if part < _LEAST_BAND:
+            continue
         look["annotations"].append(
             {"text": words, "xref": "paper", "x": 0.99, "xanchor": "right", "showarrow": False}
             | {"y": _place(ends["y1"], bottom), "yanchor": "top", "yshift": 3}

@@ -5,16 +5,14 @@ from typing import Any
 import numpy as np
 
 from pitchpoint.analyses.figures import covers
-from pitchpoint.views.show import described, displayed
+from pitchpoint.views.show import axis_title, described, displayed
 
 __all__ = ["cell", "efficiency_of", "head", "shown"]
 
 
 def head(name: str, of: Any = None) -> str:
-    """Symbol and unit of a variable, see `show.described`."""
-    variable = described(name, of)
-    unit = f" [{variable.display}]" if variable.display != "1" else ""
-    return f"{variable.symbol}{unit}"
+    """Long name and unit of a variable: a screen has no room for a list of symbols."""
+    return axis_title(name, of)
 
 
 def cell(data: Any, name: str, position: int) -> str:
@@ -25,7 +23,7 @@ def cell(data: Any, name: str, position: int) -> str:
 def efficiency_of(data: Any) -> dict[str, str]:
     """Column on what an efficiency is of; none where it is of the whole drive."""
     of = covers(data).partition(":")[0]
-    return {"η of": of} if of else {}
+    return {"efficiency of": of} if of else {}
 
 
 def shown(name: str, value: float, of: Any = None) -> str:

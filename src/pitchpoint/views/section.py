@@ -16,6 +16,7 @@ __all__ = [
     "Drawn",
     "Folded",
     "Heading",
+    "KeyFigure",
     "Moving",
     "Page",
     "Paragraph",
@@ -24,6 +25,7 @@ __all__ = [
     "Table",
     "Variants",
     "by_variant",
+    "key_figure",
     "of_part",
     "panels",
     "reason",
@@ -128,6 +130,43 @@ class Printed:
     title: str = ""
     rows: Sequence[Mapping[str, str]] = ()
     line: str = ""
+
+
+@dataclass(frozen=True)
+class KeyFigure:
+    """A figure that answers what was asked, at the top of the report and on the first screen.
+
+    Attributes:
+        order: place among the others, the least first: efficiency 10, what a case asks for beside it 30 to
+            39, what limits it 40, what else a joint has 60 and more.
+        name: what it is, in a few words.
+        value: number with its unit, or a word where there is none.
+        detail: what goes with it, the most telling clause first; a narrow screen shows the first ones.
+    """
+
+    order: float
+    name: str
+    value: str
+    detail: str = ""
+
+    @property
+    def words(self) -> str:
+        """Value and what goes with it."""
+        return f"{self.value}{'' if self.detail[:1] in ('', ',', ';') else ' '}{self.detail}"
+
+
+def key_figure(order: float, name: str, value: str, words: str) -> KeyFigure:
+    """A key figure of words that begin with its value; the words alone where they do not.
+
+    Example:
+        >>> key_figure(70.0, "stiffness", "40.2 kN m/rad", "40.2 kN m/rad at the operating point").detail
+        'at the operating point'
+        >>> key_figure(70.0, "stiffness", "", "nothing is carried").value
+        'nothing is carried'
+    """
+    if not value or not words.startswith(value):
+        return KeyFigure(order, name, words)
+    return KeyFigure(order, name, value, words.removeprefix(value).strip())
 
 
 @dataclass(frozen=True)
@@ -240,7 +279,7 @@ class Section:
         blocks: what stands in it, in order.
         lacks: None, or why it is left out, in one sentence; empty where nobody asked for it. By default a
             part is lacking, for the reason that its analysis gave.
-        answer: main figures of one variant, terms and words.
+        answer: main figures of one variant.
         card: the same for one friction law, by name.
         closing: blocks at the end of the answer.
         warns: warnings that stand in the section, not at the top.
@@ -257,7 +296,7 @@ class Section:
     parts: tuple[str, ...] = ()
     blocks: Deferred[Callable[[Page], Iterable[Block]]] = Deferred()
     lacks: Callable[[Page], str | None] | None = None
-    answer: Callable[[Outcome], Iterable[tuple[str, str]]] = lambda outcome: ()
+    answer: Callable[[Outcome], Iterable[KeyFigure]] = lambda outcome: ()
     card: Callable[[Outcome, str], Iterable[tuple[str, str]]] = lambda outcome, law: ()
     closing: Callable[[Page], Iterable[Block]] = lambda page: ()
     warns: Callable[[Outcome], Iterable[str]] = lambda outcome: ()

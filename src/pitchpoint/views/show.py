@@ -17,7 +17,9 @@ __all__ = [
     "bracketed",
     "described",
     "displayed",
+    "first_clauses",
     "number",
+    "one_line",
     "pretty",
     "quantity",
     "signed",
@@ -56,6 +58,14 @@ _UNITS = {
 }
 NOISE = 1e-9
 """Value in usual units below which one is left by rounding."""
+
+_CLAUSE = re.compile(r"(?<=[^\d\s]),? \(|[;,.] | – ")
+"""Where a sentence can end early; not within a number, nor before its unit."""
+
+_MOST_OF = 0.6
+"""Part of a line that clauses must fill; else a sentence ends within one."""
+
+_NUMBER = re.compile(r"[−+-]?\d[\d.,]*(e[−+-]?\d+)?")
 
 _INDEXED = re.compile(r"(?<![\w`./])(Δ?[^\W\d_])_(\w{1,5})(?![\w(])")
 _LAST_UNIT = re.compile(r"(?<=\d) (um|urad|degC|degF|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
@@ -205,3 +215,29 @@ def axis_title(name: str, of: Any = None) -> str:
     """Long name and display unit of a variable, see `described`."""
     variable = described(name, of)
     return bracketed(variable.long_name, variable)
+
+
+def one_line(text: str) -> str:
+    """Text with plain spaces alone."""
+    return " ".join(text.split())
+
+
+def first_clauses(sentence: str, width: int) -> str:
+    """As many clauses of a sentence as there is room for, else words; a number and its unit stay whole.
+
+    Example:
+        >>> first_clauses("Tips are thin, 0.2 modules: case-hardened teeth may break there.", 40)
+        'Tips are thin, 0.2 modules …'
+        >>> first_clauses("friction 0.31 reaches the 0.29 at which this mesh locks", 32)
+        'friction 0.31 reaches the …'
+    """
+    sentence = one_line(sentence)
+    if len(sentence) <= width:
+        return sentence
+    ends = [found.start() for found in _CLAUSE.finditer(sentence) if found.start() <= width - 2]
+    if ends and ends[-1] >= _MOST_OF * width:
+        return f"{sentence[: ends[-1]]} …"
+    words = sentence[: width - 1].rsplit(" ", 1)[0].split(" ")
+    while len(words) > 1 and _NUMBER.fullmatch(words[-1]):
+        words.pop()  # its unit is what was cut off
+    return f"{' '.join(words)} …"

@@ -189,6 +189,17 @@ _IN_ORDER = (
 )
 """Courses of the motion as published, in the order of the paper."""
 
+_DRAWN_AT = {
+    **dict.fromkeys(("Figure 7", "Figure 8", "Figure 9", "Figure 10"), "at the validation"),
+    "Figures 11 to 13": "conditions 1, 3 and 6",
+    "Figures 14a to 16a": "conditions 1, 3 and 6",
+    "Figures 14b to 16b": "conditions 1, 3 and 6",
+    "Figures 17 to 20": "conditions 1 to 4",
+    "Figures 21a to 23a": "conditions 1, 3 and 5",
+    "Figures 21b to 23b": "conditions 1, 3 and 5",
+}
+"""Operating points of the figures of the paper."""
+
 
 def _curves() -> Iterator[Curves]:
     """Courses over each other: stiffness, then both pairs from the start on, then in steady state."""
@@ -206,14 +217,22 @@ def _curves() -> Iterator[Curves]:
 def _of_both(name: str, along: str, which: str, begin: str, shows: str) -> Curves:
     """A course of the torus pair over that of the standard pair."""
     names = tuple(f"{pair}_{begin}{name}" for pair in PAIRS)
-    return Curves(f"{_COURSES[name].long_name}, {which}", along, names, shows=shows)
+    at = _DRAWN_AT.get(shows, "")
+    return Curves(f"{_COURSES[name].long_name}, {which}", along, names, shows=shows, at=at)
 
 
 def _of_torus_pair(name: str, title: str, shows: str) -> Curves:
     """A course of both pairs of teeth of the torus pair, and of both together."""
     names = tuple(f"torus_{name}_{which}" for which in ("0", "1", "both"))
     columns = ("pair 0", "pair 1", "both")
-    return Curves(f"{title}, torus pair, from rest", "cycle_part", names, columns, shows=shows)
+    return Curves(
+        f"{title}, torus pair, from rest",
+        "cycle_part",
+        names,
+        columns,
+        shows=shows,
+        at=_DRAWN_AT.get(shows, ""),
+    )
 
 
 def _of_the_path() -> Iterator[Curves]:
@@ -272,7 +291,8 @@ _SIDE_BY_SIDE = Beside(
     },
     note=(
         "From rest: start by the printed equations with the fitted inputs, as published. What a pair of "
-        "teeth carries is drawn over the last whole mesh cycle; pair 0 is the older one. The motion runs on "
+        "teeth carries is drawn over the last whole mesh cycle; pair 0 is the older one. Odd "
+        "conditions have 49 N m, even ones 245 N m; the validation is at 20 N m. The motion runs on "
         "the stiffness of Table 1; that of the library, secant and slope, is drawn over it and is not used, "
         "but in variant hertz, which has the library's secant and the radii of Hertz: there the torus radii "
         "act. The thicker film of the torus pair follows from its effective radius alone, R' = c rho_1; "

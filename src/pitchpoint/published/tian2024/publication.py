@@ -114,7 +114,8 @@ _ON_PATH = Beside(
         Curves(
             "force of the pair over the whole one without friction",
             "pair_path",
-            ("pair_share", *_of_methods("pair_force")),
+            (*_of_methods("pair_force"), "pair_share"),
+            (*_METHODS.values(), "without friction"),
             shows="Figure 5",
         ),
         Curves(
@@ -122,14 +123,14 @@ _ON_PATH = Beside(
             "pair_path",
             _of_methods("pair_efficiency"),
             tuple(_METHODS.values()),
-            shows="Figure 6",
+            shows="Figures 6 and 8",
         ),
         Curves(
             "input torque",
             "pair_path",
             _of_methods("pair_input_torque"),
             tuple(_METHODS.values()),
-            shows="Figure 7",
+            shows="Figures 7 and 8",
         ),
     ),
 )

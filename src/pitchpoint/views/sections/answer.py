@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,7 @@ from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.screen import cell, efficiency_of, head, shown
-from pitchpoint.views.section import Block, Drawn, Page, Printed, Section
+from pitchpoint.views.section import Block, Drawn, KeyFigure, Page, Printed, Section
 from pitchpoint.views.sections.back_driving import back_driving, jamming, locks_from
 from pitchpoint.views.sections.beside import loss_split
 from pitchpoint.views.sections.spread import spread, spread_sentence
@@ -44,7 +45,8 @@ def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
     values = {
         "variants": variants,
-        "warnings": _warned(page),
+        "warnings": (warnings := _warned(page)),
+        "first_doubt": show.first_clauses(next(iter(warnings), ""), _SUMMED_UP),
         "several": page.several,
         "designs": page.designs,
         "sums": _sums(page),
@@ -96,12 +98,17 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
     """What the top of the page says about one variant."""
     manifest, parts = outcome.manifest, outcome.parts
     single = of_contact(parts.get("operation", ()))
+    each = (figure for section in page.sections for figure in section.answer(outcome))
+    figures = sorted(each, key=lambda figure: figure.order)
     return {
         "name": name,
         "oil": manifest["oil"],
         "oil_note": _oil_note(outcome),
         "sharing": "" if single else _sharing(manifest),
-        "facts": [fact for section in page.sections for fact in section.answer(outcome)],
+        "tiles": [_tile(figure) for figure in figures],
+        "facts": [
+            (figure.name, figure.words) for figure in figures if len(figure.detail) > _IN_A_TILE
+        ],
         "averaging": "" if single else _averaging(outcome),
         "operation": _operation(outcome),
         "ratio": "" if single else _ratio(manifest),
@@ -117,6 +124,19 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         if "operation" in parts
         else [],
     }
+
+
+def _tile(figure: KeyFigure) -> KeyFigure:
+    """A key figure with as much beside its value as a tile has room for."""
+    detail = show.first_clauses(figure.detail.lstrip(",; "), _IN_A_TILE) if figure.detail else ""
+    return replace(figure, detail=detail)
+
+
+_IN_A_TILE = 56
+"""Characters beside a value; what is longer stands in the list below the tiles."""
+
+_SUMMED_UP = 100
+"""Characters of the first doubt, the others are unfolded with it."""
 
 
 def _holding_first(parts: Mapping[str, xr.Dataset]) -> list[tuple[int, str]]:
@@ -294,7 +314,7 @@ def _reactions(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
                     yield _ACROSS[held, name].format(body), words
 
 
-_LOCKS = "locks from μ"
+_LOCKS = "self-locking from a friction coefficient of"
 
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:
@@ -365,7 +385,7 @@ def _backwards(back: xr.Dataset, law: str) -> dict[str, str]:
     locked = bool(back["locked"].values[position, 0])
     return {
         "back-driving": "locked" if locked else cell(back, "mean_efficiency", position),
-        f"back-driving {_LOCKS}": _locks(back, position),
+        f"back-driving, {_LOCKS}": _locks(back, position),
     }
 
 
@@ -431,6 +451,73 @@ def bearing_rows(outcome: Outcome) -> list[dict[str, str]]:
     return rows if len(rows[0]) > 1 else []
 
 
+def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Figures of the operating point under the first law that holds there."""
+    if "operation" not in outcome.parts:
+        return
+    data = headline(outcome.parts)
+
+    def figure(order: float, name: str, variable: str, detail: str = "") -> KeyFigure:
+        value = show.quantity(variable, float(data[variable].values[0, 0]), of=data)
+        return KeyFigure(order, name, value, detail)
+
+    if of_contact(data):
+        for place, name in enumerate(CONTACT):
+            yield figure(10.0 + 0.1 * place, VARIABLES[name].long_name, name)
+        return
+    yield figure(10.0, "Efficiency", "mean_efficiency", _certainty(outcome, data))
+    yield figure(20.0, "Input", "mean_input_torque", _ripple(data))
+    yield figure(25.0, "Loss", "mean_loss", _drag(data, 0))
+    law = str(data["law"].values[0])
+    if law in laws(outcome.parts["operation"]):
+        position = laws(outcome.parts["operation"]).index(law)
+        for place, (name, value) in enumerate(_borne(outcome, position)):
+            yield KeyFigure(78.0 + 0.1 * place, _BRIEFLY.get(name, name).capitalize(), value)
+        if "back_driving" in outcome.parts:
+            words = back_driving(outcome, law)
+            value, _, detail = words.partition(", ")
+            yield KeyFigure(77.0, "Back-driving", value, detail)
+
+
+_BRIEFLY = {
+    VARIABLES["pressure"].long_name: "Hertz pressure",
+    VARIABLES["edge_share"].long_name: "load on edges",
+    "semi-axes of the contact, across and along": "contact ellipse",
+    "room to the end of the face": "room to the end",
+}
+"""Names of key figures where a column of names is narrow."""
+
+
+def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
+    """What the efficiency is of, and how far the laws that apply disagree."""
+    scope = covers(data).partition(":")[0]
+    apart = spread(outcome)
+    if not any(holding(outcome.parts)) and data is outcome.parts["operation"]:
+        certain = "no fitted law is in its range here"
+    elif apart and apart["points"] and float(apart["points"]) > 0.0:
+        certain = f"{apart['text']} by the laws in their range"
+    else:
+        certain = f"over the cycle {_range(data, 'efficiency', lambda name: float(data[name].values[0, 0]))}"
+    return "; ".join(filter(None, [*_by_other_laws(outcome, data), scope, certain]))
+
+
+def _by_other_laws(outcome: Outcome, data: xr.Dataset) -> Iterator[str]:
+    """Efficiency under each further law of the case, and whether it is out of its range."""
+    operation, outside = outcome.parts["operation"], why_not(outcome.parts)
+    for law, value in zip(laws(operation), operation["mean_efficiency"].values[:, 0], strict=True):
+        if law != laws(data)[0]:
+            apart = ", out of its range" if law in outside and any(holding(outcome.parts)) else ""
+            yield f"{show.quantity('mean_efficiency', float(value))} by {law}{apart}"
+
+
+def _ripple(data: xr.Dataset) -> str:
+    """What varies of the torque or force at the driver."""
+    if "torque_ripple" not in data:
+        return ""
+    ripple = show.quantity("torque_ripple", float(data["torque_ripple"].values[0, 0]), of=data)
+    return f"in the mean, {ripple} peak to peak"
+
+
 ANSWER = Section(
     name="answer",
     title="The answer",
@@ -438,5 +525,6 @@ ANSWER = Section(
     order=0.0,
     lacks=lambda page: None,
     blocks=_blocks,
+    answer=_key_figures,
     screen=_screen,
 )

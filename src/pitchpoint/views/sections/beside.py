@@ -31,7 +31,7 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section, reason
+from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Section, reason
 
 __all__ = ["BESIDE", "drag_panel", "loss_split", "running_rows", "starting_answer"]
 
@@ -248,6 +248,16 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield from [Paragraph(show.pretty(told), "note")] if told else []
 
 
+def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Torque without load and torques from rest, under the first law."""
+    data = outcome.parts.get("running")
+    if data is not None:
+        for place, (name, value) in enumerate(starting_answer(outcome, laws(data)[0])):
+            brief, _, speed = name.partition(" at ")
+            detail = f"at {speed}" if speed else ""
+            yield KeyFigure(76.0 + 0.1 * place, brief.capitalize(), value, detail)
+
+
 BESIDE = Section(
     name="beside",
     title="Losses beside the teeth",
@@ -255,6 +265,7 @@ BESIDE = Section(
     order=320.0,
     lacks=_lacks,
     blocks=_blocks,
+    answer=_key_figures,
     card=starting_answer,
     screen=_screen,
 )

@@ -24,7 +24,7 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import Points, folded, gapped, titled
 from pitchpoint.views.path import path_of
 from pitchpoint.views.point import Period, period_of
-from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section
+from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Section
 
 __all__ = ["CYCLE", "cycle_panel"]
 
@@ -253,6 +253,18 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
             yield Printed(line=f"{law['title']}: {name} {words}.")
 
 
+def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
+    """The thinnest film over roughness, under the first law."""
+    data = outcome.parts.get("cycle")
+    if data is None or "lambda_ratio" not in data:
+        return
+    ratio = data["lambda_ratio"].values[0][data["load"].values[0] > 0.0]
+    if ratio.size and np.isfinite(ratio).any():
+        value = show.number(float(np.nanmin(ratio)), 3)
+        detail = "thinnest film of the cycle over composite Rq"
+        yield KeyFigure(80.0, "Film ratio", value, detail)
+
+
 CYCLE = Section(
     name="cycle",
     title="Over the mesh cycle",
@@ -260,6 +272,7 @@ CYCLE = Section(
     order=200.0,
     parts=("teeth",),
     blocks=_blocks,
+    answer=_key_figures,
     card=_turns,
     screen=_screen,
 )

@@ -28,13 +28,14 @@ from pitchpoint.views.film_courses import (
     beneath,
     courses,
     figures_table,
+    film_key_figure,
     film_laws,
     gone,
     printed,
     solved_how,
 )
 from pitchpoint.views.lines import titled
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, by_variant
+from pitchpoint.views.section import Block, Heading, KeyFigure, Page, Paragraph, Printed, by_variant
 
 __all__ = ["film_answer", "film_blocks", "film_facts", "film_printed", "profiles_panel"]
 
@@ -225,9 +226,9 @@ def _of_profiles(data: xr.Dataset) -> str:
     return f"{pairs}{slices}. Oil enters from the left where the surfaces run to the right."
 
 
-def film_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
-    """Lines for the answer at the top."""
-    return [("Films solved", film_answer(outcome))]
+def film_facts(outcome: Outcome) -> Iterable[KeyFigure]:
+    """What the films come to."""
+    return [film_key_figure("Films solved", film_answer(outcome))]
 
 
 def film_printed(outcome: Outcome) -> Iterable[Printed]:

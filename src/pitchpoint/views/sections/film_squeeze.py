@@ -20,12 +20,13 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
-from pitchpoint.views.film_courses import NONE, told
+from pitchpoint.views.film_courses import NONE, film_key_figure, told
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
     Block,
     Heading,
+    KeyFigure,
     Page,
     Paragraph,
     Printed,
@@ -206,9 +207,9 @@ def screen(data: xr.Dataset) -> Iterator[Printed]:
     )
 
 
-def squeeze_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
-    """Lines for the answer at the top."""
-    return [("Squeeze of films", answer(outcome.parts["film_squeeze"]))]
+def squeeze_facts(outcome: Outcome) -> Iterable[KeyFigure]:
+    """What squeeze comes to."""
+    return [film_key_figure("Squeeze of films", answer(outcome.parts["film_squeeze"]))]
 
 
 def squeeze_printed(outcome: Outcome) -> Iterable[Printed]:

@@ -31,6 +31,7 @@ from pitchpoint.views.film_courses import (
     course_figure,
     courses,
     figures_table,
+    film_key_figure,
     film_laws,
     gone,
     of_most,
@@ -43,6 +44,7 @@ from pitchpoint.views.point import period_of
 from pitchpoint.views.section import (
     Block,
     Heading,
+    KeyFigure,
     Page,
     Paragraph,
     Printed,
@@ -484,9 +486,9 @@ def _loaded(data: xr.Dataset, at: tuple[int, ...]) -> str:
     return f"{force} on {show.quantity('line_length', long)}" if long else force
 
 
-def finite_film_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
-    """Lines for the answer at the top."""
-    return [("Films of finite contacts", answered(outcome.parts["finite_film"]))]
+def finite_film_facts(outcome: Outcome) -> Iterable[KeyFigure]:
+    """What the films come to."""
+    return [film_key_figure("Films of finite contacts", answered(outcome.parts["finite_film"]))]
 
 
 def finite_film_printed(outcome: Outcome) -> Iterable[Printed]:

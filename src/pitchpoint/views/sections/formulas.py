@@ -30,7 +30,16 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.inputs import in_words
-from pitchpoint.views.section import Block, Folded, Heading, Page, Paragraph, Section, Table
+from pitchpoint.views.section import (
+    Block,
+    Folded,
+    Heading,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Section,
+    Table,
+)
 
 __all__ = ["FORMULAS"]
 
@@ -39,6 +48,9 @@ _WIDE = 6
 
 _FEW = 4
 """Places that a sentence has room for."""
+
+_FEW_SYMBOLS = 2
+"""Symbols that the title of an axis has room for."""
 
 _MANY = 1e6
 """Cycles from which on an axis counts them in powers of ten."""
@@ -246,14 +258,24 @@ def _drawn(name: str, one: Curves, traces: list[Trace], keys: list[Key]) -> Figu
     scales: dict[str, Any] = {"yaxis": {"type": "log"}} if one.decades else {}
     if max(filter(None, traces[0]["x"]), default=0.0) > _MANY:
         scales["xaxis"] = {"exponentformat": "power", "separatethousands": False}
-    axes = layout(show.axis_title(one.along), short_axis(one.names[0]), **scales)
+    axes = layout(show.axis_title(one.along), _values_axis(one.names), **scales)
     return Figure(
         name, _title(one), traces, axes, keys=tuple(keys), missing="No numbers were found."
     )
 
 
+def _values_axis(names: tuple[str, ...]) -> str:
+    """Symbols of the courses and their unit; that of the first alone where they are many."""
+    symbols = dict.fromkeys(show.described(name).symbol for name in names)
+    if len(symbols) > _FEW_SYMBOLS:
+        return short_axis(names[0])
+    return show.bracketed(", ".join(symbols), show.described(names[0]))
+
+
 def _title(one: Curves | Maps) -> str:
-    shows = f" ({one.shows} of the publication)" if one.shows else ""
+    shows = (
+        f" ({one.shows} of the publication{f', {one.at}' if one.at else ''})" if one.shows else ""
+    )
     return f"{one.title[0].upper()}{one.title[1:]}{shows}"
 
 
@@ -297,7 +319,8 @@ def _map(name: str, one: Maps, data: xr.Dataset) -> Figure:
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~g}} {unit}<extra></extra>",
     }
-    axes = layout(*(show.axis_title(axis) for axis in one.axes))
+    along, across = (show.axis_title(axis) for axis in one.axes)
+    axes = layout(along, across.replace(", ", ",<br>"))  # in one line it is longer than the axis
     return Figure(name, _title(one), [heat], axes, missing="No numbers were found.")
 
 
@@ -345,7 +368,7 @@ def _places(data: xr.Dataset) -> list[str]:
     ]
 
 
-def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
+def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
     """What the publication is about, at the first point of the first study."""
     publication = publication_of(str(outcome.manifest.get("source", "")))
     for name in publication.answers if publication else ():
@@ -354,7 +377,7 @@ def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
             value = float(data[name].values[0, 0])
             words = show.quantity(name, value) if np.isfinite(value) else "not found"
             at = _Study("", str(data.attrs["title"]), data)
-            yield show.described(name).long_name, f"{words} ({_point(at, 0)})"
+            yield KeyFigure(5.0, show.described(name).long_name, words, f"({_point(at, 0)})")
 
 
 def _lacks(page: Page) -> str | None:

@@ -10,7 +10,16 @@ import xarray as xr
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section, Table, by_variant
+from pitchpoint.views.section import (
+    Block,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    Section,
+    Table,
+    by_variant,
+)
 
 __all__ = ["INSPECTION", "backlash_rows", "measured_rows"]
 
@@ -129,18 +138,25 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
         yield Table(["tolerance by ISO 1328-1", *titles], _tolerance_rows(data), compact=True)
 
 
-def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
-    """Limits of the backlash, where tolerances are given."""
+def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Backlash, its limits where tolerances are given."""
     data = outcome.parts.get("inspection")
-    if data is None or data.sizes["case"] == 1:
+    if data is None:
         return
-    ends = data.sel(case=["least", "largest"])
-    told = [
+    several = data.sizes["case"] > 1
+    ends = data.sel(case=["least", "largest"]) if several else data
+    on_circle, *_ = backlash_rows(ends)
+    turns = [
         f"{' to '.join(_each('backlash_angle', ends.sel(gear=gear)))} "
         f"{show.unit_of('backlash_angle')} at {gear}"
         for gear in data["gear"].values
     ]
-    yield "Backlash by tolerances", ", ".join(told)
+    yield KeyFigure(
+        60.0,
+        "Backlash by tolerances" if several else "Backlash",
+        f"{' to '.join(on_circle[1:])} {show.unit_of('backlash_on_circle')}",
+        f"{'' if several else 'nominal, '}on the pitch circles; {', '.join(turns)}",
+    )
 
 
 def _printed(outcome: Outcome) -> Iterator[Printed]:

@@ -1,6 +1,6 @@
 """Torsional vibration of a joint: natural frequencies, critical speeds, amplitudes against speed."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
@@ -23,7 +23,16 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.inputs import words
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Table
+from pitchpoint.views.section import (
+    Block,
+    Heading,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    Table,
+    key_figure,
+)
 
 __all__ = [
     "critical_rows",
@@ -246,6 +255,7 @@ def joint_printed(outcome: Outcome) -> Iterator[Printed]:
         )
 
 
-def joint_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
-    """Lines for the answer at the top."""
-    return [("Joint resonance", joint_answer(outcome))]
+def joint_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Lowest natural frequencies of the joint."""
+    words = joint_answer(outcome)
+    yield key_figure(79.5, "Joint resonance", words.partition(" on a motor")[0], words)

@@ -25,7 +25,7 @@ from pitchpoint.views.figures import (
     text,
 )
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed
+from pitchpoint.views.section import Block, Heading, KeyFigure, Page, Paragraph, Printed, key_figure
 
 __all__ = [
     "error_blocks",
@@ -183,10 +183,11 @@ def error_blocks(page: Page) -> Iterator[Block]:
         yield it
 
 
-def error_facts(outcome: Outcome) -> list[tuple[str, str]]:
-    """Lines for the answer at the top."""
-    told = kinematic_error_answer(outcome)
-    return [("Kinematic error", told)] if told else []
+def error_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Peak to peak of the kinematic error."""
+    words = kinematic_error_answer(outcome)
+    value = words.partition(" peak to peak")[0] if " peak to peak" in words else ""
+    yield key_figure(73.0, "Kinematic error", value, words)
 
 
 def error_printed(outcome: Outcome) -> Iterable[Printed]:

@@ -9,7 +9,7 @@ import xarray as xr
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Page, Paragraph, Printed, Table, by_variant
+from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Table, by_variant
 
 __all__ = ["limit_rows", "limits_blocks", "limits_facts", "limits_printed", "stress_rows"]
 
@@ -111,22 +111,28 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
         yield Paragraph(_life(data))
 
 
-def limits_facts(outcome: Outcome) -> Iterator[tuple[str, str]]:
+def limits_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """What follows from strengths and ratings that the case gives."""
     data = outcome.parts.get("load_limits")
     if data is None:
         return
     if "goodman_safety" in data:
         safety = show.number(float(data["goodman_safety"].min()), 3)
-        yield (
-            "Flexspline",
-            f"safety {safety} for endless life, an estimate of a smooth ring and tube",
+        yield KeyFigure(
+            40.0,
+            "Flexspline safety",
+            safety,
+            "for endless life; an estimate of a smooth ring and tube",
         )
     for name, _, margin in limit_rows(data):
-        yield f"Against {name}", f"{margin} times the torque, which the case gives"
+        yield KeyFigure(
+            41.0, f"Against {name}", f"{margin} times", "the torque, which the case gives"
+        )
     if "bearing_life" in data:
         life = show.quantity("bearing_life", float(data["bearing_life"]))
-        yield "Wave generator's bearing", f"{life} by the rating of the case"
+        yield KeyFigure(
+            42.0, "Life of the bearing", life, "of the wave generator, by the rating of the case"
+        )
 
 
 def limits_printed(outcome: Outcome) -> Iterator[Printed]:

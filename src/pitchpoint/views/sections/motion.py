@@ -33,11 +33,13 @@ from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
     Block,
     Heading,
+    KeyFigure,
     Page,
     Paragraph,
     Printed,
     Table,
     by_variant,
+    key_figure,
 )
 
 __all__ = [
@@ -529,6 +531,7 @@ def _frequencies(data: xr.Dataset) -> str:
     return f"{values} {show.unit_of('natural_frequency', data)}"
 
 
-def motion_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
-    """Lines for the answer at the top."""
-    return [("In motion", motion_answer(outcome))]
+def motion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Efficiency and transmission error in motion."""
+    words = motion_answer(outcome)
+    yield key_figure(34.0, "In motion", words.partition(" of the teeth with")[0], words)

@@ -26,7 +26,7 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.point import Period, period_of
-from pitchpoint.views.section import Block, Page, Paragraph, Table, tabbed
+from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Table, key_figure, tabbed
 
 __all__ = [
     "stiffness_answer",
@@ -184,12 +184,12 @@ def _of_variant(it: Panel) -> Iterator[Block]:
         yield Paragraph(it.note, "warning")
 
 
-def stiffness_facts(outcome: Outcome) -> list[tuple[str, str]]:
-    """Lines for the answer at the top."""
-    told = stiffness_answer(outcome)
+def stiffness_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Stiffness of the mesh, and how much it varies."""
+    words, data = stiffness_answer(outcome), outcome.parts["stiffness"]
     other = _of_publication(outcome.manifest.get("source", ""))
     title = "Mesh stiffness of the library, not of the motion" if other else "Mesh stiffness"
-    return [(title, told)] if told else []
+    yield key_figure(72.0, title, _cell(data, "mean_stiffness"), words)
 
 
 def stiffness_warnings(outcome: Outcome) -> list[str]:

@@ -14,6 +14,7 @@ from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
     Block,
     Heading,
+    KeyFigure,
     Page,
     Paragraph,
     Printed,
@@ -162,18 +163,32 @@ def _blocks(page: Page) -> Iterator[Block]:
     return by_variant(page, "strength", _blocks_of)
 
 
-def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
-    """The least safeties, where they are known."""
+def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
+    """The least safeties; where none is known, the largest stresses that are rated."""
     data = outcome.parts.get("strength")
     if data is None:
         return
-    for term, name in (("Flanks", "flank_safety"), ("Roots", "root_safety")):
-        found = data[name].where(np.isfinite(data[name]))
-        if not found.isnull().all():
-            least = found.isel(found.argmin([*found.dims]))
-            place = [str(least["gear"].values)]
-            place += [f"stage {least['stage'].values}"] if "stage" in least.coords else []
-            yield f"{term}, least safety", f"{float(least):.3g}, {', '.join(place)}"
+    for order, where, safety, stress in (
+        (40.0, "flanks", "flank_safety", "contact_stress"),
+        (41.0, "roots", "root_safety", "root_stress"),
+    ):
+        known = data[safety].where(np.isfinite(data[safety]))
+        if not known.isnull().all():
+            least = known.isel(known.argmin([*known.dims]))
+            yield KeyFigure(
+                order, f"Safety of {where}", f"{float(least):.3g}", f"at {_place(least)}"
+            )
+        elif data[stress].notnull().any():
+            most = data[stress].isel(data[stress].argmax([*data[stress].dims]))
+            value = show.quantity(stress, float(most), of=data)
+            detail = f"at {_place(most)}; no safety: its material has no limits"
+            yield KeyFigure(order, f"Stress of {where}", value, detail)
+
+
+def _place(value: xr.DataArray) -> str:
+    """Gear of a value, and its stage where there are several."""
+    stage = f" of stage {value['stage'].values}" if "stage" in value.coords else ""
+    return f"{value['gear'].values}{stage}"
 
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:

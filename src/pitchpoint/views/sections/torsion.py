@@ -29,7 +29,16 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import folded
 from pitchpoint.views.point import Period, operating_point, period_of
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Page, Paragraph, Printed, Table, tabbed
+from pitchpoint.views.section import (
+    Block,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    Table,
+    key_figure,
+    tabbed,
+)
 from pitchpoint.views.way import beside, place_of
 
 __all__ = [
@@ -425,10 +434,18 @@ def _of_variant(it: Panel, outcome: Outcome) -> Iterator[Block]:
     yield it
 
 
-def torsion_facts(outcome: Outcome) -> list[tuple[str, str]]:
-    """Lines for the answer at the top."""
-    told = torsion_answer(outcome)
-    return [(_words(outcome.parts["torsion"]).stiffness, told)] if told else []
+def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Stiffness at the operating point, and lost motion where a maker would state it."""
+    words, data = torsion_answer(outcome), outcome.parts["torsion"]
+    title = _words(data).stiffness
+    value = (
+        words.partition(" at the operating point")[0] if " at the operating point" in words else ""
+    )
+    yield key_figure(70.0, title, value, words)
+    if "catalogue_lost_motion" in data:
+        values = data["catalogue_lost_motion"].values
+        shown = dict.fromkeys(show.quantity("catalogue_lost_motion", float(v)) for v in values)
+        yield KeyFigure(71.0, "Lost motion", " and ".join(shown), "at ±4 % of the torque")
 
 
 def torsion_printed(outcome: Outcome) -> list[Printed]:

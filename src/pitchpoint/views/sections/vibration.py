@@ -36,6 +36,7 @@ from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
     Block,
     Heading,
+    KeyFigure,
     Page,
     Paragraph,
     Printed,
@@ -377,9 +378,10 @@ def _lacks(page: Page) -> str | None:
     return None if there else reason(page, "vibration")
 
 
-def _answer(outcome: Outcome) -> list[tuple[str, str]]:
-    told = vibration_answer(outcome)
-    return [("Transmission error", "; ".join(told))] if told else []
+def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Transmission error at each torque."""
+    if words := vibration_answer(outcome):
+        yield KeyFigure(35.0, "Transmission error", "; ".join(words))
 
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:

@@ -30,11 +30,13 @@ from pitchpoint.views.screen import head
 from pitchpoint.views.section import (
     Block,
     Heading,
+    KeyFigure,
     Page,
     Paragraph,
     Printed,
     Table,
     by_variant,
+    key_figure,
 )
 from pitchpoint.wear.stages import SEVERE, SEVERE_BY
 
@@ -406,9 +408,10 @@ def _screen(data: xr.Dataset) -> Iterator[Printed]:
     yield Printed("Wear", [row], f"The march ended {_ENDS[str(data.attrs['end'])]}.")
 
 
-def wear_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
-    """Lines for the answer at the top."""
-    return [("Wear", _answer(outcome.parts["wear"]))]
+def wear_facts(outcome: Outcome) -> Iterable[KeyFigure]:
+    """Depth at the end of the march."""
+    words = _answer(outcome.parts["wear"])
+    return [key_figure(30.0, "Wear depth", words.partition(" at most")[0], words)]
 
 
 def wear_printed(outcome: Outcome) -> Iterable[Printed]:

@@ -1,0 +1,170 @@
+"""The first screen of a run: what fails or is doubtful, then figures that answer, in a dozen short lines."""
+
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from pitchpoint.analyses.figures import headline
+from pitchpoint.results.target_rows import in_words
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.inputs import words as input_words
+from pitchpoint.views.registry import in_order
+from pitchpoint.views.section import KeyFigure
+
+__all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen", "key_figures"]
+
+FEW_LINES = 12
+"""Lines of a first screen."""
+
+_DOUBTS = 3
+"""Of them at most for what fails or is doubtful."""
+
+Style = Literal["title", "fails", "doubt", "figure", "note"]
+
+_LEAST_DETAIL = 6
+"""Characters below which what is left of a detail says nothing."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the screen: its text, and what it is."""
+
+    text: str
+    style: Style = "note"
+
+
+def first_screen(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Line]:
+    """Lines that answer for one variant; for several only what fails or is doubtful, see `beside_each_other`.
+
+    Args:
+        outcomes: by variant.
+        report: the page that holds everything else.
+        width: of the screen, in characters; no line is longer, and no number cut.
+    """
+    outcome = next(iter(outcomes.values()))
+    title = [Line(show.first_clauses(_title(outcome, len(outcomes)), width), "title")]
+    at = _operation(outcome) if len(outcomes) == 1 else ""
+    head = [*title, *([Line(show.first_clauses(at, width))] if at else [])]
+    doubts = _doubts(outcomes, width)
+    foot = [*_rows_met(outcomes, width), *_more(outcomes, report, width)]
+    room = FEW_LINES - len(head) - len(doubts) - len(foot)
+    figures = _aligned(key_figures(outcome)[:room], width) if len(outcomes) == 1 else []
+    return [*head, *doubts, *figures, *foot]
+
+
+def key_figures(outcome: Outcome) -> list[KeyFigure]:
+    """What every section answers of a variant, in their order."""
+    each = (figure for section in in_order() for figure in section.answer(outcome))
+    return sorted(each, key=lambda figure: figure.order)
+
+
+def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
+    """Values of the key figures of several variants: a row for each figure, a column for each variant."""
+    values = {
+        variant: {figure.name: figure.value for figure in key_figures(outcome)}
+        for variant, outcome in outcomes.items()
+    }
+    names = dict.fromkeys(name for of_variant in values.values() for name in of_variant)
+    return [
+        {"": name} | {variant: own.get(name, "–") for variant, own in values.items()}
+        for name in names
+    ]
+
+
+def _title(outcome: Outcome, variants: int) -> str:
+    manifest = outcome.manifest
+    return (
+        f"{manifest['title']} ({manifest['variant'] if variants == 1 else f'{variants} variants'})"
+    )
+
+
+def _operation(outcome: Outcome) -> str:
+    """Speed, load, temperature and friction law in few words."""
+    speed, torque, force, temperature = (
+        show.pretty(input_words(outcome, "operation", key))
+        for key in ("speed", "torque", "force", "temperature")
+    )
+    law = ""
+    if "operation" in outcome.parts:
+        law = f", friction {headline(outcome.parts)['law'].values[0]}"
+    manifest = outcome.manifest
+    return (
+        f"{manifest['driver']} at {speed}, {manifest['loaded']} with {torque or force}, "
+        f"oil {temperature}{law}"
+    )
+
+
+def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
+    """What fails, then what is doubtful, a line each; how many more there are."""
+    fails = _of_variants(outcomes, "implausible")
+    doubts = _of_variants(outcomes, "warnings")
+    lines = [
+        *(Line(show.first_clauses(text, width), "fails") for text in fails),
+        *(Line(show.first_clauses(f"Doubtful: {text}", width), "doubt") for text in doubts),
+    ]
+    if len(lines) <= _DOUBTS:
+        return lines
+    rest = len(lines) - _DOUBTS + 1
+    return [*lines[: _DOUBTS - 1], Line(f"{rest} more of this kind are in the report.", "doubt")]
+
+
+def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
+    """Sentences of all variants, each once, those of some variants with their names."""
+    told: dict[str, list[str]] = {}
+    for variant, outcome in outcomes.items():
+        for text in outcome.manifest[kind]:
+            told.setdefault(text, []).append(variant)
+    return [
+        text if len(names) == len(outcomes) else f"{', '.join(names)}: {text}"
+        for text, names in told.items()
+    ]
+
+
+def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
+    """Names, values, and what goes with them."""
+    if not figures:
+        return []
+    names = [show.one_line(figure.name) for figure in figures]
+    values = [show.one_line(figure.value) for figure in figures]
+    name_width = max(map(len, names))
+    value_width = max((len(value) for value in values if len(value) <= width // 5), default=0)
+    lines = []
+    for figure, name, value in zip(figures, names, values, strict=True):
+        begin = f"{name:<{name_width}}  {value:<{value_width}}  "
+        room = width - len(begin)
+        if room < 0:  # words in place of a number
+            lines.append(show.first_clauses(f"{name:<{name_width}}  {value}", width))
+            continue
+        detail = show.first_clauses(figure.detail.lstrip(",; "), room) if figure.detail else ""
+        lines.append(f"{begin}{detail if len(detail) > _LEAST_DETAIL else ''}".rstrip())
+    return [Line(text, "figure") for text in lines]
+
+
+def _rows_met(outcomes: Mapping[str, Outcome], width: int) -> Iterator[Line]:
+    """How many printed numbers each variant meets, of a published case."""
+    for variant, outcome in outcomes.items():
+        if outcome.rows:
+            several = sum(bool(other.rows) for other in outcomes.values()) > 1
+            start = f"{variant}: " if several else ""
+            yield from (Line(text) for text in _folded(f"{start}{in_words(outcome.rows)}", width))
+
+
+def _folded(text: str, width: int) -> list[str]:
+    """A text on as many lines as it takes."""
+    return textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
+
+
+def _more(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Line]:
+    """Where everything else is, on two lines."""
+    titles = [
+        section.short
+        for section in in_order()
+        if isinstance(section.short, str)
+        and section.parts
+        and any(set(section.parts) <= set(outcome.parts) for outcome in outcomes.values())
+    ]
+    every = f"Tables by --full: answer, {', '.join(titles).lower()}"
+    return [Line(f"Report: {report}"), Line(show.first_clauses(every, width))]

@@ -1,0 +1,121 @@
+"""The first screen: a dozen lines of eighty characters that answer, with every number whole."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import bank
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.columns import fitted
+from pitchpoint.views.first_screen import (
+    FEW_LINES,
+    beside_each_other,
+    first_screen,
+    key_figures,
+)
+
+NUMBER = re.compile(r"\d[\d.,e−+-]*")
+REPORT = Path("results/pair/report.html")
+
+
+@pytest.fixture(scope="module")
+def pair() -> dict[str, Outcome]:
+    return bank.outcomes(Path(__file__).parents[2] / "examples" / "pair_23_61.toml")
+
+
+def doubting(outcome: Outcome, **sentences: list[str]) -> Outcome:
+    return replace(outcome, manifest={**outcome.manifest, **sentences})
+
+
+def shown(outcomes: Mapping[str, Outcome], width: int = 80) -> list[str]:
+    lines = [line.text for line in first_screen(outcomes, REPORT, width)]
+    assert len(lines) <= FEW_LINES
+    assert all(len(line) <= width for line in lines)
+    return lines
+
+
+def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:
+    data = pair["default"].parts["operation"]
+    efficiency, ripple = (float(data[name][0, 0]) for name in ("mean_efficiency", "torque_ripple"))
+    title, at, *figures = shown(pair)
+    assert title == "pair_23_61.toml (default)"
+    assert at.startswith("gear 1 at 1500 rpm, gear 2 with 50 N m, oil 60 °C, friction iso_tr")
+    by_name = {line.split("  ")[0]: line for line in figures}
+    assert f"{100 * efficiency:.2f} %" in by_name["Efficiency"]
+    assert f"{ripple:.4g} N m peak to peak" in by_name["Input"]
+    assert {"Loss", "Stress of flanks", "Stress of roots", "Backlash"} <= {*by_name}
+    assert f"Report: {REPORT}" in figures
+
+
+@pytest.mark.parametrize("width", [40, 60, 100])
+def test_no_number_is_cut(pair: dict[str, Outcome], width: int) -> None:
+    every = {
+        number
+        for line in first_screen(pair, REPORT, 1000)
+        for number in NUMBER.findall(line.text.replace("\u00a0", " "))
+    }
+    for line in shown(pair, width):
+        assert {*NUMBER.findall(line)} <= every
+
+
+def test_what_fails_stands_before_what_is_doubtful_and_both_are_counted(
+    pair: dict[str, Outcome],
+) -> None:
+    outcome = doubting(
+        pair["default"],
+        implausible=["Fails: teeth melt."],
+        warnings=[
+            f"doubt {k}, of which much is said in very many words: 1.5 mm too far" for k in "abc"
+        ],
+    )
+    lines = shown({"default": outcome})
+    assert lines[2] == "Fails: teeth melt."
+    assert lines[3].startswith("Doubtful: doubt a") and "b," not in lines[3]
+    assert lines[4] == "2 more of this kind are in the report."
+    assert lines[5].startswith("Efficiency")
+
+
+def test_variants_stand_side_by_side(pair: dict[str, Outcome]) -> None:
+    one = pair["default"]
+    two = {"default": one, "bad": doubting(one, warnings=["tips are pointed."])}
+    assert "Doubtful: bad: tips are pointed." in shown(two)
+    rows = beside_each_other(two)
+    assert [row[""] for row in rows] == [figure.name for figure in key_figures(one)]
+    assert all(row["default"] == row["bad"] for row in rows)
+
+
+def test_key_figures_are_named_once(pair: dict[str, Outcome]) -> None:
+    names = [figure.name for figure in key_figures(pair["default"])]
+    assert len({*names}) == len(names)
+
+
+@given(st.text("ab 1.5,;(", max_size=60), st.integers(10, 40))
+def test_clauses_fit_and_end_at_a_word(sentence: str, width: int) -> None:
+    whole = " ".join(sentence.split())
+    cut = show.first_clauses(sentence, width)
+    begin = cut.removesuffix(" …")
+    assert whole.startswith(begin)
+    assert cut == whole or whole[len(begin)] in " ;,(" or " " not in begin
+
+
+CELLS = st.lists(st.text("abc 1", max_size=30), min_size=3, max_size=3)
+
+
+@given(st.lists(CELLS, min_size=1, max_size=4), st.integers(8, 60))
+def test_columns_fit_and_keep_words_whole(cells: list[list[str]], width: int) -> None:
+    names = ["key", "a number [mm]", "note"]
+    rows = [dict(zip(names, row, strict=True)) for row in cells]
+    blocks = fitted(rows, names, width)
+    assert [name for block in blocks for name in block if name != "key"] == names[1:]
+    for block in blocks:
+        assert next(iter(block)) == "key"
+        assert len(block) == 2 or sum(block.values()) + len(block) - 1 <= width
+        for name, size in block.items():
+            words = [word for text in (name, *(row[name] for row in rows)) for word in text.split()]
+            assert size == width or size >= max(map(len, words))
