@@ -130,12 +130,12 @@ def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | 
     if before.end:
         return None
     limit = _limit(built)
-    part, states = before.turns / limit.turns, count(1)
+    states = count(1)
 
     def rate(depth: np.ndarray) -> Rate:
         deepest = 1e6 * float(before.depth.max())
         progress(
-            round(1e4 * part),
+            0,
             f"{before.turns:.3g} of {limit.turns:.3g} turns, {deepest:.3g} um deep, state {next(states)} "
             "of the next step",
         )
