@@ -253,7 +253,7 @@ def _half_width(balance: _Balance, least: Array, widest: Lanes) -> tuple[Lanes, 
         return step + 1, jnp.any(away & ~(narrow | wide)), low, high, half
 
     start = jnp.clip(jnp.sqrt(target / balance.new), low, widest)
-    begun = jnp.array(0), jnp.array(True), low, widest, start
+    begun: tuple[Array, ...] = jnp.array(0), jnp.array(True), low, widest, start
     half = jax.lax.while_loop(lambda state: (state[0] < _STEPS) & state[1], nearer, begun)[-1]
     small = jnp.sqrt(target / jnp.where(narrow, balance.curvature(low), 1.0))
     return jnp.where(narrow, small, jnp.where(wide, widest, half)), wide
