@@ -812,8 +812,8 @@ def _progress(folder: Path | None) -> "Iterator[Progress]":
 
         def points(self, done: int, doing: str = "") -> None:
             if status is not None:
-                told = f"{self.title}: {done} points"
-                status.update(_plain(f"{told}; {doing}" if doing else told))
+                told = "; ".join(filter(None, (f"{done} points" if done else "", doing)))
+                status.update(_plain(f"{self.title}: {told}" if told else self.title))
 
     shown = Shown()
     try:

@@ -13,7 +13,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import total
 from pitchpoint.contact.surface import Spot, missing
-from pitchpoint.contact.worn import Worn, WornAt
+from pitchpoint.contact.worn import WIDEST, Worn, WornAt, averaged
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.registry import LOAD_SHARING
@@ -564,3 +564,148 @@ def test_other_families_keep_their_volume(name):
     assert np.all(found.depth >= 0.0)
     middle = found.depth[:, :, cells.strips // 2]
     assert np.all(np.count_nonzero(middle, axis=1) > 0.8 * CELLS)
+
+
+# ---- pressure on worn flanks
+
+
+FLANK, MODULUS, CURVATURE = 2e-3, 2.3e11, 70.0
+SCAR = 0.25e-3  # m: standard deviation of a scar in the middle of the flank
+felt_over = eqx.filter_jit(averaged)
+
+
+def pressed_lines(
+    depths: np.ndarray, places: np.ndarray, line_load: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Half-widths by the curvature that contacts feel, and where these are no half spaces."""
+    contacts = discs()[0].mesh.contacts(jnp.zeros(places.size))
+    lanes = contacts.active.shape
+    given = replace(
+        contacts,
+        flank=jnp.broadcast_to(array(places), (2, *lanes)),
+        curvature=jnp.zeros((2, 2, *lanes)).at[:, 0].set(CURVATURE / 2.0),
+        felt=jnp.full(lanes, CURVATURE),
+    )
+    ends = array([0.0, FLANK]), array([-1.0, 1.0]), array([1e-4, 1.0])
+    worn = Worn(array(depths[:, None]), *ends), Worn(array(0.0 * depths[:, None]), *ends)
+    found, wide = felt_over(given, worn, array(line_load), array(MODULUS))
+    half = np.sqrt(8.0 * line_load * np.asarray(found.radius) / (np.pi * MODULUS))
+    return half[0, 0], np.asarray(wide)[0, 0]
+
+
+def scar(place: np.ndarray) -> np.ndarray:
+    return np.exp(-0.5 * ((place - FLANK / 2.0) / SCAR) ** 2)
+
+
+def in_cells(cells: int) -> np.ndarray:
+    """Means of the scar over the cells."""
+    return scar((np.arange(8 * cells) + 0.5) * FLANK / (8 * cells)).reshape(cells, 8).mean(axis=1)
+
+
+def half_space_solve(
+    depth: float, place: float, half: float, line_load: float
+) -> tuple[float, float]:
+    """Largest pressure and half-width on the worn profile itself, leaned until it lies about its normal."""
+    nodes = 301
+    x = np.linspace(-2.5, 2.5, nodes) * half
+    step = x[1] - x[0]
+    gap = 0.5 * CURVATURE * x**2 + depth * scar(place + x)
+    angle = (np.arange(400) + 0.5) * np.pi / 400
+    s = place + half * np.cos(angle)
+    gap -= x * np.mean(-depth * scar(s) * (s - FLANK / 2.0) / SCAR**2)
+    away = np.subtract.outer(x, x)
+    sides = [away + side * step / 2.0 for side in (1.0, -1.0)]
+    log = [one * (np.log(np.abs(one)) - 1.0) for one in sides]
+    soft = -4.0 / (np.pi * MODULUS) * (log[0] - log[1])
+    held = np.abs(x) < half
+    for _ in range(200):
+        at = np.flatnonzero(held)
+        matrix = np.zeros((at.size + 1, at.size + 1))
+        matrix[:-1, :-1], matrix[:-1, -1], matrix[-1, :-1] = soft[np.ix_(at, at)], -1.0, step
+        found = np.linalg.solve(matrix, np.append(-gap[at], line_load))
+        pressure = np.zeros(nodes)
+        pressure[at] = found[:-1]
+        overlap = gap + soft @ pressure - found[-1] < -1e-15
+        after_ = (held & (pressure > 0.0)) | (~held & overlap)
+        if np.array_equal(after_, held):
+            return float(pressure.max()), 0.5 * step * np.count_nonzero(held)
+        held = after_
+    raise AssertionError("the active set did not settle")
+
+
+@pytest.mark.parametrize(("hollow", "within"), [(0.4, 0.08), (0.8, 0.16)])
+def test_worn_flanks_have_the_pressure_of_a_half_space_solve(hollow, within):
+    """Half-widths are exact, pressures nearly, from the bottom of a scar to its edge."""
+    places = FLANK / 2.0 + SCAR * np.array([0.0, 0.7, 1.2, 2.0])
+    depth = hollow * CURVATURE * SCAR**2
+    for line_load in (2e4, 1e5, 4e5):
+        half, wide = pressed_lines(depth * in_cells(80), places, line_load)
+        assert not wide.any()
+        for place, b in zip(places, half, strict=True):
+            pressure, width = half_space_solve(depth, place, b, line_load)
+            assert 2.0 * line_load / (np.pi * b) == pytest.approx(pressure, rel=within)
+            assert b == pytest.approx(width, rel=0.025)
+
+
+def test_contacts_over_two_cells_wide_do_not_ask_how_many_there_are():
+    depth, places = 0.4 * CURVATURE * SCAR**2, FLANK / 2.0 + SCAR * np.array([0.0, 0.7, 1.2, 2.0])
+    half = [pressed_lines(depth * in_cells(n), places, 4e5)[0] for n in (20, 40, 80)]
+    assert half[0] == pytest.approx(half[2], rel=0.02)
+    assert half[1] == pytest.approx(half[2], rel=0.005)
+
+
+def test_noise_of_single_cells_neither_sharpens_nor_flattens_contacts():
+    noise = 2e-8 * np.random.default_rng(7).standard_normal(80)
+    places, line_load = np.linspace(0.4, 0.6, 40) * FLANK, 2e5
+    new, _ = pressed_lines(np.zeros(80), places, line_load)
+    half, _ = pressed_lines(1e-6 + noise, places, line_load)
+    raw = np.abs(np.diff(noise, n=2)).max() / (FLANK / 80) ** 2
+    assert raw > 0.5 * CURVATURE
+    assert np.abs(half / new - 1.0).max() < 0.03
+
+
+def test_flanks_that_conform_are_no_half_spaces():
+    """A scar that is hollower than the flanks are round carries beyond its edges or not at all."""
+    places = np.array([FLANK / 2.0])
+    away = np.linspace(-1.0, 1.0, 40)
+    depths = 1.2 * CURVATURE * (FLANK / 2.0) ** 2 * (1.0 - away**2)
+    half, wide = pressed_lines(depths, places, 1e6)
+    assert wide.all()
+    assert half == pytest.approx(min(WIDEST / (CURVATURE / 2.0), FLANK), rel=1e-6)
+
+
+def bisected(depth: np.ndarray, place: float, line_load: float) -> float:
+    """Half-width in balance, by sums over second differences of the cells, by a parabola of its variance."""
+    length = FLANK / depth.size
+    middles = (np.arange(depth.size) + 0.5) * length
+    bend = np.pad(np.diff(depth, n=2), 1) / length**2
+    s = (np.arange(4000) + 0.5) / 2000.0 - 1.0
+
+    def lacks(half: float) -> bool:
+        at = place + np.sqrt(1.25) * max(half, 2.0 * length) * s
+        felt = CURVATURE + np.mean(1.5 * (1.0 - s**2) * np.interp(at, middles, bend))
+        return bool(np.pi * MODULUS * half**2 * felt < 8.0 * line_load)
+
+    low, high = 1e-4 * FLANK, FLANK
+    for _ in range(50):
+        middle = np.sqrt(low * high)
+        low, high = (middle, high) if lacks(middle) else (low, middle)
+    return float(low)
+
+
+def test_half_widths_on_random_worn_flanks_are_those_that_bisection_finds():
+    """Smooth and rough scars, narrow and wide contacts, beyond the cells, flanks that nearly conform."""
+    rng = np.random.default_rng(8)
+    x, waves = (np.arange(40) + 0.5) / 40, np.arange(1, 7)
+    tested = 0
+    for size in (0.1, 0.3, 1.0, 2.0, 6.0, 6.0):
+        shape = np.cos(np.pi * waves * x[:, None] + rng.uniform(0.0, 6.0, 6)) / waves**2
+        depth = size * CURVATURE * (FLANK / 8) ** 2 * shape @ rng.standard_normal(6)
+        depth += 1e-8 * rng.standard_normal(40) - depth.min()
+        places = rng.uniform(-0.02, 1.02, 12) * FLANK
+        for line_load in (1e3, 3e4, 6e5):
+            half, wide = pressed_lines(depth, places, line_load)
+            expected = [bisected(depth, place, line_load) for place in places[~wide]]
+            assert half[~wide] == pytest.approx(np.array(expected), rel=1e-5)
+            tested += len(expected)
+    assert tested > 150

@@ -310,14 +310,14 @@ def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     of_load = {name: f"{value:+.3f}".replace("-", "−") for name, value in told["load"].items()}
     row = f'>load</th><td class="n">{of_load["life"]} %</td><td class="n">{of_load["depth"]} %</td>'
     assert row in page
-    ((name, words),) = SECTION.answer(outcome)
-    assert name == "Wear"
-    assert "after 3000000 turns of gear 1" in words
+    (figure,) = SECTION.answer(outcome)
+    assert figure.name == "wear"
+    assert "after 3000000 turns of gear 1" in figure.words
     (printed,) = SECTION.screen(outcome)
     assert printed.line == "The march ended after as many turns as were asked for."
     severe = outcome.parts["wear"].assign(severe_cycles=((), 1e6))
-    ((_, words),) = SECTION.answer(Outcome(outcome.manifest, {"wear": severe}))
-    assert "; severe wear (1.5 times the least rate) begins at 1000000" in words
+    (figure,) = SECTION.answer(Outcome(outcome.manifest, {"wear": severe}))
+    assert "; severe wear (1.5 times the least rate) begins at 1000000" in figure.words
 
 
 REFUSED = {

@@ -36,7 +36,7 @@ class Progress(Protocol):
     """Told how far a piece is."""
 
     def __call__(self, done: int, doing: str = "") -> None:
-        """Told the number of points that are done, and what is being done where points take long."""
+        """Told the number of points that are done, 0 where none are counted, and what takes long."""
 
 
 def silent(done: int, doing: str = "") -> None:

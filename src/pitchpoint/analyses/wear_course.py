@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from itertools import count
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from pitchpoint.cases.schema import HARDNESS, WEAR_LAND, WearTable
 from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.worn import BRIDGED, WIDEST
 from pitchpoint.efficiency.quasi_static import contacts_at
 from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
@@ -54,9 +56,9 @@ def _course(built: Built) -> _Course:
     table, design = asked(built), built.design
     roughness = float(design.roughness.ra_1), float(design.roughness.ra_2)
     model = wear_model(built.case, built.solids, roughness, built.film_model)
-    parts, count = int(table.phases), int(table.cells)
+    parts, every = int(table.phases), int(table.cells)
     try:
-        start, cells = as_new(design, built.operation, built.models[0], parts=parts, count=count)
+        start, cells = as_new(design, built.operation, built.models[0], parts=parts, count=every)
     except InputError as error:
         raise InputError(error.message, key="wear") from None
     return _Course(
@@ -128,11 +130,20 @@ def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | 
     if before.end:
         return None
     limit = _limit(built)
-    part = before.turns / limit.turns
-    progress(round(1e4 * part), f"{before.turns:.3g} of {limit.turns:.3g} turns")
+    states = count(1)
+
+    def rate(depth: np.ndarray) -> Rate:
+        deepest = 1e6 * float(before.depth.max())
+        progress(
+            0,
+            f"{before.turns:.3g} of {limit.turns:.3g} turns, {deepest:.3g} um deep, state {next(states)} "
+            "of the next step",
+        )
+        return _rate(built, depth)
+
     reached = after(
         before,
-        lambda depth: _rate(built, depth),
+        rate,
         limit,
         start=float(last.attrs["first_pressure"]),
         tolerance=asked(built).tolerance,
@@ -320,7 +331,8 @@ def _warnings(
             "Wear: what the life depends on is not told; its derivatives take minutes for teeth that a ring "
             "couples. Ask for them by wear.sensitivities = true."
         )
-    if np.any(values["conforming"]):
+    line = built.design.mesh.shape == "line"
+    if np.any(values["conforming"]) and not line:
         first = float(values["cycles"][int(np.argmax(values["conforming"]))])
         told.append(
             f"Wear: from {first:.3g} turns on worn flanks conform; their contacts are taken to keep a tenth "
@@ -342,7 +354,21 @@ def _warnings(
             f"softer one, {HARDNESS.show(_hardness(built))}: beyond it the surface yields, which no law of "
             "wear here knows of."
         )
-    if end == "outgrown":
+    cells = _course(built).cells
+    longest, span = float(np.max(np.asarray(cells.lengths))), float(cells.span[0])
+    if line and span < BRIDGED * longest:
+        told.append(
+            f"Wear: contacts reach {1e6 * span:.2g} um to each side on average, less than {BRIDGED:g} cells "
+            f"of {1e6 * longest:.2g} um: curvatures are averaged over these, and pressures on worn flanks "
+            "depend on wear.cells."
+        )
+    if end == "outgrown" and line:
+        told.append(
+            f"Wear: the march ends where a contact would grow wider to each side than {WIDEST:g} of the "
+            "radius of the sharper flank as new, or than a flank is long: worn flanks conform there, and "
+            "pressures of half spaces end."
+        )
+    elif end == "outgrown":
         told.append(
             f"Wear: the march ends where contacts have grown to {ROOM:g} times the width that they had: they "
             "conform, and Hertz's theory ends."

@@ -44,9 +44,16 @@ def asperity_share(
     found = np.zeros(loaded.shape)
     if loaded.any():
         given = {name: np.broadcast_to(one, loaded.shape)[loaded] for name, one in asked.items()}
-        contacts = model.contacts(**given, oil=oil, temperature=temperature)
+        # Zones of engagement repeat each other but for rounding: each film is solved once.
+        rounded = [np.array([f"{x:.9e}" for x in one]) for one in given.values()]
+        _, first, same = np.unique(
+            np.stack(rounded, axis=1), axis=0, return_index=True, return_inverse=True
+        )
+        once = {name: one[first] for name, one in given.items()}
+        contacts = model.contacts(**once, oil=oil, temperature=temperature)
         films = solve_lines(contacts, nodes=model.nodes, profiles=False)
-        found[loaded] = np.where(films.solved, np.asarray(films.film.asperity_share), np.nan)
+        share = np.where(films.solved, np.asarray(films.film.asperity_share), np.nan)
+        found[loaded] = share[same.ravel()]
     return found
 
 

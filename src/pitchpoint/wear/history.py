@@ -12,7 +12,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot, Surfaces
-from pitchpoint.contact.worn import Worn, WornAt, with_worn
+from pitchpoint.contact.worn import Worn, WornAt, averaged, with_worn
 from pitchpoint.efficiency.quasi_static import (
     Coupling,
     Design,
@@ -206,7 +206,8 @@ class Turn(eqx.Module):
         volume: worn off a flank of each member, from force and sliding alone [m3].
         pressure: largest one [Pa].
         conforming: True where a loaded contact is flatter than it is taken for.
-        outgrown: True where an ellipse reaches beyond the cells across the face.
+        outgrown: True where an ellipse reaches beyond the cells across the face, or a line contact is too
+            wide for half spaces, see `averaged`.
         lost: True where the equilibrium of the contacts was not found, or a film.
 
     Source: Archard (1953); Andersson (1975), single-point observation: each point of a flank slides against
@@ -448,13 +449,15 @@ def one_turn(
     contacts, flat = worn_contacts(cells, start, depth)
     worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
     share = shares_at(worn, contacts, operation.load, models, start.body)
-    known = start.engaged(share, contacts).loaded()
+    known = start.engaged(share, contacts if contacts.shape == "ellipse" else None).loaded()
+    known, wide = felt_over_width(design, operation, models, cells, known, depth)
     if wear.films is not None:
         at, _ = travelled(design, operation, models, known)
         wear = wear.solved(at, design.lubricant, operation.temperature)
     found = wear_of(design, operation, models, wear, cells, known)
     conforming = np.any(np.asarray(flat) & (np.asarray(share) > 0.0))
-    return replace(found, conforming=array(conforming))
+    outgrown = found.outgrown | np.any(np.asarray(wide))
+    return replace(found, conforming=array(conforming), outgrown=array(outgrown))
 
 
 def turn_alone(
@@ -473,8 +476,11 @@ def turn_alone(
     contacts, flat = worn_contacts(cells, start, depth)
     worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
     share = models.share(worn, contacts, operation.load, start.body, start.teeth)
-    found = wear_of(design, operation, models, wear, cells, start.engaged(share, contacts))
-    return replace(found, conforming=jnp.any(flat & (share > 0.0)))
+    known = start.engaged(share, contacts if contacts.shape == "ellipse" else None)
+    known, wide = felt_over_width(design, operation, models, cells, known, depth)
+    found = wear_of(design, operation, models, wear, cells, known)
+    outgrown = found.outgrown | jnp.any(wide)
+    return replace(found, conforming=jnp.any(flat & (share > 0.0)), outgrown=outgrown)
 
 
 _turn_alone = program(turn_alone)
@@ -492,6 +498,35 @@ def worn_contacts(
         depth: worn off so far [m].
     """
     return with_worn(start.contacts, start.worn(cells, depth), start.spots)
+
+
+@program
+def felt_over_width(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    cells: Cells,
+    known: Engagement,
+    depth: Depths,
+) -> tuple[Engagement, Bool[Array, "pair slice node"]]:
+    """Loaded line contacts with the curvature of worn flanks over their width, and where they conform.
+
+    Args:
+        design: with flanks as new.
+        operation: one operating point.
+        models: any.
+        cells: on both flanks.
+        known: contacts of a period, lines of flanks as new, and what they carry.
+        depth: worn off so far [m].
+
+    Ellipses stay as they are.
+    """
+    contacts, lanes = known.contacts, known.share.shape
+    if contacts.shape == "ellipse":
+        return known, jnp.zeros(lanes, bool)
+    at, _ = travelled(design, operation, models, known)
+    felt, wide = averaged(contacts, cells.surfaces(depth), at.line_load, at.modulus)
+    return replace(known, contacts=felt), wide
 
 
 @program
