@@ -311,7 +311,7 @@ def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     row = f'>load</th><td class="n">{of_load["life"]} %</td><td class="n">{of_load["depth"]} %</td>'
     assert row in page
     (figure,) = SECTION.answer(outcome)
-    assert figure.name == "wear"
+    assert figure.name == "Wear depth"
     assert "after 3000000 turns of gear 1" in figure.words
     (printed,) = SECTION.screen(outcome)
     assert printed.line == "The march ended after as many turns as were asked for."
