@@ -1,13 +1,14 @@
 """Plain NumPy rival for the wear benchmark: the march of one spur pair after the other.
 
-Dry wear by Archard's law of a spur pair whose load is shared by stiffness. A rate is one turn of the
-driver on flanks that have lost so much already: gaps and curvatures from cubic B-splines over the
-cells of both flanks, forces of pairs that only push, Hertz's half-width, force times sliding laid on
-the cells that each contact passes. The march is that of Bogacki and Shampine as SciPy has it, with
-steps as long as their error allows. What makes it fast:
+Dry wear by Archard's law of a spur pair whose load is shared by stiffness. A rate is one turn of
+the driver on flanks that have lost so much already: gaps from cubic B-splines over the cells of
+both flanks, forces of pairs that only push, Hertz's half-width with the curvature averaged over it,
+force times sliding laid on the cells that each contact passes. The march is that of Bogacki and
+Shampine as SciPy has it, with steps as long as their error allows. What makes it fast:
 
 - everything that flanks as new decide is computed once for a pair: places, speeds, springs, and the
   splines as matrices from cells to contacts;
+- half-widths of the last rate are those with which the search of the next begins;
 - a rate is arrays over all contacts of a turn;
 - all states of one step are remembered, so that none is rated twice.
 
@@ -26,8 +27,14 @@ Array = NDArray[np.float64]
 FIRST = 1e-9
 """Depth that the first step takes off [m]."""
 
-FLATTEST = 0.1
-"""Part of their relative curvature as new that contacts keep at least."""
+BRIDGED = 2.0
+"""Cells to either side over which curvatures are averaged at least."""
+
+REACH = np.sqrt(1.25)
+"""Half-width of the parabola over that of the contact of the same variance."""
+
+SETTLED = 1e-10
+"""Part of the load that half-widths may lack."""
 
 SHORT = 1e-3
 """Ways below this part of a cell count as that long."""
@@ -49,7 +56,6 @@ class Pair(NamedTuple):
         teeth: of both members.
         rate: specific wear rate of both members [1/Pa].
         ends: of both members' cells along the flank, shape (member, 2) [m].
-        span: half-width of the contacts over which a worn flank's curvature counts [m].
         cells: along each flank.
     """
 
@@ -65,7 +71,6 @@ class Pair(NamedTuple):
     teeth: tuple[int, int]
     rate: tuple[float, float]
     ends: Array
-    span: float
     cells: int
 
 
@@ -100,11 +105,36 @@ def spline(place: Array, ends: Array, cells: int, *, straight: bool) -> Array:
     return found
 
 
-def splines(place: Array, ends: Array, cells: int, span: float) -> tuple[Array, Array]:
-    """Matrices from depths of cells to depth at places, and to its second difference over a span."""
-    beside = sum(spline(place + by, ends, cells, straight=True) for by in (-span, span))
-    here = spline(place, ends, cells, straight=True)
-    return spline(place, ends, cells, straight=False), (beside - 2.0 * here) / span**2
+def pieces(depth: Array) -> Array:
+    """The spline through the cells: area since the first middle, depth, its three derivatives, in cells.
+
+    One row for each stretch between middles, and for what is straight on before and behind them.
+    """
+    bend = np.pad(np.diff(depth, n=2), 1)
+    third = np.pad(np.diff(bend), 1)
+    rows = np.empty((5, depth.size + 1))
+    for row, values in zip(rows[1:4], (depth + bend / 6.0, np.gradient(depth), bend), strict=True):
+        row[0], row[1:] = values[0], values
+    rows[4] = third
+    _, height, slope, bend, third = rows
+    inner = (height + slope / 2.0 + bend / 6.0 + third / 24.0)[1:-1]
+    rows[0] = np.concatenate([[0.0, 0.0], np.cumsum(inner)])
+    return rows
+
+
+def mean_bend(rows: Array, middle: Array, reach: Array) -> tuple[Array, Array]:
+    """Second derivative averaged by the parabola that far to either side, and its slope over that reach."""
+    ends = np.stack([middle - reach, middle + reach])
+    piece = np.clip(np.floor(ends) + 1.0, 0, rows.shape[1] - 1).astype(int)
+    t = ends - np.maximum(piece - 1, 0)
+    area, depth, slope, bend, third = rows[:, piece]
+    height = depth + t * (slope + t * (bend / 2.0 + t * third / 6.0))
+    tilt = slope + t * (bend + t * third / 2.0)
+    below = area + t * (depth + t * (slope / 2.0 + t * (bend / 6.0 + t * third / 24.0)))
+    both, mean = height[0] + height[1], (below[1] - below[0]) / reach
+    apart = both - mean
+    rise = tilt[1] - tilt[0] - (both - mean) / reach
+    return 1.5 * apart / reach**2, 1.5 * (rise - 2.0 * apart / reach) / reach**2
 
 
 class Rater:
@@ -112,15 +142,17 @@ class Rater:
 
     def __init__(self, pair: Pair) -> None:
         self.pair, self.count = pair, 0
-        both = [splines(pair.flank[k], pair.ends[k], pair.cells, pair.span) for k in range(2)]
-        self.height = np.concatenate([one for one, _ in both], axis=1)
-        self.bend = np.concatenate([one for _, one in both], axis=1)
-        self.least = FLATTEST * pair.curvature
+        flanks = zip(pair.flank, pair.ends, strict=True)
+        both = [spline(place, ends, pair.cells, straight=False) for place, ends in flanks]
+        self.height = np.concatenate(both, axis=1)
         self.slide = np.abs(pair.speed[0] - pair.speed[1])
         period = 2.0 * np.pi / pair.teeth[0]
         self.lasts = pair.weight * period
         self.ways = np.abs(pair.speed) * self.lasts
         self.length = (pair.ends[:, 1] - pair.ends[:, 0]) / pair.cells
+        begin, cell = pair.ends[:, 0, None, None], self.length[:, None, None]
+        self.middle = (pair.flank - begin) / cell - 0.5
+        self.half: Array | None = None
         self.edges = [
             one[0] + (one[1] - one[0]) * np.arange(1, pair.cells) / pair.cells for one in pair.ends
         ]
@@ -141,14 +173,37 @@ class Rater:
         approach = (pair.force + np.sum(stiff * gaps, axis=0)) / np.sum(stiff, axis=0)
         return np.where(shared, stiff * (approach - gaps), alone)
 
+    def half_widths(self, force: Array, depth: Array) -> Array:
+        """Half-widths that have their loads with the curvature averaged over themselves, by Newton."""
+        pair = self.pair
+        rows = [pieces(one) for one in depth.reshape(2, -1)]
+        loaded = force > 0.0
+        target = np.where(loaded, 8.0 * force / pair.width / (np.pi * pair.modulus), 1e-12)
+        half = np.sqrt(target / pair.curvature) if self.half is None else self.half
+        for _ in range(30):
+            curvature, rise = pair.curvature, np.zeros_like(half)
+            for k in range(2):
+                cells = half / self.length[k]
+                reach = REACH * np.maximum(cells, BRIDGED)
+                bend, slope = mean_bend(rows[k], self.middle[k], reach)
+                curvature = curvature + bend / self.length[k] ** 2
+                rise = rise + np.where(cells > BRIDGED, slope * reach, 0.0) / self.length[k] ** 2
+            lack = half**2 * curvature - target
+            if np.all(np.abs(lack) < SETTLED * target):
+                break
+            half = np.sqrt(np.maximum(half**2 - lack / (curvature + rise / 2.0), 0.25 * half**2))
+        else:
+            raise RuntimeError("no half-widths were found")
+        self.half = half
+        return np.where(loaded, half, 0.0)
+
     def __call__(self, depth: Array) -> Array:
         """Depth that a turn wears off every cell of both members [m]."""
         self.count += 1
         pair, cells = self.pair, self.pair.cells
         shape = pair.curvature.shape
         force = self.forces((self.height @ depth).reshape(shape))
-        curvature = np.maximum(pair.curvature + (self.bend @ depth).reshape(shape), self.least)
-        half = np.sqrt(8.0 * force / pair.width / curvature / (np.pi * pair.modulus))
+        half = self.half_widths(force, depth)
         slid = force * self.slide * self.lasts
         found = np.empty((2, cells))
         for k in range(2):
