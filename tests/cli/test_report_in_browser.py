@@ -1,12 +1,14 @@
 """The report in a real browser, wide and narrow, light and dark: drawn, driven, saved, a silent console."""
 
 import csv
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 from browser import CHROMIUM, Browser, browser
+from pages import payload
 from sound import SMOOTH, quick_first
 
 from pitchpoint.runs.run import run
@@ -98,19 +100,19 @@ def test_a_slider_moves_the_teeth(wide: Browser) -> None:
     assert "phase 0.75" in wide.run(told)
 
 
-def test_two_menus_choose_law_and_temperature_of_a_map(wide: Browser) -> None:
+def test_two_menus_choose_law_and_temperature_of_a_map(wide: Browser, report: Path) -> None:
     values = "JSON.stringify(document.getElementById('map_mean_loss').data[0].z)"
     names = "[...document.querySelectorAll('#map .menu')].map(m => m.firstChild.textContent.trim())"
     assert wide.run(names) == ["Friction", "Oil at"]
-    given = "JSON.parse(document.getElementById('figures').textContent).menus.map_mean_loss"
+    maps = payload(report.read_text("utf-8"))["menus"]["map_mean_loss"]
     choose = "(m => { m.selectedIndex = (m.selectedIndex + 1) % 3; m.dispatchEvent(new Event('input')) })"
     for menu in (0, 1, 0, 1):
         wide.run(f"{choose}(document.querySelectorAll('#map select')[{menu}])")
         law, oil = wide.run(
             "[...document.querySelectorAll('#map select')].map(m => m.selectedIndex)"
         )
-        wanted = f"{given}[{3 * law + oil}].map_mean_loss[0].z[0]"
-        assert wide.wait(f"JSON.stringify({wanted}) === {values}")
+        chosen = json.dumps(maps[3 * law + oil]["map_mean_loss"][0]["z"][0])
+        assert wide.wait(f"JSON.stringify({chosen}) === {values}")
     ends = "(t => [t.zmin, t.zmax])(document.getElementById('map_mean_loss').data[0])"
     low, high = wide.run(ends)
     assert low == 0.0 < high
