@@ -167,5 +167,5 @@ def _more(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Lin
         and section.parts
         and any(set(section.parts) <= set(outcome.parts) for outcome in outcomes.values())
     ]
-    every = f"Tables by --full: answer, {', '.join(titles).lower()}"
+    every = f"Tables by --full: {', '.join(['answer', *titles]).lower()}"
     return [Line(f"Report: {report}"), Line(show.first_clauses(every, width))]
