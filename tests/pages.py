@@ -7,13 +7,18 @@ import json
 import re
 from typing import Any
 
-__all__ = ["payload", "unpacked"]
+__all__ = ["opened", "payload", "unpacked"]
 
 
 def unpacked(page: str, name: str) -> Any:
     """Content that a page holds compressed."""
     (held,) = re.findall(rf'<script type="text/plain" id="{name}">(.*?)</script>', page)
     return json.loads(gzip.decompress(base64.b64decode(held)))
+
+
+def opened(page: str) -> str:
+    """A report with the text of its figures behind it."""
+    return page + json.dumps(payload(page), ensure_ascii=False)
 
 
 def payload(page: str) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import Any
 import bank
 import numpy as np
 import pytest
+from pages import opened
 from sound import PAIR
 
 from pitchpoint.analyses import film_squeeze
@@ -156,7 +157,7 @@ def test_a_film_that_is_lost_ends_the_march_and_leaves_steady_ones(
 
 @pytest.mark.whole
 def test_report_screen_and_json_have_the_squeeze(outcome: Outcome) -> None:
-    page = render({"default": outcome})
+    page = opened(render({"default": outcome}))
     for words in (
         '<section id="film_squeeze"',
         "Film over the engagement",

@@ -9,6 +9,7 @@ from typing import Any
 import bank
 import numpy as np
 import pytest
+from pages import opened
 from sound import PAIR
 from stopped import stopped_and_gone_on
 
@@ -273,7 +274,7 @@ def test_films_with_their_heat_have_temperatures_beside_those_of_lines(
 
 @pytest.mark.whole
 def test_a_report_has_the_temperatures_and_no_word_of_isothermal_films(warm: Outcome) -> None:
-    page = render({"default": warm})
+    page = opened(render({"default": warm}))
     assert "films are isothermal" not in page.lower() and "With heat (mean film)" in page
     for words in ("Temperature above the inlet, in the warmest row", "patch0_0_rise"):
         assert words in page
@@ -340,7 +341,7 @@ def test_progress_tells_contacts_and_steps(case: str) -> None:
 
 @pytest.mark.whole
 def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
-    page = render({"default": outcome})
+    page = opened(render({"default": outcome}))
     for words in (
         '<section id="finite_film"',
         "The contact that carries most",
@@ -353,7 +354,8 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
     assert '"type": "heatmap"' in page or '"type":"heatmap"' in page
     (first, second) = SECTION.screen(outcome)
     assert first.title == "Films of finite contacts"
-    assert "p_0.5b [MPa]" in first.rows[0] and "p_max [MPa]" not in first.rows[0]
+    assert head("largest_end_pressure") in first.rows[0]
+    assert head("largest_film_pressure") not in first.rows[0]
     assert [row["friction by"] for row in second.rows] == [
         "films",
         "lines without ends",
@@ -377,7 +379,7 @@ def test_without_a_torque_nothing_is_loaded(case: str) -> None:
     words = next(iter(SECTION.answer(one))).words
     first, *_ = SECTION.screen(one)
     assert words.startswith("Nothing is loaded") and first.line == words
-    page = render({"default": one})
+    page = opened(render({"default": one}))
     assert words in page and "No film was found" not in page
 
 
@@ -397,7 +399,7 @@ def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
     assert "12 of 12 contact lines touch at one end only" in first.line
     words = next(iter(SECTION.answer(one))).words
     assert " at least, " in words and "undefined" not in words
-    page = render({"default": one})
+    page = opened(render({"default": one}))
     assert "not compared" in page and "undefined, no power" not in page
 
 

@@ -16,6 +16,7 @@ from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.registry import JOINT as SECTION
 from pitchpoint.views.report import render
+from pitchpoint.views.screen import head
 from pitchpoint.views.sections.joint import critical_rows
 
 DRIVE = f"""{WAVE}
@@ -128,7 +129,9 @@ def test_the_joint_is_told(deviating: Outcome, outcome: Outcome) -> None:
     row = critical_rows(deviating)[0]
     assert row["wave of the error"] == "circular spline, order 2"
     critical = float(deviating.parts["joint"]["critical_speed"][0, 0])
-    assert float(row["n_c [rpm], held"]) == pytest.approx(critical * 30.0 / np.pi, rel=1e-4)
+    assert float(row[f"{head('critical_speed', deviating.parts['joint'])}, held"]) == pytest.approx(
+        critical * 30.0 / np.pi, rel=1e-4
+    )
     (printed,) = SECTION.screen(deviating)
     assert "on a motor that holds its speed" in printed.line
     page = render({"a": outcome, "b": deviating})

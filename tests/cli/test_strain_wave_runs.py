@@ -252,12 +252,16 @@ def test_running_without_load(drive: Outcome) -> None:
     assert (data["back_driving_torque"].values > 100.0 * 0.015).all()
     words = dict(starting_answer(drive, "constant"))
     rows = running_rows(drive)
-    assert [row["θ [degC]"] for row in rows] == ["20", "40", "60"]
-    told, place = figures(drive)["running"], [row["θ [degC]"] for row in rows].index("40")
-    shown = float(rows[place]["T_start [N m]"])
+    assert [row[head("temperature")] for row in rows] == ["20", "40", "60"]
+    told, place = figures(drive)["running"], [row[head("temperature")] for row in rows].index("40")
+    shown = float(rows[place][head("starting_torque")])
     assert shown == pytest.approx(told["constant"]["starting_torque"][place], rel=1e-4)
     torques = [
-        [float(row[key]) for row in rows] for key in ("T_0 at 2000 rpm [N m]", "T_back [N m]")
+        [float(row[key]) for row in rows]
+        for key in (
+            "mean input torque without load at 2000 rpm [N m]",
+            head("back_driving_torque"),
+        )
     ]
     assert all(np.all(np.diff(torque) <= 0.0) for torque in torques)
     there = data.sel(law="constant", temperature=313.15)

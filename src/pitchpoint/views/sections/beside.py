@@ -90,9 +90,9 @@ def running_rows(outcome: Outcome) -> list[dict[str, str]]:
     speed = operating_point(outcome).speed
     there = data.sel(speed=speed, method="nearest")
     heads = {name: head(name, data) for name in TORQUES}
-    symbol = show.described("no_load_torque", data).symbol
-    at = f"{symbol} at {shown('speed', speed, data)} {show.unit_of('speed', data)}"
-    heads["no_load_torque"] = heads["no_load_torque"].replace(symbol, at, 1)
+    name = show.described("no_load_torque", data).long_name
+    at = f"{name} at {shown('speed', speed, data)} {show.unit_of('speed', data)}"
+    heads["no_load_torque"] = heads["no_load_torque"].replace(name, at, 1)
     return [
         {"friction law": law, head("temperature"): shown("temperature", float(degree))}
         | {heads[n]: _screened(data, n, float(there[n].values[k, place])) for n in TORQUES}

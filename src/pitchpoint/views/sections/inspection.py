@@ -176,7 +176,7 @@ def _on_screen(data: xr.Dataset, gear: str) -> dict[str, str]:
     plays = own["backlash_angle"].values
     ends = plays if plays.size == 1 else plays[[1, -1]]
     words = [shown("backlash_angle", float(v)) for v in ends]
-    return row | {f"backlash {head('backlash_angle')}": " to ".join(words)}
+    return row | {head("backlash_angle"): " to ".join(words)}
 
 
 INSPECTION = Section(

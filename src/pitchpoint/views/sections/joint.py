@@ -176,7 +176,8 @@ def _campbell(name: str, data: xr.Dataset) -> Figure:
 
 
 def _title(name: str, data: xr.Dataset) -> str:
-    return f"{show.described(name, data).long_name} {head(name, data)}"
+    variable = show.described(name, data)
+    return show.bracketed(f"{variable.long_name} {variable.symbol}", variable)
 
 
 def _own_table(outcome: Outcome) -> Table:

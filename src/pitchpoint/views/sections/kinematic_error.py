@@ -164,7 +164,7 @@ def error_rows(outcome: Outcome) -> list[dict[str, str]]:
     """Kinematic error, peak to peak, by the deviations of each member and of both."""
     name, data = "kinematic_error_range", outcome.parts.get("kinematic_error")
     return [
-        {f"kinematic error {head(name, data)}": curve}
+        {head(name, data): curve}
         | {cause: shown(name, float(v), data) for cause, v in zip(causes, values, strict=True)}
         for curve, causes, values in error_ranges(data)
     ]
