@@ -259,7 +259,7 @@ def test_running_without_load(drive: Outcome) -> None:
     torques = [
         [float(row[key]) for row in rows]
         for key in (
-            "mean input torque without load at 2000 rpm [N m]",
+            "mean input torque without load at 2000 rpm [N\u00a0m]",
             head("back_driving_torque"),
         )
     ]
