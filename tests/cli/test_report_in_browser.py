@@ -74,7 +74,7 @@ def test_all_is_drawn_and_the_console_is_silent(
     chromium.wait(ALL)
     assert chromium.run(f"{VISIBLE}.every(p => p.querySelector('svg'))")
     assert top(chromium, "main figure svg") < 1200
-    assert top(chromium, ".card .big") < 1200
+    assert top(chromium, ".tiles strong") < 1200
     assert chromium.run("document.documentElement.scrollWidth") <= width
     ground = chromium.run(
         "getComputedStyle(document.querySelector('.plot .main-svg')).backgroundColor"

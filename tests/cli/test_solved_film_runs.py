@@ -36,7 +36,7 @@ def test_a_run_tells_turns_and_what_is_left_out(tmp_path, capsys, monkeypatch):
     file, out = tmp_path / "pair.toml", tmp_path / "out"
     file.write_text(FILE, "utf-8")
     sweep = "operation.speed=1000 rpm:2000 rpm:2"
-    command = ["pitchpoint", "run", str(file), "-o", str(out), "--sweep", sweep]
+    command = ["pitchpoint", "run", str(file), "-o", str(out), "--full", "--sweep", sweep]
     monkeypatch.setattr(sys, "argv", command)
     with pytest.raises(SystemExit) as stop:
         main()

@@ -159,7 +159,7 @@ def test_json_of_a_case_on_disk_has_the_figures_by_stage(
 def test_the_screen_has_a_row_for_each_stage(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    call("run", folder / "out" / "default" / "manifest.json", "-o", folder / "again")
+    call("run", folder / "out" / "default" / "manifest.json", "-o", folder / "again", "--full")
     lines = capsys.readouterr().out.splitlines()
     assert any(line.startswith("friction law") and "stage" in line for line in lines)
     assert any("Averages over: all meetings of phases." in line for line in lines)
