@@ -916,6 +916,7 @@ def _show(rows: list[dict[str, str]], as_json: bool, columns: tuple[str, ...]) -
 
 
 def _table(rows: Sequence[Mapping[str, str]], columns: tuple[str, ...]) -> None:
+    from rich.markup import escape
     from rich.table import Column, Table
 
     from pitchpoint.views.columns import fitted
@@ -924,14 +925,12 @@ def _table(rows: Sequence[Mapping[str, str]], columns: tuple[str, ...]) -> None:
     if not used:
         return
     console = _console()
-    cells = [
-        {name: visible(" ".join(str(row.get(name, "")).split())) for name in used} for row in rows
-    ]
+    cells = [{name: _one_line(str(row.get(name, ""))) for name in used} for row in rows]
     for block in fitted(cells, used, console.width):
         heads = [Column(_plain(name), width=size, overflow="fold") for name, size in block.items()]
         table = Table(*heads, box=None, padding=(0, 1, 0, 0), pad_edge=False, header_style="bold")
         for row in cells:
-            table.add_row(*(_plain(row[name]) for name in block))
+            table.add_row(*(escape(row[name]) for name in block))
         console.print(table)
 
 
@@ -955,7 +954,12 @@ def _plain(text: str) -> str:
     """Text of others on one line: without rich's markup, and without what steers a terminal."""
     from rich.markup import escape
 
-    return escape(visible(" ".join(text.split())))
+    return escape(_one_line(text))
+
+
+def _one_line(text: str) -> str:
+    """Text of others on one line, without what steers a terminal."""
+    return visible(" ".join(text.split()))
 
 
 def _plain_line(text: str) -> str:

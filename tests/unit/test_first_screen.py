@@ -17,8 +17,9 @@ from pitchpoint.views.first_screen import (
     FEW_LINES,
     beside_each_other,
     first_screen,
-    key_figures,
 )
+from pitchpoint.views.registry import in_order
+from pitchpoint.views.section import key_figures
 
 NUMBER = re.compile(r"\d[\d.,e−+-]*")
 REPORT = Path("results/pair/report.html")
@@ -86,12 +87,12 @@ def test_variants_stand_side_by_side(pair: dict[str, Outcome]) -> None:
     two = {"default": one, "bad": doubting(one, warnings=["tips are pointed."])}
     assert "Doubtful: bad: tips are pointed." in shown(two)
     rows = beside_each_other(two)
-    assert [row[""] for row in rows] == [figure.name for figure in key_figures(one)]
+    assert [row[""] for row in rows] == [figure.name for figure in key_figures(in_order(), one)]
     assert all(row["default"] == row["bad"] for row in rows)
 
 
 def test_key_figures_are_named_once(pair: dict[str, Outcome]) -> None:
-    names = [figure.name for figure in key_figures(pair["default"])]
+    names = [figure.name for figure in key_figures(in_order(), pair["default"])]
     assert len({*names}) == len(names)
 
 

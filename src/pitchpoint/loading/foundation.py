@@ -120,14 +120,13 @@ def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
             HALF_ANGLE_RANGE,
         ),
     )
-    beyond = _beyond_fit(section)
-    if beyond < FELT:
+    outside = [entry for entry in named if not entry[3][0] <= entry[2] <= entry[3][1]]
+    if not outside or (beyond := _beyond_fit(section)) < FELT:
         return ()
     return tuple(
         f"the {name} is {value:.3g}{unit}, beyond the {low:g} to {high:g} of the formula for the compliance "
         f"under the tooth, which differs by {100.0 * beyond:.2g} % from that at the limit"
-        for name, unit, value, (low, high) in named
-        if not low <= value <= high
+        for name, unit, value, (low, high) in outside
     )
 
 

@@ -115,7 +115,7 @@ def answered(data: xr.Dataset) -> str:
 
 def film_key_figure(name: str, words: str) -> KeyFigure:
     """Thinnest film, and the words that go with it."""
-    return key_figure(32.0, name, words.partition(" at least")[0], words)
+    return key_figure(32.0, name, words, " at least")
 
 
 def _none(data: xr.Dataset) -> str:

@@ -12,9 +12,9 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.inputs import words as input_words
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import KeyFigure
+from pitchpoint.views.section import KeyFigure, key_figures
 
-__all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen", "key_figures"]
+__all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen"]
 
 FEW_LINES = 12
 """Lines of a first screen."""
@@ -51,21 +51,17 @@ def first_screen(outcomes: Mapping[str, Outcome], report: Path, width: int) -> l
     doubts = _doubts(outcomes, width)
     foot = [*_rows_met(outcomes, width), *_more(outcomes, report, width)]
     room = FEW_LINES - len(head) - len(doubts) - len(foot)
-    figures = _aligned(key_figures(outcome)[:room], width) if len(outcomes) == 1 else []
-    fails = [line for line in doubts if line.style == "fails"]
-    return [*fails, *head, *(line for line in doubts if line not in fails), *figures, *foot]
-
-
-def key_figures(outcome: Outcome) -> list[KeyFigure]:
-    """What every section answers of a variant, in their order."""
-    each = (figure for section in in_order() for figure in section.answer(outcome))
-    return sorted(each, key=lambda figure: figure.order)
+    figures = _aligned(key_figures(in_order(), outcome)[:room], width) if len(outcomes) == 1 else []
+    fails, doubtful = (
+        [line for line in doubts if line.style == style] for style in ("fails", "doubt")
+    )
+    return [*fails, *head, *doubtful, *figures, *foot]
 
 
 def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     """Values of the key figures of several variants: a row for each figure, a column for each variant."""
     values = {
-        variant: {figure.name: figure.value for figure in key_figures(outcome)}
+        variant: {figure.name: figure.value for figure in key_figures(in_order(), outcome)}
         for variant, outcome in outcomes.items()
     }
     names = dict.fromkeys(name for of_variant in values.values() for name in of_variant)

@@ -26,6 +26,7 @@ __all__ = [
     "Variants",
     "by_variant",
     "key_figure",
+    "key_figures",
     "of_part",
     "panels",
     "reason",
@@ -155,17 +156,16 @@ class KeyFigure:
         return f"{self.value}{'' if self.detail[:1] in ('', ',', ';') else ' '}{self.detail}"
 
 
-def key_figure(order: float, name: str, value: str, words: str) -> KeyFigure:
-    """A key figure of words that begin with its value; the words alone where they do not.
+def key_figure(order: float, name: str, words: str, until: str) -> KeyFigure:
+    """A key figure of words that begin with its value, which ends where others follow.
 
     Example:
-        >>> key_figure(70.0, "stiffness", "40.2 kN m/rad", "40.2 kN m/rad at the operating point").detail
-        'at the operating point'
-        >>> key_figure(70.0, "stiffness", "", "nothing is carried").value
+        >>> key_figure(70.0, "stiffness", "40.2 kN m/rad at the operating point", " at the").value
+        '40.2 kN m/rad'
+        >>> key_figure(70.0, "stiffness", "nothing is carried", " at the").value
         'nothing is carried'
     """
-    if not value or not words.startswith(value):
-        return KeyFigure(order, name, words)
+    value = words.partition(until)[0]
     return KeyFigure(order, name, value, words.removeprefix(value).strip())
 
 
@@ -310,6 +310,12 @@ class Section:
         if self.lacks is not None:
             return self.lacks(page)
         return None if page.having(*self.parts) else reason(page, *self.parts)
+
+
+def key_figures(sections: "Iterable[Section]", outcome: Outcome) -> list[KeyFigure]:
+    """What sections answer of an outcome, in the order of the figures."""
+    each = (figure for section in sections for figure in section.answer(outcome))
+    return sorted(each, key=lambda figure: figure.order)
 
 
 def of_part(part: str, place: str) -> Callable[..., Any]:

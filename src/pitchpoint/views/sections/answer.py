@@ -27,7 +27,7 @@ from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.screen import cell, efficiency_of, head, shown
-from pitchpoint.views.section import Block, Drawn, KeyFigure, Page, Printed, Section
+from pitchpoint.views.section import Block, Drawn, KeyFigure, Page, Printed, Section, key_figures
 from pitchpoint.views.sections.back_driving import back_driving, jamming, locks_from
 from pitchpoint.views.sections.beside import loss_split
 from pitchpoint.views.sections.spread import spread, spread_sentence
@@ -98,8 +98,7 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
     """What the top of the page says about one variant."""
     manifest, parts = outcome.manifest, outcome.parts
     single = of_contact(parts.get("operation", ()))
-    each = (figure for section in page.sections for figure in section.answer(outcome))
-    figures = sorted(each, key=lambda figure: figure.order)
+    figures = key_figures(page.sections, outcome)
     return {
         "name": name,
         "oil": manifest["oil"],

@@ -258,5 +258,4 @@ def joint_printed(outcome: Outcome) -> Iterator[Printed]:
 
 def joint_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """Lowest natural frequencies of the joint."""
-    words = joint_answer(outcome)
-    yield key_figure(79.5, "Joint resonance", words.partition(" on a motor")[0], words)
+    yield key_figure(79.5, "Joint resonance", joint_answer(outcome), " on a motor")

@@ -185,9 +185,7 @@ def error_blocks(page: Page) -> Iterator[Block]:
 
 def error_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """Peak to peak of the kinematic error."""
-    words = kinematic_error_answer(outcome)
-    value = words.partition(" peak to peak")[0] if " peak to peak" in words else ""
-    yield key_figure(73.0, "Kinematic error", value, words)
+    yield key_figure(73.0, "Kinematic error", kinematic_error_answer(outcome), " peak to peak")
 
 
 def error_printed(outcome: Outcome) -> Iterable[Printed]:

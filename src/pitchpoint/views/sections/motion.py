@@ -533,5 +533,4 @@ def _frequencies(data: xr.Dataset) -> str:
 
 def motion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """Efficiency and transmission error in motion."""
-    words = motion_answer(outcome)
-    yield key_figure(34.0, "In motion", words.partition(" of the teeth with")[0], words)
+    yield key_figure(34.0, "In motion", motion_answer(outcome), " of the teeth with")

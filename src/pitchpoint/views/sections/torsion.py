@@ -437,11 +437,7 @@ def _of_variant(it: Panel, outcome: Outcome) -> Iterator[Block]:
 def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """Stiffness at the operating point, and lost motion where a maker would state it."""
     words, data = torsion_answer(outcome), outcome.parts["torsion"]
-    title = _words(data).stiffness
-    value = (
-        words.partition(" at the operating point")[0] if " at the operating point" in words else ""
-    )
-    yield key_figure(70.0, title, value, words)
+    yield key_figure(70.0, _words(data).stiffness, words, " at the operating point")
     if "catalogue_lost_motion" in data:
         values = data["catalogue_lost_motion"].values
         shown = dict.fromkeys(show.quantity("catalogue_lost_motion", float(v)) for v in values)

@@ -410,8 +410,7 @@ def _screen(data: xr.Dataset) -> Iterator[Printed]:
 
 def wear_facts(outcome: Outcome) -> Iterable[KeyFigure]:
     """Depth at the end of the march."""
-    words = _answer(outcome.parts["wear"])
-    return [key_figure(30.0, "Wear depth", words.partition(" at most")[0], words)]
+    return [key_figure(30.0, "Wear depth", _answer(outcome.parts["wear"]), " at most")]
 
 
 def wear_printed(outcome: Outcome) -> Iterable[Printed]:
