@@ -52,6 +52,7 @@ def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:
     assert f"{ripple:.4g} N m peak to peak" in by_name["Input"]
     assert {"Loss", "Stress of flanks", "Stress of roots", "Backlash"} <= {*by_name}
     assert f"Report: {REPORT}" in figures
+    assert figures[-1] == "Tables by --full: answer, strength"  # it has no other tables
 
 
 @pytest.mark.parametrize("width", [40, 60, 100])

@@ -12,7 +12,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.inputs import words as input_words
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import KeyFigure, key_figures
+from pitchpoint.views.section import KeyFigure, Page, key_figures, said
 
 __all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen"]
 
@@ -155,13 +155,16 @@ def _folded(text: str, width: int) -> list[str]:
 
 
 def _more(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Line]:
-    """Where everything else is, on two lines."""
+    """Where everything else is, on two lines: the page, and of which sections there are tables."""
+    page = Page(outcomes, {})
     titles = [
-        section.short
+        said(section.short, page)
         for section in in_order()
-        if isinstance(section.short, str)
-        and section.parts
-        and any(set(section.parts) <= set(outcome.parts) for outcome in outcomes.values())
+        if any(
+            printed.rows or printed.line
+            for outcome in outcomes.values()
+            for printed in section.screen(outcome)
+        )
     ]
-    every = f"Tables by --full: {', '.join(['answer', *titles]).lower()}"
+    every = f"Tables by --full: {', '.join(titles).lower()}"
     return [Line(f"Report: {report}"), Line(show.first_clauses(every, width))]
