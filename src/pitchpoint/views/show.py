@@ -236,7 +236,7 @@ def first_clauses(sentence: str, width: int) -> str:
         return sentence
     ends = [found.start() for found in _CLAUSE.finditer(sentence) if found.start() <= width - 2]
     if ends and ends[-1] >= _MOST_OF * width:
-        return f"{sentence[: ends[-1]]} …"
+        return f"{sentence[: ends[-1]].rstrip()} …"
     words = sentence[: width - 1].rsplit(" ", 1)[0].split(" ")
     while len(words) > 1 and _NUMBER.fullmatch(words[-1]):
         words.pop()  # its unit is what was cut off
