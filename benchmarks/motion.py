@@ -159,16 +159,19 @@ def one_case(own: Design, bearings: bool) -> float:
     return rivals / each
 
 
-def many(own: Design, bearings: bool, count: int) -> None:
-    repeats = min(SIZES.repeats, 3)
-    moves, motion = moving(own, bearings), np.asarray(own.mesh.motion)
-    size = moves.mass.shape[0]
-    times = array(np.linspace(0.0, 2.0 * float(own.mesh.period) / SPEED, 3))
+def drawn(own: Design, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Torques of both bodies [N m], speeds of the driver [rad/s] and states at the start of many points."""
     rng = np.random.default_rng(0)
     loads, speeds = LOAD * rng.uniform(0.5, 1.5, count), SPEED * rng.uniform(0.8, 1.2, count)
-    torques = np.stack([DRIVE * loads, loads], axis=1)
     starts = np.zeros((count, 12))
-    starts[:, 6:8] = speeds[:, None] * motion
+    starts[:, 6:8] = speeds[:, None] * np.asarray(own.mesh.motion)
+    return np.stack([DRIVE * loads, loads], axis=1), speeds, starts
+
+
+def two_cycles(own: Design, bearings: bool) -> Callable[..., tuple[jax.Array, jax.Array]]:
+    """Rates of both bodies after two mesh cycles, and steps, from torques and the speed of the driver."""
+    moves, motion = moving(own, bearings), np.asarray(own.mesh.motion)
+    times = array(np.linspace(0.0, 2.0 * float(own.mesh.period) / SPEED, 3))
 
     def single(given: tuple[jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
         torque, speed = given
@@ -178,9 +181,17 @@ def many(own: Design, bearings: bool, count: int) -> None:
         ]
         rate = moves.padded(speed * jnp.asarray(motion))
         driven = dataclasses.replace(moves, bodies=tuple(bodies))
-        found = transient_motion(driven, times, jnp.zeros(size), rate)
+        found = transient_motion(driven, times, jnp.zeros(moves.mass.shape[0]), rate)
         return found.rate[:2, -1], found.status.iterations
 
+    return single
+
+
+def many(own: Design, bearings: bool, count: int) -> None:
+    repeats = min(SIZES.repeats, 3)
+    torques, speeds, starts = drawn(own, count)
+    single = two_cycles(own, bearings)
+    span = 2.0 * float(own.mesh.period) / SPEED
     ways = {
         "side by side": eqx.filter_jit(jax.vmap(single)),
         "in turn": eqx.filter_jit(partial(jax.lax.map, single)),
@@ -204,7 +215,6 @@ def many(own: Design, bearings: bool, count: int) -> None:
         places[stage, :stage] = row
     method = (places, np.asarray(tableau.b_sol, float), np.asarray(tableau.b_error, float))
     ends = np.zeros_like(starts)
-    span = float(times[-1])
     loop = partial(
         rival.loop,
         rival.constants(pair(own, bearings)),

@@ -75,6 +75,25 @@ LOOPING = _options(1)
 """Options for programs whose loops take about as long as their compilation."""
 
 
+_REFUSED: set[str] = set()
+"""Options that the compiler of this process does not have: they come and go with its versions."""
+
+_UNKNOWN = re.compile(r"No such compile option: '(\w+)'")
+
+
+def _compiled(lowered: jax.stages.Lowered, options: Mapping[str, Any]) -> jax.stages.Compiled:
+    """The compiled function; options decide how long that takes, so one that is unknown is left out."""
+    known = {name: value for name, value in options.items() if name not in _REFUSED}
+    try:
+        return lowered.compile(compiler_options=known)
+    except jax.errors.JaxRuntimeError as error:
+        unknown = _UNKNOWN.search(str(error))
+        if unknown is None or unknown[1] in _REFUSED:
+            raise
+        _REFUSED.add(unknown[1])
+    return _compiled(lowered, options)
+
+
 _CUSTOM = [
     export.DisabledSafetyCheck.custom_call(f"lapack_d{name}_ffi")
     for name in ("potrf", "getrf", "trsm", "geev", "syevd", "gesdd", "geqrf", "orgqr")
@@ -161,7 +180,7 @@ class Program(Generic[P, R]):
         # A compiled function of these shapes, since JAX compiles one anew where numbers that were plain once
         # (of a "weak" type) stand in other places.
         shapes = [jax.ShapeDtypeStruct(leaf.shape, leaf.dtype) for leaf in arrays]
-        call = jax.jit(found.call, compiler_options=self.options).lower(*shapes).compile()
+        call = _compiled(jax.jit(found.call).lower(*shapes), self.options)
         return lambda *leaves: _rebuilt(outline, iter(call(*leaves)))
 
     def _path(self, given: Any) -> Path:

@@ -16,14 +16,15 @@ from pitchpoint.programs import fast_program
 __all__ = ["Block", "state_grid"]
 
 TOLERANCE = 1e-10
-ROWS = 256
-"""Most operating points of one block."""
+ROWS, MANY_ROWS = 256, 4096
+"""Most operating points of one block, on a processor and on an accelerator."""
 
 COLUMNS = 4096
 """Most positions of one block."""
 
 _ROWS, _COLUMNS = 32, 128
-"""Operating points and positions that are solved together: their work arrays stay in the cache of a core."""
+"""Operating points and positions that a processor solves together: their work arrays stay in the cache of a
+core. An accelerator takes a block at once, since it hides the way to its memory behind other states."""
 
 
 @dataclass(frozen=True)
@@ -59,13 +60,13 @@ def state_grid(
         models: laws.
 
     Yields:
-        Blocks of at most `ROWS` operating points and `COLUMNS` positions; what is kept of them
-        bounds the memory. Two steps solve the balance, the first one in single precision; a block that
-        has then a residual above 1e-10 is solved again, iterating to convergence.
+        Blocks of at most `ROWS` operating points (`MANY_ROWS` on an accelerator) and `COLUMNS` positions;
+        what is kept of them bounds the memory. Two steps solve the balance, the first one in single
+        precision; a block that has then a residual above 1e-10 is solved again, iterating to convergence.
     """
     demand_double()
     count, places = int(operation.load.shape[0]), int(phase.shape[0])
-    rows = min(ROWS, 1 << (count - 1).bit_length())
+    rows = min(_most_rows(), 1 << (count - 1).bit_length())
     columns = min(COLUMNS, places)
     for first in range(0, count, rows):
         taken = np.minimum(np.arange(first, first + rows), count - 1)
@@ -132,7 +133,7 @@ def _block(inputs: Inputs, phase: Array, models: Models, quick: bool) -> _Solved
     Tiles are written where they belong: put together afterwards they would be copied twice.
     """
     count, places = inputs[1].load.shape[0], phase.shape[0]
-    rows, columns = min(count, _ROWS), min(places, _COLUMNS)
+    rows, columns = _tile(count, places)
     strips = jnp.pad(phase, (0, -places % columns), mode="edge").reshape(-1, columns)
 
     def per_row(leaf: Any) -> bool:
@@ -160,6 +161,16 @@ def _block(inputs: Inputs, phase: Array, models: Models, quick: bool) -> _Solved
     none = _Solved((blank, blank, blank), jnp.zeros(()), jnp.asarray(True), jnp.asarray(False))
     found: _Solved = jax.lax.fori_loop(0, strips.shape[0], strip, none)
     return found._replace(states=tuple(one[:, :places] for one in found.states))
+
+
+def _most_rows() -> int:
+    return ROWS if jax.default_backend() == "cpu" else MANY_ROWS
+
+
+def _tile(count: int, places: int) -> tuple[int, int]:
+    if jax.default_backend() == "cpu":
+        return min(count, _ROWS), min(places, _COLUMNS)
+    return count, places
 
 
 def _joined(before: _Solved, tile: States, residual: Array, corner: tuple[Array, Array]) -> _Solved:
