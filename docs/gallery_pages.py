@@ -2,6 +2,7 @@
 
 import html
 import re
+import resource
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -10,11 +11,15 @@ import numpy as np
 from docutils import nodes
 from notebooks import figure_of, head, notebook, thumbnail
 from sphinx.application import Sphinx
+from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
 import pitchpoint
 
 __all__ = ["setup"]
+
+BUDGET = 600.0
+"""Most of the processor that the cells of all pages may take [s]: some 350 s with no program kept before."""
 
 
 class MovingTeeth(SphinxDirective):
@@ -128,6 +133,15 @@ def _write(app: Sphinx, failed: Exception | None) -> None:
         (static / "notebooks" / f"{path.stem}.ipynb").write_text(book, "utf-8")
 
 
+def _within_budget(*_: Any) -> None:
+    """A warning, which ends a build by `-W`, where cells took more of the processor than they may."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = used.ru_utime + used.ru_stime
+    words = "cells of all pages took %.0f s of the processor, of %.0f s"
+    logger = logging.getLogger(__name__)
+    (logger.warning if seconds > BUDGET else logger.info)(words, seconds, BUDGET)
+
+
 def setup(app: Sphinx) -> None:
     """Add all of it to the site."""
     app.add_directive("cards", Cards)
@@ -135,3 +149,4 @@ def setup(app: Sphinx) -> None:
     app.connect("source-read", _offer)
     app.connect("doctree-read", _without_elsewhere)
     app.connect("build-finished", _write)
+    app.connect("build-finished", _within_budget)

@@ -250,18 +250,18 @@ print(library.scipy_openblas_get_num_threads())
 """
 
 
-@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="asks Linux for its libraries")
 def test_options_that_the_compiler_does_not_have_are_left_out(monkeypatch):
     """Versions of JAX take options away; what they only made quicker must run all the same."""
     monkeypatch.setattr(programs, "_REFUSED", set())
     lowered = jax.jit(jnp.sin).lower(1.0)
     compiled = programs._compiled(lowered, programs.QUICK | {"xla_taken_away": True})
     assert float(compiled(0.5)) == pytest.approx(np.sin(0.5), rel=1e-7)
-    assert {"xla_taken_away"} == programs._REFUSED
+    assert "xla_taken_away" in programs._REFUSED
     with pytest.raises(jax.errors.JaxRuntimeError, match="level"):
         programs._compiled(lowered, {"xla_backend_optimization_level": "high"})
 
 
+@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="asks Linux for its libraries")
 def test_factorisations_run_on_one_thread():
     environment = {name: value for name, value in os.environ.items() if "OPENBLAS" not in name}
     done = subprocess.run(
