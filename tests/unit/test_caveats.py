@@ -11,10 +11,10 @@ import pytest
 from pitchpoint.analyses import caveats
 from pitchpoint.analyses.cycle import _reasons
 from pitchpoint.cases.build import _roughness
-from pitchpoint.cases.failures import apart, fails
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import Surface
 from pitchpoint.cases.solids import SolidInUse, failures
+from pitchpoint.doubts import apart, fails
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.applicability import limits_words

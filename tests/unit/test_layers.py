@@ -14,6 +14,7 @@ import pitchpoint
 SOURCE = Path(pitchpoint.__file__).parent
 FLOW = (
     {
+        "doubts",
         "errors",
         "units",
         "citations",

@@ -1,16 +1,16 @@
 """What is said about a mesh cycle, and what is refused: a locked mesh, say."""
 
 from collections.abc import Mapping, Sequence
-from math import inf
+from math import exp, inf
 from typing import Any
 
 import numpy as np
 
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.failures import fails
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import SPEED, TEMPERATURE
 from pitchpoint.cases.stages import Ready
+from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, fails, reworded
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
@@ -168,8 +168,11 @@ def conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
     if not flat.any():
         return []
     return [
-        f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
-        f"radius is cut at {float(mesh.largest_radius):.3g} m, and pressure and film there say little."
+        Doubt(
+            f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
+            f"radius is cut at {float(mesh.largest_radius):.3g} m, and pressure and film there say little.",
+            moves=flat.sum() / loaded.sum(),
+        )
     ]
 
 
@@ -192,9 +195,13 @@ def face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
         )
     if mean > slices * (1.0 - 1e-9):
         return []
+    idle = 1.0 - mean / slices
     return [
-        f"Of the contact lines that carry, {100.0 * (1.0 - mean / slices):.2g} % get no load at {load}: "
-        "there flanks do not touch."
+        Doubt(
+            f"Of the contact lines that carry, {100.0 * idle:.2g} % get no load at {load}: there flanks do "
+            "not touch.",
+            moves=idle,
+        )
     ]
 
 
@@ -212,18 +219,25 @@ def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndar
     known = np.where(np.isnan(carrying) | ~gaps, np.inf, carrying).min(axis=0)
     nearly = (known < LEAST_FACE) & (slices > 1)
     partly = (known < slices * (1.0 - 1e-9)) & ~nearly
-    told = []
+    told: list[str] = []
     if nearly.any():
         told.append(
-            f"At {nearly.sum()} of {len(points)} points fewer than {LEAST_FACE:g} slices of a contact line "
-            "get load in the mean, nearly a point in place of a line: their figures say little. Less "
-            "crowning, end relief or misalignment, a higher load or more slices leave a line of contact."
+            Doubt(
+                f"At {nearly.sum()} of {len(points)} points fewer than {LEAST_FACE:g} slices of a contact "
+                "line get load in the mean, nearly a point in place of a line: their figures say little. "
+                "Less crowning, end relief or misalignment, a higher load or more slices leave a line of "
+                "contact.",
+                moves=WITHHELD,
+            )
         )
     if partly.any():
-        most = 100.0 * (1.0 - (known[partly] / slices[partly]).min())
+        most = 1.0 - (known[partly] / slices[partly]).min()
         told.append(
-            f"At {partly.sum()} of {len(points)} points a part of the contact lines that carry, up to "
-            f"{most:.2g} %, gets no load: there flanks do not touch."
+            Doubt(
+                f"At {partly.sum()} of {len(points)} points a part of the contact lines that carry, up to "
+                f"{100.0 * most:.2g} %, gets no load: there flanks do not touch.",
+                moves=most,
+            )
         )
     return told
 
@@ -291,7 +305,9 @@ def _proportions(points: Sequence[Built]) -> list[str]:
 
 def film_warning(film: FilmThickness, run: Mapping[str, np.ndarray]) -> list[str]:
     """Conditions that leave the range of the film law, which answers there too."""
-    return told_of_law(film, [f"{one}; its film is an extrapolation" for one in _leaves(film, run)])
+    return told_of_law(
+        film, [reworded(one, f"{one}; its film is an extrapolation") for one in _leaves(film, run)]
+    )
 
 
 def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
@@ -301,18 +317,26 @@ def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
         built: with materials and oil.
         run: pressure, radius, entrainment, sliding velocity, film thickness and friction of contacts.
     """
-    warmest = np.nanmax(_rise(built, run), initial=0.0)
-    if warmest < WARM:
+    warmest = float(np.nanmax(_rise(built, run), initial=0.0))
+    if warmest == 0.0:
         return f"{COLD}."
+    felt = 1.0 - exp(-THINS * warmest)
+    told = f"{COLD}; its friction would warm it by up to about {warmest:.2g} K"
+    if warmest < WARM:
+        return Doubt(f"{told}.", moves=felt)
     squeezes = built.case.film is not None and built.case.film.squeezes
-    return (
-        f"{COLD}; its friction would warm it by up to about {warmest:.2g} K, so that friction comes out too "
-        'high and the film too thick; thermal = "mean_film" in [film] takes the heat along'
-        + (", of steady films alone: leave time out for that." if squeezes else ".")
+    advice = 'thermal = "mean_film" in [film] takes the heat along' + (
+        ", of steady films alone: leave time out for that" if squeezes else ""
+    )
+    return Doubt(
+        f"{told}, so that friction comes out too high and the film too thick; {advice}.", moves=felt
     )
 
 
 COLD = "The films are isothermal: the oil in a contact is as warm as that in its inlet"
+
+THINS = 0.03
+"""Part of a film that a kelvin takes: viscosity loses 4 to 5 %, and films go with its 0.7th power."""
 
 WARM = 10.0
 """Rise of temperature from which on it is told that isothermal films leave it out [K]."""
@@ -346,26 +370,33 @@ def asperity_warning(law: AsperityLoad | None, run: Mapping[str, np.ndarray]) ->
     """Conditions that leave the range of the law of the load on asperities, and where it is cut."""
     if law is None:
         return []
-    reasons = [f"{one}; its asperity load ratio is an extrapolation" for one in _leaves(law, run)]
+    reasons: list[str] = [
+        reworded(one, f"{one}; its asperity load ratio is an extrapolation")
+        for one in _leaves(law, run)
+    ]
     cut = np.any(run["asperity_load_ratio"] >= 1.0, axis=(1, 2))
     if cut.any():
         reasons.append(
-            "its asperity load ratio reaches more than the 100 % at which it is cut, "
-            f"{_how_long(cut, run['weight'])}"
+            Doubt(
+                "its asperity load ratio reaches more than the 100 % at which it is cut, "
+                f"{_how_long(cut, run['weight'])}",
+                moves=GUESSED * float(np.sum(cut * run["weight"])),
+            )
         )
     return told_of_law(law, reasons)
 
 
 def told_of_law(law: Limited, reasons: Sequence[str]) -> list[str]:
     """Sentences on a law."""
-    return [f"{law.title}: {reason}." for reason in reasons]
+    return [reworded(reason, f"{law.title}: {reason}.") for reason in reasons]
 
 
 def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
     """Why a law does not hold at an operating point, in words; empty where it does."""
-    reasons = [*_leaves(law, run), *map(str, run.get("outside films", ()))]
+    reasons: list[str] = [*_leaves(law, run), *map(str, run.get("outside films", ()))]
     if run["locked"].any():
-        reasons.append(f"its friction coefficient, {run['friction'].max():.2g}, locks the mesh")
+        locks = f"its friction coefficient, {run['friction'].max():.2g}, locks the mesh"
+        reasons.append(Doubt(locks, moves=WITHHELD))
     loaded = run["load"] > 0.0
     if not loaded.any():
         return reasons
@@ -373,31 +404,44 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
     thinnest = float(run["lambda_ratio"].min(where=loaded, initial=np.inf))
     if law.full_film and thinnest < 1.0:
         reasons.append(
-            f"it describes contacts with a full film, but the film is down to {thinnest:.2g} of the "
-            f"composite roughness Rq; its friction coefficient, up to {highest:.2g}, is an extrapolation"
+            Doubt(
+                f"it describes contacts with a full film, but the film is down to {thinnest:.2g} of the "
+                f"composite roughness Rq; its friction coefficient, up to {highest:.2g}, is an extrapolation",
+                moves=GUESSED,
+            )
         )
     elif highest > law.largest:
         reasons.append(
-            f"its friction coefficient reaches {highest:.2g}; steel in oil has at most about "
-            f"{law.largest:g}, so that this is an extrapolation"
+            Doubt(
+                f"its friction coefficient reaches {highest:.2g}; steel in oil has at most about "
+                f"{law.largest:g}, so that this is an extrapolation",
+                moves=highest / law.largest - 1.0,
+            )
         )
     rolling = ROLLING_RESISTANCE[built.case.models.rolling_resistance]
     if law.whole and rolling.sources:
+        share = rolling_share(run)
         reasons.append(
-            "its coefficient was fitted to whole losses of gears, those of rolling among them; with "
-            f"'{rolling.name}' beside it rolling counts twice, here with {rolling_share(run):.2g} % of "
-            "the loss"
+            Doubt(
+                "its coefficient was fitted to whole losses of gears, those of rolling among them; with "
+                f"'{rolling.name}' beside it rolling counts twice, here with {share:.2g} % of the loss",
+                moves=share / 100.0,
+            )
         )
     return reasons
 
 
-def _leaves(law: Limited, run: Mapping[str, np.ndarray]) -> list[str]:
+def _leaves(law: Limited, run: Mapping[str, np.ndarray]) -> list[Doubt]:
     """Which conditions leave the range of a law, in words."""
+    outside = {name: run[f"outside {law.name} {name}"] for name in law.ranges}
     return [
-        f"the {name.replace('_', ' ')} leaves the range of the law, {limits_words(name, limits)}, "
-        f"{_how_long(run[f'outside {law.name} {name}'], run['weight'])}"
-        for name, limits in law.ranges.items()
-        if np.any(run[f"outside {law.name} {name}"])
+        Doubt(
+            f"the {name.replace('_', ' ')} leaves the range of the law, "
+            f"{limits_words(name, law.ranges[name])}, {_how_long(where, run['weight'])}",
+            moves=GUESSED * float(np.sum(where * run["weight"])),
+        )
+        for name, where in outside.items()
+        if np.any(where)
     ]
 
 

@@ -10,7 +10,7 @@ from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.film_contacts import LEAST, Done, alike, film_model_of, states
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.cases.build import Built, tooth_size
-from pitchpoint.lubrication.ehl.doubts import UNSOLVED, extent_of, kind_of
+from pitchpoint.lubrication.ehl.doubts import UNSOLVED
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.results.store import dataset
@@ -74,7 +74,7 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     values["minimum_lambda"] = over_rough(built, values["minimum_film"])
     profiles = _kept(films.film, given, some, back)
     # Contacts that have no film are counted over the whole cycle.
-    told = [text for text in films.warnings if kind_of(text) != UNSOLVED]
+    told = [doubt for doubt in films.warnings if doubt.kind != UNSOLVED]
     return dataset(
         {
             **{name: (_OF_PIECE, one) for name, one in values.items()},
@@ -83,7 +83,6 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
         },
         {},
         warnings=told,
-        doubts=[[kind_of(text), extent_of(text)] for text in told],
         residual=_largest(films.ended.reynolds, films.solved),
         iterations=int(np.max(films.ended.iterations, initial=0)),
     )

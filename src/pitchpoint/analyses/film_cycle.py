@@ -1,6 +1,5 @@
 """Figures of films over a mesh cycle, whatever solved them: losses, efficiency, deviations, words."""
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -11,6 +10,7 @@ from pitchpoint.analyses.caveats import cold_warning, conformal_warning
 from pitchpoint.analyses.film_contacts import asked, film_laws, film_model_of
 from pitchpoint.analyses.film_series import series_figures
 from pitchpoint.cases.build import Built
+from pitchpoint.doubts import WITHHELD, Doubt, doubts_of, reworded
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -231,29 +231,29 @@ def _efficiencies(states: States, figures: Mapping[str, np.ndarray]) -> dict[str
 def _lost(codes: np.ndarray) -> Iterator[str]:
     """Loaded contacts whose film was not found, by what became of them."""
     for code in sorted({*codes.tolist()} - {int(Code.SOLVED)}):
-        yield (
+        yield Doubt(
             f"Films: {int(np.sum(codes == code))} of {codes.size} loaded contacts have no film "
-            f"({Code(code).sentence}); the loss and efficiency by films are withheld."
+            f"({Code(code).sentence}); the loss and efficiency by films are withheld.",
+            moves=WITHHELD,
         )
 
 
 def _of_pieces(parts: Sequence[xr.Dataset]) -> list[str]:
     """Warnings of all pieces: of a kind the worst one, and where it is."""
     ends = np.cumsum([0, *(part.sizes["point"] for part in parts)])
-    kinds: dict[str, list[tuple[float, str, str]]] = {}
+    kinds: dict[str, list[tuple[Doubt, str]]] = {}
     for k, part in enumerate(parts):
         where = f"phases {ends[k] + 1} to {ends[k + 1]} of {ends[-1]}"
-        told = zip(*(json.loads(part.attrs[name]) for name in ("doubts", "warnings")), strict=True)
-        for (kind, extent), text in told:
-            kinds.setdefault(kind, []).append((extent, where, text))
+        for doubt in doubts_of(part.attrs):
+            kinds.setdefault(doubt.kind, []).append((doubt, where))
     return [_worst(told) for told in kinds.values()]
 
 
-def _worst(told: Sequence[tuple[float, str, str]]) -> str:
-    """The worst one of warnings of one kind, of extent, place and words."""
-    _, where, text = max(told, key=lambda one: one[0])
+def _worst(told: Sequence[tuple[Doubt, str]]) -> Doubt:
+    """The worst one of warnings of one kind, with their places."""
+    doubt, where = max(told, key=lambda one: one[0].extent)
     others = ", and less at others" if len(told) > 1 else ""
-    return f"Films, {where}{others}: {text}."
+    return reworded(doubt, f"Films, {where}{others}: {doubt}.")
 
 
 def _about(built: Built, states: States, found: xr.Dataset) -> list[str]:

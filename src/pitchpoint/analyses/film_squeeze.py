@@ -15,8 +15,8 @@ from pitchpoint.analyses.finite_film import FIELDS
 from pitchpoint.analyses.whole_contacts import wholes
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import course_grid
+from pitchpoint.doubts import WITHHELD, Doubt, doubts_of, reworded, worst_of_kinds
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
 from pitchpoint.lubrication.ehl.patch.films import ENDS, Turned
 from pitchpoint.lubrication.ehl.patch.layout import Layout
 from pitchpoint.lubrication.ehl.patch.plan import placed
@@ -119,8 +119,7 @@ def _some(
         {},
         first=first,
         lost=int(len(found) < count),
-        warnings=[*told, *ended],
-        doubts=_doubts([*found, *steady]),
+        warnings=[*told, *ended, *_doubts([*found, *steady])],
         grid=json.dumps(course_grid(asked(built))),
     )
 
@@ -169,17 +168,22 @@ def _heard(built: Built, done: int, what: str, progress: Progress) -> Any:
     return step
 
 
-def _why_lost(code: Code) -> str:
-    return f"the film of the engagement was lost ({code.sentence}), and nothing is told of what follows"
+def _why_lost(code: Code) -> Doubt:
+    return Doubt(
+        f"the film of the engagement was lost ({code.sentence}), and nothing is told of what follows",
+        moves=WITHHELD,
+    )
 
 
-def _doubts(moments: Sequence[PatchMoment]) -> list[tuple[str, float, str]]:
-    """Kind, extent and words of what to be wary of, each once."""
+def _doubts(moments: Sequence[PatchMoment]) -> list[Doubt]:
+    """What to be wary of, of each kind the worst."""
     solved = [one for one in moments if one.solved]
-    texts = dict.fromkeys(text for one in solved for text in one.warnings)
-    told = [(kind_of(text), extent_of(text), text) for text in texts if kind_of(text) != ENDS]
-    lost = "some of the steady films beside were not found: there is no difference to tell there"
-    return [*told, *[("steady", 0.0, lost)] * (len(solved) < len(moments))]
+    every = worst_of_kinds(text for one in solved for text in one.warnings)
+    lost = Doubt(
+        "some of the steady films beside were not found: there is no difference to tell there",
+        moves=WITHHELD,
+    )
+    return [*(one for one in every if one.kind != ENDS), *[lost] * (len(solved) < len(moments))]
 
 
 def _values(
@@ -357,12 +361,7 @@ def _least(values: np.ndarray) -> np.ndarray:
     return np.array(known.min() if known.size else np.nan)
 
 
-def _told(parts: Sequence[xr.Dataset]) -> list[str]:
-    """Warnings of all pieces, each once: of a kind the worst one."""
-    worst: dict[str, tuple[float, str]] = {}
-    for kind, extent, text in (one for part in parts for one in json.loads(part.attrs["doubts"])):
-        if extent >= worst.get(kind, (-np.inf, ""))[0]:
-            worst[kind] = extent, text
-    lost = (text for part in parts for text in json.loads(part.attrs["warnings"]))
-    every = dict.fromkeys([*lost, *(text for _, text in worst.values())])
-    return [f"Squeeze: {text}." for text in every]
+def _told(parts: Sequence[xr.Dataset]) -> list[Doubt]:
+    """Warnings of all pieces: of a kind the worst one."""
+    every = (doubt for part in parts for doubt in doubts_of(part.attrs))
+    return [reworded(doubt, f"Squeeze: {doubt}.") for doubt in worst_of_kinds(every)]

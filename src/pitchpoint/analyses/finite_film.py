@@ -15,8 +15,8 @@ from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import patch_grid
+from pitchpoint.doubts import WITHHELD, Doubt
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
@@ -117,23 +117,22 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
         },
         {},
         warnings=told,
-        doubts=[[kind_of(text), extent_of(text)] for text in told],
         residual=max((one.ended.reynolds for one in found), default=0.0),
         iterations=max((one.steps for one in ended), default=0),
     )
 
 
-def _told(films: Sequence[PatchFilms | Refused]) -> list[str]:
+def _told(films: Sequence[PatchFilms | Refused]) -> list[Doubt]:
     """Warnings of contacts that were solved, and why others were refused, each once.
 
     What the last row of a line is has its place beside the pressures near the ends.
     """
-    texts: dict[str, None] = {}
+    texts: dict[Doubt, None] = {}
     for one in films:
         if isinstance(one, Refused):
-            texts[f"a contact was not taken: {one.why}"] = None
+            texts[Doubt(f"a contact was not taken: {one.why}", moves=WITHHELD)] = None
         elif one.solved:
-            texts |= dict.fromkeys(text for text in one.warnings if kind_of(text) != ENDS)
+            texts |= dict.fromkeys(doubt for doubt in one.warnings if doubt.kind != ENDS)
     return [*texts]
 
 

@@ -1,6 +1,5 @@
 """The loss map of the output over its torque and speed with their signs: the output drives too."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -16,6 +15,7 @@ from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
 from pitchpoint.cases.schema import LossMap
 from pitchpoint.cases.stages import Ready
+from pitchpoint.doubts import doubts_of
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
@@ -374,4 +374,4 @@ def _told(built: Ready, stuck: Values, lost: Values, parts: Sequence[xr.Dataset]
         for k, law in enumerate(built.laws)
         if where[k].any()
     ]
-    return [*found, *dict.fromkeys(t for part in parts for t in json.loads(part.attrs["warnings"]))]
+    return [*found, *dict.fromkeys(t for part in parts for t in doubts_of(part.attrs))]

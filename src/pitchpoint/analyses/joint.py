@@ -16,6 +16,7 @@ from pitchpoint.analyses.kinematic_error import own_error
 from pitchpoint.analyses.torsion import engaged_at, kinematic_play, mean_friction, wound_ups
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import along
+from pitchpoint.doubts import Doubt
 from pitchpoint.dynamics.joint import Joint, Sliding, respond
 from pitchpoint.dynamics.joint_course import fading, settled
 from pitchpoint.dynamics.system import modal_damping, reduced_mass
@@ -343,8 +344,12 @@ def _unloaded(
     if not beyond.size:
         return []
     return [
-        f"Torsional vibration: at {beyond.size} of {speeds.size} speeds the torque swings by more than the "
-        "load; there the flanks change sides, which amplitudes by the tangent of the wind-up leave out."
+        Doubt(
+            f"Torsional vibration: at {beyond.size} of {speeds.size} speeds the torque swings by more than "
+            "the load; there the flanks change sides, which amplitudes by the tangent of the wind-up leave "
+            "out.",
+            moves=beyond.size / speeds.size,
+        )
     ]
 
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.failures import fails
+from pitchpoint.doubts import fails
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.load_limits import (
     bearing_life,

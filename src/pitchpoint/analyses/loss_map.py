@@ -1,6 +1,5 @@
 """The loss map of a case: mean loss and efficiency over torque, speed and temperature."""
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -14,6 +13,7 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.lacking import untransmitted, without_films
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.doubts import doubts_of
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.film_map import FilmMap, film_map
 from pitchpoint.efficiency.in_turns import in_turns
@@ -95,7 +95,7 @@ def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         for k, law in enumerate(built.laws)
         if where[k].any()
     ]
-    told += [*dict.fromkeys(text for part in parts for text in json.loads(part.attrs["warnings"]))]
+    told += [*dict.fromkeys(text for part in parts for text in doubts_of(part.attrs))]
     found = dataset(
         {name: (_DIMS, data[name].values) for name in _NAMES},
         {name: (name, data[name].values) for name in _DIMS},

@@ -21,8 +21,8 @@ from pitchpoint.analyses.lacking import untransmitted
 from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.doubts import doubts_of, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.results.store import without_nan
 
@@ -35,8 +35,7 @@ __all__ = [
 
 def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     data = summaries([built], built.models, beside([built]), title="operating point")
-    told = [*json.loads(data.attrs["warnings"]), *_implausible(built)]
-    return data.assign_attrs(warnings=json.dumps(told))
+    return data.assign_attrs(stored([*doubts_of(data.attrs), *_implausible(built)]))
 
 
 def _implausible(built: Ready) -> list[str]:

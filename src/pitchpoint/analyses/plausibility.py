@@ -16,11 +16,11 @@ import xarray as xr
 from pitchpoint.analyses.caveats import conformal, rolling_share
 from pitchpoint.analyses.figures import holding, why_not
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.failures import fails
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.cases.stages import Ready
 from pitchpoint.contact.contacts import Shape
+from pitchpoint.doubts import fails
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.registry import BOUNDARY, ROLLING_RESISTANCE, FrictionLaw
 from pitchpoint.materials import solids

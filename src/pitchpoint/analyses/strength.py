@@ -12,8 +12,8 @@ from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.failures import fails, in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.doubts import fails, in_stage
 from pitchpoint.efficiency.summary import in_chunks, in_groups
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.results.store import dataset

@@ -17,6 +17,7 @@ from pitchpoint.analyses.caveats import (
 )
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import Acting, BuiltDrive, Ready
+from pitchpoint.doubts import WITHHELD, Doubt, doubts_of, stored
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
@@ -179,8 +180,8 @@ def joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
     if len(pieces) == 1:
         return pieces[0]
     data = xr.concat(pieces, "point", combine_attrs="override")
-    told = [text for piece in pieces for text in json.loads(piece.attrs["warnings"])]
-    data.attrs["warnings"] = json.dumps(few([*dict.fromkeys(told)]))
+    told = dict.fromkeys(text for piece in pieces for text in doubts_of(piece.attrs))
+    data.attrs.update(stored(few([*told])))
     data.attrs["solve"] = json.dumps(
         _balances({str(name): values for name, values in data.items()})
     )
@@ -197,13 +198,17 @@ def few(sentences: list[str]) -> list[str]:
 def _lock_warning(law: FrictionLaw, locked: np.ndarray) -> list[str]:
     if not locked.any():
         return []
-    return [f"{law.title}: friction locks the mesh at {locked.sum()} of {locked.size} points."]
+    told = f"{law.title}: friction locks the mesh at {locked.sum()} of {locked.size} points."
+    return [Doubt(told, moves=WITHHELD)]
 
 
 def _lost_warning(law: FrictionLaw, code: np.ndarray) -> list[str]:
     return [
-        f"{law.title}: at {np.sum(code == one)} of {code.size} points {Code(int(one)).sentence}; their "
-        "figures are withheld."
+        Doubt(
+            f"{law.title}: at {np.sum(code == one)} of {code.size} points {Code(int(one)).sentence}; their "
+            "figures are withheld.",
+            moves=WITHHELD,
+        )
         for one in np.unique(code[films_lost(code)])
     ]
 

@@ -14,9 +14,9 @@ from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.doubts import in_stage
 from pitchpoint.efficiency.drag import at_rest, bearing_loads
 from pitchpoint.efficiency.quasi_static import Design, Engagement, coupling, engagement
 from pitchpoint.efficiency.summary import summarise

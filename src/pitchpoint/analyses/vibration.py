@@ -11,6 +11,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.build import Built
+from pitchpoint.doubts import WITHHELD, Doubt
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.registry import CONTACT_LAWS
@@ -328,8 +329,11 @@ def status_sentences(
 ) -> list[str]:
     """What the points of a study say whose vibration is not a steady one that is reached."""
     return [
-        told.format(
-            points=f"{np.sum(codes == code)} of {codes.size} points", sentence=code.sentence
+        Doubt(
+            told.format(
+                points=f"{np.sum(codes == code)} of {codes.size} points", sentence=code.sentence
+            ),
+            moves=float(np.mean(codes == code)),
         )
         for code in Code
         if not code.ok and np.any(codes == code)
@@ -338,7 +342,10 @@ def status_sentences(
 
 def _warnings(built: Built, statuses: Sequence[Code]) -> list[str]:
     return [
-        f"Vibration at {built.carried.show(float(f'{torque:.4g}'))}: {status.sentence}."
+        Doubt(
+            f"Vibration at {built.carried.show(float(f'{torque:.4g}'))}: {status.sentence}.",
+            moves=WITHHELD,
+        )
         for torque, status in zip(_torques(built), statuses, strict=True)
         if not status.ok
     ]

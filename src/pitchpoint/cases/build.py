@@ -42,6 +42,7 @@ from pitchpoint.cases.strength import Rated, check_strength, rated_case
 from pitchpoint.contact.contacts import TOUCH, Shape
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
+from pitchpoint.doubts import GUESSED, Doubt, as_doubt
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
@@ -102,14 +103,21 @@ T = TypeVar("T")
 ALONE = "teeth alone: bearings, seals and grease are not in it"
 """What an efficiency is of where a case has no losses beside the teeth."""
 
-TEETH_ALONE = (
+TEETH_ALONE = Doubt(
     "The efficiency is that of the teeth alone: the case has no [losses], by which bearings, seals and "
-    "churning take their part."
+    "churning take their part.",
+    moves=GUESSED,
+    about=("mean_efficiency",),
 )
-BEARING_FREE = (
+BEARING_FREE = Doubt(
     "The efficiency leaves out the bearing on which the teeth press inside the drive: no place of [losses] "
-    "is between its two bodies."
+    "is between its two bodies.",
+    moves=GUESSED,
+    about=("mean_efficiency",),
 )
+OF_STIFFNESS = ("mesh_stiffness", "mean_stiffness", "transmission_error")
+"""Variables of parts for which the compliance of teeth is asked even where it shares no load."""
+
 UNSETTLED = (
     "Heat, modulus and friction of the teeth found no balance: their temperatures are those of the last "
     "pass."
@@ -544,8 +552,12 @@ def _extrapolated(built: Built) -> list[str]:
     if not told:
         return []
     return [
-        f"The losses of the set were fitted from {TEMPERATURE.show(low)} to {TEMPERATURE.show(high)}; at "
-        f"{' and '.join(told)} they are an extrapolation."
+        Doubt(
+            f"The losses of the set were fitted from {TEMPERATURE.show(low)} to {TEMPERATURE.show(high)}; at "
+            f"{' and '.join(told)} they are an extrapolation.",
+            moves=GUESSED,
+            about=("mean_efficiency",),
+        )
     ]
 
 
@@ -936,8 +948,10 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     sharing = LOAD_SHARING[case.models.load_sharing]
     if mesh.couples or (case.dynamics is None and not sharing.by_stiffness):
         return ()
-    sections = _sections(mesh)
-    return uncovered(TOOTH_COMPLIANCE[case.models.tooth_compliance], sections, case.gears.members)
+    sections, model = _sections(mesh), TOOTH_COMPLIANCE[case.models.tooth_compliance]
+    doubts = map(as_doubt, uncovered(model, sections, case.gears.members))
+    about = () if sharing.by_stiffness else OF_STIFFNESS
+    return tuple(Doubt(one, moves=one.moves, about=about) for one in doubts)
 
 
 @program

@@ -208,7 +208,7 @@ class Source(_Kept):
     text: str
 
 
-class Doubt(_Kept):
+class PrintedIssue(_Kept):
     """A misprint or a questionable point of the publication."""
 
     where: str
@@ -259,7 +259,7 @@ class Manifest(_Kept):
     plastic: bool
     oil: str
     sources: list[Source]
-    issues: list[Doubt]
+    issues: list[PrintedIssue]
     rows: list[Row]
     parts: list[Name]
     finished: bool

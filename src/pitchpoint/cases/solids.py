@@ -8,9 +8,9 @@ import numpy as np
 
 from pitchpoint._jax import array
 from pitchpoint.cases.document import Document
-from pitchpoint.cases.failures import fails
 from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import Case, Materials, SolidValues
+from pitchpoint.doubts import fails
 from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.efficiency.warm_teeth import Heated

@@ -23,10 +23,10 @@ from pitchpoint.cases.build import (
     without_bearing,
 )
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
-from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, StageTable, validated
 from pitchpoint.cases.strength import UNRATED
+from pitchpoint.doubts import in_stage
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.errors import Complaints, InputError
@@ -91,17 +91,14 @@ class BuiltDrive:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences about the drive, about all stages, and about one of them."""
-        whole = (TEETH_ALONE, BEARING_FREE)
-        each = [[text for text in one.warnings if text not in whole] for one in self.stages]
-        common = [text for text in each[0] if all(text in other for other in each[1:])]
-        apart = [
+        """Sentences about the drive, and about each of its stages."""
+        of_stages = (
             in_stage(number, text)
-            for number, texts in zip(self.numbers, each, strict=True)
-            for text in texts
-            if text not in common
-        ]
-        return (*self.told, *common, *apart)
+            for number, one in zip(self.numbers, self.stages, strict=True)
+            for text in one.warnings
+            if text not in (TEETH_ALONE, BEARING_FREE)
+        )
+        return (*self.told, *of_stages)
 
     @property
     def heated(self) -> list[str]:

@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.gears.tooth_section import ToothSection
 
 __all__ = [
@@ -109,7 +110,10 @@ def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
     """Sentences on what the foundation's compliance does not cover for this tooth; none if it does."""
     if section.stiff:
         return (
-            f"the compliance of {section.stiff} under its teeth has no formula here and counts as zero",
+            Doubt(
+                f"the compliance of {section.stiff} under its teeth has no formula here and counts as zero",
+                moves=GUESSED,
+            ),
         )
     named = (
         ("root radius over bore radius", "", float(section.rim_ratio), RIM_RATIO_RANGE),
@@ -124,8 +128,11 @@ def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
     if not outside or (beyond := _beyond_fit(section)) < FELT:
         return ()
     return tuple(
-        f"the {name} is {value:.3g}{unit}, beyond the {low:g} to {high:g} of the formula for the compliance "
-        f"under the tooth, which differs by {100.0 * beyond:.2g} % from that at the limit"
+        Doubt(
+            f"the {name} is {value:.3g}{unit}, beyond the {low:g} to {high:g} of the formula for the "
+            f"compliance under the tooth, which differs by {100.0 * beyond:.2g} % from that at the limit",
+            moves=beyond,
+        )
         for name, unit, value, (low, high) in outside
     )
 

@@ -2,10 +2,12 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.gears.mesh import Mesh, StandardPair
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
@@ -47,12 +49,16 @@ def pair_compliance(
 
     Source: ISO 6336-1:2006, series for q' in mm um/N (rack with a dedendum of 1.2 modules).
     """
+    return jnp.asarray(1e-9 * _yielding(virtual_teeth, profile_shift))
+
+
+def _yielding(virtual_teeth: Any, profile_shift: Any) -> Any:
+    """Q' in mm um/N, see `pair_compliance`."""
     (first, second), (x_1, x_2) = virtual_teeth, profile_shift
     constant = 0.04723 - 0.00635 * x_1 - 0.00193 * x_2
     pinion = (0.15551 - 0.11654 * x_1) / first
     wheel = (0.25791 - 0.24188 * x_2) / second
-    flexible = constant + pinion + wheel + 0.00529 * x_1**2 + 0.00182 * x_2**2
-    return jnp.asarray(1e-9 * flexible)
+    return constant + pinion + wheel + 0.00529 * x_1**2 + 0.00182 * x_2**2
 
 
 def rack_factor(
@@ -215,17 +221,30 @@ def range_warnings(
     """
     values = (contact_ratio, math.degrees(helix_angle), sum(profile_shift))
     found = [
-        f"a {text.format(value)} for which ISO 6336-1 gives its estimate of the stiffness"
+        Doubt(
+            f"a {text.format(value)} for which ISO 6336-1 gives its estimate of the stiffness",
+            moves=GUESSED,
+        )
         for (text, low, high), value in zip(_RANGES, values, strict=True)
         if not low <= value <= high
     ]
     if profile_shift[0] < profile_shift[1]:
-        found.append("ISO 6336-1 gives its estimate of the stiffness for x1 >= x2")
+        found.append(Doubt("ISO 6336-1 gives its estimate of the stiffness for x1 >= x2"))
     if min(virtual_teeth) < _FEWEST_TEETH:
+        few = _yielding(virtual_teeth, profile_shift)
+        fewest = _yielding([max(z, _FEWEST_TEETH) for z in virtual_teeth], profile_shift)
         found.append(
-            f"{min(virtual_teeth):.3g} virtual teeth are fewer than the {_FEWEST_TEETH} down to which "
-            "the estimate of ISO 6336-1 was compared with published results"
+            Doubt(
+                f"{min(virtual_teeth):.3g} virtual teeth are fewer than the {_FEWEST_TEETH} down to which "
+                "the estimate of ISO 6336-1 was compared with published results; its compliance differs by "
+                f"{100.0 * abs(few / fewest - 1.0):.2g} % from that at the limit",
+                moves=abs(few / fewest - 1.0),
+            )
         )
     if internal:
-        found.append("the estimate of ISO 6336-1 is written here for external gears only")
+        found.append(
+            Doubt(
+                "the estimate of ISO 6336-1 is written here for external gears only", moves=GUESSED
+            )
+        )
     return tuple(found)

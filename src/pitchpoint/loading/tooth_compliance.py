@@ -13,6 +13,7 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.contact.flattening import line_compression, yang_sun_1985
 from pitchpoint.contact.hertz import line_half_width
+from pitchpoint.doubts import reworded
 from pitchpoint.gears.tooth_section import FLANK_NODES, ToothSection, chebyshev_nodes
 from pitchpoint.loading.foundation import foundation_compliance, foundation_warnings
 from pitchpoint.loading.registry import LINE_STIFFNESS, TOOTH_COMPLIANCE, ToothCompliance
@@ -88,7 +89,7 @@ def uncovered(
     if not model.foundation:
         return ()
     return tuple(
-        f"{name}: {sentence}"
+        reworded(sentence, f"{name}: {sentence}.")
         for name, section in zip(names, sections, strict=True)
         for sentence in foundation_warnings(section)
     )

@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 import xarray as xr
 
+from pitchpoint.doubts import doubts_of
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.heat import Temperatures
@@ -305,7 +306,7 @@ def films_of_dataset(data: xr.Dataset) -> Films:
         ended=Ended(**ended),
         nodes=int(data.attrs["nodes"]),
         domain=data["domain"].values,
-        warnings=tuple(json.loads(data.attrs["warnings"])),
+        warnings=tuple(doubts_of(data.attrs)),
     )
 
 

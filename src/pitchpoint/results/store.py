@@ -7,7 +7,7 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import cache
 from importlib.metadata import version
@@ -17,6 +17,7 @@ from typing import Any, BinaryIO
 import numpy as np
 import xarray as xr
 
+from pitchpoint.doubts import stored
 from pitchpoint.errors import InputError
 from pitchpoint.results.netcdf import decode, encode
 from pitchpoint.results.variable import End, Variable
@@ -53,6 +54,7 @@ def dataset(
     *,
     solve: Mapping[str, Any] = DIRECT,
     travels: Collection[End] = (),
+    warnings: Iterable[str] | None = None,
     **attributes: Any,
 ) -> xr.Dataset:
     """Dataset whose variables carry unit, long name and symbol.
@@ -62,6 +64,7 @@ def dataset(
         coordinates: values by dimension.
         solve: what became of the solves behind it, see `status.told`; kept as JSON.
         travels: members that travel in place of turning, whose quantities have other units.
+        warnings: sentences on what is doubtful, see `doubts.stored`; None where a part has no place for any.
         attributes: strings and numbers; anything else is stored as JSON.
     """
     data = xr.Dataset(
@@ -72,6 +75,7 @@ def dataset(
     describe(data, {name: VARIABLES[name].where(travels) for name in known})
     data.attrs.update(
         {key: _attribute(value) for key, value in {"solve": solve, **attributes}.items()},
+        **({} if warnings is None else stored(warnings)),
         version=_version(),
     )
     return data

@@ -22,7 +22,6 @@ from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document
-from pitchpoint.cases.failures import apart
 from pitchpoint.cases.handed_over import FILES, hand_over
 from pitchpoint.cases.library import names
 from pitchpoint.cases.loss_sets import set_sources
@@ -31,6 +30,7 @@ from pitchpoint.cases.schema import Loss, Study, validate
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
+from pitchpoint.doubts import apart, concerns, doubts_of
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
@@ -108,10 +108,12 @@ class Outcome:
         manifest: title, inputs in SI, what is implausible, warnings, laws, sources, issues, printed against
             computed.
         parts: datasets by name.
+        doubts: sentences that were told of it, of which the manifest keeps those that are felt.
     """
 
     manifest: dict[str, Any]
     parts: dict[str, xr.Dataset] = field(default_factory=dict)
+    doubts: list[str] = field(default_factory=list)
 
     def __repr__(self) -> str:
         told = f"{len(self.manifest['warnings'])} warnings, {len(self.rows)} rows compared"
@@ -124,9 +126,10 @@ class Outcome:
         return [Row(**row) for row in self.manifest["rows"]]
 
     def tell(self, sentences: Sequence[str]) -> None:
-        """Add sentences to what is implausible, and to the warnings."""
-        known = (*self.manifest["implausible"], *self.manifest["warnings"])
-        self.manifest.update(apart([*known, *sentences]))
+        """Add sentences to what is implausible, and to the warnings: as far as parts are there for them."""
+        self.doubts += sentences
+        there = {str(name) for part in self.parts.values() for name in part}
+        self.manifest.update(apart(text for text in self.doubts if concerns(text, there)))
 
 
 @double_precision()
@@ -218,14 +221,14 @@ def run_variant(
     """Compute all parts of one variant; finished parts found in the folder are read."""
     built = work[0].built if work else variant.built({})
     outcome = Outcome(_manifest(variant, built, studies) | {"lacks": _lacking(built)})
+    outcome.tell(_of_design(variant, built))
     if folder is not None:
         _hand_over(variant, outcome.manifest["title"], folder, studies)
     for job in work:
         mark = _mark(outcome.manifest, job)
         outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
         if not is_study(job.name):
-            told = [*json.loads(part.attrs.get("warnings", "[]")), *unlikely(built, outcome.parts)]
-            outcome.tell(told)
+            outcome.tell([*doubts_of(part.attrs), *unlikely(built, outcome.parts)])
         _note(outcome, folder, finished=False)
     outcome.manifest["rows"] = [row.as_json() for row in _rows(built, variant, outcome.parts)]
     _note(outcome, folder, finished=True)
@@ -256,6 +259,11 @@ def compute_alone(
     job = Job(analysis, built)
     mark = fingerprint(_mark(_manifest(variant, built, {}), job), told)
     return _part(job, variant, mark, folder, progress)
+
+
+def _of_design(variant: Variant, built: Ready) -> list[str]:
+    """What is doubtful before anything is computed."""
+    return [*variant.warnings, *built.warnings, *built.heated]
 
 
 def own_law(variant: Variant, function: Callable[..., Any]) -> Variant:
@@ -396,7 +404,8 @@ def describe(
     made = held(case, only, settings)
     for variant in made:
         _jobs(variant, studies or {})  # made, not computed: a wrong study shows now
-    return [_manifest(variant, variant.built({}), studies or {}) for variant in made]
+    built = [(variant, variant.built({})) for variant in made]
+    return [_manifest(*each, studies or {}) | apart(_of_design(*each)) for each in built]
 
 
 @double_precision()
@@ -647,7 +656,8 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
             for target in (case.targets if _measured(variant) else ())
         ],
         "own": "" if variant.own is None else variant.own.name,
-        **apart([*variant.warnings, *built.warnings, *built.heated]),
+        "implausible": [],
+        "warnings": [],
         "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],
         "models": [
             {"effect": effect, "name": law.name, "title": law.title, "note": law.note}

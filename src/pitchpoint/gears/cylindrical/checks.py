@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.doubts import REMARKED, Doubt
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO
 from pitchpoint.gears.designs import Faults, Number, each, padded
@@ -166,7 +167,7 @@ def _told(whole: _Pair, gears: list[_Gear]) -> list[str]:
         for faults in beside:
             wrong.tried(_refuse_first, faults)
         wrong.demand_none()
-    found = [text for gear in gears for text in _warnings(whole, gear)]
+    found: list[str] = [text for gear in gears for text in _warnings(whole, gear)]
     return found + _pair_warnings(whole)
 
 
@@ -700,40 +701,52 @@ def _unknown(value: Number) -> Any:
     return value != value
 
 
-def _warnings(pair: _Pair, gear: _Gear) -> list[str]:
+def _warnings(pair: _Pair, gear: _Gear) -> list[Doubt]:
     found = []
     if gear.tip_thickness < _THIN_TIP:
         found.append(
-            f"The teeth of {gear.name} are {gear.tip_thickness:.3g} {gear.modules} thick at the "
-            f"tip; at least {_THIN_TIP:g} {gear.modules} are usual."
+            Doubt(
+                f"The teeth of {gear.name} are {gear.tip_thickness:.3g} {gear.modules} thick at the "
+                f"tip; at least {_THIN_TIP:g} {gear.modules} are usual.",
+                moves=REMARKED,
+            )
         )
     if gear.undercut:
         found.append(_undercut_warning(pair, gear))
     if gear.clearance < _SMALL_CLEARANCE * (1.0 - 1e-9):
         found.append(
-            f"The tip of {gear.name} clears the root of {gear.mate} by {gear.clearance:.3g} "
-            f"{gear.modules}; at least {_SMALL_CLEARANCE:g} {gear.modules} are usual."
+            Doubt(
+                f"The tip of {gear.name} clears the root of {gear.mate} by {gear.clearance:.3g} "
+                f"{gear.modules}; at least {_SMALL_CLEARANCE:g} {gear.modules} are usual.",
+                moves=REMARKED,
+            )
         )
     return found
 
 
-def _pair_warnings(pair: _Pair) -> list[str]:
+def _pair_warnings(pair: _Pair) -> list[Doubt]:
     found = []
     if pair.transverse_ratio < 1.0:
         overlap = pair.contact_ratio - pair.transverse_ratio
         found.append(
-            f"The transverse contact ratio of gear 1 and gear 2 is {pair.transverse_ratio:.3g}: it "
-            f"is the overlap ratio, {overlap:.3g}, that keeps the teeth in contact."
+            Doubt(
+                f"The transverse contact ratio of gear 1 and gear 2 is {pair.transverse_ratio:.3g}: it "
+                f"is the overlap ratio, {overlap:.3g}, that keeps the teeth in contact.",
+                moves=REMARKED,
+            )
         )
     if pair.internal and pair.radial_gap < 0.0:
         found.append(
-            "Gear 1 must be put into gear 2 along its axis: moved in radially, the tips overlap by "
-            f"up to {-pair.radial_gap:.3g} {pair.modules}."
+            Doubt(
+                "Gear 1 must be put into gear 2 along its axis: moved in radially, the tips overlap by "
+                f"up to {-pair.radial_gap:.3g} {pair.modules}.",
+                moves=REMARKED,
+            )
         )
     return found
 
 
-def _undercut_warning(pair: _Pair, gear: _Gear) -> str:
+def _undercut_warning(pair: _Pair, gear: _Gear) -> Doubt:
     lost = _lost_ratio(pair, gear)
     cost = (
         f"the path of contact ends at its form circle ({_mm(gear.form_diameter)}), which takes "
@@ -742,9 +755,10 @@ def _undercut_warning(pair: _Pair, gear: _Gear) -> str:
         else f"its form circle ({_mm(gear.form_diameter)}) lies below the path of contact, so that "
         "no contact ratio is lost"
     )
-    return (
+    return Doubt(
         f"The flanks of {gear.name} are undercut: its profile shift {gear.profile_shift:.4g} is "
-        f"below the limit {gear.undercut_limit:.4g}; {cost}."
+        f"below the limit {gear.undercut_limit:.4g}; {cost}.",
+        moves=max(lost / float(pair.contact_ratio), REMARKED),
     )
 
 

@@ -12,6 +12,7 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.contact.modifications import Crowning, EndRelief, LeadSlope, Relief
 from pitchpoint.contact.surface import Flank, Surface, Surfaces
+from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
@@ -214,7 +215,7 @@ def class_warnings(pair: CylindricalPair) -> tuple[str, ...]:
         for size, teeth in _sizes(pair)
     ]
     return tuple(
-        f"ISO 1328-1 does not hold for gear {number}: {outside}."
+        Doubt(f"ISO 1328-1 does not hold for gear {number}: {outside}.", moves=GUESSED)
         for number, outside in enumerate(told, 1)
         if outside
     )

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jax
+from pitchpoint.doubts import GUESSED, WITHHELD, Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.fields import LineFilm
@@ -22,11 +23,8 @@ from pitchpoint.status import Code
 
 __all__ = [
     "UNSOLVED",
-    "Doubt",
     "check",
-    "extent_of",
     "flooded_inlet",
-    "kind_of",
     "of_conduction",
     "of_heat",
     "starved",
@@ -66,45 +64,6 @@ WIDE: Final = 0.1
 
 UNSOLVED: Final = "unsolved"
 """Kind of the sentence on contacts that have no film."""
-
-
-class Doubt(str):
-    """A sentence without its stop, of a kind, and how bad it is.
-
-    Args:
-        sentence: with its numbers.
-        kind: what sentences have in common of which the worst one says enough.
-        extent: larger is worse; comparable within a kind.
-
-    Example:
-        >>> from pitchpoint.lubrication.ehl.doubts import Doubt
-        >>> told = Doubt("the grid is coarse: off by 5 %", "grid", 0.05)
-        >>> print(told, told.kind, told.extent)
-        the grid is coarse: off by 5 % grid 0.05
-    """
-
-    kind: str
-    extent: float
-
-    def __new__(cls, sentence: str, kind: str, extent: float) -> Doubt:
-        """See the class."""
-        found = super().__new__(cls, sentence)
-        found.kind, found.extent = kind, float(extent)
-        return found
-
-    def __getnewargs__(self) -> tuple[str, str, float]:  # type: ignore[override]
-        """What copies are made of."""
-        return str(self), self.kind, self.extent
-
-
-def kind_of(sentence: str) -> str:
-    """Kind of a sentence; a plain one is its own."""
-    return sentence.kind if isinstance(sentence, Doubt) else sentence
-
-
-def extent_of(sentence: str) -> float:
-    """How bad it is; nothing is known of a plain one."""
-    return sentence.extent if isinstance(sentence, Doubt) else 0.0
 
 
 def check(contact: LineContact) -> None:
@@ -198,7 +157,7 @@ def _of_unsolved(code: NDArray[np.int_], every: int) -> Iterator[Doubt]:
     why = (one if len(kinds) == 1 else f"{one} ({count})" for one, count in kinds)
     if code.size:
         sentence = f"{code.size} of {every} contacts were not solved: {'; '.join(why)}"
-        yield Doubt(sentence, UNSOLVED, code.size)
+        yield Doubt(sentence, UNSOLVED, code.size, moves=WITHHELD)
 
 
 def _of_units(contact: LineContact) -> Iterator[Doubt]:
@@ -261,7 +220,7 @@ def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterato
     told = contact.fluid.outside(pressure)
     if told is not None:
         sentence = f"{told}: films and traction there are extrapolated"
-        yield Doubt(sentence, "pressure", pressure.max())
+        yield Doubt(sentence, "pressure", pressure.max(), moves=GUESSED)
 
 
 def _of_half_space(
@@ -374,6 +333,7 @@ def _of_grid(error: NDArray[np.float64]) -> Iterator[Doubt]:
             f"off by {100.0 * error.max():.2g} %; take more nodes",
             "grid",
             error.max(),
+            moves=error.max(),
         )
 
 

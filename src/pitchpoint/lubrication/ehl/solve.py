@@ -13,6 +13,7 @@ from jaxtyping import Array, Bool, Float, Int
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import check, warnings
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
@@ -97,7 +98,7 @@ class Films:
     ended: Ended
     nodes: int
     domain: NDArray[np.float64]
-    warnings: tuple[str, ...]
+    warnings: tuple[Doubt, ...]
 
     @property
     def solved(self) -> NDArray[np.bool_]:

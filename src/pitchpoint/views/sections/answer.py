@@ -1,6 +1,5 @@
 """The answer: operating point, main figures by friction law, and how far the laws disagree."""
 
-import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
@@ -254,14 +253,9 @@ def _warned(page: Page) -> dict[str, list[str]]:
 
 
 def _warnings(page: Page, outcome: Outcome) -> list[str]:
-    """Sentences of the design and of the parts, each once, but for those that a section tells itself."""
-    texts, known = list(outcome.manifest["warnings"]), outcome.manifest["implausible"]
-    for data in outcome.parts.values():
-        found = [str(text) for text in json.loads(data.attrs.get("warnings", "[]"))]
-        new = [text for text in found if text not in (*texts, *known)]
-        texts += [f"{data.attrs['title']}: {text}" for text in new]
+    """Sentences of a variant but for those that a section tells itself."""
     elsewhere = {text for section in page.sections for text in section.warns(outcome)}
-    return [text for text in dict.fromkeys(texts) if text not in elsewhere]
+    return [text for text in outcome.manifest["warnings"] if text not in elsewhere]
 
 
 def _drag(data: xr.Dataset, law: int) -> str:

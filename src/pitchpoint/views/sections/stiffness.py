@@ -1,11 +1,11 @@
 """Stiffness of the mesh: of each pair and of all together, beside the standard's estimate."""
 
-import json
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 import xarray as xr
 
+from pitchpoint.doubts import doubts_of
 from pitchpoint.published.registry import publication_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
@@ -97,8 +97,7 @@ def _panel(name: str, variant: str, outcome: Outcome) -> Panel:
 
 def _outside_standard(data: xr.Dataset) -> list[str]:
     """Where the pair lies outside what the standard's estimate covers."""
-    told = json.loads(data.attrs.get("warnings", "[]"))
-    return [str(text) for text in told if "ISO 6336-1" in str(text)]
+    return [doubt for doubt in doubts_of(data.attrs) if "ISO 6336-1" in doubt]
 
 
 def _over_phase(name: str, data: xr.Dataset, period: Period) -> Figure:
@@ -194,5 +193,4 @@ def stiffness_facts(outcome: Outcome) -> Iterator[KeyFigure]:
 def stiffness_warnings(outcome: Outcome) -> list[str]:
     """What the standard's estimate does not cover stands beside that estimate."""
     data = outcome.parts.get("stiffness")
-    told = [] if data is None else _outside_standard(data)
-    return [*told, *(f"mesh stiffness: {text}" for text in told)]
+    return [] if data is None else _outside_standard(data)

@@ -2,12 +2,13 @@
 
 import json
 from collections.abc import Iterator
+from itertools import chain
 from math import inf
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint.cases.failures import apart
+from pitchpoint.doubts import apart, doubts_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.screen import head, shown
@@ -119,6 +120,11 @@ def _told(data: xr.Dataset, name: str) -> list[str]:
     return [str(text) for text in json.loads(data.attrs[name])]
 
 
+def _doubts(data: xr.Dataset) -> dict[str, list[str]]:
+    """What fails of a rating, and what is doubtful."""
+    return apart(doubts_of(data.attrs))
+
+
 def _caveats(data: xr.Dataset) -> list[str]:
     """Method, and what stands beside the safeties."""
     return [
@@ -147,7 +153,7 @@ def _blocks_of(_: int, outcome: Outcome) -> Iterator[Block]:
     whole = outcome.parts["strength"]
     rows = strength_rows(outcome)
     yield Table([*rows[0]], [[*row.values()] for row in rows])
-    for text in _told(whole, "warnings"):
+    for text in chain(*_doubts(whole).values()):
         yield Paragraph(text, "warning")
     for text in _caveats(whole):
         yield Paragraph(text, "note")
@@ -194,8 +200,7 @@ def _place(value: xr.DataArray) -> str:
 def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("strength")
     if data is not None:
-        doubts = apart(_told(data, "warnings"))["warnings"]  # what fails stands first
-        line = " ".join([*doubts, *_caveats(data)])
+        line = " ".join([*_doubts(data)["warnings"], *_caveats(data)])  # what fails stands first
         yield Printed("Strength of the teeth", strength_rows(outcome), line)
 
 
@@ -207,6 +212,8 @@ STRENGTH = Section(
     parts=("strength",),
     blocks=_blocks,
     answer=_answer,
-    warns=lambda one: _told(one.parts["strength"], "warnings") if "strength" in one.parts else (),
+    warns=lambda one: (
+        chain(*_doubts(one.parts["strength"]).values()) if "strength" in one.parts else ()
+    ),
     screen=_screen,
 )

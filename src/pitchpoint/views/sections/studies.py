@@ -1,6 +1,5 @@
 """Figures and tables of the studies of a case."""
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -11,6 +10,7 @@ from pitchpoint import units
 from pitchpoint.analyses.figures import CONTACT, MAIN, RATING, covered, of_contact
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases.schema import quantity_at
+from pitchpoint.doubts import apart, doubts_of
 from pitchpoint.results.chosen_units import unit_in_use
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.runs.run import Outcome
@@ -361,7 +361,7 @@ def _warns(outcome: Outcome) -> list[str]:
         f"{data.attrs['title']}: {text}"
         for name, data in outcome.parts.items()
         if is_study(name)
-        for text in json.loads(data.attrs.get("warnings", "[]"))
+        for text in apart(doubts_of(data.attrs))["warnings"]
         if text not in outcome.manifest["warnings"]
     ]
 
@@ -417,6 +417,5 @@ STUDIES = Section(
     order=600.0,
     lacks=_lacks,
     blocks=_blocks,
-    warns=_warns,
     screen=_screen,
 )

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from pitchpoint.doubts import doubts_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -104,7 +105,7 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
 
 def _said(data: xr.Dataset, words: str) -> str:
     """The warning of a result that has some words in it."""
-    told = [one for one in json.loads(data.attrs["warnings"]) if words in one]
+    told = [one for one in doubts_of(data.attrs) if words in one]
     return told[0] if told else ""
 
 

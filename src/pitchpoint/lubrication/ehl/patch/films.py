@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.subsurface import Stresses, below_row
+from pitchpoint.doubts import GUESSED, WITHHELD, Doubt
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import WIDE, Doubt, of_conduction, of_heat, starved
+from pitchpoint.lubrication.ehl.doubts import WIDE, of_conduction, of_heat, starved
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import (
     FIELDS,
@@ -117,7 +118,7 @@ class PatchFilms:
     held: NDArray[np.float64]
     response: Response
     turned: Turned
-    warnings: tuple[str, ...]
+    warnings: tuple[Doubt, ...]
     rise: NDArray[np.float64] | None = None
 
     @property
@@ -207,7 +208,7 @@ class Told(NamedTuple):
 
     film: PatchFilm
     ended: PatchEnded
-    warnings: tuple[str, ...]
+    warnings: tuple[Doubt, ...]
 
 
 def told_film(
@@ -469,6 +470,7 @@ def _of_room(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
             "20 % too thin",
             "thick",
             longer,
+            moves=0.2,
         )
     if asked < begins * (1.0 - 1e-9):
         yield Doubt(
@@ -481,7 +483,7 @@ def _of_room(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
 
 def _warnings(
     contact: PatchContact, layout: Layout, film: PatchFilm, ended: PatchEnded, least: float
-) -> Iterator[str]:
+) -> Iterator[Doubt]:
     half_width, radius = layout.half_width, float(np.min(np.asarray(contact.radius)))
     if half_width > WIDE * radius:
         yield Doubt(
@@ -491,13 +493,14 @@ def _warnings(
             half_width / radius,
         )
     if ended.code != Code.SOLVED:
-        yield f"the film was not found: {ended.code.sentence}"
+        yield Doubt(f"the film was not found: {ended.code.sentence}", moves=WITHHELD)
         return
     yield from _of_room(contact, layout)
     told = contact.fluid.outside(film.hertz_pressure)
     if told is not None:
         pressure = float(film.hertz_pressure)
-        yield Doubt(f"{told}: films and traction there are extrapolated", "pressure", pressure)
+        sentence = f"{told}: films and traction there are extrapolated"
+        yield Doubt(sentence, "pressure", pressure, moves=GUESSED)
     if 0.0 < film.mean_film < least:
         yield Doubt(
             f"the grid is coarse for a film of {1e9 * film.mean_film:.3g} nm: beside the contact the gap "

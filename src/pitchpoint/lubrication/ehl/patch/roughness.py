@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import Doubt
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import (
@@ -151,7 +151,7 @@ def _range(contact: PatchContact, layout: Layout, cells: int) -> float:
     return float(np.ptp(np.asarray(lowered_on(contact.heights, layout, bodies))))
 
 
-def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Iterator[str]:
+def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Iterator[Doubt]:
     """Sentences on what the grid does not show of maps, and on contacts that are summits alone."""
     patch = extents(contact, layout)
     for one in contact.heights:
@@ -163,6 +163,7 @@ def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Ite
                 "shorter than about four cells are lost; take more nodes, or take them as asperities",
                 "unseen",
                 1.0 - seen / whole,
+                moves=1.0 - seen / whole,
             )
     if contact.heights:
         high, flat = _range(contact, layout, cells), layout.half_width**2 / (2.0 * layout.radius)

@@ -12,8 +12,8 @@ from jaxtyping import Array
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint._jax import array, jax
+from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import Doubt
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, Response
 from pitchpoint.lubrication.ehl.patch.films import (
@@ -116,7 +116,7 @@ class PatchMoment:
     ended: PatchEnded
     time_steps: int
     course: Course
-    warnings: tuple[str, ...]
+    warnings: tuple[Doubt, ...]
 
     @property
     def solved(self) -> bool:
@@ -411,7 +411,7 @@ def _moment(
     return PatchMoment(time, film, told.ended, steps[0], course, warnings)
 
 
-def _few(layout: Layout, nodes: int) -> Iterator[str]:
+def _few(layout: Layout, nodes: int) -> Iterator[Doubt]:
     """A sentence on contacts that are small on the grid of the largest one."""
     shown = layout.half_width / (layout.outlet - layout.inlet) * (nodes - 1)
     if shown < FEWEST_NODES:

@@ -1,0 +1,221 @@
+"""What is doubtful of a result, and what cannot be: sentences with what they move, the worst first."""
+
+import json
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping
+from typing import Any, Final
+
+__all__ = [
+    "FELT",
+    "GUESSED",
+    "LEFT_OUT",
+    "REMARKED",
+    "WITHHELD",
+    "Doubt",
+    "apart",
+    "as_doubt",
+    "concerns",
+    "doubts_of",
+    "fails",
+    "in_stage",
+    "moves",
+    "reworded",
+    "stored",
+    "worst_of_kinds",
+]
+
+FELT: Final = 0.01
+"""Part of the answer that a doubt has to move to be told."""
+
+# Where nobody computes what a doubt moves, its nature ranks it among those that are computed.
+WITHHELD: Final = 1.0
+"""Rank of what has no number at all."""
+
+GUESSED: Final = 0.3
+"""Rank of a formula far from what it was fitted to: friction laws disagree by about so much there."""
+
+LEFT_OUT: Final = 0.1
+"""Rank of an effect that is left out, and of what says nothing of itself."""
+
+REMARKED: Final = 0.02
+"""Rank of what hardly moves a number, but has to be known."""
+
+_FAILS = "Fails: "
+_STAGE = re.compile(r"(?<=^Stage )\d+(?=: )|(?<=^Fails: stage )\d+(?=: )")
+_GEAR = re.compile(r"(?<=\b[Gg]ear )\d\b")
+
+
+class Doubt(str):
+    """A sentence of a kind, with its extent and what it moves.
+
+    Args:
+        sentence: with its numbers.
+        kind: what sentences have in common of which the worst one says enough; a plain one is its own.
+        extent: larger is worse; comparable within a kind.
+        moves: part of the answer that it moves; where nobody knows, a rank from `WITHHELD` to `REMARKED`.
+        about: variables that it is about; empty where it is about all of a result.
+
+    Example:
+        >>> from pitchpoint.doubts import Doubt
+        >>> told = Doubt("the grid is coarse: off by 5 %", "grid", 0.05, moves=0.05)
+        >>> print(told, told.kind, told.extent)
+        the grid is coarse: off by 5 % grid 0.05
+    """
+
+    kind: str
+    extent: float
+    moves: float
+    about: tuple[str, ...]
+
+    def __new__(
+        cls,
+        sentence: str,
+        kind: str = "",
+        extent: float = 0.0,
+        *,
+        moves: float = LEFT_OUT,
+        about: tuple[str, ...] = (),
+    ) -> "Doubt":
+        """See the class."""
+        doubt = super().__new__(cls, sentence)
+        doubt.kind, doubt.extent, doubt.moves = kind or str(sentence), float(extent), float(moves)
+        doubt.about = about
+        return doubt
+
+    def __getnewargs_ex__(self) -> tuple[tuple[str, str, float], dict[str, Any]]:
+        """What copies are made of."""
+        return (str(self), self.kind, self.extent), {"moves": self.moves, "about": self.about}
+
+
+def as_doubt(sentence: str) -> Doubt:
+    """Sentence as a doubt; a plain one is of its own kind."""
+    return sentence if isinstance(sentence, Doubt) else Doubt(sentence)
+
+
+def moves(sentence: str) -> float:
+    """Part of the answer that a sentence moves, or the rank of its nature."""
+    return as_doubt(sentence).moves
+
+
+def reworded(sentence: str, words: str) -> Doubt:
+    """Other words for the same doubt."""
+    doubt = as_doubt(sentence)
+    return Doubt(words, doubt.kind, doubt.extent, moves=doubt.moves, about=doubt.about)
+
+
+def concerns(sentence: str, there: Collection[str]) -> bool:
+    """True for a sentence on all of a result, and for one on variables of which one is there."""
+    about = as_doubt(sentence).about
+    return not about or any(name in there for name in about)
+
+
+def fails(sentence: str) -> str:
+    """Sentence marked as one on what cannot be; whoever warns of a result may tell such ones.
+
+    Example:
+        >>> fails("the teeth of gear 2 melt.")
+        'Fails: the teeth of gear 2 melt.'
+    """
+    return f"{_FAILS}{sentence}"
+
+
+def in_stage(number: int, sentence: str) -> str:
+    """Sentence on one stage of a drive.
+
+    Example:
+        >>> from pitchpoint.doubts import fails
+        >>> in_stage(2, fails("the teeth of gear 2 melt."))
+        'Fails: stage 2: the teeth of gear 2 melt.'
+        >>> in_stage(1, "Tips are pointed.")
+        'Stage 1: tips are pointed.'
+    """
+    if sentence.startswith(_FAILS):
+        return fails(f"stage {number}: {sentence.removeprefix(_FAILS)}")
+    return reworded(sentence, f"Stage {number}: {sentence[:1].lower()}{sentence[1:]}")
+
+
+def apart(sentences: Iterable[str]) -> dict[str, list[str]]:
+    """Sentences on what cannot be, and all other warnings that are felt, each once and the worst first.
+
+    Sentences that differ by their stage or gear alone become one.
+
+    Example:
+        >>> from pitchpoint.doubts import Doubt, fails
+        >>> grid = Doubt("the grid is off by 20 %.", moves=0.2)
+        >>> tips = [f"the teeth of gear {number} are pointed." for number in (1, 2)]
+        >>> apart([*tips, fails("teeth melt."), grid, Doubt("a trifle.", moves=1e-4)])["warnings"]
+        ['the grid is off by 20 %.', 'the teeth of gear 1 (gear 2 alike) are pointed.']
+    """
+    of_stages = _merged(sentences, _STAGE, _stages)
+    every = _merged(of_stages, _GEAR, _gears)
+    failing: list[str] = [text for text in every if text.startswith(_FAILS)]
+    felt: Iterable[str] = (
+        text
+        for text in every
+        if not text.startswith(_FAILS)
+        and moves(text) >= FELT
+        and not any(text.rstrip(".") in other for other in failing)
+    )
+    ranked: list[str] = sorted(felt, key=moves, reverse=True)
+    return {"implausible": failing, "warnings": ranked}
+
+
+def stored(sentences: Iterable[str]) -> dict[str, str]:
+    """Attributes of a dataset that hold sentences and what they move."""
+    every = [as_doubt(text) for text in sentences]
+    rest = [[one.kind, one.extent, one.moves, one.about] for one in every]
+    return {"warnings": json.dumps(every), "doubts": json.dumps(rest)}
+
+
+def doubts_of(attributes: Mapping[str, Any]) -> list[Doubt]:
+    """Sentences that a dataset holds, with what they move where it says so."""
+    texts = [str(text) for text in json.loads(attributes.get("warnings", "[]"))]
+    if "doubts" not in attributes:
+        return [*map(Doubt, texts)]
+    return [
+        Doubt(text, kind, extent, moves=part, about=tuple(about))
+        for text, (kind, extent, part, about) in zip(
+            texts, json.loads(attributes["doubts"]), strict=True
+        )
+    ]
+
+
+def worst_of_kinds(sentences: Iterable[str]) -> list[Doubt]:
+    """Of each kind of sentences the one with the largest extent, in their order."""
+    worst: dict[str, Doubt] = {}
+    for doubt in map(as_doubt, sentences):
+        if doubt.kind not in worst or doubt.extent > worst[doubt.kind].extent:
+            worst[doubt.kind] = doubt
+    return [*worst.values()]
+
+
+def _merged(
+    sentences: Iterable[str], numbered: re.Pattern[str], named: Callable[[str, list[str]], str]
+) -> list[Doubt]:
+    """Sentences that differ by one number alone as one that names all of them."""
+    alike: dict[str, dict[str, Doubt]] = {}
+    for doubt in map(as_doubt, sentences):
+        numbers = {*numbered.findall(doubt)}
+        number = numbers.pop() if len(numbers) == 1 else ""
+        group = alike.setdefault(numbered.sub("#", doubt) if number else doubt, {})
+        group[number] = max(group.get(number, doubt), doubt, key=moves)
+    return [
+        reworded(max(group.values(), key=moves), named(next(iter(group.values())), [*group]))
+        for group in alike.values()
+    ]
+
+
+def _stages(sentence: str, numbers: list[str]) -> str:
+    """Sentence on the first of some stages, as one on all of them."""
+    if len(numbers) == 1:
+        return sentence
+    listed = f"{', '.join(numbers[:-1])} and {numbers[-1]}"
+    return _STAGE.sub(listed, sentence).replace("tage ", "tages ", 1)
+
+
+def _gears(sentence: str, numbers: list[str]) -> str:
+    """Sentence on the first of some gears, as one on all of them."""
+    if len(numbers) == 1:
+        return sentence
+    alike = " and ".join(f"gear {number}" for number in numbers[1:])
+    return _GEAR.sub(rf"\g<0> ({alike} alike)", sentence, count=1)
