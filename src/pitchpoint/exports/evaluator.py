@@ -1,6 +1,7 @@
 """The loss map of the output as files that need nothing else: a module of Python and a header of C."""
 
 import ast
+import math
 import re
 from collections.abc import Iterable, Sequence
 from importlib.resources import files
@@ -45,17 +46,25 @@ def evaluator(outcome: Outcome, folder: Path) -> list[Path]:
     Raises:
         InputError: the result has no such map, or too large a one.
     """
-    table = _table(outcome)
-    texts = {
-        "loss_table.py": module(outcome, table),
-        "loss_table.h": header(outcome, table),
-    }
+    _demand_map(outcome)
+    try:
+        table = table_of(outcome.parts[FOUR_QUADRANTS.name], outcome.parts.get("running"))
+        texts = {"loss_table.py": module(outcome, table), "loss_table.h": header(outcome, table)}
+    except (
+        AttributeError,
+        KeyError,
+        TypeError,
+        ValueError,
+    ):  # of another version, or another's hand
+        told = f"the {FOUR_QUADRANTS.title} is not as this version writes it; run the case again"
+        raise InputError(told, key="--evaluator") from None
     for name, text in texts.items():
         write_text(folder / name, text)
     return [folder / name for name in texts]
 
 
-def _table(outcome: Outcome) -> LossTable:
+def _demand_map(outcome: Outcome) -> None:
+    """InputError unless the result has a map that fits into a file of source."""
     name = FOUR_QUADRANTS.name
     if name not in outcome.parts:
         why = outcome.manifest["lacks"].get(name)
@@ -63,13 +72,13 @@ def _table(outcome: Outcome) -> LossTable:
         told = f"the result has no {FOUR_QUADRANTS.title}"
         raise InputError(f"{told}: {why}" if why else f"{told}; {how}", key="--evaluator")
     data = outcome.parts[name]
-    if data["mean_loss"].size > 2 * MOST:
+    points = data["mean_loss"].size if "mean_loss" in data else 0
+    if points > 2 * MOST:
         raise InputError(
-            f"the {FOUR_QUADRANTS.title} has {data['mean_loss'].size} points, and {2 * MOST} is the most for "
+            f"the {FOUR_QUADRANTS.title} has {points} points, and {2 * MOST} is the most for "
             "a file of source; take a lower loss_map.count",
             key="--evaluator",
         )
-    return table_of(data, outcome.parts.get("running"))
 
 
 def module(outcome: Outcome, table: LossTable) -> str:
@@ -128,7 +137,7 @@ def header(outcome: Outcome, table: LossTable) -> str:
         "\n * ".join(wrap(text, 100)) for text in (*_told(outcome, table), usage)
     )
     sizes = "".join(f"#define LOSS_TABLE_{n} {k}\n" for n, k in zip(names, shape, strict=True))
-    driver = table.units[-1]
+    driver = _inert(table.units[-1])
     arrays = {
         "torques[LOSS_TABLE_TORQUES]": table.torques,
         "speeds[LOSS_TABLE_SPEEDS]": table.speeds,
@@ -152,11 +161,15 @@ def header(outcome: Outcome, table: LossTable) -> str:
 
 
 def _told(outcome: Outcome, table: LossTable) -> Iterable[str]:
-    """What stands at the head of a file."""
+    """What stands at the head of a file, made of signs that end no comment."""
+    return map(_inert, _head(outcome, table))
+
+
+def _head(outcome: Outcome, table: LossTable) -> Iterable[str]:
     data = outcome.parts[FOUR_QUADRANTS.name]
     torque, speed, driver = table.units
     errors = "; ".join(
-        f"{_plain(law)}: {100.0 * most:.2g} % at most, {100.0 * mean:.2g} % in the mean"
+        f"{law}: {100.0 * most:.2g} % at most, {100.0 * mean:.2g} % in the mean"
         for law, most, mean in zip(
             table.losses,
             data["interpolation_error"].values,
@@ -195,8 +208,8 @@ def _literal(value: Any) -> str:
         return "{" + ", ".join(f"{key!a}: {_literal(one)}" for key, one in value.items()) + "}"
     if isinstance(value, Sequence) and not isinstance(value, str):
         return "(" + "".join(f"{_literal(one)},{_apart(value)}" for one in value) + ")"
-    if isinstance(value, float) and value != value:
-        return "math.nan"
+    if isinstance(value, float) and not math.isfinite(value):
+        return {"nan": "math.nan", "inf": "math.inf"}.get(str(value), "-math.inf")
     return ascii(value)
 
 
@@ -212,7 +225,8 @@ def _c(value: Any) -> str:
         return '"' + "".join(chr(b) if b in plain else f"\\{b:03o}" for b in value.encode()) + '"'
     if isinstance(value, Sequence):
         return "{" + f",{_apart(value)}".join(map(_c, value)) + "}"
-    return "NAN" if value != value else repr(float(value))
+    number = repr(float(value))
+    return {"nan": "NAN", "inf": "INFINITY", "-inf": "-INFINITY"}.get(number, number)
 
 
 def _apart(values: Sequence[Any]) -> str:
@@ -221,6 +235,6 @@ def _apart(values: Sequence[Any]) -> str:
     return "\n    " if rows else " "
 
 
-def _plain(name: str) -> str:
-    """Name of a law for a comment: what steers no compiler."""
-    return re.sub(r"[^A-Za-z0-9_ +-]", "_", name)
+def _inert(text: str) -> str:
+    """Text for a comment of C and of Python, whoever wrote it: nothing in it ends or continues a line."""
+    return re.sub(r"[^A-Za-z0-9 _+.,;:()%/=<>'^-]", "_", text)

@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from pitchpoint.errors import InputError
+from pitchpoint.errors import InputError, visible
 from pitchpoint.exports.evaluator import evaluator
 from pitchpoint.exports.tables import Sheet, exported, sheets
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
@@ -30,6 +31,14 @@ LONGEST_NAME = 31
 """Characters of the name of a sheet."""
 
 README = "README.txt"
+
+_FORMULA = re.compile(r"(^|[;\t\r\n])(?=\s*[=+\-@\uff1d\uff0b\uff0d\uff20])")
+"""Where a spreadsheet would begin a formula, also one whose cells end at semicolons or tabs."""
+
+_NOT_IN_XML = re.compile("[\0-\x08\v\f\x0e-\x1f]")
+
+_QUANTITY = re.compile(r"[+-][\d.][\w .,/%+-]*")
+"""Numbers with units, which call nothing."""
 
 
 def export(
@@ -87,8 +96,23 @@ def _csv(outcome: Outcome, tables: list[Sheet], folder: Path, si: bool) -> list[
     """A file for each table."""
     paths = [folder / f"{table.name}.csv" for table in tables]
     for path, table in zip(paths, tables, strict=True):
-        write_bytes(path, table.frame.to_csv(index=False).encode("utf-8"))
+        write_bytes(path, _texts_changed(table.frame, _inert).to_csv(index=False).encode("utf-8"))
     return paths
+
+
+def _texts_changed(frame: pd.DataFrame, change: Callable[[str], str]) -> pd.DataFrame:
+    """The frame with its texts and heads changed; numbers stay as they are."""
+    texts = frame.select_dtypes(exclude=["number", "bool"])
+    cells = {
+        str(name): [change(cell) if isinstance(cell, str) else cell for cell in texts[name]]
+        for name in texts
+    }
+    return frame.assign(**cells).rename(columns=change)
+
+
+def _inert(text: str) -> str:
+    """Text with an apostrophe wherever a spreadsheet would begin a formula."""
+    return text if _QUANTITY.fullmatch(text) else _FORMULA.sub(r"\1'", text)
 
 
 def _xlsx(outcome: Outcome, tables: list[Sheet], folder: Path, si: bool) -> list[Path]:
@@ -106,9 +130,19 @@ def _xlsx(outcome: Outcome, tables: list[Sheet], folder: Path, si: bool) -> list
     readme = pd.DataFrame({README: _readme(outcome, tables, si).splitlines()})
     with pd.ExcelWriter(image, engine="openpyxl") as writer:
         for name, frame in _named({"README": readme, **{one.name: one.frame for one in tables}}):
-            frame.to_excel(writer, sheet_name=name, index=False, freeze_panes=(1, 0))
+            held = _texts_changed(frame, _of_xml)
+            held.to_excel(writer, sheet_name=name, index=False, freeze_panes=(1, 0))
+            for row in writer.sheets[name].iter_rows():
+                for cell in row:
+                    if cell.data_type in "ef":  # texts that openpyxl takes for errors and formulas
+                        cell.data_type = "s"
     write_bytes(folder / "result.xlsx", image.getvalue())
     return [folder / "result.xlsx"]
+
+
+def _of_xml(text: str) -> str:
+    """Text of signs that a workbook can hold."""
+    return _NOT_IN_XML.sub(lambda sign: visible(sign[0]), text)
 
 
 def _named(frames: Mapping[str, pd.DataFrame]) -> list[tuple[str, pd.DataFrame]]:

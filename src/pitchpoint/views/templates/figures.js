@@ -99,7 +99,8 @@
     const cell = (value) => {
       if (value === null || value === undefined) return "";
       if (typeof value === "number") return String(value);
-      const words = bare(String(value)).replace(/^[=+@-]/, "'$&");
+      // What a spreadsheet would run is text, also behind what it may take for the end of a cell.
+      const words = bare(String(value)).replace(/(^|[;\t\r\n])(?=\s*[=+@\-\uff1d\uff0b\uff0d\uff20])/g, "$1'");
       return `"${words.replace(/"/g, '""')}"`;
     };
     const title = (name) => bare(place.layout[name] && place.layout[name].title && place.layout[name].title.text);
