@@ -1382,7 +1382,8 @@ def test_no_such_file(command: str, refuse: Callable[..., str], tmp_path: Path) 
     assert "variants" in refuse(command, "tian2024", "--variant", "as_publisht")
     assert refuse(command, "x" * 5000)
     assert refuse(command, f"{'x' * 5000}.toml")
-    assert "no such case file" in refuse(command, "/dev/null")
+    for endless in ("/dev/null", "/dev/zero"):
+        assert "is a pipe or a device; give a case file" in refuse(command, endless)
 
 
 def test_a_case_without_targets(refuse: Callable[..., str], tmp_path: Path) -> None:

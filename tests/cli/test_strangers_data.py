@@ -1,9 +1,11 @@
-"""What came from a stranger stays data, wherever it goes: into tables, into generated sources, to the screen."""
+"""What came from a stranger stays data, wherever it goes: tables, generated sources, files that it names."""
 
 import ast
 import builtins
+import os
 import shutil
 import subprocess
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +15,15 @@ import pandas as pd
 import pytest
 import xarray as xr
 
+from pitchpoint.cases.document import read
+from pitchpoint.cases.height_maps import digest_of, height_maps
+from pitchpoint.cases.record import Manifest, Record
+from pitchpoint.cases.schema import FilmTable
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import evaluator
 from pitchpoint.exports.files import export
+from pitchpoint.plain_files import content, digest
+from pitchpoint.results.store import load
 from pitchpoint.runs.run import Outcome
 
 FORMULAS = (
@@ -163,3 +171,74 @@ def test_a_map_that_lacks_a_part_is_refused(tmp_path: Path) -> None:
         lacking = loss_map("x").drop_vars(name)
         with pytest.raises(InputError, match="run the case again"):
             evaluator(Outcome(manifest(), {"four_quadrants": lacking}), tmp_path)
+
+
+@pytest.fixture
+def endless(tmp_path: Path) -> dict[str, Path]:
+    """Names behind which there is no end, or far too much, by what they are."""
+    os.mkfifo(tmp_path / "pipe.csv")
+    os.symlink("/dev/zero", tmp_path / "zero.csv")
+    with (tmp_path / "large.csv").open("wb") as file:
+        file.truncate(10**12)
+    (tmp_path / "folder.csv").mkdir()
+    names = ("pipe", "zero", "large", "folder", "none")
+    return {name: tmp_path / f"{name}.csv" for name in names}
+
+
+REASONS = {
+    "pipe": "is a pipe or a device; give a file",
+    "zero": "is a pipe or a device; give a file",
+    "large": "has 1e+06 MB; a file has at most 64 MB",
+    "folder": "is a folder; give a file",
+    "none": "there is no such file",
+}
+
+
+def test_no_file_is_read_that_has_no_end(endless: dict[str, Path]) -> None:
+    for name, path in endless.items():
+        for reader in (content, digest):
+            with pytest.raises(InputError) as caught:
+                reader(path, 64_000_000)
+            assert caught.value.message == REASONS[name]
+    sound = endless["none"].with_name("sound")
+    sound.write_bytes(b"heights")
+    assert content(sound, 7) == b"heights" and digest(sound, 7) == sha256(b"heights").hexdigest()
+    with pytest.raises(InputError, match="at most"):
+        content(sound, 6)
+    if Path("/proc/self/maps").exists():  # of which the system tells no size
+        with pytest.raises(InputError, match="at most"):
+            digest(Path("/proc/self/maps"), 100)
+
+
+@pytest.mark.parametrize("name", REASONS)
+def test_every_door_for_files_asks_whether_they_end(
+    endless: dict[str, Path], name: str, tmp_path: Path
+) -> None:
+    path = endless[name]
+    assert digest_of(str(path)) == ""
+    for reader in (read, load, Manifest.read, Record.read):
+        with pytest.raises(InputError):
+            reader(path)
+    table = {"file": str(path), "step_along": "1 um", "step_across": "1 um"}
+    film = FilmTable.model_validate({"solver": "elliptic", "heights": {"both": table}})
+    with pytest.raises(InputError, match="file of heights") as caught:
+        height_maps(film)
+    assert caught.value.key == "film.heights.both.file"
+
+
+def test_small_types_of_numbers_stay_small(tmp_path: Path) -> None:
+    np.save(tmp_path / "bytes.npy", np.zeros((4001, 4000), np.int8))
+    np.save(tmp_path / "sound.npy", np.full((40, 30), -7, np.int8))
+    lying = (tmp_path / "sound.npy").read_bytes().replace(b"(40, 30)", b"(9999,9)")
+    (tmp_path / "lies.npy").write_bytes(lying)
+
+    def read_as(name: str) -> np.ndarray:
+        table = {"file": str(tmp_path / name), "step_along": "1 um", "step_across": "1 um"}
+        film = {"solver": "elliptic", "heights": {"both": table}}
+        return np.asarray(height_maps(FilmTable.model_validate(film))[0].heights)
+
+    with pytest.raises(InputError, match=r"holds 16.004 million heights; .* at most 16 million"):
+        read_as("bytes.npy")
+    with pytest.raises(InputError, match="cannot be read as an array"):
+        read_as("lies.npy")
+    assert read_as("sound.npy").dtype == float and (read_as("sound.npy") == -7.0 * 1e-6).all()

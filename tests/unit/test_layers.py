@@ -24,6 +24,7 @@ FLOW = (
         "brief",
         "kept",
         "pages",
+        "plain_files",
         "programs",
         "reach",
         "factored",

@@ -170,7 +170,7 @@ def test_a_run_that_was_killed_at_once(folder: Path) -> None:
 def test_a_huge_record_is_not_read(folder: Path) -> None:
     with (folder / RUN).open("wb") as file:
         file.truncate(10**12)
-    assert "has more than 50 MB" in told(folder)
+    assert "a record has at most 50 MB" in told(folder)
 
 
 def test_a_damaged_part_is_told_of(folder: Path) -> None:

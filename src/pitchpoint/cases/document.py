@@ -1,6 +1,7 @@
 """Case files as plain data: reading, variants, settings, and where each value comes from."""
 
 import copy
+import io
 import os
 import re
 import tomllib
@@ -11,6 +12,7 @@ from typing import Any
 
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import shown, text
+from pitchpoint.plain_files import content
 from pitchpoint.registry import nearest
 
 __all__ = [
@@ -113,8 +115,6 @@ def read(path: Path) -> Tree:
         raise
     except ValueError as error:
         raise InputError(f"is not a TOML file: {error}", file=path.name) from None
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", file=shorten(path.name)) from None
     demand_shallow(tree, path.name)
     try:
         overlays = _overlays(tree)
@@ -174,15 +174,8 @@ def _from(folder: Path, name: str) -> str:
 
 
 def _text(path: Path) -> str:
-    if path.is_dir():
-        raise InputError("is a folder; give the case file in it", file=str(path))
-    if not path.is_file():
-        raise InputError("there is no such case file", file=str(path))
-    size = path.stat().st_size / 1e6
-    if size > MAX_BYTES / 1e6:
-        allowed = f"a case file has at most {MAX_BYTES / 1e6:g} MB"
-        raise InputError(f"has {size:.4g} MB; {allowed}", file=path.name)
-    return path.read_text(encoding="utf-8-sig")
+    held = io.BytesIO(content(path, MAX_BYTES, "case file"))
+    return io.TextIOWrapper(held, encoding="utf-8-sig").read()  # ends lines as Macintoshes did
 
 
 def _too_deep(name: str) -> InputError:

@@ -1,5 +1,6 @@
 """A case as it was run, written as a case file that repeats it: what its folder needs is in the folder."""
 
+import hashlib
 import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -14,7 +15,8 @@ from pitchpoint.cases.record import CASE
 from pitchpoint.cases.schema import Study, quantity_at
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import SIValue
-from pitchpoint.results.store import write_bytes, write_text
+from pitchpoint.plain_files import content, digest
+from pitchpoint.results.store import MOST_BYTES, write_bytes, write_text
 from pitchpoint.units import si_unit
 
 __all__ = ["FILES", "as_toml", "hand_over"]
@@ -182,6 +184,6 @@ def _copies(document: Document) -> Iterator[tuple[str, str]]:
 
 def _copy(source: Path, target: Path) -> None:
     """Copy a file unless it is there already."""
-    content = source.read_bytes()
-    if not target.is_file() or target.read_bytes() != content:
-        write_bytes(target, content)
+    held = content(source, MOST_BYTES)
+    if not target.is_file() or digest(target, MOST_BYTES) != hashlib.sha256(held).hexdigest():
+        write_bytes(target, held)

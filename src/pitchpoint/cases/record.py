@@ -26,8 +26,9 @@ from pitchpoint import units
 from pitchpoint.cases.document import Tree, demand_shallow, put
 from pitchpoint.cases.library import as_text, names, path_of
 from pitchpoint.errors import InputError, shorten
+from pitchpoint.plain_files import content
 from pitchpoint.programs import surroundings
-from pitchpoint.results.store import read_bytes, write_text
+from pitchpoint.results.store import write_text
 from pitchpoint.results.target_rows import Row
 from pitchpoint.results.variable import End
 
@@ -69,9 +70,9 @@ class _Kept(BaseModel):
     @classmethod
     def read(cls, path: Path) -> Self:
         """Content of a file; InputError for whatever `write` did not write."""
-        content = read_bytes(path, MAX_BYTES)
+        written = content(path, MAX_BYTES, "record")
         try:
-            return cls.model_validate_json(content)
+            return cls.model_validate_json(written)
         except ValidationError as error:
             first = error.errors(include_url=False, include_input=False)[0]
             told = f"was not written by this version of pitchpoint: {first['msg']}"

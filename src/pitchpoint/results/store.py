@@ -12,13 +12,14 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from pitchpoint.doubts import stored
 from pitchpoint.errors import InputError
+from pitchpoint.plain_files import opened
 from pitchpoint.results.netcdf import decode, encode
 from pitchpoint.results.variable import End, Variable
 from pitchpoint.results.variables import VARIABLES
@@ -30,7 +31,6 @@ __all__ = [
     "fingerprint",
     "load",
     "make_folder",
-    "read_bytes",
     "save",
     "sole_writer",
     "sweep",
@@ -38,6 +38,9 @@ __all__ = [
     "write_bytes",
     "write_text",
 ]
+
+MOST_BYTES = 4_000_000_000
+"""Size of the largest dataset that is read."""
 
 SEAL = 8 + hashlib.sha256().digest_size
 """Bytes behind the end of a dataset's file: its length and its digest.
@@ -151,19 +154,6 @@ def write_bytes(path: Path, content: bytes) -> None:
     _whole(path, content, lasting=False)
 
 
-def read_bytes(path: Path, most: int) -> bytes:
-    """Read a file of at most so many bytes.
-
-    Raises:
-        InputError: no file, or a larger one.
-    """
-    with _opened(path) as file:
-        content = file.read(most + 1)
-    if len(content) > most:
-        raise InputError(f"has more than {most / 1e6:g} MB, the most allowed", file=str(path))
-    return content
-
-
 @contextmanager
 def sole_writer(folder: Path) -> Iterator[bool]:
     """Keep other runs out of a folder; the system lets go however this process ends.
@@ -248,7 +238,7 @@ def _seal(image: bytes) -> bytes:
 
 def _unsealed(path: Path) -> bytes:
     """File without its seal; a damaged one never reaches HDF5, which may hang on it or believe it."""
-    with _opened(path) as file:
+    with opened(path, MOST_BYTES) as file:
         length = max(file.seek(0, os.SEEK_END) - SEAL, 0)
         file.seek(length)
         seal = file.read()
@@ -258,17 +248,6 @@ def _unsealed(path: Path) -> bytes:
         told = "is damaged or not of pitchpoint; the same run computes it again"
         raise InputError(told, file=str(path))
     return image
-
-
-@contextmanager
-def _opened(path: Path) -> Iterator[BinaryIO]:
-    try:
-        if not path.is_file():  # a pipe would never end
-            raise InputError("there is no such file", file=str(path))
-        with path.open("rb") as file:
-            yield file
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", file=str(path)) from None
 
 
 def _attribute(value: Any) -> str | int | float:
