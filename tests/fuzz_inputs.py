@@ -222,8 +222,9 @@ def ended(arguments: list[str]) -> str:
         return "shown"
     assert status == 2, f"exit status {status}"
     assert out.getvalue() == "", "refused after it was shown"
-    assert err.getvalue().count("\n") == 1, "not one line"
-    assert len(err.getvalue()) < 1000, "a long sentence"
+    lines = err.getvalue().splitlines()
+    assert lines and all(line.startswith("error: ") for line in lines), "not a sentence a line"
+    assert all(len(line) < 1000 for line in lines), "a long sentence"
     return "refused"
 
 

@@ -518,7 +518,7 @@ def open_(
     import webbrowser
 
     report = Path(result) / "report.html"
-    if not report.is_file():
+    if not os.path.isfile(report):
         raise InputError("holds no report.html; run its case, which writes one", file=result)
     if print_ or not webbrowser.open(report.resolve().as_uri()):
         typer.echo(visible(str(report.resolve())))

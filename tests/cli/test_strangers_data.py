@@ -5,6 +5,7 @@ import builtins
 import os
 import shutil
 import subprocess
+import sys
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,10 @@ import numpy as np
 import openpyxl
 import pandas as pd
 import pytest
+import sound
 import xarray as xr
 
+from pitchpoint import cli
 from pitchpoint.cases.document import read
 from pitchpoint.cases.height_maps import digest_of, height_maps
 from pitchpoint.cases.record import Manifest, Record
@@ -24,7 +27,7 @@ from pitchpoint.exports.evaluator import evaluator
 from pitchpoint.exports.files import export
 from pitchpoint.plain_files import content, digest
 from pitchpoint.results.store import load
-from pitchpoint.runs.run import Outcome
+from pitchpoint.runs.run import Outcome, describe
 
 FORMULAS = (
     "=cmd|' /C calc'!A0",
@@ -242,3 +245,58 @@ def test_small_types_of_numbers_stay_small(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be read as an array"):
         read_as("lies.npy")
     assert read_as("sound.npy").dtype == float and (read_as("sound.npy") == -7.0 * 1e-6).all()
+
+
+OVERLAYS = {
+    "{ value = 3 }": "variants.a: 3 was given where a table belongs",
+    "{ value = [1], status = 'given' }": "was given where a table belongs",
+    "3": "variants.a: 3 was given where a table belongs",
+    "{ value = 3, roughness = {} }": "value: is not a known key",
+    "{ roughness = { value = 3 } }": "roughness",
+}
+
+
+@pytest.mark.parametrize("overlay", OVERLAYS)
+def test_a_variant_is_a_table_behind_its_mark(overlay: str, tmp_path: Path) -> None:
+    path = tmp_path / "pair.toml"
+    path.write_text(f"{sound.PAIR}[variants]\na = {overlay}\n", "utf-8")
+    with pytest.raises(InputError) as caught:
+        describe(str(path))
+    assert OVERLAYS[overlay] in str(caught.value).splitlines()[0]
+
+
+def test_a_variant_may_carry_a_mark(tmp_path: Path) -> None:
+    path = tmp_path / "pair.toml"
+    path.write_text(
+        f'{sound.PAIR}[variants]\na = {{ value = {{ roughness = {{ ra = "1 um" }} }}, note = "x" }}\n'
+    )
+    (described,) = describe(str(path))
+    (row,) = [
+        row for row in described["inputs"] if (row["table"], row["key"]) == ("roughness", "ra")
+    ]
+    assert row["value"] == [1e-6, 1e-6]
+    path.write_text("value = 3\n", "utf-8")
+    with pytest.raises(InputError, match="value: is not a known key"):
+        describe(str(path))
+
+
+NAMES = (".", "", "_", "~", "/", "..", "-", "%", "\u202e", "*", "\x1b[2J", "x" * 300)
+
+
+@pytest.mark.parametrize("command", ["new", "docs", "models", "cite", "open", "show", "export"])
+def test_names_without_a_letter_are_no_names(
+    command: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in NAMES:
+        monkeypatch.setattr(
+            sys, "argv", ["pitchpoint", command, name, *["--csv"] * (command == "export")]
+        )
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        told = capsys.readouterr()
+        assert ended.value.code == 2 and not told.out, name
+        assert told.err.startswith("error: ") and told.err.count("\n") == 1, name

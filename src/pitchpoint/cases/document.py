@@ -210,13 +210,14 @@ def _overlays(tree: Tree) -> Tree:
     if len(given) > MAX_VARIANTS:
         told = f"{len(given)} were given; allowed are at most {MAX_VARIANTS}"
         raise InputError(told, key="variants")
-    for name, overlay in given.items():
+    overlays = {name: _bare(overlay) for name, overlay in given.items()}
+    for name, overlay in overlays.items():
         check_name(name, "variants")
         if not isinstance(overlay, dict):
             raise InputError(
                 f"{shown(overlay)} was given where a table belongs", key=f"variants.{name}"
             )
-    return given
+    return overlays
 
 
 def check_name(name: str, key: str) -> None:
@@ -257,7 +258,7 @@ def resolve(
             key="variants",
         )
     base = {key: value for key, value in tree.items() if key != "variants"}
-    merged = _merged(_numbered(base), _numbered(_overlays(tree).get(variant, {})))
+    merged = _tables_merged(_numbered(base), _numbered(_overlays(tree).get(variant, {})))
     for key, value in (settings or {}).items():
         mark = {"value": copy.deepcopy(value), "status": "set"}
         merged = setting(merged, key, mark, name=name, usual=usual)
@@ -267,7 +268,8 @@ def resolve(
                 merged[place] = copy.deepcopy(merged[place])
         _find_files(merged, folder)
     provenance: dict[str, Provenance] = {}
-    return Document(name, strip(merged, provenance, name=name), provenance)
+    plain = {key: strip(one, provenance, name=name, key=key) for key, one in merged.items()}
+    return Document(name, plain, provenance)
 
 
 def _numbered(tree: Tree) -> Tree:
@@ -389,6 +391,10 @@ def _merged(base: Any, overlay: Any) -> Any:
         return overlay
     if "value" in base:
         return overlay
+    return _tables_merged(base, overlay)
+
+
+def _tables_merged(base: Tree, overlay: Tree) -> Tree:
     keys = [*base, *(key for key in overlay if key not in base)]
     return {
         key: _merged(base[key], overlay[key])

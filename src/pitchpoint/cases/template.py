@@ -13,11 +13,11 @@ from pydantic.fields import FieldInfo
 
 from pitchpoint.cases.document import STAGES, Tree
 from pitchpoint.cases.schema import Case, DriveCase, quantity_of
-from pitchpoint.errors import InputError
+from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import alternatives, forms, sentences, tag
-from pitchpoint.registry import alike, nearest
+from pitchpoint.registry import known_as, nearest
 
 __all__ = ["FAMILIES", "template"]
 
@@ -47,9 +47,9 @@ def template(family: str) -> str:
     Raises:
         InputError: there is no such family.
     """
-    found = family if family in FAMILIES else next(iter(alike(family, FAMILIES)[:1]), "")
-    if "".join(filter(str.isalnum, found)) != "".join(filter(str.isalnum, family.casefold())):
-        raise InputError(f"'{family[:60]}' is no family of gears{nearest(family, FAMILIES)}")
+    found = known_as(family, FAMILIES)
+    if found is None:
+        raise InputError(f"'{shorten(family)}' is no family of gears{nearest(family, FAMILIES)}")
     model, tree = _sample(found)
     lines = [
         f"# A case of Pitchpoint, {found.replace('_', ' ')}. It runs as it is: pitchpoint run FILE.",

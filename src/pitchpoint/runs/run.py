@@ -310,7 +310,7 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
         InputError: the folder holds no result.
     """
     where = Path(folder)
-    if not (where / RUN).is_file():
+    if not os.path.isfile(where / RUN):  # be the name longer than any file's
         raise InputError("holds no result of pitchpoint", file=str(folder))
     paths = {name: where / name / MANIFEST for name in Record.read(where / RUN).variants}
     opened = {name: _opened(path) for name, path in paths.items() if path.is_file()}
