@@ -1,6 +1,7 @@
 """Numbers for figures: the shape of a ripple is kept, rounding is not shown, axes of constant values."""
 
 import numpy as np
+import pytest
 
 from pitchpoint.results.rounding import difference
 from pitchpoint.views.figures import Choice, Figure, Menu, Panel, continued, layout, rounded
@@ -54,6 +55,15 @@ def test_a_small_jump_is_not_drawn_as_a_line() -> None:
     x = np.array([0.0, 0.5, 0.5, 1.0])
     _, y = continued(x, 79.5 + 1e-6 * np.array([0.0, 1.0, 2.0, 3.0]))
     assert np.isnan(y).sum() == 1
+
+
+def test_gaps_stay_when_points_are_left_out() -> None:
+    x = np.linspace(0.0, 1.0, 1001)
+    there, y = continued(x, np.where((x > 0.4) & (x < 0.403), np.nan, x), most=50)
+    assert 50 < there.size < 60
+    (gap,) = np.flatnonzero(np.isnan(y[:-1]) & np.isfinite(y[1:])) + 1
+    assert there[gap] == pytest.approx(0.403)
+    assert there[np.isnan(y)].min() == pytest.approx(0.401)
 
 
 def test_a_level_line_says_so_beneath() -> None:

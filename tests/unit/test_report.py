@@ -31,12 +31,13 @@ from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.units import convert, kind_of, kinds, parse, units_of
 from pitchpoint.views import show
-from pitchpoint.views.figures import curves, rounded
+from pitchpoint.views.figures import curves, laws, rounded
 from pitchpoint.views.lines import gapped
 from pitchpoint.views.path import path_of
 from pitchpoint.views.picture import Body, Picture, picture_of
 from pitchpoint.views.report import render, write_report
 from pitchpoint.views.sections.answer import summary
+from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.path import loss_places, loss_sentence
 from pitchpoint.views.sections.sliding import specific_sliding
 from pitchpoint.views.sections.studies import study_panels
@@ -279,12 +280,42 @@ def test_maps_share_one_scale_and_have_lines_with_labels(page: str, published: O
     assert len(every) == 3 * 3
     assert drawn["z"] in every
     assert (drawn["zmin"], drawn["zmax"]) == pytest.approx((values.min(), values.max()), rel=1e-4)
+    for choice in content["menus"]["map_mean_loss"]:
+        told = choice["map_mean_loss"][0]
+        start, end, size = (told[f"contours.{key}"][0] for key in ("start", "end", "size"))
+        assert np.min(told["z"][0]) < start
+        assert end < np.max(told["z"][0])
+        assert 3 <= round((end - start) / size) <= 10
     assert drawn["type"] == "contour"
     assert drawn["contours"]["showlabels"]
     menus = re.findall(
         r'<select data-menu="map_mean_loss" data-step="(\d)">(.*?)</select>', page, re.S
     )
     assert [(int(step), entries.count("<option")) for step, entries in menus] == [(3, 3), (1, 3)]
+
+
+def test_the_scale_of_maps_is_that_of_laws_in_their_range(published: Outcomes) -> None:
+    losses = {
+        (name, law): float(one.parts["loss_map"]["mean_loss"].sel(law=law).max())
+        for name, one in published.items()
+        for law in laws(one.parts["loss_map"])
+    }
+    (variant, law), others = max(losses, key=lambda k: losses[k]), sorted(losses.values())[:-1]
+    outside = json.dumps([{"law": law, "mean_efficiency": 0.9, "reasons": ["too thin a film"]}])
+    odd = published[variant]
+    told = odd.parts["laws"].assign_attrs(outside=outside)
+    cut = {**published, variant: replace(odd, parts={**odd.parts, "laws": told})}
+    panel = map_panel(cut, curves(cut))
+    assert panel.figures[0].data[0]["zmax"] == pytest.approx(others[-1])
+    assert max(losses.values()) > 1.02 * others[-1]
+    assert "that of the laws in their range: under " in render(cut)
+
+
+def test_maps_of_the_efficiency_begin_above_rest(page: str) -> None:
+    drawn = payload(page)["figures"]["map_mean_efficiency"]["data"][0]
+    assert None not in np.ravel(drawn["z"]).tolist()
+    assert min(drawn["x"]) == pytest.approx(675.0)
+    assert "From 675\u00a0rpm and 45\u00a0N\u00a0m on, the smallest" in page
 
 
 def test_sweeps_of_two_points_are_one_table(published: Outcomes) -> None:

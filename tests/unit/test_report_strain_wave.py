@@ -346,7 +346,7 @@ def test_every_figure_has_a_place_and_data(page: str) -> None:
     figures = drawn(page)
     assert sorted(figures) == sorted(re.findall(r'class="plot" id="([^"]*)"', page))
     assert 'class="empty"' not in page
-    assert len(figures) == 2 + 9 + 4 + 7 + 3 + 5 + 2 + 3
+    assert len(figures) == 2 + 9 + 4 + 7 + 3 + 5 + 2 + 2 * 3
 
 
 def test_page_speaks_of_the_drive(page: str) -> None:
@@ -520,10 +520,13 @@ def test_a_cycle_that_begins_at_an_event_is_shown_from_zero(whole: Outcome) -> N
     begun["phase"] = begun["phase"] + 0.3
     one = replace(whole, parts={**whole.parts, "cycle": begun})
     panel = cycle_panel({"default": one}, curves({"default": one}))
-    places = [x for x in figure(panel, "cycle_efficiency").data[0]["x"] if x is not None]
+    drawn = figure(panel, "cycle_efficiency").data[0]
+    places = [x for x in drawn["x"] if x is not None]
     assert places == sorted(places)
-    assert min(places) == pytest.approx(0.1)
-    assert max(places) == pytest.approx(0.9)
+    assert places[1] == pytest.approx(0.1)
+    assert (min(places), max(places)) == (0.0, 1.0)
+    values = [y for y in drawn["y"] if y is not None]
+    assert values[0] == values[-1] == pytest.approx(np.mean([values[1], values[-2]]))
     over_time = panel.choices[1].changes["cycle_efficiency"][0]["x"][0]
     times = [x for x in over_time if x is not None]
     assert min(times) == 0.0
@@ -561,8 +564,8 @@ def test_the_transmission_error_is_drawn_around_its_mean(whole: Outcome) -> None
     assert error.layout["xaxis"]["range"] == [0, 1]
     (*_, last) = error.data
     half = 0.005 * float(data["wind_up"][-1]) * np.degrees(1.0) * 3600.0
-    assert last["x"] == pytest.approx([-0.2, 0.3, 0.8, 1.3])
-    assert last["y"] == pytest.approx([-half, half, -half, half], rel=1e-4)
+    assert last["x"] == pytest.approx([0.0, 0.3, 0.8, 1.0])
+    assert last["y"] == pytest.approx([-0.2 * half, half, -half, -0.2 * half], rel=1e-4)
 
 
 def test_play_that_rounding_leaves_is_none(whole: Outcome) -> None:
@@ -647,10 +650,10 @@ def test_efficiency_lines_are_those_of_the_map(whole: Outcome) -> None:
     known = curves({"default": whole})
     panel = efficiency_panel({"default": whole}, known)
     assert [one.name for one in panel.figures] == [
-        "efficiency_torque",
-        "efficiency_speed",
-        "efficiency_temperature",
+        f"efficiency_{axis}_{k}" for axis in ("torque", "speed", "temperature") for k in (0, 1)
     ]
+    assert panel.figures[0].layout["yaxis"]["range"] == panel.figures[1].layout["yaxis"]["range"]
+    assert panel.figures[1].title.startswith("Mean efficiency against output torque, ")
     data = whole.parts["loss_map"]
     expected = 100.0 * data["mean_efficiency"].values[0, 1:, 1, 0]
     assert heights(panel.figures[0]) == pytest.approx(expected, rel=1e-4)

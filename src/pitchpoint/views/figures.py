@@ -273,7 +273,7 @@ def continued(x: np.ndarray, y: np.ndarray, most: int = 600) -> tuple[np.ndarray
     """Points of a line with a gap (NaN) where it jumps, and no more of them than a page needs.
 
     Args:
-        x, y: points in order; at a jump two of them share their place.
+        x, y: points in order; at a jump two of them share their place, NaN where there is nothing.
         most: count above which points are left out.
     """
     span = np.nanmax(y, initial=-np.inf) - np.nanmin(y, initial=np.inf)
@@ -281,6 +281,7 @@ def continued(x: np.ndarray, y: np.ndarray, most: int = 600) -> tuple[np.ndarray
     kept = np.zeros(x.size, bool)
     kept[:: max(x.size // most, 1)] = True
     kept[[0, -1, *jumps, *(jumps + 1)]] = True
+    kept |= np.isnan(y) | np.isnan(np.roll(y, 1)) | np.isnan(np.roll(y, -1))  # gaps stay as wide
     cuts = np.searchsorted(np.flatnonzero(kept), jumps + 1)
     return np.insert(x[kept], cuts, x[jumps]), np.insert(y[kept], cuts, np.nan)
 

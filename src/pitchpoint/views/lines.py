@@ -56,10 +56,19 @@ def gapped(x: np.ndarray, y: np.ndarray) -> Points:
 
 
 def folded(phase: np.ndarray, values: np.ndarray) -> Points:
-    """Values of one period in the order of their phases from 0 to 1, wherever the period begins."""
+    """Values of one period in the order of their phases from 0 to 1, wherever the period begins.
+
+    At both ends stands what lies between the last value and the first one of the next period.
+
+    Example:
+        >>> folded(np.array([0.5, 1.0, 1.25]), np.array([2.0, 4.0, 5.0]))
+        (array([0.  , 0.25, 0.5 , 1.  , 1.  ]), array([4., 5., 2., 4., 4.]))
+    """
     inside = np.where(phase > 1.0, phase - 1.0, phase)
     order = np.argsort(inside, kind="stable")
-    return inside[order], values[order]
+    x, y = inside[order], values[order]
+    end = float(np.interp(1.0, [x[-1], x[0] + 1.0], [y[-1], y[0]]))
+    return np.concatenate([[0.0], x, [1.0]]), np.concatenate([[end], y, [end]])
 
 
 def values_of(data: xr.Dataset, name: str) -> np.ndarray:

@@ -162,7 +162,7 @@ def _along(
     near = beside(load > 0.0)
     if not near.any():
         return angle[:0], load[:0]
-    values = np.where(load > 0.0, values, 0.0 if name in _SUMS else np.nan)
+    values = np.where(load > 0.0, values, np.nan)
     return continued(angle[order][near], values[near], most=400)
 
 

@@ -194,7 +194,8 @@ def _count(seen: Timed) -> Figure:
     traces = []
     for curve, data, law, period in seen:
         carrying = (data["load"].values[law].max(axis=-1) > 0.0).sum(axis=-1)
-        traces.append(line(curve, *_phase(data, carrying, period), "pairs"))
+        phase, count = _phase(data, carrying, period)
+        traces.append(line(curve, phase, np.rint(count), "pairs"))
     shown, same = merged(traces)
     for trace in shown:
         trace["line"]["shape"] = "hvh"

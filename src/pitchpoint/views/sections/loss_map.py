@@ -1,15 +1,15 @@
 """Loss and efficiency over torque, speed and temperature."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import ceil, floor, log10
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import covered
+from pitchpoint.analyses.figures import covered, why_not
 from pitchpoint.results.rounding import ROUNDING
-from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -22,8 +22,8 @@ from pitchpoint.views.figures import (
     Key,
     Menu,
     Panel,
-    Trace,
     display,
+    law_title,
     laws,
     layout,
     level,
@@ -36,6 +36,9 @@ from pitchpoint.views.point import operating_point
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section
 
 __all__ = ["LOSS_MAP", "Chart", "efficiency_panel", "map_panel"]
+
+_LINES = 7
+"""Steps between contour lines that a map has about."""
 
 _MOST = 60
 """Largest number of values on an axis that goes into the page."""
@@ -98,13 +101,39 @@ def _menus(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart) -> list
 
 
 def _scale(name: str, outcomes: Mapping[str, Outcome], chart: Chart) -> dict[str, float]:
-    """Ends of the colour scale that all maps of a quantity share; none where nothing is known."""
-    maps = [data[name] for data in chart.of(outcomes).values()]
-    values = np.concatenate([display(name, each.values).ravel() for each in maps])
-    values = values[np.isfinite(values)]
-    if not values.size or not np.ptp(values) > ROUNDING * np.abs(values).max():
-        return {}
-    return {"zmin": float(values.min()), "zmax": float(values.max())}
+    """Ends of the colour scale that all maps of a quantity share; none where nothing is known.
+
+    They are those of the laws in their range: an extrapolation would leave the others in one colour.
+    """
+    every = chart.of(outcomes)
+    inside = [data[name].values[_holds(outcomes[n], data)] for n, data in every.items()]
+    maps = inside if sum(map(len, inside)) else [data[name].values for data in every.values()]
+    low, high = _ends(np.concatenate([display(name, values).ravel() for values in maps]))
+    return {"zmin": low, "zmax": high} if high > low else {}
+
+
+def _holds(outcome: Outcome, data: xr.Dataset) -> np.ndarray:
+    """True for laws of a map that are in their range at the operating point, or of which nobody knows."""
+    return ~np.isin(laws(data), [*why_not(outcome.parts)])
+
+
+def _ends(values: np.ndarray) -> tuple[float, float]:
+    """Smallest and largest value, equal where rounding alone makes them differ, or nothing is known."""
+    finite = values[np.isfinite(values)]
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
+    return (low, high) if high - low > ROUNDING * max(abs(low), abs(high)) else (low, low)
+
+
+def _contours(values: Any) -> dict[str, Any]:
+    """Lines of a map at round values, some `_LINES` between the ends of what it shows itself."""
+    low, high = _ends(np.array(values, float))
+    if not high > low:
+        return {"contours.start": low, "contours.end": low, "contours.size": 1.0}
+    wanted = (high - low) / _LINES
+    decade = 10.0 ** floor(log10(wanted))
+    size = decade * min((1.0, 2.0, 2.5, 5.0, 10.0), key=lambda step: abs(step - wanted / decade))
+    ends = (floor(low / size) + 1) * size, (ceil(high / size) - 1) * size
+    return {"contours.start": ends[0], "contours.end": ends[1], "contours.size": size}
 
 
 def _choices(
@@ -132,15 +161,18 @@ def _choice(
     changes: dict[str, list[Any]] = {}
     for name in chart.shown:
         heat = _heat(name, data, chart, law, position)
-        changes[f"{chart.name}_{name}"] = [{key: [values] for key, values in heat.items()}, {}, [0]]
+        restyled = {**heat, **_contours(heat["z"])}
+        changes[f"{chart.name}_{name}"] = [{k: [values] for k, values in restyled.items()}, {}, [0]]
     return Choice(f"{curve.label}, oil at {degree}", changes)
 
 
 def _heat(name: str, data: xr.Dataset, chart: Chart, law: int, temperature: int) -> dict[str, Any]:
-    """Axes and values, thinned where there are more than a page can show."""
+    """Axes and values from where some map has any, thinned where there are more than a page can show."""
     across, up = chart.axes
-    values = data[name].transpose("law", "temperature", up, across).values[law, temperature]
-    rows, columns = (_thinned(size) for size in values.shape)
+    every = data[name].transpose("law", "temperature", up, across).values
+    known = np.isfinite(every).any(axis=(0, 1))
+    rows, columns = (_thinned(known.any(axis=axis)) for axis in (1, 0))
+    values = every[law, temperature]
     return {
         "x": rounded(display(across, data[across].values[columns], data)),
         "y": rounded(display(up, data[up].values[rows], data)),
@@ -148,8 +180,11 @@ def _heat(name: str, data: xr.Dataset, chart: Chart, law: int, temperature: int)
     }
 
 
-def _thinned(size: int) -> np.ndarray:
-    return np.unique(np.linspace(0, size - 1, min(size, _MOST)).round().astype(int))
+def _thinned(known: np.ndarray) -> np.ndarray:
+    """Places from the first to the last that is known, all where none is; no more than a page can show."""
+    places = np.flatnonzero(known) if known.any() else np.arange(known.size)
+    count = min(int(np.ptp(places)) + 1, _MOST)
+    return np.unique(np.linspace(places[0], places[-1], count).round().astype(int))
 
 
 def _figure(
@@ -163,14 +198,17 @@ def _figure(
     data, fact, (across, up) = outcome.parts[chart.part], operating_point(outcome), chart.axes
     unit, units = show.unit_of(name, data), [show.unit_of(one, data) for one in chart.axes]
     speed = fact.speed * float(data.attrs.get("speed_ratio", 1.0))
+    shown = _heat(name, data, chart, law, temperature)
+    lines = {key.partition(".")[2]: value for key, value in _contours(shown["z"]).items()}
     heat = {
         "type": "contour",
-        **_heat(name, data, chart, law, temperature),
+        **shown,
         **_COLOURS.get(name, {"colorscale": "YlOrRd", "reversescale": True}),
         "hoverongaps": False,
         **scale,
         "zauto": not scale,
-        "contours": {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11}},
+        "autocontour": False,
+        "contours": {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11}, **lines},
         "line": {"color": INK, "width": 0.7},
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~g}} {unit}<br>%{{x:.4~g}} {units[0]}, %{{y:.4~g}} {units[1]}"
@@ -194,8 +232,20 @@ def _figure(
         titled(name, data),
         [heat, point],
         layout(show.axis_title(across, data), show.axis_title(up, data)),
-        "The cross marks the operating point.",
+        f"The cross marks the operating point.{_beginning(name, data, chart, shown)}",
     )
+
+
+def _beginning(name: str, data: xr.Dataset, chart: Chart, shown: Mapping[str, Any]) -> str:
+    """Where a map begins that leaves out rest; empty for others."""
+    across, up = chart.axes
+    if len(shown["x"]) == data.sizes[across] or min(shown["x"]) < 0.0:
+        return ""
+    ends = (
+        f"{show.number(shown[axis][0])}\u00a0{show.unit_of(of, data)}"
+        for axis, of in (("x", across), ("y", up))
+    )
+    return f" From {' and '.join(ends)} on, the smallest that were computed above rest."
 
 
 _COLOURS: dict[str, dict[str, Any]] = {
@@ -209,15 +259,23 @@ _AXES = {"torque": "temperature", "speed": "temperature", "temperature": "torque
 
 
 def efficiency_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
-    """Efficiency against torque, speed and temperature, lines through the operating point and beside it."""
+    """Efficiency against torque, speed and temperature, lines through the operating point and beside it.
+
+    Several laws have a figure each, with one scale of the efficiency.
+    """
     seen = [
         (known[variant, law], outcome, position)
         for variant, outcome in outcomes.items()
         if "loss_map" in outcome.parts
         for position, law in enumerate(laws(outcome.parts["loss_map"]))
     ]
-    figures = [_lines(axis, other, seen) for axis, other in _AXES.items() if _worth(axis, seen)]
-    return Panel("Efficiency", figures, [curve for curve, *_ in seen])
+    figures = [
+        figure
+        for axis, other in _AXES.items()
+        if _worth(axis, seen)
+        for figure in _on_one_scale({one[0].label: _lines(axis, other, *one) for one in seen})
+    ]
+    return Panel("Efficiency", figures, [curve for curve, *_ in seen] if len(seen) == 1 else [])
 
 
 def _worth(axis: str, seen: list[tuple[Curve, Outcome, int]]) -> bool:
@@ -225,46 +283,57 @@ def _worth(axis: str, seen: list[tuple[Curve, Outcome, int]]) -> bool:
     return any(outcome.parts["loss_map"].sizes[axis] > 2 for _, outcome, _ in seen)
 
 
-def _lines(axis: str, other: str, seen: list[tuple[Curve, Outcome, int]]) -> Figure:
-    traces: list[Trace] = []
-    unit = show.unit(VARIABLES["mean_efficiency"].display)
-    values = _spread([o.parts["loss_map"][other].values for _, o, _ in seen], other)
-    held: dict[str, None] = {}
-    for curve, outcome, law in seen:
-        data = outcome.parts["loss_map"].isel(law=law)
-        (third,) = {"torque", "speed", "temperature"} - {axis, other}
-        near = data.sel({third: getattr(operating_point(outcome), third)}, method="nearest")
-        held[level(third, float(near[third]), data)] = None
-        for dash, value in zip(DASHES, values, strict=False):
-            if value not in near[other].values:
-                continue
-            found = near["mean_efficiency"].sel({other: value})
-            trace = line(
-                curve, display(axis, near[axis], data), display("mean_efficiency", found), unit
-            )
-            trace["line"] = {"color": curve.colour, "dash": dash, "width": 2}
-            traces.append(trace)
-    like = seen[0][1].parts["loss_map"]
-    words = show.described(axis, like).long_name
+def _lines(axis: str, other: str, curve: Curve, outcome: Outcome, law: int) -> Figure:
+    """Efficiency under one law, a line for each of some values of another axis."""
+    data = outcome.parts["loss_map"].isel(law=law)
+    (third,) = {"torque", "speed", "temperature"} - {axis, other}
+    near = data.sel({third: getattr(operating_point(outcome), third)}, method="nearest")
+    values = dict(zip(_spread(near[other].values, other), DASHES, strict=False))
+    drawn = [
+        line(
+            curve,
+            display(axis, near[axis], data),
+            display("mean_efficiency", near["mean_efficiency"].sel({other: value})),
+            show.unit_of("mean_efficiency"),
+            line={"color": curve.colour, "dash": dash, "width": 2},
+        )
+        for value, dash in values.items()
+    ]
+    held = level(third, float(near[third]), data)
     return Figure(
         f"efficiency_{axis}",
-        f"Mean efficiency against {words}",
-        traces,
-        layout(show.axis_title(axis, like), short_axis("mean_efficiency")),
-        f"At {' and '.join(held)}, which of the loss map is nearest to the operating point.",
-        tuple(
-            Key(level(other, value, like), INK, dash)
-            for dash, value in zip(DASHES, values, strict=False)
-        ),
+        f"Mean efficiency against {show.described(axis, data).long_name}",
+        drawn,
+        layout(show.axis_title(axis, data), short_axis("mean_efficiency")),
+        f"At {held}, which of the loss map is nearest to the operating point.",
+        tuple(Key(level(other, value, data), INK, dash) for value, dash in values.items()),
         missing="Undefined here: no power is transmitted, or the mesh is locked.",
     )
 
 
-def _spread(axes: list[np.ndarray], name: str) -> list[float]:
+def _on_one_scale(figures: Mapping[str, Figure]) -> list[Figure]:
+    """The same figures, several with one range of their values and named by their curve."""
+    if len(figures) < 2:
+        return [*figures.values()]
+    values = [
+        y for it in figures.values() for trace in it.data for y in trace["y"] if y is not None
+    ]
+    edge = 0.05 * (max(values, default=1.0) - min(values, default=0.0))
+    ends = [min(values, default=0.0) - edge, max(values, default=1.0) + edge]
+    return [
+        replace(
+            it,
+            name=f"{it.name}_{number}",
+            title=f"{it.title}, {label}",
+            layout={**it.layout, "yaxis": {**it.layout["yaxis"], "range": ends}},
+        )
+        for number, (label, it) in enumerate(figures.items())
+    ]
+
+
+def _spread(values: np.ndarray, name: str) -> list[float]:
     """At most so many values of an axis as there are dashes, from its least to its largest."""
-    every = np.unique(np.concatenate(axes))
-    if name == "torque":
-        every = every[every > 0.0]
+    every = values[values > 0.0] if name == "torque" else values
     count = min(every.size, len(DASHES))
     return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]
 
@@ -279,14 +348,30 @@ def _lossy(outcome: Outcome) -> bool:
     return "running" in outcome.parts or lost
 
 
+def _colours(outcomes: Mapping[str, Outcome]) -> str:
+    """What blank cells and the colours of several maps mean, as sentences."""
+    maps = [(one, one.parts["loss_map"]) for one in outcomes.values()]
+    locked = any(bool((data["locked"] & (data["torque"] > 0.0)).any()) for _, data in maps)
+    blank = " Blank cells: friction locks the mesh there." if locked else ""
+    outside = [
+        law_title(one, laws(d)[k]) for one, d in maps for k in np.flatnonzero(~_holds(one, d))
+    ]
+    shared = f"{blank} All choices share one colour scale"
+    if not outside or not any(_holds(one, data).any() for one, data in maps):
+        return f"{shared}."
+    return (
+        f"{shared}, that of the laws in their range: under {', '.join(dict.fromkeys(outside))} values "
+        "beyond it have the colour of its end."
+    )
+
+
 def _blocks(page: Page) -> Iterator[Block]:
     there = page.having("loss_map")
     data = next(iter(there.values())).parts["loss_map"]
     load = show.described("torque", data).long_name
     yield Paragraph(
         f"Mean loss and mean efficiency over driver speed and {load}. At zero {load.split()[-1]} or zero "
-        "speed no power is transmitted and the efficiency is undefined; those cells are blank. All choices "
-        "share one colour scale."
+        f"speed no power is transmitted and the efficiency is undefined.{_colours(there)}"
     )
     if alone := covered(one.parts for one in there.values()):
         yield Paragraph(alone, "note")

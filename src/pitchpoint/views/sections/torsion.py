@@ -218,9 +218,7 @@ def _over_cycle(name: str, data: xr.Dataset, period: Period) -> Figure:
     for k, key in shown:
         values = data["angular_transmission_error"].values[k]
         phase, error = folded(data["phase"].values, values - _mean(data["phase"].values, values))
-        around = np.concatenate([phase[-1:] - 1.0, phase, phase[:1] + 1.0])
-        error = display(ripple, np.concatenate([error[-1:], error, error[:1]]), data)
-        traces.append(plain(key, around, error, unit))
+        traces.append(plain(key, phase, display(ripple, error, data), unit))
     return Figure(
         name,
         "Static transmission error over the mesh cycle, less its mean",
@@ -240,9 +238,10 @@ def _mean(phase: np.ndarray, values: np.ndarray) -> float:
 
 
 def _course(key: Key, angle: np.ndarray, force: np.ndarray) -> Trace:
+    """Line of the force where a tooth carries, with gaps where it does not touch."""
     unit = show.unit(VARIABLES["tooth_force"].display)
     near = beside(force > 0.0)
-    return plain(key, angle[near], force[near], unit)
+    return plain(key, angle[near], np.where(force > 0.0, force, np.nan)[near], unit)
 
 
 def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
