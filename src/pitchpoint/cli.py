@@ -876,15 +876,14 @@ def _print(printed: "Printed") -> None:
 
 
 def _rows(rows: "list[Row]") -> None:
-    def number(value: float | None) -> str:
-        return "" if value is None else f"{value:.5g}"
+    from pitchpoint.views.show import number
 
     shown = [
         {
             "quantity": row.quantity,
             "place": row.where,
             "printed": f"{row.bound}{row.printed:g} {row.unit if row.unit != '1' else ''}",
-            "computed": number(row.computed),
+            "computed": "" if row.computed is None else number(row.computed),
             "deviation": "" if row.deviation is None else f"{row.deviation:+.2g}",
             "tolerance": "" if row.bound else f"{row.tolerance:g}",
             "kind": row.kind,

@@ -20,6 +20,7 @@ from pitchpoint.results.variable import Variable
 from pitchpoint.runs.designs import Figure, as_json, designs, main_results, wanted
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, open_result, run, run_variant
+from pitchpoint.views import show
 from pitchpoint.views.designs import differing, input_tables, law_words, result_table
 from pitchpoint.views.report import render
 
@@ -139,7 +140,7 @@ def test_differences_are_those_of_the_results(compared: Outcomes) -> None:
     data = [one.parts["operation"] for one in compared.values()]
     efficiency = [100.0 * float(one["mean_efficiency"][0, 0]) for one in data]
     told = rows["mean efficiency (xu_2007) [%]"]
-    assert told[:2] == tuple(f"{value:.2f}" for value in efficiency)
+    assert told[:2] == tuple(show.number(value) for value in efficiency)
     assert told[2] == f"−{abs(efficiency[1] - efficiency[0]):.2f} points"
     pressure = [float(one.parts["cycle"]["pressure"].max()) / 1e6 for one in compared.values()]
     figure = next(one for one in main_results(compared) if one.name == "pressure")

@@ -118,9 +118,8 @@ def test_at_a_point_of_the_grid_figures_are_those_of_a_run(
     for name in MAIN:
         for law in range(2):
             found = figure(held, name)["values"][law][0 * 4 + 0 * 2 + 1]
-            assert show.quantity(name, float(data[name].values[law, 0]), of=data).startswith(
-                f"{found:.2f}" if name == "mean_efficiency" else show.number(found, trailing=True)
-            )
+            value = float(data[name].values[law, 0])
+            assert show.quantity(name, value, with_unit=False, of=data) == show.number(found)
 
 
 def test_courses_over_the_cycle_are_those_of_a_run(held: dict[str, Any], corner: Outcome) -> None:
@@ -319,9 +318,11 @@ def test_all_is_drawn_and_the_console_is_silent(driven: Browser) -> None:
 @in_browser
 def test_sliders_change_the_numbers(driven: Browser, held: dict[str, Any]) -> None:
     rows = figure(held, "mean_efficiency")["values"][0]
-    assert driven.run(BIG) == f"{rows[0b10]:.2f} %"  # 60 N m and 900 rpm, those of the case
+    assert (
+        driven.run(BIG) == f"{show.number(rows[0b10])} %"
+    )  # 60 N m and 900 rpm, those of the case
     slide(driven, TORQUE, 30.0)
-    assert driven.run(BIG) == f"{rows[0]:.2f} %"
+    assert driven.run(BIG) == f"{show.number(rows[0])} %"
     slide(driven, SPEED, 1350.0)
     assert number(driven.run(BIG)) == pytest.approx(0.5 * (rows[0] + rows[1]), abs=0.0051)
     words = driven.run("document.getElementById('slider-2').getAttribute('aria-valuetext')")
@@ -333,7 +334,7 @@ def test_sliders_change_the_numbers(driven: Browser, held: dict[str, Any]) -> No
     dot = "document.getElementById('over-2').data.at(-1)"
     assert driven.run(f"{dot}.x[0]") == 1350.0
     driven.run("document.querySelector('[type=reset]').click()")
-    assert driven.wait(f"{BIG} === {f'{rows[0b10]:.2f} %'!r}")
+    assert driven.wait(f"{BIG} === {f'{show.number(rows[0b10])} %'!r}")
     assert driven.console == []
 
 
@@ -352,7 +353,7 @@ def test_the_arrow_keys_move_a_slider(driven: Browser) -> None:
 def test_another_law_has_other_numbers(driven: Browser, held: dict[str, Any]) -> None:
     choose = "(m => { m.selectedIndex = 1; m.dispatchEvent(new Event('input', {bubbles: true})) })"
     driven.run(f"{choose}(document.getElementById('law'))")
-    wanted = f"{figure(held, 'mean_efficiency')['values'][1][2]:.2f} %"
+    wanted = f"{show.number(figure(held, 'mean_efficiency')['values'][1][2])} %"
     assert driven.wait(f"{BIG} === {wanted!r}")
 
 

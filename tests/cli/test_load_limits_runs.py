@@ -103,7 +103,7 @@ def test_the_screen_has_a_row_for_each_place(asked) -> None:
     assert len(printed.rows) == 2
     heads = " ".join(printed.rows[0])
     assert all(name in heads for name in ("alternating", "shear stress", "Goodman"))
-    assert "Against ratcheting 0.4478, by 30.00 N\u00a0m" in printed.line
+    assert "Against ratcheting 0.4478, by 30 N\u00a0m" in printed.line
     page = Page({"default": outcome}, {})
     heads = [one.head[0] for one in LOAD_LIMITS.blocks(page) if isinstance(one, Table)]
     assert heads == ["flexspline", "against"]

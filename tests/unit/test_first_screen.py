@@ -48,7 +48,7 @@ def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:
     assert title == "pair_23_61.toml (default)"
     assert at.startswith("gear 1 at 1500 rpm, gear 2 with 50 N m, oil 60 °C, friction iso_tr")
     by_name = {line.split("  ")[0]: line for line in figures}
-    assert f"{100 * efficiency:.2f} %" in by_name["Efficiency"]
+    assert f"{show.number(100 * efficiency)} %" in by_name["Efficiency"]
     assert f"{ripple:.4g} N m peak to peak" in by_name["Input"]
     assert {"Loss", "Stress of flanks", "Stress of roots", "Backlash"} <= {*by_name}
     assert f"Report: {REPORT}" in figures

@@ -331,7 +331,7 @@ def test_sweeps_of_two_points_are_one_table(published: Outcomes) -> None:
     assert table.count('<th scope="row">Shape</th>') == 2 * 3
     data = cut["physical"].parts["study_shape"]
     for value in data["mean_efficiency"].values[0]:
-        assert f'<td class="n">{100 * value:.2f}</td>' in table
+        assert f'<td class="n">{show.number(100 * value)}</td>' in table
 
 
 def test_tables_of_studies_leave_out_what_does_not_vary(published: Outcomes) -> None:
@@ -468,8 +468,10 @@ def test_efficiency_and_the_spread_of_the_laws_stand_together(
     low, high = 100.0 * values.min(), 100.0 * values.max()
     text = Words(page).text
     for value in outcome.parts["operation"]["mean_efficiency"].values[:, 0]:
-        shown = f"{100.0 * value:.2f} % mean efficiency, {ALONE}"
-        assert f"{shown} friction laws that apply {low:.2f} to {high:.2f} %" in text
+        shown = f"{show.number(100.0 * value)} % mean efficiency, {ALONE}"
+        assert (
+            f"{shown} friction laws that apply {show.number(low)} to {show.number(high)} %" in text
+        )
 
 
 def test_misses_come_first_and_kinds_are_counted_apart(page: str) -> None:
@@ -538,11 +540,14 @@ def test_laws_out_of_their_range_stand_apart_with_the_reason(wheel: Outcomes) ->
     assert apart["law"] == "xu_2007"
     text = Words(render(wheel)).text
     assert "Out of their range here, and not counted" in text
-    assert f"{100 * apart['mean_efficiency']:.2f} % it describes contacts with a full film" in text
+    assert (
+        f"{show.number(100 * apart['mean_efficiency'])} % it describes contacts with a full film"
+        in text
+    )
     told = summary(wheel["default"]).line
     assert told.startswith("One fitted friction law of the library applies, iso_tr_14179_2")
     assert (
-        f"Out of its range is xu_2007 (it would give {100 * apart['mean_efficiency']:.2f} %)"
+        f"Out of its range is xu_2007 (it would give {show.number(100 * apart['mean_efficiency'])} %)"
         in told
     )
 
@@ -569,8 +574,8 @@ def test_the_coefficient_that_locks_stands_beside_the_efficiency(wheel: Outcomes
     assert summary(wheel["default"]).rows[0][LOCKS] == "not below 1"
     less = data.assign(jamming_coefficient=0.3 * data["jamming_coefficient"])
     rough = replace(wheel["default"], parts={**wheel["default"].parts, "operation": less})
-    assert summary(rough).rows[0][LOCKS] == f"{0.3 * limit:.4f}"
-    assert f"{LOCKS} {0.3 * limit:.3g}" in Words(render({"default": rough})).text
+    assert summary(rough).rows[0][LOCKS] == show.number(0.3 * limit)
+    assert f"{LOCKS} {show.number(0.3 * limit)}" in Words(render({"default": rough})).text
 
 
 @pytest.mark.parametrize("kept", [(), ("teeth",), ("teeth", "cycle"), ("teeth", "operation")])
@@ -862,7 +867,16 @@ def test_lines_stop_at_jumps() -> None:
 
 def test_numbers_for_readers() -> None:
     assert rounded([1.0 / 3.0, np.nan, np.inf]) == [0.33333, None, None]
-    assert show.number(-0.000123456) == "−0.0001235"
+    assert show.number(-0.00123456) == "−0.001235"
+    assert show.number(-0.000123456) == "−1.235e−4"
+    assert [show.number(value) for value in (999.96, 9999.7, 999999.6)] == ["1000", "10000", "1e6"]
+    assert [show.number(value) for value in (17.0, 101325.0, 101325.4, 0.1 + 0.2 - 0.3)] == [
+        "17",
+        "101325",
+        "101300",
+        "5.551e−17",
+    ]
+    assert (show.number(1.0 + 1e-12), show.number(-0.0), show.number(0.9956, 2)) == ("1", "0", "1")
     assert show.number(float("nan")) == "undefined"
     assert show.quantity("mean_efficiency", float("nan")) == "undefined, no power"
     assert show.quantity("torque_ripple", 6e-14) == "0 N\u00a0m"

@@ -184,8 +184,7 @@ def _left_by_rounding(figure: Figure) -> bool:
 def _value(figure: Figure, design: str) -> str:
     if design not in figure.values:
         return NOTHING
-    value = _shown(figure, figure.values[design])
-    return f"{value:.2f}" if figure.variable.display == "%" else show.number(value)
+    return show.number(_shown(figure, figure.values[design]))
 
 
 def _difference(figure: Figure, first: str, design: str) -> str:

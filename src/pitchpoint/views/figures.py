@@ -35,6 +35,7 @@ __all__ = [
     "continued",
     "curves",
     "display",
+    "hovered",
     "law_title",
     "laws",
     "layout",
@@ -259,9 +260,23 @@ def line(curve: Curve, x: Any, y: Any, unit: str, **more: Any) -> Trace:
         "x": rounded(x, 6),
         "y": rounded(y),
         "line": {"color": curve.colour, "dash": curve.dash, "width": 2},
-        "hovertemplate": f"%{{y:.12~g}} {unit}<br>at %{{x:.4~g}}",
+        "hovertemplate": f"%{{y:{hovered(y)}}} {unit}<br>at %{{x:.4~r}}",
         **more,
     }
+
+
+def hovered(values: Any) -> str:
+    """Format of plotly.js for values under the mouse: four significant digits, and three of their range.
+
+    Example:
+        >>> hovered([0.0, 4.0]), hovered([71.75, 71.95])
+        ('.4~r', '.6~r')
+    """
+    array = np.asarray(values, float)
+    finite = array[np.isfinite(array)]
+    size, span = np.max(np.abs(finite), initial=0.0), np.ptp(finite) if finite.size else 0.0
+    more = ceil(log10(size / span)) if span > ROUNDING * size else 0
+    return f".{max(4, 3 + more)}~r"
 
 
 def plain(key: Key, x: Any, y: Any, unit: str, **more: Any) -> Trace:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from pitchpoint.analyses.figures import covers
-from pitchpoint.views.show import axis_title, described, displayed
+from pitchpoint.views.show import axis_title, described, displayed, number
 
 __all__ = ["cell", "efficiency_of", "head", "shown"]
 
@@ -33,6 +33,4 @@ def shown(name: str, value: float, of: Any = None) -> str:
         return "undefined"
     if np.isinf(value):
         return "none"
-    if variable.display == "1":
-        return f"{value:.4f}"
-    return f"{float(displayed(variable, value)):.5g}"
+    return number(float(displayed(variable, value)))

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from math import floor, isfinite, log10
+from math import isclose, isfinite
 from typing import Any
 
 import numpy as np
@@ -96,29 +96,36 @@ def subscripts(text: str) -> str:
     return _INDEXED.sub(r"\1<sub>\2</sub>", text)
 
 
-def number(value: float, digits: int = 4, *, trailing: bool = False) -> str:
-    """Number with so many significant digits, without an exponent where that can be read.
+def number(value: float, digits: int = 4) -> str:
+    """Number as people read it: so many significant digits, no zeros behind them; a whole one whole.
 
     Args:
-        value: any; "undefined" if it is not finite.
-        digits: significant ones.
-        trailing: True to keep zeros at the end.
+        value: any; "undefined" if it is not finite. From a million on, and below a thousandth, it has its
+            power of ten.
+        digits: significant ones; fewer for what is itself an estimate, more for what is given.
 
     Example:
-        >>> number(0.74199)
-        '0.742'
+        >>> [number(value) for value in (0.74199, 1.0, 12345.0, 12345.6, 9275724.0, 0.0005542)]
+        ['0.742', '1', '12345', '12350', '9.276e6', '5.542e−4']
     """
     if not isfinite(value):
         return "undefined"
-    if value == 0.0:
-        return "0"
-    exponent = floor(log10(abs(value)))
-    if not -5 < exponent < 7:
-        return f"{value:.{digits - 1}e}"
-    text = f"{value:.{max(digits - 1 - exponent, 0)}f}"
-    if "." in text and not trailing:
-        text = text.rstrip("0").rstrip(".")
-    return text.replace("-", "−")
+    mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
+    power = int(exponent)
+    if not _SMALLEST <= power < _LARGEST:
+        return f"{_bare(mantissa)}e{_bare(str(power))}"
+    if isclose(value, round(value), rel_tol=NOISE):
+        return _bare(f"{round(value)}")
+    return _bare(f"{float(f'{mantissa}e{power}'):.{max(digits - 1 - power, 0)}f}")
+
+
+_SMALLEST, _LARGEST = -3, 6
+"""Powers of ten of the first digit: from the one on, and below the other, a number is written out."""
+
+
+def _bare(text: str) -> str:
+    """A number without zeros behind its last decimal, with a proper minus."""
+    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", "−")
 
 
 def signed(value: float, decimals: int) -> str:
@@ -184,8 +191,7 @@ def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None)
     if not isfinite(value):
         return "undefined, no power" if variable.display == "%" else "undefined"
     shown = float(displayed(variable, value))
-    text = f"{shown:.2f}" if variable.display == "%" else number(shown, trailing=True)
-    return f"{text} {unit(variable.display)}".strip() if with_unit else text
+    return f"{number(shown)} {unit(variable.display)}".strip() if with_unit else number(shown)
 
 
 def span(low: str, high: str, values: Sequence[float], of: Any = None) -> str:
@@ -193,7 +199,7 @@ def span(low: str, high: str, values: Sequence[float], of: Any = None) -> str:
 
     Example:
         >>> span("min_efficiency", "max_efficiency", (0.9918, 1.0))
-        '99.18 to 100.00 %'
+        '99.18 to 100 %'
     """
     first, last = quantity(low, values[0], of=of), quantity(high, values[1], of=of)
     if first == last:

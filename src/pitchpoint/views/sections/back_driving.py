@@ -38,13 +38,13 @@ def back_driving(outcome: Outcome, law: str) -> str:
 def _would(limit: float) -> str:
     if limit > ROUGHEST:
         return f"nor would it below μ = {ROUGHEST:g}"
-    return f"it would from μ = {show.number(limit, 3)} on"
+    return f"it would from μ = {show.number(limit)} on"
 
 
 def jamming(data: Any, position: int) -> str:
     """Friction coefficient at which the mesh locks; empty where none does."""
     limit = _limit(data, position)
-    return locks_from(limit, show.number(limit, 3)) if np.isfinite(limit) else ""
+    return locks_from(limit, show.number(limit)) if np.isfinite(limit) else ""
 
 
 def locks_from(limit: float, shown: str) -> str:

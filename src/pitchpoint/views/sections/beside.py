@@ -146,7 +146,7 @@ def _shares(split: list[tuple[Curve, float, float]]) -> Figure:
             "x": rounded(display("mean_loss", [one[part] for one in split])),
             "marker": {"color": key.colour},
             "width": 0.4,
-            "hovertemplate": f"%{{x:.4~g}} {unit} {key.label}<extra></extra>",
+            "hovertemplate": f"%{{x:.4~r}} {unit} {key.label}<extra></extra>",
         }
         for part, key in ((1, _TEETH), (2, _BESIDE))
     ]

@@ -261,7 +261,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         return
     ratio = data["lambda_ratio"].values[0][data["load"].values[0] > 0.0]
     if ratio.size and np.isfinite(ratio).any():
-        value = show.number(float(np.nanmin(ratio)), 3)
+        value = show.number(float(np.nanmin(ratio)))
         detail = "thinnest film of the cycle over composite Rq"
         yield KeyFigure(80.0, "Film ratio", value, detail)
 

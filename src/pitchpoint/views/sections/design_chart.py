@@ -110,7 +110,7 @@ class _Limits:
         edge = float(limit[last]) if last + 1 < x.size else float(x[-1])
         self._region(float(x[0]), edge, _UNDERCUT, "undercut", "left")
         told.append(
-            f"Shaded on the left: the rack undercuts gear 1, x1 below x_min1 = {limit[last]:.4g}."
+            f"Shaded on the left: the rack undercuts gear 1, x1 below x_min1 = {show.number(limit[last])}."
         )
 
     def _tips(self, x: np.ndarray, thickness: np.ndarray, told: list[str]) -> None:

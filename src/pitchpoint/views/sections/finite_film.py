@@ -178,7 +178,7 @@ def _heat(data: xr.Dataset, kept: int, variable: str) -> Trace:
         "y": rounded(display("kept_y", y[rows])),
         "z": rounded(display(variable, data[variable].values[kept][np.ix_(rows, columns)]), 4),
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
-        "hovertemplate": f"%{{z:.4~g}} {unit}<br>x %{{x:.3~g}} {along}, y %{{y:.3~g}} {along}"
+        "hovertemplate": f"%{{z:.4~r}} {unit}<br>x %{{x:.4~r}} {along}, y %{{y:.4~r}} {along}"
         "<extra></extra>",
     }
 
@@ -264,7 +264,7 @@ def _symmetric(data: xr.Dataset, kept: int) -> bool:
 
 
 def _at_row(data: xr.Dataset, kept: int, row: int) -> str:
-    place = show.number(float(display("kept_y", data["kept_y"].values[kept, row])), 3)
+    place = show.number(float(display("kept_y", data["kept_y"].values[kept, row])))
     unit = show.unit_of("kept_y")
     return f"y = {place} {unit}"
 

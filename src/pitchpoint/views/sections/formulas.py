@@ -329,7 +329,7 @@ def _map(name: str, one: Maps, data: xr.Dataset) -> Figure:
         "z": rounded(values, 4),
         "colorscale": "Viridis",
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
-        "hovertemplate": f"%{{z:.4~g}} {unit}<extra></extra>",
+        "hovertemplate": f"%{{z:.4~r}} {unit}<extra></extra>",
     }
     along, across = (show.axis_title(axis) for axis in one.axes)
     axes = layout(along, across.replace(", ", ",<br>"))  # in one line it is longer than the axis

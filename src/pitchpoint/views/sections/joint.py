@@ -154,7 +154,7 @@ def _marks(data: xr.Dataset, speed: np.ndarray, motors: tuple[int, ...]) -> list
             there = float(critical[m, k])
             near = any(abs(there - other) < _APART * np.ptp(speed) for _, other in found)
             if speed.min() <= there <= speed.max() and not near:
-                found.append((f"{order:.4g}", there))
+                found.append((show.number(order), there))
     return found
 
 

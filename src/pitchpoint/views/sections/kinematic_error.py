@@ -156,7 +156,7 @@ def _bars(key: Key, amplitudes: np.ndarray, orders: np.ndarray, unit: str) -> Tr
         "x": orders.tolist(),
         "y": rounded(amplitudes[orders]),
         "marker": {"color": key.colour},
-        "hovertemplate": f"%{{y:.4~g}} {unit}<br>order %{{x}}",
+        "hovertemplate": f"%{{y:.4~r}} {unit}<br>order %{{x}}",
     }
 
 

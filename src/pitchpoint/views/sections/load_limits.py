@@ -117,7 +117,7 @@ def limits_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     if data is None:
         return
     if "goodman_safety" in data:
-        safety = show.number(float(data["goodman_safety"].min()), 3)
+        safety = show.number(float(data["goodman_safety"].min()))
         yield KeyFigure(
             40.0,
             "Flexspline safety",

@@ -211,7 +211,7 @@ def _figure(
         "contours": {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11}, **lines},
         "line": {"color": INK, "width": 0.7},
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
-        "hovertemplate": f"%{{z:.4~g}} {unit}<br>%{{x:.4~g}} {units[0]}, %{{y:.4~g}} {units[1]}"
+        "hovertemplate": f"%{{z:.4~r}} {unit}<br>%{{x:.4~r}} {units[0]}, %{{y:.4~r}} {units[1]}"
         "<extra></extra>",
     }
     point = {

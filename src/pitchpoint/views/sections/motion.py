@@ -106,7 +106,7 @@ def motion_answer(outcome: Outcome) -> str:
 def _taken(data: xr.Dataset) -> str:
     """What vibration takes of the efficiency, to digits that say something."""
     taken = float(data["efficiency_difference"])
-    points = show.number(abs(100.0 * taken), 3)
+    points = show.number(abs(100.0 * taken))
     return f"which is {points} percentage points {'more' if taken >= 0.0 else 'less'}"
 
 
@@ -223,7 +223,7 @@ def _orders(data: xr.Dataset, variable: str, values: np.ndarray, key: Key) -> Tr
         "x": orders[kept].tolist(),
         "y": rounded(display(variable, values[kept])),
         "marker": {"color": key.colour},
-        "hovertemplate": f"%{{y:.4~g}} {show.unit_of(variable)}<br>order %{{x}}",
+        "hovertemplate": f"%{{y:.4~r}} {show.unit_of(variable)}<br>order %{{x}}",
     }
 
 
@@ -260,7 +260,7 @@ _OF_MODES = ("natural_frequency", "modal_damping_ratio")
 def _cell(data: xr.Dataset, name: str) -> str:
     value = float(data[name])
     if name == "efficiency_difference" and np.isfinite(value):
-        return f"{show.number(100.0 * value, 3)} percentage points"
+        return f"{show.number(100.0 * value)} percentage points"
     return show.quantity(name, value, of=data) if np.isfinite(value) else "none"
 
 
@@ -340,7 +340,7 @@ def _waterfall(name: str, data: xr.Dataset) -> Figure:
         "colorscale": "Cividis",
         "hoverongaps": False,
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
-        "hovertemplate": f"%{{z:.4~g}} {unit}<br>%{{x:.4~g}}, order %{{y}}<extra></extra>",
+        "hovertemplate": f"%{{z:.4~r}} {unit}<br>%{{x:.4~r}}, order %{{y}}<extra></extra>",
     }
     axes = layout(show.axis_title("speed", data), "order of the mesh frequency")
     title = "Orders of the transmission error over speed"

@@ -134,7 +134,7 @@ def _passing(name: str, outcome: Outcome) -> Figure:
             xaxis={"range": [3.2 * wide, -3.2 * wide], "constrain": "domain"},
             yaxis={"range": [-1.15 * height, 1.2 * deep], **axis},
         ),
-        f"Every {degrees(_step(teeth)):.3g}° of p. Seen from the circular spline, "
+        f"Every {show.number(degrees(_step(teeth)))}° of p. Seen from the circular spline, "
         "which is shaded, outwards from its tip circle; positive rotation is to the left. Equal scale "
         "in both directions.",
         (

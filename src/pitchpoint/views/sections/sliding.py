@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
 from pitchpoint.views.figures import PALETTE, Figure, Key, layout, plain
 from pitchpoint.views.path import marks, path_of
 
@@ -37,7 +38,7 @@ def sliding_figure(name: str, outcome: Outcome) -> Figure:
         layout(
             path.axis, "ζ", xaxis={"range": [-0.02 * end, 1.02 * end]}, yaxis=cut, **marks(path)
         ),
-        note + (f" The lowest value is {lowest:.3g}." if cut else ""),
+        note + (f" The lowest value is {show.number(lowest)}." if cut else ""),
         keys,
     )
 

@@ -39,14 +39,14 @@ def spread(outcome: Outcome) -> dict[str, Any] | None:
     if not known.size:
         text = "all lock the mesh" if locked.all() else "undefined, no power"
         return {"text": text, "rows": rows, "points": "", "outside": outside}
-    ends = [f"{100 * end:.2f}" for end in (known.min(), known.max())]
+    ends = [show.number(100 * end) for end in (known.min(), known.max())]
     text = f"{' to '.join(dict.fromkeys(ends))} %"
     if locked.any():
         names = [law_title(outcome, law) for law, so in zip(laws(data), locked, strict=True) if so]
         text += f"; locked by {', '.join(names)}"
     if outcome.manifest.get("plastic"):
         text += ", by laws for steel on steel; none was fitted to plastic teeth"
-    points = f"{100 * np.ptp(known):.2f}" if known.size > 1 else ""
+    points = show.number(100 * np.ptp(known)) if known.size > 1 else ""
     return {"text": text, "rows": rows, "points": points, "outside": outside}
 
 
@@ -88,10 +88,10 @@ def _within(outcome: Outcome) -> str:
         return "No fitted friction law of the library is in its range here."
     if len(values) == 1:
         only = str(data["law"].values[0])
-        return f"One fitted friction law of the library applies, {only}; it gives {100 * values[0]:.2f} %."
+        return f"One fitted friction law of the library applies, {only}; it gives {_percent(values[0])}."
     low, high = int(values.argmin()), int(values.argmax())
     names = [str(name) for name in data["law"].values]
-    span = f"{100 * values[low]:.2f} % ({names[low]}) to {100 * values[high]:.2f} % ({names[high]})"
+    span = f"{_percent(values[low])} ({names[low]}) to {_percent(values[high])} ({names[high]})"
     if outcome.manifest.get("plastic"):
         return (
             "No friction law of the library was fitted to plastic teeth; those for steel on steel would "
@@ -99,13 +99,17 @@ def _within(outcome: Outcome) -> str:
         )
     return (
         f"The friction laws that apply give {span}: the model counts for "
-        f"{100 * (values[high] - values[low]):.2f} percentage points."
+        f"{show.number(100 * (values[high] - values[low]))} percentage points."
     )
+
+
+def _percent(efficiency: float) -> str:
+    return show.quantity("mean_efficiency", efficiency)
 
 
 def _apart(outcome: Outcome) -> Iterator[str]:
     """A sentence for each law that is out of its range."""
     for one in out_of_range(outcome.parts["laws"]):
         value = one["mean_efficiency"]
-        gives = "" if value is None else f" (it would give {100 * value:.2f} %)"
+        gives = "" if value is None else f" (it would give {_percent(value)})"
         yield f"Out of its range is {one['law']}{gives}: {'; '.join(one['reasons'])}."

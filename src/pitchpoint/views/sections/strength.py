@@ -112,7 +112,7 @@ def _cell(data: xr.Dataset, name: str, gear: int) -> str:
     if value != value:
         return "–"
     if name in _COUNTED:
-        return f"{value:.4g}"
+        return show.number(value)
     return "∞" if value == inf else shown(name, value, data)
 
 
@@ -182,7 +182,7 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
         if not known.isnull().all():
             least = known.isel(known.argmin([*known.dims]))
             yield KeyFigure(
-                order, f"Safety of {where}", f"{float(least):.3g}", f"at {_place(least)}"
+                order, f"Safety of {where}", show.number(float(least)), f"at {_place(least)}"
             )
         elif data[stress].notnull().any():
             most = data[stress].isel(data[stress].argmax([*data[stress].dims]))

@@ -56,15 +56,15 @@ def _plane(outcome: Outcome) -> dict[str, Any]:
     """Plane of action, its lines in the colours of the pairs, lengths in words."""
     picture = plane_of_action(outcome.parts["teeth"]).picture()
     keys = [pair_key(lane) for lane in range(picture["lanes"] + 1)]
-    told = {name: _length(picture[name], trailing=True) for name in ("mean", "least", "most")}
+    told = {name: _length(picture[name]) for name in ("mean", "least", "most")}
     told |= {name: _length(picture[name]) for name in ("width", "height")}
     return {**picture, "pairs": keys, "told": told}
 
 
-def _length(millimetres: float, *, trailing: bool = False) -> str:
+def _length(millimetres: float) -> str:
     """A length of the picture in words [mm in]."""
     value = float(LENGTH.displayed(1e-3 * millimetres))
-    return f"{show.number(value, trailing=trailing)} {show.unit(LENGTH.display)}"
+    return f"{show.number(value)} {show.unit(LENGTH.display)}"
 
 
 def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:

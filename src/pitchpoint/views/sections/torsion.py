@@ -361,7 +361,7 @@ def part_rows(outcome: Outcome) -> list[dict[str, str]]:
         {
             "part of the wind-up": str(data["part"].values[k]),
             words: shown("wind_up_part", each[k]),
-            "share [%]": f"{100.0 * each[k] / sum(each):.1f}",
+            "share [%]": show.number(100.0 * each[k] / sum(each)),
         }
         for k in order
     ]

@@ -236,7 +236,7 @@ def _spectrum(name: str, data: xr.Dataset) -> Figure:
             "x": data["order"].values[wanted].tolist(),
             "y": rounded(display("spectrum", values[wanted])),
             "marker": {"color": key.colour},
-            "hovertemplate": f"%{{y:.4~g}} {show.unit_of('spectrum')}<br>order %{{x}}",
+            "hovertemplate": f"%{{y:.4~r}} {show.unit_of('spectrum')}<br>order %{{x}}",
         }
         for key, values in zip(keys, each, strict=True)
     ]

@@ -218,7 +218,7 @@ def _choice(figures: list[Figure], data: xr.Dataset, step: int) -> Choice:
         figure.name: [_moved(lines(data, member, step)), {}]
         for figure, (lines, member) in zip(figures, drawn, strict=False)
     }
-    return Choice(f"{turns:.3g}", changes)
+    return Choice(show.number(turns), changes)
 
 
 def _moved(lines: list[Trace]) -> dict[str, list[Any]]:
@@ -316,7 +316,7 @@ def _map(name: str, data: xr.Dataset, member: int) -> Figure:
         "z": rounded(display("worn_depth", data["worn_depth"].values[-1, member][order]), 4),
         "colorscale": "YlOrRd",
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
-        "hovertemplate": f"%{{z:.4~g}} {unit}<br>y %{{x:.3~g}} {across}, r %{{y:.4~g}} {along}"
+        "hovertemplate": f"%{{z:.4~r}} {unit}<br>y %{{x:.4~r}} {across}, r %{{y:.4~r}} {along}"
         "<extra></extra>",
     }
     look = layout(f"y [{across}]", f"{titled(place, data)} [{along}]")

@@ -63,19 +63,19 @@
     return sum;
   }
 
-  function digits(value, count) {
-    if (value === 0) return "0";
-    const exponent = Math.floor(Math.log10(Math.abs(value)));
-    if (exponent <= -5 || exponent >= 7) return minus(value.toExponential(count - 1));
-    return minus(value.toFixed(Math.max(count - 1 - exponent, 0)));
+  // Numbers as `number` of the report writes them.
+  function digits(value) {
+    const [mantissa, power] = value.toExponential(3).split("e").map(Number);
+    if (power < -3 || power >= 6) return minus(mantissa + "e" + power);
+    if (Math.abs(value - Math.round(value)) <= 1e-9 * Math.abs(value)) return minus(Math.round(value));
+    return minus(Number(mantissa + "e" + power));
   }
 
   function told(value, figure) {
     if (value === null) return figure.unit === "%" ? "undefined, no power" : "undefined";
-    const shown = Math.abs(value) < 1e-9 ? 0 : value;
-    return ((figure.unit === "%" ? minus(shown.toFixed(2)) : digits(shown, 4)) + " " + figure.unit).trim();
+    return (digits(Math.abs(value) < 1e-9 ? 0 : value) + " " + figure.unit).trim();
   }
-  const placed = (value, axis) => (minus(Number(value.toPrecision(5))) + " " + axis.unit).trim();
+  const placed = (value, axis) => (digits(value) + " " + axis.unit).trim();
   const where = (place) => it.axes.map((axis, k) => axis.words + " = " + placed(place[k], axis)).join("; ");
 
   // Why there are no figures: the sentence of the point that counts most of those that are not possible.
@@ -139,7 +139,7 @@
   }
 
   function line(x, y, colour, name, unit) {
-    const hovertemplate = "%{y:.5~g} " + unit + "<br>at %{x:.4~g}";
+    const hovertemplate = "%{y:.4~r} " + unit + "<br>at %{x:.4~r}";
     return { type: "scatter", mode: "lines", x, y, name, hovertemplate, line: { color: colour, width: 2 } };
   }
 
