@@ -23,6 +23,7 @@ from pitchpoint.runs.case import Case
 from pitchpoint.runs.explore import Explored, explore, usual
 from pitchpoint.runs.run import Outcome, run
 from pitchpoint.views import show
+from pitchpoint.views.report import packed
 
 CASE = f"""
 title = "A pair & <b>its</b> </script><i>loss</i>"
@@ -120,6 +121,26 @@ def test_at_a_point_of_the_grid_figures_are_those_of_a_run(
             found = figure(held, name)["values"][law][0 * 4 + 0 * 2 + 1]
             value = float(data[name].values[law, 0])
             assert show.quantity(name, value, with_unit=False, of=data) == show.number(found)
+
+
+def test_the_value_of_the_case_is_a_point_of_the_grid(folder: Path) -> None:
+    """The page opens there, with figures that are computed."""
+    case = Case(folder / "pair.toml")
+    between, beyond, among = (
+        Sweep(key=key, start=start, stop=stop, count=count)
+        for key, start, stop, count in (
+            ("operation.torque", "30 N m", "70 N m", 2.0),
+            ("operation.speed", "1000 rpm", "1800 rpm", 2.0),
+            ("gears.profile_shift.1", 0.1, 0.7, 3.0),
+        )
+    )
+    torque, speed, shift = exploring._given(case, [between, beyond, among])
+    np.testing.assert_allclose(torque.values, [30.0, 60.0, 70.0])
+    assert torque.own == 60.0
+    assert speed.values.size == 2
+    assert speed.own == speed.values[0]
+    assert shift.values.size == 3
+    assert shift.own == pytest.approx(0.4)
 
 
 def test_courses_over_the_cycle_are_those_of_a_run(held: dict[str, Any], corner: Outcome) -> None:
@@ -355,6 +376,28 @@ def test_another_law_has_other_numbers(driven: Browser, held: dict[str, Any]) ->
     driven.run(f"{choose}(document.getElementById('law'))")
     wanted = f"{show.number(figure(held, 'mean_efficiency')['values'][1][2])} %"
     assert driven.wait(f"{BIG} === {wanted!r}")
+
+
+@in_browser
+def test_what_one_law_is_warned_of_stands_under_that_law(
+    chromium: Browser, page: Path, held: dict[str, Any], tmp_path: Path
+) -> None:
+    title, count = held["laws"][1]["title"], len(held["sentences"])
+    warned = held | {
+        "sentences": [*held["sentences"], f"{title}: too thin a film.", "Tips are thin."],
+        "told": [[[], [count, count + 1]] for _ in held["told"]],
+    }
+    text = re.sub(
+        r'(id="explored">)[^<]*', rf"\g<1>{packed(warned)}", page.read_text("utf-8"), count=1
+    )
+    (tmp_path / "warned.html").write_text(text, "utf-8")
+    chromium.open(tmp_path / "warned.html", 1280, prefers_reduced_motion="reduce")
+    chromium.wait(DRAWN)
+    told = "document.getElementById('told').textContent"
+    assert chromium.run(told) == "Warning. Tips are thin."
+    choose = "(m => { m.selectedIndex = 1; m.dispatchEvent(new Event('input', {bubbles: true})) })"
+    chromium.run(f"{choose}(document.getElementById('law'))")
+    chromium.wait(f"{told}.includes({title!r} + ': too thin a film.')")
 
 
 @in_browser

@@ -57,7 +57,7 @@ class Axis:
         key: dotted.
         quantity: what its values are.
         values: rising, at least two [SI].
-        own: of the case, or next to it within the values [SI].
+        own: of the case, or the end next to it where that lies beyond; among the values [SI].
     """
 
     key: str
@@ -111,8 +111,8 @@ def explore(
 
     Args:
         case: a `Case`, or what makes one.
-        over: keys and their values; by default load and speed, and the key that the table of the gears
-            names.
+        over: keys and their values, to which that of the case is added where it lies between them; by default
+            load and speed, and the key that the table of the gears names.
         read: what is kept of the parts at a point, which are too large to be kept whole.
         variant: of the case, the first one by default.
         settings: values by dotted key that replace those of the case.
@@ -131,7 +131,7 @@ def explore(
     count = prod(len(axis.values) for axis in axes)
     if not axes or count > MOST:
         raise InputError(
-            f"{count} points were asked for; a page holds {MOST} at most",
+            f"{count} points, with the values of the case among them; a page holds {MOST} at most",
             file=base.name,
             key="--over",
         )
@@ -202,7 +202,10 @@ def _given(case: Case, over: Sequence[Sweep]) -> Iterator[Axis]:
             )
         own = case[sweep.key]
         number = float(own) if isinstance(own, float | int) else float(several[len(several) // 2])
-        yield Axis(sweep.key, quantity, several, float(np.clip(number, several[0], several[-1])))
+        number = float(np.clip(number, several[0], several[-1]))
+        if not np.isclose(several, number, rtol=ROUNDING).any():
+            several = np.unique([*several, number])
+        yield Axis(sweep.key, quantity, several, number)
 
 
 def _computed(variant: Variant, changes: Mapping[str, Any] | None = None) -> Outcome:

@@ -27,13 +27,12 @@
   const strides = it.axes.map((_, k) => it.axes.slice(k + 1).reduce((count, one) => count * one.values.length, 1));
   const values = (number) => it.axes.map((one, k) => one.values[Math.floor(number / strides[k]) % one.values.length]);
 
-  // Where the sliders stand; next to a computed value, but for rounding, at that value.
+  // Where the sliders stand; within half a step of a computed value, which they may not meet, at that value.
   function stands() {
     return it.axes.map((axis, k) => {
       const place = Number(sliders[k].value);
       const next = axis.values.reduce((best, one) => (Math.abs(one - place) < Math.abs(best - place) ? one : best));
-      const span = axis.values[axis.values.length - 1] - axis.values[0];
-      return axis.whole || Math.abs(next - place) < 1e-6 * span ? next : place;
+      return axis.whole || Math.abs(next - place) <= 0.5001 * axis.step ? next : place;
     });
   }
 
@@ -197,8 +196,11 @@
     });
   }
 
+  // What is told of one friction law begins with its title.
+  const ofOthers = (sentence) => it.laws.some((one, k) => k !== law() && sentence.startsWith(one.title + ":"));
+
   function warned(point) {
-    const [fails, warns] = it.told[point];
+    const [fails, warns] = it.told[point].map((all) => all.filter((one) => !ofOthers(it.sentences[one])));
     const place = named("told");
     place.replaceChildren();
     for (const [sentences, kind] of [[fails, "fails"], [warns, "warning"]]) {
