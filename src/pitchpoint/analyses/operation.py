@@ -35,7 +35,8 @@ __all__ = [
 
 def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     data = summaries([built], built.models, beside([built]), title="operating point")
-    return data.assign_attrs(stored([*doubts_of(data.attrs), *_implausible(built)]))
+    data.attrs.update(stored([*doubts_of(data.attrs), *_implausible(built)]))
+    return data
 
 
 def _implausible(built: Ready) -> list[str]:

@@ -325,8 +325,7 @@ class Built:
     @cached_property
     def bodies(self) -> tuple[Coordinate, ...]:
         """Coordinates of the mesh without their places."""
-        found: tuple[Coordinate, ...] = eqx.filter_eval_shape(_coordinates, self.design.mesh)
-        return found
+        return _bodies(*_form(self.design.mesh))
 
     @cached_property
     def travels(self) -> frozenset[End]:
@@ -391,10 +390,22 @@ class Built:
 _ENDS: tuple[End, ...] = ("driver", "loaded")
 
 
-@eqx.filter_jit
-def _coordinates(mesh: Mesh) -> Any:
-    """Of a mesh; traced once for gears of one form, and never compiled."""
-    return mesh.coordinates
+def _form(mesh: Mesh) -> tuple[Any, tuple[Any, ...]]:
+    """Structure of a mesh, and shapes of its arrays."""
+    leaves, structure = jax.tree.flatten(mesh)
+    return structure, tuple(
+        jax.ShapeDtypeStruct(leaf.shape, leaf.dtype) if eqx.is_array(leaf) else leaf
+        for leaf in leaves
+    )
+
+
+@lru_cache(maxsize=64)
+def _bodies(structure: Any, leaves: tuple[Any, ...]) -> tuple[Coordinate, ...]:
+    """Coordinates of meshes of one form: traced once, and never compiled."""
+    found: tuple[Coordinate, ...] = eqx.filter_eval_shape(
+        lambda mesh: mesh.coordinates, jax.tree.unflatten(structure, leaves)
+    )
+    return found
 
 
 def operation_at(point: Operating) -> Operation:

@@ -1,6 +1,7 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from itertools import count, pairwise
 from math import inf, pi
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
@@ -1821,10 +1822,18 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
     Raises:
         InputError: there is no such key.
     """
-    models: list[type[BaseModel]] = [Case, DriveCase]
-    if isinstance(tree, Mapping):
-        _check_stage(key, tree.get(STAGES))
-        models = [DriveCase if STAGES in tree else Case]
+    if not isinstance(tree, Mapping):
+        return _quantity_anywhere(key)
+    _check_stage(key, tree.get(STAGES))
+    return _quantity(key, tree, [DriveCase if STAGES in tree else Case])
+
+
+@cache
+def _quantity_anywhere(key: str) -> Quantity | None:
+    return _quantity(key, None, [Case, DriveCase])
+
+
+def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | None:
     parts = [part for part in key.split(".") if not part.isdigit()]
     named = False
     for position, part in enumerate(parts):

@@ -65,12 +65,15 @@ class Job:
         return self.analysis.joined(self.built, pieces)
 
 
-def jobs(variant: Variant, studies: Mapping[str, Study]) -> list[Job]:
-    """All parts of a case in the order in which they are worth having.
+def jobs(
+    variant: Variant, studies: Mapping[str, Study], names: Sequence[str] | None = None
+) -> list[Job]:
+    """All parts of a case in the order in which they are worth having, or those of some names.
 
     Args:
         variant: the case.
         studies: that the user added.
+        names: of parts; whether the case has others is not looked at.
 
     Raises:
         InputError: before the first part, for the case and for the ends of every sweep.
@@ -78,13 +81,23 @@ def jobs(variant: Variant, studies: Mapping[str, Study]) -> list[Job]:
     built = variant.built({})
     subject = Subject(variant, built, studies)
     wrong = Complaints(variant.name)
-    made = [wrong.tried(_parts, analysis, subject) for analysis in ANALYSES.values()]
+    asked = (
+        one
+        for one in ANALYSES.values()
+        if names is None or one.name in names or isinstance(one, Several)
+    )
+    made = [wrong.tried(_parts, analysis, subject) for analysis in asked]
     wrong.demand_none()
-    return [Job(part, built) for parts in made for part in parts or ()]
+    return [
+        Job(part, built)
+        for parts in made
+        for part in parts or ()
+        if names is None or part.name in names
+    ]
 
 
-def chosen_jobs(every: Sequence[Job], names: Sequence[str], variant: Variant) -> list[Job]:
-    """Parts of those names, in their order among all.
+def chosen_jobs(variant: Variant, studies: Mapping[str, Study], names: Sequence[str]) -> list[Job]:
+    """Parts of those names, in their order among all, see `jobs`.
 
     Raises:
         InputError: no name, or one that is no part of the case, with what it lacks where that is known.
@@ -92,9 +105,12 @@ def chosen_jobs(every: Sequence[Job], names: Sequence[str], variant: Variant) ->
     if isinstance(names, str) or not names:
         told = 'analyses are a list of names of parts, ["operation", "cycle"]'
         raise InputError(f"{shown(names)} was given; {told}", file=variant.name)
-    for name in names:
-        _demand_part(name, [job.name for job in every], variant)
-    return [job for job in every if job.name in names]
+    chosen = jobs(variant, studies, names)
+    if missing := {*names} - {job.name for job in chosen}:
+        every = [job.name for job in jobs(variant, studies)]
+        for name in sorted(missing, key=[*names].index):
+            _demand_part(name, every, variant)
+    return chosen
 
 
 def _parts(entry: Analysis | Several, subject: Subject) -> list[Analysis]:

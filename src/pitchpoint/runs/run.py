@@ -183,6 +183,7 @@ def run(
                 folder=None if where is None else where / one,
                 studies=studies or {},
                 progress=watching,
+                whole=analyses is None,
             )
             for one, prepared in work.items()
         }
@@ -217,10 +218,15 @@ def run_variant(
     folder: Path | None,
     studies: Mapping[str, Study],
     progress: Progress,
+    whole: bool = True,
 ) -> Outcome:
-    """Compute all parts of one variant; finished parts found in the folder are read."""
+    """Compute all parts of one variant; finished parts found in the folder are read.
+
+    Where they are not the `whole` of the case, nobody asks why it lacks others.
+    """
     built = work[0].built if work else variant.built({})
-    outcome = Outcome(_manifest(variant, built, studies) | {"lacks": _lacking(built)})
+    lacks = _lacking(built) if whole else {}
+    outcome = Outcome(_manifest(variant, built, studies) | {"lacks": lacks})
     outcome.tell(_of_design(variant, built))
     if folder is not None:
         _hand_over(variant, outcome.manifest["title"], folder, studies)
@@ -609,11 +615,13 @@ def _jobs(
     variant: Variant, studies: Mapping[str, Study], analyses: Sequence[str] | None = None
 ) -> list[Job]:
     """Parts of a variant, or those of some names; InputError if a target reads one that the case has not."""
+    if analyses is not None:
+        return chosen_jobs(variant, studies, analyses)
     made = jobs(variant, studies)
     if _measured(variant):
         targets = validate(variant.document()).targets
         demand_parts(targets, [job.name for job in made], variant.name)
-    return made if analyses is None else chosen_jobs(made, analyses, variant)
+    return made
 
 
 def _measured(variant: Variant) -> bool:
