@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
@@ -16,6 +17,7 @@ from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.doubts import fails, in_stage
 from pitchpoint.efficiency.summary import in_chunks, in_groups
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.strength.load_factors import MOST_RESONANCE
 from pitchpoint.strength.rating import ROWS, ratings
@@ -118,9 +120,14 @@ def _ratings(pairs: Sequence[Built]) -> list[Numbers]:
 def _asked(built: Built) -> tuple[Any, ...]:
     """A pair as `rated` takes it."""
     mesh, given, table = built.design.mesh, built.rated, built.case.strength
-    ratio = nan if mesh.ends_at_tips else built.dimensions["transverse_contact_ratio"]
+    ends = np.full(2, nan) if mesh.ends_at_tips else jax.device_get(_path_ends(mesh))
     duty = given.duty(built.operation, None if table is None else table.life)
-    return mesh, np.asarray(ratio), duty, given.factors, given.strengths, given.finish
+    return mesh, ends, duty, given.factors, given.strengths, given.finish
+
+
+@program
+def _path_ends(mesh: Mesh) -> Float[Array, "2"]:
+    return mesh.rated_pair.path_ends
 
 
 def _bare(mesh: Mesh) -> Mesh:

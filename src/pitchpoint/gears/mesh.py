@@ -373,7 +373,7 @@ class Mesh(eqx.Module):
 
     @property
     def ends_at_tips(self) -> bool:
-        """True if contact ends at tip circles, so that a bare mesh has the contact ratio of this one."""
+        """True if contact ends at tip circles, so that a bare mesh has the path of this one."""
         return True
 
     @property

@@ -143,9 +143,9 @@ def nominal_contact_stress(
 
 def single_contact_factor(
     *,
-    own_tip: Each,
+    own_end: Each,
     own_teeth: Each,
-    other_tip: Each,
+    other_end: Each,
     other_teeth: Each,
     working_pressure_angle: Each,
     transverse_contact_ratio: Each,
@@ -155,7 +155,8 @@ def single_contact_factor(
     """Single pair contact factor, Z_B of gear 1 or Z_D of gear 2: where one pair begins to carry [1].
 
     Args:
-        own_tip, other_tip: sqrt((d_a/d_b)^2 - 1) of the gear and its mate, shape (...) [1].
+        own_end, other_end: sqrt((d/d_b)^2 - 1) of the gear and its mate where the path of contact ends, at
+            the tip d_a unless an undercut of the other one ends it before, shape (...) [1].
         own_teeth, other_teeth: z, negative for a ring, shape (...) [1].
         working_pressure_angle: alpha_wt, shape (...) [rad].
         transverse_contact_ratio: eps_alpha; above 2 that of spur gears is 1, shape (...) [1].
@@ -167,15 +168,15 @@ def single_contact_factor(
 
     Example:
         >>> from math import radians, sqrt
-        >>> factor = single_contact_factor(own_tip=sqrt((82.45 / 67.658) ** 2 - 1.0), own_teeth=16.0,
-        ...     other_tip=sqrt((118.35 / 101.487) ** 2 - 1.0), other_teeth=24.0,
+        >>> factor = single_contact_factor(own_end=sqrt((82.45 / 67.658) ** 2 - 1.0), own_teeth=16.0,
+        ...     other_end=sqrt((118.35 / 101.487) ** 2 - 1.0), other_teeth=24.0,
         ...     working_pressure_angle=radians(22.43879), transverse_contact_ratio=1.436, overlap_ratio=0.0)
         >>> round(float(factor), 3)
         1.075
     """
     ratio, overlap = jnp.asarray(transverse_contact_ratio), jnp.clip(overlap_ratio, 0.0, 1.0)
-    own = own_tip - 2.0 * jnp.pi / own_teeth
-    other = other_tip - (ratio - 1.0) * 2.0 * jnp.pi / other_teeth
+    own = own_end - 2.0 * jnp.pi / own_teeth
+    other = other_end - (ratio - 1.0) * 2.0 * jnp.pi / other_teeth
     curved = jnp.maximum(own * other, 1e-12)
     spur = jnp.maximum(jnp.tan(working_pressure_angle) / jnp.sqrt(curved), 1.0)
     spur = jnp.where(ratio > 2.0, 1.0, spur)

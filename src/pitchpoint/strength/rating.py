@@ -122,7 +122,7 @@ def ratings(*rows: Any) -> Rating:
 
 def rated(
     mesh: Mesh,
-    contact_ratio: One,
+    path_ends: Both,
     duty: Duty,
     factors: Factors,
     strengths: Strengths,
@@ -132,12 +132,11 @@ def rated(
 
     Args:
         mesh: with a `rated_pair`, bare.
-        contact_ratio: eps_alpha of the pair as it runs; not a number where that of the bare mesh is it.
+        path_ends: of the pair as it runs, see `RatedPair`; not a number where those of the bare mesh are it.
         duty, factors, strengths, finish: as `rate` takes them.
     """
     pair = mesh.rated_pair
-    ratio = _or(contact_ratio, pair.transverse_contact_ratio)
-    pair = dataclasses.replace(pair, transverse_contact_ratio=ratio)
+    pair = dataclasses.replace(pair, path_ends=_or(path_ends, pair.path_ends))
     reference = jnp.abs(pair.reference_radii)
     force = duty.load / jnp.sum(mesh.loaded * reference)
     speed = duty.speed * jnp.abs(mesh.motion[0]) * reference[0]
@@ -234,7 +233,7 @@ def _load_factors(pair: RatedPair, forces: ToothForces, speed: One, factors: Fac
     }
 
 
-def _or(given: One, following: One) -> One:
+def _or(given: Arrays, following: Arrays) -> Arrays:
     return jnp.where(jnp.isnan(given), following, given)
 
 
@@ -311,11 +310,10 @@ def _nominal_contact(pair: RatedPair, forces: ToothForces, strengths: Strengths)
 
 def _single_contact(pair: RatedPair, factors: Factors, strengths: Strengths) -> Both:
     """Z_B and Z_D; 1 for a ring and for plastic gears, whose pressure is that of the pitch point."""
-    tips = jnp.sqrt((pair.tip_radii / pair.base_radii) ** 2 - 1.0)
     found = flank.single_contact_factor(
-        own_tip=tips,
+        own_end=pair.end_slopes,
         own_teeth=pair.teeth,
-        other_tip=tips[::-1],
+        other_end=pair.end_slopes[::-1],
         other_teeth=pair.teeth[::-1],
         working_pressure_angle=pair.working_pressure_angle,
         transverse_contact_ratio=pair.transverse_contact_ratio,
@@ -412,12 +410,13 @@ def _tooth_form(pair: RatedPair, strengths: Strengths) -> tuple[Rating, Rating]:
     """Y_F with f_eps and Y_S, or Y_Fa and Y_Sa of plastic gears, and the dimensions behind them."""
     teeth, ratio = _virtual(pair)
     section = _sections(pair, teeth)
+    end = jnp.where(strengths.plastic, pair.tip_radii, pair.end_radii)
     load = root.load_point(
         virtual_teeth=teeth,
         module=pair.module,
         pressure_angle=pair.pressure_angle,
         profile_shift=pair.profile_shift,
-        tip_height=pair.tip_radii - pair.reference_radii,
+        end_height=end - pair.reference_radii,
         base_pitches=jnp.where(strengths.plastic, 0.0, ratio - 1.0),
     )
     form = root.form_factor(

@@ -144,7 +144,7 @@ def load_point(
     module: Each,
     pressure_angle: Each,
     profile_shift: Each,
-    tip_height: Each,
+    end_height: Each,
     base_pitches: Each,
 ) -> LoadPoint:
     """Where the force at a point of the flank crosses the middle of the tooth.
@@ -154,9 +154,10 @@ def load_point(
         module: normal module m_n, shape (...) [m].
         pressure_angle: alpha_n, shape (...) [rad].
         profile_shift: x of the thickness of the teeth, shape (...) [1].
-        tip_height: r_a - r, signed as the radii, shape (...) [m].
-        base_pitches: from the tip down to the point, in normal base pitches: eps_alpha_n - 1 down to where
-            one pair begins to carry, 0 at the tip, shape (...) [1].
+        end_height: r_a - r, signed as the radii; of the end of the path of contact where an undercut of the
+            mate ends it below the tip, shape (...) [m].
+        base_pitches: from there down to the point, in normal base pitches: eps_alpha_n - 1 down to where
+            one pair begins to carry, 0 at that end, shape (...) [1].
 
     Returns:
         Angle and place, broadcast shape of the arguments.
@@ -166,16 +167,16 @@ def load_point(
     Example:
         >>> from math import degrees, radians
         >>> point = load_point(virtual_teeth=51.0, module=1.0, pressure_angle=radians(20.0),
-        ...     profile_shift=-0.2030, tip_height=0.947, base_pitches=0.154)
+        ...     profile_shift=-0.2030, end_height=0.947, base_pitches=0.154)
         >>> round(degrees(float(point.angle)), 2)
         23.22
     """
     side = jnp.sign(jnp.asarray(virtual_teeth))
     reference = virtual_teeth * jnp.asarray(module) / 2.0
     base = reference * jnp.cos(pressure_angle)
-    tip = jnp.sqrt((reference + tip_height) ** 2 - base**2)
+    end = jnp.sqrt((reference + end_height) ** 2 - base**2)
     pitch = jnp.pi * module * jnp.cos(pressure_angle)
-    at = tip - side * jnp.maximum(base_pitches, 0.0) * pitch
+    at = end - side * jnp.maximum(base_pitches, 0.0) * pitch
     pressure = jnp.arctan(at / jnp.abs(base))
     thickness = (jnp.pi / 2.0 + 2.0 * profile_shift * jnp.tan(pressure_angle)) / virtual_teeth
     gamma = thickness + involute(jnp.asarray(pressure_angle)) - involute(pressure)

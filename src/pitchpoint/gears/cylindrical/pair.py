@@ -26,7 +26,7 @@ class CylindricalPair(InvolutePair):
 
     @property
     def bare(self) -> Self:
-        """Without what neither circles nor roots depend on; its contact ratio is that of the tip circles."""
+        """Without what neither circles nor roots depend on; its path of contact ends at the tip circles."""
         return dataclasses.replace(
             self,
             undercut=(False, False),
@@ -67,7 +67,7 @@ class CylindricalPair(InvolutePair):
             working_radii=line.working_radii,
             tip_radii=self.tip_radii,
             root_radii=roots,
-            transverse_contact_ratio=line.transverse_contact_ratio,
+            path_ends=line.limits,
             overlap_ratio=line.overlap_ratio,
             face_width=self.face_width,
             rim_thickness=jnp.abs(roots) * rim,
