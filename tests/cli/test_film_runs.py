@@ -14,7 +14,7 @@ from stopped import stopped_and_gone_on
 
 from pitchpoint.analyses import film as solved
 from pitchpoint.analyses.film_contacts import states as states_of
-from pitchpoint.analyses.film_cycle import _of_pieces
+from pitchpoint.analyses.film_cycle import _of_pieces, _of_summits
 from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.films import film_model
@@ -213,6 +213,34 @@ def test_assumed_constants_behind_the_load_on_asperities_are_told(case: str) -> 
 
 
 @pytest.mark.whole
+def test_what_sets_of_summits_differ_in_stands_beside_the_load_on_asperities(case: str) -> None:
+    rough = {"roughness.ra": "0.5 um", "film.phases": 3}
+    data = running.run(case, settings=rough)["default"].parts["film"]
+    textbooks, follows = data["summits_share"].values
+    assert textbooks == float(data["largest_asperity_share"]) < follows / 2.0
+    assert any("where asperities carry most" in one for one in json.loads(data.attrs["warnings"]))
+    chosen = {**rough, "film.summits": "masjedi_khonsari_2012"}
+    stiff = running.run(case, settings=chosen)["default"]
+    shares = stiff.parts["film"]["summits_share"].values
+    assert shares[1] == float(stiff.parts["film"]["largest_asperity_share"]) >= follows
+    there = data["asperity_share"].argmax(...)
+    assert float(stiff.parts["film"]["asperity_share"][there]) == pytest.approx(follows, rel=1e-6)
+    assert f"({100.0 * shares[0]:.4g} % by textbooks, " in film_answer(stiff)
+    measured = running.run(case, settings={**rough, "film.eta_beta_sigma": 0.06})["default"]
+    assert "summits_share" not in measured.parts["film"]
+
+
+def test_sets_of_summits_that_differ_much_are_told() -> None:
+    spread = {"summits_share": np.array([0.02, 0.4]), "summits_friction": np.array([0.03, 0.06])}
+    (told,) = _of_summits(spread)
+    assert "2 % of the load and friction is 0.03 with the constants of textbooks" in told
+    assert "both sets are assumed" in told
+    assert not list(_of_summits({**spread, "summits_share": np.array([0.3, 0.5])}))
+    assert not list(_of_summits({**spread, "summits_share": np.array([0.001, 0.04])}))
+    assert not list(_of_summits({}))
+
+
+@pytest.mark.whole
 def test_a_largest_pressure_below_that_of_hertz_is_explained(case: str, outcome: Outcome) -> None:
     rough = {"roughness.ra": "3 um", "film.phases": 3, "operation.torque": "20 N m"}
     one = running.run(case, settings=rough)["default"]
@@ -243,6 +271,11 @@ def test_without_load_there_is_no_film(case: str) -> None:
         ({"film.viscosity_law": "barrus"}, "did you mean barus_1893"),
         ({"film.boundary_friction": -0.1}, "allowed is 0 to 2"),
         ({"film.sigma_over_beta": -1.0}, "allowed is above 0 to 10"),
+        ({"film.summits": "textbook"}, "did you mean textbooks"),
+        (
+            {"film.summits": "textbooks", "film.eta_beta_sigma": 0.1, "film.sigma_over_beta": 0.01},
+            "leave out it or one of them",
+        ),
         ({"film.limiting_stress": "2 MPa"}, "is no parameter of ree_eyring_1955"),
         ({"film.asperities": "none", "film.pattern": 2.0}, "was given without asperities"),
     ],

@@ -1,6 +1,7 @@
 """Films of the contacts of a mesh solved over its cycle, beside film laws and friction laws."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.cases.build import Built, tooth_size
 from pitchpoint.lubrication.ehl.doubts import UNSOLVED
 from pitchpoint.lubrication.ehl.fields import LineFilm
+from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -117,15 +119,18 @@ def films_of_lines(
     if not every.size:
         every = np.array([[0.0, 1.0, 0.0, 0.0, 1.0][: len(names)]])
     where, inverse = alike(every, np.max(np.abs(every), axis=0))
-    films = _films(built, dict(zip(names, every[where].T, strict=True)), done)
+    each = dict(zip(names, every[where].T, strict=True))
+    films = _films(built, each, done, film_model_of(built))
     back = np.full(loaded.shape, -1)
     back[loaded] = inverse[: loaded.sum()]
     codes = np.where(back < 0, int(Code.UNLOADED), np.asarray(films.ended.code)[back])
     return films, codes, back
 
 
-def _films(built: Built, given: Mapping[str, np.ndarray], done: Done | None) -> Films:
-    model, design = film_model_of(built), built.design
+def _films(
+    built: Built, given: Mapping[str, np.ndarray], done: Done | None, model: FilmModel
+) -> Films:
+    design = built.design
     contacts = model.contacts(
         **given,
         modulus=float(design.modulus),
@@ -213,4 +218,11 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Films of the cycle, with those by film laws and friction by the laws of the case beside them."""
     given = states(built)
     shown = {"shown_pair": (("shown",), _shown(given))}
-    return whole(built, given, parts, _LANES, shown, title="films")
+
+    def again(lane: tuple[int, ...], eta_beta_sigma: float) -> tuple[float, float]:
+        one = {name: given[name][lane][None] for name in _GIVEN}
+        model = replace(film_model_of(built), eta_beta_sigma=eta_beta_sigma)
+        film = _films(built, one, None, model).film
+        return float(film.asperity_share[0]), float(film.friction[0])
+
+    return whole(built, given, parts, _LANES, shown, again, title="films")

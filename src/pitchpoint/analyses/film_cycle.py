@@ -1,6 +1,6 @@
 """Figures of films over a mesh cycle, whatever solved them: losses, efficiency, deviations, words."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,9 @@ from pitchpoint.analyses.caveats import cold_warning, conformal_warning
 from pitchpoint.analyses.film_contacts import asked, film_laws, film_model_of
 from pitchpoint.analyses.film_series import series_figures
 from pitchpoint.cases.build import Built
-from pitchpoint.doubts import WITHHELD, Doubt, doubts_of, reworded
+from pitchpoint.cases.films import SUMMIT_CONSTANTS
+from pitchpoint.contact.registry import SUMMITS
+from pitchpoint.doubts import REMARKED, WITHHELD, Doubt, doubts_of, reworded
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -19,10 +21,19 @@ from pitchpoint.status import told as told_of
 __all__ = ["whole"]
 
 States = Mapping[str, np.ndarray]
+Again = Callable[[tuple[int, ...], float], tuple[float, float]]
+"""Load on asperities and friction of the contact of a lane with another eta_beta_sigma."""
+
 Lanes = Mapping[str, tuple[tuple[str, ...], np.ndarray]]
 
 COUNTS = 0.05
 """Part of a contact's load on asperities from which on it is told what that rests on."""
+
+SPREADS = 0.1 * COUNTS
+"""The same from which on it may be that much with another set of summits, which are up to 24 times apart."""
+
+APART = 2.0
+"""Loads on asperities over one another from which on it is told that two sets of summits differ."""
 
 LOWER = 0.05
 """Part by which the largest pressure is below Hertz's from which on it is told."""
@@ -30,7 +41,6 @@ LOWER = 0.05
 UNEVEN = 0.3
 """Rq R/b2 from which on rough flanks lower the largest pressure by 5 % or more at low speed."""
 
-_SUMMITS = ("eta_beta_sigma", "sigma_over_beta")
 _MASKED = ("pressure", "friction", "film_by_law")
 
 
@@ -40,6 +50,7 @@ def whole(
     parts: Sequence[xr.Dataset],
     lanes: tuple[str, ...],
     more: Lanes,
+    again: Again,
     **attributes: Any,
 ) -> xr.Dataset:
     """Films of the cycle, with those by film laws and friction by the laws of the case beside them.
@@ -50,6 +61,7 @@ def whole(
         parts: films by pieces, on points that are the phases.
         lanes: names of the axes of a contact.
         more: what else the dataset holds.
+        again: solves the contact of a lane with another set of summits.
         attributes: of the dataset.
     """
     found = xr.concat(parts, "point", combine_attrs="drop").rename(point="phase")
@@ -58,11 +70,13 @@ def whole(
     figures = _figures(built, states, {name: values for name, (_, values) in solved.items()})
     told = codes[loaded] if loaded.any() else np.array([int(Code.UNLOADED)])
     laws = film_laws(built.design.mesh.shape)
+    spread = _by_summits(built, found, again)
     data = dataset(
         {
             **solved,
             **_beside(states, lanes),
             **_figure_dims(figures),
+            **{name: (("summits",), values) for name, values in spread.items()},
             "weight": (("phase",), states["weight"]),
             **more,
         },
@@ -70,9 +84,15 @@ def whole(
             "phase": ("phase", states["phase"]),
             "law": built.law_names,
             "film_law": [law.name for law in laws],
+            **({"summits": list(SUMMITS)} if spread else {}),
         },
         travels=built.travels,
-        warnings=[*_lost(codes[loaded]), *_of_pieces(parts), *_about(built, states, found)],
+        warnings=[
+            *_lost(codes[loaded]),
+            *_of_pieces(parts),
+            *_about(built, states, found),
+            *_of_summits(spread),
+        ],
         solve=told_of(told, _residuals(parts, told), _iterations(parts)),
         film_titles=[law.title for law in laws],
         film_places=[law.place for law in laws],
@@ -300,13 +320,52 @@ def _other_rolling(built: Built) -> str:
 
 def _assumed(built: Built, figures: Mapping[str, np.ndarray]) -> str:
     """What of the films rests on assumed asperities; empty where they carry little or were given."""
-    names = [name for name in _SUMMITS if getattr(asked(built), name) is None]
+    names = [name for name in SUMMIT_CONSTANTS if getattr(asked(built), name) is None]
     if not names or not figures["largest_asperity_share"] > COUNTS:
         return ""
     part = 100.0 * figures["mean_boundary_part"] / figures["mean_film_friction"]
     friction = f", and {part:.0f} % of the friction, rest" if np.isfinite(part) else " rests"
     values = " and ".join(f"{name} {getattr(film_model_of(built), name):g}" for name in names)
     return f"the load on asperities{friction} on assumed {values}"
+
+
+def _by_summits(built: Built, found: xr.Dataset, again: Again) -> dict[str, np.ndarray]:
+    """Load on asperities and friction with every set of summits, where asperities carry most.
+
+    Nothing where they carry next to nothing, or where the constant by which the sets differ was given.
+    """
+    share = np.nan_to_num(found["asperity_share"].values)
+    if asked(built).eta_beta_sigma is not None or not share.max(initial=0.0) > SPREADS:
+        return {}
+    lane = tuple(int(k) for k in np.unravel_index(np.argmax(share), share.shape))
+    chosen, solved = (
+        asked(built).set_of_summits.name,
+        (share[lane], found["film_friction"].values[lane]),
+    )
+    each = [
+        solved if one.name == chosen else again(lane, one.eta_beta_sigma)
+        for one in SUMMITS.values()
+    ]
+    shares, frictions = np.array(each, float).T
+    return {"summits_share": shares, "summits_friction": frictions}
+
+
+def _of_summits(spread: Mapping[str, np.ndarray]) -> Iterator[Doubt]:
+    """That sets of summits differ, where that counts."""
+    if not spread:
+        return
+    shares, frictions = spread["summits_share"], spread["summits_friction"]
+    if not (np.max(shares) > COUNTS and np.max(shares) > APART * np.min(shares)):
+        return
+    each = (
+        f"{100.0 * share:.2g} % of the load and friction is {friction:.2g} with the {one.title}"
+        for one, share, friction in zip(SUMMITS.values(), shares, frictions, strict=True)
+    )
+    yield Doubt(
+        f"Films: where asperities carry most, they carry {', and '.join(each)}; both sets are assumed, and "
+        "friction and wear lie between them unless `eta_beta_sigma` is that of the measured surfaces.",
+        moves=max(REMARKED, 1.0 - np.min(frictions) / np.max(frictions)),
+    )
 
 
 def _below_hertz(built: Built, states: States, figures: Mapping[str, np.ndarray]) -> str:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from pitchpoint.cases.films import patch_grid
 from pitchpoint.doubts import WITHHELD, Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.line import FLOODED
+from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.heat import PatchTemperatures
@@ -162,10 +163,11 @@ def _one(
     grid: tuple[int, int],
     told: Any = None,
     start: PatchFilms | None = None,
+    model: FilmModel | None = None,
 ) -> PatchFilms | Refused:
     nodes, cells = grid
     try:
-        contact = one_contact(built, numbers)
+        contact = one_contact(built, numbers, model=model)
         return solve_patch(contact, nodes=nodes, cells=cells, progress=told, start=start)
     except InputError as error:
         return Refused(error.message)
@@ -418,12 +420,21 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     }
     table = asked(built)
     nodes, cells = patch_grid(table)
+
+    def again(lane: tuple[int, ...], eta_beta_sigma: float) -> tuple[float, float]:
+        model = replace(film_model_of(built), eta_beta_sigma=eta_beta_sigma)
+        one = _one(built, given.numbers[lane], (nodes, cells), model=model)
+        if isinstance(one, Refused):
+            return np.nan, np.nan
+        return float(one.film.asperity_share), float(one.film.friction_magnitude)
+
     data = whole(
         built,
         given.states,
         lanes,
         _LANES,
         more,
+        again,
         title="films of finite contacts",
         solver=table.solver,
         grid=json.dumps([nodes, cells]),

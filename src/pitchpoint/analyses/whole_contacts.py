@@ -18,6 +18,7 @@ from pitchpoint.efficiency.quasi_static import Design, Engagement
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.loading.tooth_compliance import Terms, bending
+from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.programs import program
 
@@ -157,15 +158,18 @@ def _summed(
     }
 
 
-def one_contact(built: Built, numbers: np.ndarray, *, moving: bool = False) -> PatchContact:
+def one_contact(
+    built: Built, numbers: np.ndarray, *, moving: bool = False, model: FilmModel | None = None
+) -> PatchContact:
     """A contact to solve.
 
     Args:
         built: the case.
         numbers: that tell it from others, as in `Wholes.numbers`.
         moving: whether height maps move along with their surfaces.
+        model: how films are solved; that of the case by default.
     """
-    design, model = built.design, film_model_of(built)
+    design, model = built.design, model or film_model_of(built)
     rq = float(design.roughness.composite_rq)
     modulus = float(design.modulus)
     common: dict[str, Any] = {

@@ -17,6 +17,7 @@ from pitchpoint.materials.solids import SolidRecord
 
 __all__ = [
     "CHOICE_NOTES",
+    "SUMMIT_CONSTANTS",
     "USUAL_ENDS",
     "course_grid",
     "course_moments",
@@ -31,8 +32,8 @@ PATCH_NODES: Final = 65
 five times as long."""
 
 CHOICE_NOTES: Final[Mapping[str, str]] = {
-    "eta_beta_sigma": "summits per area times their radius times Rq: assumed, of textbooks",
-    "sigma_over_beta": "Rq over the radius of summits: assumed, of textbooks",
+    "eta_beta_sigma": "summits per area times their radius times Rq, of the set: assumed",
+    "sigma_over_beta": "Rq over the radius of summits, of the set: assumed",
     "pattern": "Peklenik's number of the roughness, 1 for one without a direction",
     "boundary_friction": "of asperities that touch: assumed, of the 0.08 to 0.15 of steel",
     "ends": "bodies go on beyond the contact line; mirrored where both end with it",
@@ -55,7 +56,10 @@ MOST_ALONG: Final = 257
 FEWEST_ACROSS: Final = 32
 """Smallest number of cells across it."""
 
-_OF_ASPERITIES = ("eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction")
+SUMMIT_CONSTANTS: Final = ("eta_beta_sigma", "sigma_over_beta")
+"""Keys of `[film]`, and attributes of a set, that decide how much asperities carry."""
+
+_OF_ASPERITIES = (*SUMMIT_CONSTANTS, "pattern", "boundary_friction")
 _LAWS = ("viscosity_law", "density_law", "shear_law")
 
 
@@ -80,6 +84,8 @@ def film_model(table: FilmTable, solids: Sequence[SolidRecord], size: float | No
         chosen.pop("nodes", None)
     if size is not None:
         chosen.setdefault("inlet", size)
+    for name in SUMMIT_CONSTANTS:
+        chosen.setdefault(name, getattr(table.set_of_summits, name))
     model = FilmModel(**chosen, shear_parameters=table.shear_parameters)
     return model if model.thermal == ISOTHERMAL else replace(model, members=_members(solids))
 

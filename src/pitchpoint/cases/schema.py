@@ -23,7 +23,13 @@ from pitchpoint import units
 from pitchpoint.cases.document import STAGES, Document, check_name
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import expanded, named_set
-from pitchpoint.contact.registry import ELLIPTIC_CONTACT, END_PROFILES
+from pitchpoint.contact.registry import (
+    ELLIPTIC_CONTACT,
+    END_PROFILES,
+    SUMMITS,
+    USUAL_SUMMITS,
+    SummitConstants,
+)
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import CollectedInputError, Complaints, InputError, shorten
@@ -125,7 +131,7 @@ END_ANGLE = Quantity("angle", 0.0, pi / 2.0, "deg", open_low=True)
 LINE_LOAD = Quantity("line load", 0.0, 1e9, "N/mm", open_low=True)
 FILM_PHASES = Quantity("dimensionless", 3, 400, whole=True)
 STRESS = Quantity("pressure", 1e3, 1e10, "MPa")
-SUMMITS = Quantity("dimensionless", 0.0, 10.0, open_low=True)
+OF_SUMMITS = Quantity("dimensionless", 0.0, 10.0, open_low=True)
 PATTERN = Quantity("dimensionless", 1 / 9, 9.0)
 INLET = Quantity("length", 0.0, 10.0, "mm", open_low=True)
 FILM_MOMENTS = Quantity("dimensionless", 2, 400, whole=True)
@@ -852,10 +858,12 @@ class FilmTable(Table):
         Annotated[str, BeforeValidator(named(_asperities, "law of asperity contact"))] | None
     ) = None
     """Law of asperity contact, or none for smooth flanks; greenwood_tripp_1970 unless given."""
-    eta_beta_sigma: Annotated[float, SUMMITS] | None = None
-    """Summits per area times their radius times Rq; 0.05 unless given, assumed."""
-    sigma_over_beta: Annotated[float, SUMMITS] | None = None
-    """Rq over the radius of summits; 0.01 unless given, assumed."""
+    summits: Annotated[str, BeforeValidator(named(SUMMITS.keys, "set of summits"))] | None = None
+    """Set of constants of the summits of asperities; textbooks unless given, all sets are assumed."""
+    eta_beta_sigma: Annotated[float, OF_SUMMITS] | None = None
+    """Summits per area times their radius times Rq; that of the set of summits unless given, 0.05."""
+    sigma_over_beta: Annotated[float, OF_SUMMITS] | None = None
+    """Rq over the radius of summits; that of the set of summits unless given, 0.01."""
     pattern: Annotated[float, PATTERN] | None = None
     """Peklenik's number γ of the roughness; 1, without a direction, unless given."""
     boundary_friction: Annotated[float, COEFFICIENT] | None = None
@@ -872,6 +880,11 @@ class FilmTable(Table):
         """Parameters of the shear law that were given, by name [SI]."""
         given = {name: getattr(self, name) for name in _OF_SHEAR}
         return {name: value for name, value in given.items() if value is not None}
+
+    @property
+    def set_of_summits(self) -> SummitConstants:
+        """Constants of summits of which nothing else is given."""
+        return SUMMITS[self.summits or USUAL_SUMMITS]
 
     @property
     def over_patch(self) -> bool:
@@ -935,11 +948,14 @@ class FilmTable(Table):
             if getattr(self, key) is not None:
                 told = "was given without asperities, to which it belongs"
                 raise InputError(told, key=key)
+        if None not in (self.summits, self.eta_beta_sigma, self.sigma_over_beta):
+            told = "was given with both constants of a set: leave out it or one of them"
+            raise InputError(told, key="summits")
         return self
 
 
 _OF_SHEAR = ("eyring_stress", "limiting_coefficient", "limiting_stress")
-_OF_ROUGH = ("eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction")
+_OF_ROUGH = ("summits", "eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction")
 _OF_ENDS = ("end_length", "end_radius", "end_angle", "end_line_load", "end_drop")
 
 _NO_ENDS = 'lines of this solver have no ends; take solver = "finite_line", or leave it out'

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.registry import SUMMITS, USUAL_SUMMITS
 from pitchpoint.factored import Numbers
 
 __all__ = [
@@ -22,11 +23,11 @@ __all__ = [
 
 Each = Float[Numbers, "*#b"]
 
-ETA_BETA_SIGMA: Final = 0.05
-"""Summits per area times their radius times Rq: assumed, the usual value of textbooks (0.03 to 0.05)."""
+ETA_BETA_SIGMA: Final = SUMMITS[USUAL_SUMMITS].eta_beta_sigma
+"""Usual product of summits per area, their radius and Rq: assumed."""
 
-SIGMA_OVER_BETA: Final = 0.01
-"""Rq over the radius of summits: assumed, of the 1e-4 to 1e-2 of textbooks."""
+SIGMA_OVER_BETA: Final = SUMMITS[USUAL_SUMMITS].sigma_over_beta
+"""Usual Rq over the radius of summits: assumed."""
 
 _FAR: Final = -12.0  # overlap, in Rq, from which on nearly every height is in contact
 _STEP: Final = 0.08

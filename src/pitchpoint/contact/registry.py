@@ -1,4 +1,4 @@
-"""What a case may choose of contacts by name: how ellipses follow from their load, and the ends of lines."""
+"""What a case may choose of contacts by name: ellipses by load, ends of lines, summits of roughness."""
 
 from __future__ import annotations
 
@@ -13,7 +13,16 @@ if TYPE_CHECKING:
     from pitchpoint.contact.ellipse import Ellipse
     from pitchpoint.contact.surface import Surface
 
-__all__ = ["ELLIPTIC_CONTACT", "END_PROFILES", "USUAL_ELLIPSE", "EllipticContact", "EndProfile"]
+__all__ = [
+    "ELLIPTIC_CONTACT",
+    "END_PROFILES",
+    "SUMMITS",
+    "USUAL_ELLIPSE",
+    "USUAL_SUMMITS",
+    "EllipticContact",
+    "EndProfile",
+    "SummitConstants",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,3 +117,50 @@ END_PROFILES = Registry(
     ),
 )
 """What contact lines may end with."""
+
+
+@dataclass(frozen=True, eq=False)
+class SummitConstants:
+    """A named set of the constants of rough surfaces that decide how much asperities carry.
+
+    Attributes:
+        name, title: by which it is picked, and what it says.
+        eta_beta_sigma: summits per area times their radius times Rq [1].
+        sigma_over_beta: Rq over the radius of summits [1].
+        sources: keys of the bibliography.
+        note: what it rests on.
+    """
+
+    name: str
+    title: str
+    eta_beta_sigma: float
+    sigma_over_beta: float
+    sources: tuple[str, ...] = ()
+    note: str = ""
+
+
+USUAL_SUMMITS = "textbooks"
+"""Name of what is taken where nothing else is said."""
+
+
+SUMMITS = Registry(
+    "set of constants of summits",
+    SummitConstants(
+        USUAL_SUMMITS,
+        "constants of textbooks",
+        0.05,
+        0.01,
+        ("greenwood_tripp_1970",),
+        "Assumed: the upper ends of 0.03 to 0.05 and of 1e-4 to 1e-2.",
+    ),
+    SummitConstants(
+        "masjedi_khonsari_2012",
+        "constants that follow Masjedi and Khonsari's regression",
+        0.18,
+        0.01,
+        ("greenwood_tripp_1970", "masjedi_khonsari_2012"),
+        "Assumed: with them Greenwood and Tripp's pressure carries as the regression, another calculation, "
+        "has it, within 1.4 where smooth surfaces would have a film of 0.02 to 0.7 Rq.",
+    ),
+)
+"""Sets that stand for no measured surface: between them asperities become 13 times as stiff."""

@@ -191,6 +191,8 @@ VARIABLES: dict[str, Variable] = {
     ),
     "smallest_lambda": Variable("smallest film over composite Rq", "Λ_min", "1"),
     "largest_film_pressure": pressure("largest pressure of the films", "p_max"),
+    "summits_share": percent("the same there, with every set of summits", "L_a"),
+    "summits_friction": Variable("friction coefficient there, with every set of summits", "μ", "1"),
     "largest_asperity_share": percent("largest part of a contact's load on asperities", "L_a max"),
     "largest_film_rise": temperature_rise(
         "largest temperature of the films above their inlet", "ΔT_film max"

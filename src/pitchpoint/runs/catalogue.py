@@ -8,7 +8,7 @@ from pitchpoint import units
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets
-from pitchpoint.contact.registry import ELLIPTIC_CONTACT
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT, SUMMITS
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.gears.strain_wave.registry import WAVE_SHAPES
@@ -92,6 +92,7 @@ def entries() -> list[dict[str, str]]:
         for law in registry.values()
     ]
     rows += [_entry("asperities", law, "") for law in ASPERITIES.values()]
+    rows += [_entry("summits", constants, "") for constants in SUMMITS.values()]
     rows += [_entry("losses", one, "") for one in loss_sets().values()]
     rows += [_record("lubricant", oil, _oil_range(oil)) for oil in lubricants.catalogue().values()]
     return rows + [_record("material", solid, "") for solid in solids.catalogue().values()]

@@ -104,6 +104,7 @@ def answered(data: xr.Dataset) -> str:
         f"{_least(data)}, {told(data, 'smallest_lambda')} of Rq{_near_ends(data)}; asperities "
         f"carry up to {told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
     )
+    words += _spread(data)
     if rests := str(data.attrs["assumed"]):
         words = f"{words}; {rests}"
     words += _in_series(data)
@@ -111,6 +112,15 @@ def answered(data: xr.Dataset) -> str:
         return f"{words}; loss and efficiency are withheld, some films were not found"
     friction, loss = (told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
     return f"{words}; friction coefficient {friction} in the mean, loss {loss}{_efficient(data)}"
+
+
+def _spread(data: xr.Dataset) -> str:
+    """What asperities carry at most with every set of summits, in words."""
+    if "summits_share" not in data:
+        return ""
+    each = zip(data["summits"].values, data["summits_share"].values, strict=True)
+    shares = (f"{show.quantity('summits_share', float(one))} by {name}" for name, one in each)
+    return f" ({', '.join(shares)})"
 
 
 def film_key_figure(name: str, words: str) -> KeyFigure:
