@@ -6,6 +6,11 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
+from collections.abc import Callable
+from datetime import date
+from decimal import Decimal
+from fractions import Fraction
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -17,7 +22,7 @@ import pytest
 import sound
 import xarray as xr
 
-from pitchpoint import cli
+from pitchpoint import Case, cli, run, study
 from pitchpoint.cases.document import read
 from pitchpoint.cases.height_maps import digest_of, height_maps
 from pitchpoint.cases.record import Manifest, Record
@@ -300,3 +305,111 @@ def test_names_without_a_letter_are_no_names(
         told = capsys.readouterr()
         assert ended.value.code == 2 and not told.out, name
         assert told.err.startswith("error: ") and told.err.count("\n") == 1, name
+
+
+def nested(levels: int) -> Any:
+    table: Any = 1.0
+    for level in range(levels):
+        table = {"a": table} if level % 2 else [table]
+    return table
+
+
+def holding_itself() -> dict[str, Any]:
+    table: dict[str, Any] = {}
+    table["a"] = [table]
+    return table
+
+
+def many_from_few() -> list[Any]:
+    """A list of twelve levels that would hold 10^12 numbers."""
+    held: list[Any] = [1.0] * 10
+    for _ in range(11):
+        held = [held] * 10
+    return held
+
+
+class Unreadable:
+    """What raises whatever is asked of it."""
+
+    def tolist(self) -> None:
+        raise RuntimeError
+
+    def __repr__(self) -> str:
+        raise RuntimeError
+
+
+VALUES: dict[str, Any] = {
+    "a number of 400 digits": 10**400,
+    "a number of 5000 digits": -(10**5000),
+    "a fraction": Fraction(1, 3),
+    "a decimal": Decimal("1.5"),
+    "a day": date(2024, 1, 31),
+    "bytes": b"50 N m",
+    "a complex number": 1j,
+    "complex numbers": np.array([1j, 2j]),
+    "objects": np.array([object()]),
+    "what raises": Unreadable(),
+    "a set": {1, 2},
+    "a function": len,
+    "no text": "\udc80",
+    "a table that holds itself": holding_itself(),
+    "3000 levels": nested(3000),
+    "100000 levels": nested(100_000),
+    "few lists that are many": many_from_few(),
+    "keys that are no texts": {(1, 2): 3.0},
+}
+PAIR = tomllib.loads(sound.PAIR)
+DOORS: dict[str, Callable[[Any], Any]] = {
+    "a value": lambda value: describe(Case({**PAIR, "gears": {**PAIR["gears"], "module": value}})),
+    "a table": lambda value: describe(Case({**PAIR, "roughness": value})),
+    "a variant": lambda value: describe(Case({**PAIR, "variants": {"a": value}})),
+    "a case": lambda value: describe(Case(value)),
+    "set": lambda value: Case(PAIR).set(torque=value),
+    "set a table": lambda value: describe(Case(PAIR).set(roughness=value)),
+    "settings": lambda value: run(PAIR, settings={"operation.torque": value}, analyses=["none"]),
+    "study": lambda value: study(PAIR, {"torque": [1.0, value]}),
+    "a file": lambda value: describe(value),
+}
+
+
+@pytest.mark.parametrize("what", VALUES)
+def test_what_python_hands_over_is_told_in_a_sentence(what: str) -> None:
+    for door, taken in DOORS.items():
+        with pytest.raises(InputError) as caught:
+            taken(VALUES[what])
+        assert all(len(line) < 600 for line in str(caught.value).splitlines()), door
+        assert str(caught.value).isprintable() or "\n" in str(caught.value)
+
+
+ARGUMENTS: dict[str, Callable[[], Any]] = {
+    "n: .* a whole number from 1 on": lambda: study(PAIR, {"torque": [1.0, 2.0]}, n="2"),  # type: ignore[arg-type]
+    "seed: -1 .* from 0 on": lambda: study(PAIR, {"torque": [1.0, 2.0]}, seed=-1),
+    "variant: 1 was given where the name": lambda: study(PAIR, {"torque": [1.0]}, variant=1),  # type: ignore[arg-type]
+    "over: .* a dictionary": lambda: study(PAIR, ["torque"]),  # type: ignore[arg-type]
+    "how: .* name of a way": lambda: study(PAIR, {"torque": [1.0]}, how={}),  # type: ignore[arg-type]
+    "was given as units": lambda: study(PAIR, {"torque": [1.0]}, units=[]),  # type: ignore[arg-type]
+    "variant: 1 was": lambda: Case(PAIR, variant=1),  # type: ignore[arg-type]
+    "only: .* a list of names": lambda: run(PAIR, only="default"),
+    'analyses: .* a list of names of parts, \\["operation"': lambda: run(PAIR, analyses=7),  # type: ignore[arg-type]
+    "settings: .* by key": lambda: run(PAIR, settings=[1]),  # type: ignore[arg-type]
+    "studies: .* by name": lambda: run(PAIR, studies={"a": 1}),  # type: ignore[dict-item]
+    "friction: .* a function": lambda: run(PAIR, friction=0.05),  # type: ignore[arg-type]
+    "folder: .* name of a folder": lambda: run(PAIR, folder="a\0b"),
+    "changes: .* by key": lambda: Case(PAIR).set(7),  # type: ignore[arg-type]
+    "key: 7 was given where a key": lambda: Case(PAIR)[7],  # type: ignore[index]
+    "key: None was given": lambda: Case(PAIR)[None],  # type: ignore[index]
+}
+
+
+@pytest.mark.parametrize("told", ARGUMENTS)
+def test_arguments_of_another_kind_are_told_by_name(told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        ARGUMENTS[told]()
+
+
+def test_values_of_other_libraries_are_numbers_still() -> None:
+    case = Case(PAIR)
+    for value in (np.float32(7.0), np.longdouble(7.0), np.array(7.0), np.int64(7), "7 N m"):
+        assert case.set(torque=value)["operation.torque"] == 7.0
+    assert case.set({"gears.teeth": np.array([20, 50])})["gears.teeth"] == (20.0, 50.0)
+    assert case.set({"gears.teeth": range(20, 22)})["gears.teeth"] == (20.0, 21.0)

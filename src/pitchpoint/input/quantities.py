@@ -3,7 +3,10 @@
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from datetime import date, time
 from itertools import islice
+from numbers import Number
+from pathlib import PurePath
 from typing import Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -17,6 +20,8 @@ __all__ = ["Pair", "Quantity", "SIValue", "for_both", "named", "shown", "text"]
 
 
 TOO_LONG = 10**40
+
+_SHOWN_DEPTH = 3
 
 LONGEST_TEXT = 2000
 """Longest title or remark [characters]; real ones have some hundred."""
@@ -220,18 +225,30 @@ def text(value: Any) -> str:
     return value
 
 
-def shown(value: Any) -> str:
-    """Value as a case file writes it: text quoted, on one line, shortened."""
+def shown(value: Any, depth: int = 0) -> str:
+    """Value as a case file writes it: text quoted, on one line, shortened; what it is where it is none.
+
+    Args:
+        value: of a case file, or of a stranger.
+        depth: levels of tables and lists around it.
+    """
+    if depth > _SHOWN_DEPTH:
+        return "..."
     if isinstance(value, str):
         return f'"{shorten(value)}"'
     if isinstance(value, dict):
-        inner = ", ".join(f"{key} = {shown(item)}" for key, item in islice(value.items(), 9))
+        inner = ", ".join(
+            f"{key if isinstance(key, str) else shown(key)} = {shown(item, depth + 1)}"
+            for key, item in islice(value.items(), 9)
+        )
         return f"the table {shorten(f'{{ {inner} }}')}"
     if isinstance(value, list | tuple):
-        inner = ", ".join(shown(item) for item in value[:9])
+        inner = ", ".join(shown(item, depth + 1) for item in value[:9])
         return f"the list {shorten(f'[{inner}]')}"
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int) and abs(value) >= TOO_LONG:
         return "a whole number of more than 40 digits"
-    return shorten(str(value))
+    if value is None or isinstance(value, Number | date | time | PurePath):
+        return shorten(str(value))
+    return shorten(f"a value of the type {type(value).__name__}")

@@ -426,7 +426,12 @@ def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
 
 def _read_arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
     wanted, parameters = [], {}
-    for name, parameter in inspect.signature(law).parameters.items():
+    try:
+        asked = inspect.signature(law).parameters
+    except (TypeError, ValueError):  # of a builtin, say
+        told = "takes no conditions at a contact by their names; give a function of them"
+        raise InputError(f"the law {getattr(law, '__name__', 'given')} {told}") from None
+    for name, parameter in asked.items():
         if name in UNITS:
             wanted.append(name)
         elif parameter.default is not inspect.Parameter.empty:

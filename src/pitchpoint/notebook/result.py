@@ -21,6 +21,7 @@ from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.labelled import Units, attributes, demand_units, labelled
 from pitchpoint.runs import run as runs
 from pitchpoint.runs.case import Case, CaseLike, written
+from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import Outcome, Progress
 from pitchpoint.views.inputs import recorded_units
 from pitchpoint.views.report import write_report
@@ -261,6 +262,7 @@ def run(
         ConvergenceError: a balance that was not found; what was finished is on disk.
         OSError: the disk is full, say; what was finished is on disk.
     """
+    demand_arguments(settings=settings)
     given = {key: written(key, value) for key, value in (settings or {}).items()}
     outcomes = runs.run(
         case,

@@ -69,7 +69,7 @@ def _plain_list(value: Any) -> bool:
 
 def demand_units(unit: Any) -> None:
     """InputError for units that are no choice."""
-    if unit in _BY_NAME:
+    if isinstance(unit, str) and unit in _BY_NAME:
         return
     if not isinstance(unit, Mapping) and not (isinstance(unit, str) and "=" in unit):
         raise InputError(

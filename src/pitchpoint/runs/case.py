@@ -26,6 +26,7 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.registry import nearest
+from pitchpoint.runs.python_values import demand_arguments, plain_value
 from pitchpoint.runs.reading import variants_of
 
 __all__ = ["Case", "CaseLike", "as_case", "held", "written"]
@@ -69,12 +70,13 @@ class Case:
         variant: str | None = None,
         **tables: Any,
     ) -> None:
+        demand_arguments(variant=variant)
         origin, made = _read(tables if source is None else source)
         kept = tuple(made if variant is None else _only(made, variant))
         object.__setattr__(self, "origin", origin)
         object.__setattr__(self, "held", kept)
         if tables and source is not None:
-            object.__setattr__(self, "held", self.set(_flat(tables)).held)
+            object.__setattr__(self, "held", self.set(_flat(plain_value(tables))).held)
 
     def set(self, changes: Mapping[str, Any] | None = None, /, **named: Any) -> "Case":
         """The case with other values.
@@ -88,6 +90,7 @@ class Case:
         Raises:
             InputError: no such key, several that end so, or a value that the key does not take.
         """
+        demand_arguments(changes=changes)
         made = self
         for name, value in {**(changes or {}), **named}.items():
             made = made._with(made.key(name), value)
@@ -99,6 +102,7 @@ class Case:
         Raises:
             InputError: there is none, or there are several.
         """
+        demand_arguments(key=name)
         tree = self._first.document().tree
         if "." in name or name in _model(tree).model_fields:
             return name
@@ -193,14 +197,13 @@ def held(
     own: FrictionLaw | None = None,
 ) -> list[Variant]:
     """Variants of a case, all or those that are named, with further settings and a law of the user's own."""
+    demand_arguments(only=only, settings=settings)
+    settings = {key: plain_value(value, key) for key, value in (settings or {}).items()}
     if isinstance(case, str):
         return variants_of(case, only, settings, own)
     made: Sequence[Variant] = as_case(case).held
     made = [one for name in only for one in _only(made, name)] if only else made
-    return [
-        replace(one, settings={**one.settings, **(settings or {})}, own=own or one.own)
-        for one in made
-    ]
+    return [replace(one, settings={**one.settings, **settings}, own=own or one.own) for one in made]
 
 
 def written(key: str, value: Any) -> Any:
@@ -209,16 +212,23 @@ def written(key: str, value: Any) -> Any:
     Args:
         key: dotted.
         value: numbers, texts, arrays, tables.
+
+    Raises:
+        InputError: it is none of these, or nested too deeply.
     """
-    value = value.tolist() if hasattr(value, "tolist") else value
-    if isinstance(value, Mapping):
+    return _with_units(key, plain_value(value, key))
+
+
+def _with_units(key: str, value: Any) -> Any:
+    """A plain value with the units that stand for its numbers."""
+    if isinstance(value, dict):
         return {
-            str(name): written(f"{key}.{name}" if key else str(name), item)
+            name: _with_units(f"{key}.{name}" if key else name, item)
             for name, item in value.items()
             if item is not None
         }
-    if isinstance(value, list | tuple):
-        return [written(key, item) for item in value]
+    if isinstance(value, list):
+        return [_with_units(key, item) for item in value]
     unit = _unit(key) if isinstance(value, float | int) and not isinstance(value, bool) else ""
     return f"{float(value)!r} {unit}" if unit else value
 
@@ -257,11 +267,11 @@ def _read(source: "Source | Case") -> tuple[str, Sequence[Variant]]:
 
 
 def _of_tables(source: Mapping[str, Any]) -> Sequence[Variant]:
-    tree: Tree = written("", copy.deepcopy(dict(source)))
-    named = tree.get("variants", {})
-    if isinstance(named, dict):  # keys inside are those of a case file again
-        given = {one: written("", table) for one, table in source.get("variants", {}).items()}
-        tree |= {"variants": given} if named else {}
+    plain = plain_value(source)
+    tree: Tree = _with_units("", plain)
+    if isinstance(named := plain.get("variants"), dict) and named:
+        # Keys inside are those of a case file again.
+        tree["variants"] = {one: _with_units("", table) for one, table in named.items()}
     demand_shallow(tree, "case")
     return [Variant(tree, "case", one) for one in variants(tree)]
 

@@ -61,6 +61,7 @@ from pitchpoint.results.store import (
 from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.case import Case, CaseLike, as_case, held
 from pitchpoint.runs.jobs import Job, chosen_jobs, job_of, jobs
+from pitchpoint.runs.python_values import demand_arguments
 
 if TYPE_CHECKING:
     from pitchpoint.lubrication.ehl.model import FilmModel
@@ -169,6 +170,9 @@ def run(
         ConvergenceError: a balance that was not found; what was finished is on disk.
         OSError: the disk is full, say; what was finished is on disk.
     """
+    demand_arguments(
+        folder=folder, analyses=analyses, studies=studies, friction=friction, overwrite=overwrite
+    )
     given = case if isinstance(case, str) else as_case(case)
     made = held(given, only, settings, None if friction is None else _own(friction))
     work = {variant.variant: (variant, _jobs(variant, studies or {}, analyses)) for variant in made}
@@ -315,6 +319,7 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
     Raises:
         InputError: the folder holds no result.
     """
+    demand_arguments(folder=folder)
     where = Path(folder)
     if not os.path.isfile(where / RUN):  # be the name longer than any file's
         raise InputError("holds no result of pitchpoint", file=str(folder))
@@ -391,6 +396,7 @@ def load_case(
     Raises:
         InputError: anything wrong with the input.
     """
+    demand_arguments(variant=variant)
     return held(case, [variant] if variant else [], settings)[0].built({})
 
 
@@ -407,6 +413,7 @@ def describe(
     Raises:
         InputError: anything wrong with the input that shows before the computation.
     """
+    demand_arguments(studies=studies)
     made = held(case, only, settings)
     for variant in made:
         _jobs(variant, studies or {})  # made, not computed: a wrong study shows now

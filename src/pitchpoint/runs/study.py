@@ -23,6 +23,7 @@ from pitchpoint.results.chosen_units import shown_in, unit_choice, unit_in_use
 from pitchpoint.results.labelled import Units, demand_units, in_units, showing
 from pitchpoint.results.store import fingerprint, make_folder, sole_writer
 from pitchpoint.runs.case import Case, CaseLike, as_case, written
+from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import Progress, compute_alone, own_law
 
 __all__ = ["study"]
@@ -77,6 +78,9 @@ def study(
         2
     """
     demand_units(units)
+    demand_arguments(
+        over=over, how=how, n=n, seed=seed, variant=variant, friction=friction, folder=folder
+    )
     chosen = as_case(case) if variant is None else Case(case, variant=variant)
     base = chosen.held[0] if friction is None else own_law(chosen.held[0], friction)
     axes = {key: _Axis.of(chosen, key, values) for key, values in _whole(chosen, over).items()}
