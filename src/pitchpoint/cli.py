@@ -6,7 +6,6 @@ import json
 import os
 import re
 import sys
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from glob import escape as glob_escape
@@ -692,9 +691,13 @@ def _write(text: str, path: Path | None) -> None:
     if path is None:
         typer.echo(text, nl=False)
         return
-    if path.exists():
-        raise InputError("is there already; give another name", file=str(path))
-    path.write_text(text, "utf-8")
+    try:
+        with path.open(
+            "x", encoding="utf-8"
+        ) as file:  # never through a link that leads nowhere yet
+            file.write(text)
+    except FileExistsError:
+        raise InputError("is there already; give another name", file=str(path)) from None
     typer.echo(visible(str(path)))
 
 
@@ -719,8 +722,10 @@ def _settings(texts: list[str]) -> dict[str, Any]:
 
 def _value(text: str) -> Any:
     """TOML value where the text is one, else the text itself."""
+    from pitchpoint.cases.document import parsed
+
     try:
-        return tomllib.loads(f"value = {text}")["value"]
+        return parsed(f"value = {text}")["value"]
     except (ValueError, RecursionError):
         return text
 

@@ -2,6 +2,7 @@
 
 import ast
 import builtins
+import errno
 import os
 import shutil
 import subprocess
@@ -15,6 +16,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+import jax
 import numpy as np
 import openpyxl
 import pandas as pd
@@ -22,15 +24,26 @@ import pytest
 import sound
 import xarray as xr
 
-from pitchpoint import Case, cli, run, study
+from pitchpoint import Case, cli, double_precision, run, study
+from pitchpoint.analyses.films import (
+    _BY_FILM_LAW,
+    _BY_LAW,
+    FILM,
+    FILM_SQUEEZE,
+    FINITE_FILM,
+    OVERLAP,
+    film_notes,
+)
 from pitchpoint.cases.document import read
 from pitchpoint.cases.height_maps import digest_of, height_maps
 from pitchpoint.cases.record import Manifest, Record
 from pitchpoint.cases.schema import FilmTable
+from pitchpoint.dynamics.energy import relative_closure
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import evaluator
 from pitchpoint.exports.files import export
 from pitchpoint.plain_files import content, digest
+from pitchpoint.results import store
 from pitchpoint.results.store import load
 from pitchpoint.runs.run import Outcome, describe
 
@@ -413,3 +426,78 @@ def test_values_of_other_libraries_are_numbers_still() -> None:
         assert case.set(torque=value)["operation.torque"] == 7.0
     assert case.set({"gears.teeth": np.array([20, 50])})["gears.teeth"] == (20.0, 50.0)
     assert case.set({"gears.teeth": range(20, 22)})["gears.teeth"] == (20.0, 21.0)
+
+
+def test_a_balance_without_numbers_is_none() -> None:
+    part, none = np.array([3.0, -1.0]), np.array([np.nan, np.nan])
+    closure = jax.jit(relative_closure)
+    with double_precision():
+        assert float(closure(part, np.stack([part, 2.0 * part]))) == 0.5
+        assert np.isnan(float(closure(none, np.stack([none, none]))))
+        assert np.isnan(float(closure(none, np.stack([part, none]))))
+
+
+@pytest.mark.parametrize("lowest", [-2e-8, 3e-8])
+def test_films_below_zero_are_told_to_machines_too(lowest: float) -> None:
+    film = xr.Dataset({"smallest_film": lowest})
+    assert film_notes(film) == [OVERLAP] * (lowest < 0.0)
+    laws = {
+        name: (axis, [0.0])
+        for axis, names in (("law", _BY_LAW), ("film_law", _BY_FILM_LAW))
+        for name in names
+    }
+    numbers = dict.fromkeys({*FILM.main, *FILM_SQUEEZE.main} - {"smallest_film"}, 1.0)
+    data = film.assign({**numbers, **laws}).assign_coords(law=["a"], film_law=["b"])
+    for analysis in (FILM, FINITE_FILM, FILM_SQUEEZE):
+        (told,) = analysis.shown({analysis.name: data}).values()
+        assert told["smallest_film"] == lowest and told["notes"] == film_notes(film)
+
+
+def ended(monkeypatch: pytest.MonkeyPatch, *command: str) -> int:
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", *command])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    return int(str(caught.value.code))
+
+
+def test_nothing_is_written_through_a_link(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    for command in (["new", "spur"], ["schema"]):
+        assert ended(monkeypatch, *command, "-o", str(tmp_path / "link")) == 2
+        assert capsys.readouterr().err.endswith("link: is there already; give another name\n")
+    assert not (tmp_path / "nowhere").exists()
+    assert ended(monkeypatch, "new", "spur", "-o", str(tmp_path / "new.toml")) == 0
+
+
+def test_a_full_disk_claims_what_is_kept_of_datasets_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(descriptor: int, mode: str) -> None:
+        os.close(descriptor)
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(store.os, "fdopen", full)
+    for write in (store.write_text, lambda path, text: store.write_bytes(path, text.encode())):
+        with pytest.raises(OSError, match=r"\] No space left on device: '.*one'$"):
+            write(tmp_path / "one", "text")
+    with pytest.raises(OSError, match="device; what was finished before is kept and found again"):
+        store.save(xr.Dataset({"a": 1.0}), tmp_path / "one")
+    assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [("1e400", "is too large"), ("-1e400", "is too")],
+)
+def test_numbers_beyond_all_numbers_are_told_as_written(
+    number: str, words: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "pair.toml"
+    path.write_text(sound.PAIR.replace("[23, 61]", f"[{number}, 61]"), "utf-8")
+    settings = {"gears.teeth": cli._value(f"[{number}, 61]")}
+    for case, changes in ((str(path), {}), (PAIR, settings)):
+        with pytest.raises(InputError, match=f'gears.teeth: "{number}" {words}'):
+            describe(case, settings=changes)
+    assert cli._value("[1e308, 0.0e9, 1e-300, inf]") == [1e308, 0.0, 1e-300, np.inf]

@@ -11,7 +11,9 @@ from pitchpoint.analyses.figures import numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import TOUCH
 
-__all__ = ["FILM", "FILM_SQUEEZE", "FINITE_FILM"]
+__all__ = ["FILM", "FILM_SQUEEZE", "FINITE_FILM", "OVERLAP", "film_notes"]
+
+OVERLAP = "Films below zero: the mean planes of the rough flanks overlap."
 
 _MAIN = (
     "smallest_film",
@@ -143,8 +145,10 @@ def _whole(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
 def _squeeze_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("film_squeeze")
-    every = {} if data is None else {name: numbers(data[name].values) for name in _SQUEEZE_MAIN}
-    return {"film_squeeze": every}
+    if data is None:
+        return {"film_squeeze": {}}
+    every = {name: numbers(data[name].values) for name in _SQUEEZE_MAIN}
+    return {"film_squeeze": {**every, "notes": film_notes(data)}}
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
@@ -165,7 +169,16 @@ def _figures_of(data: xr.Dataset | None, names: Sequence[str]) -> dict[str, Any]
     every: dict[str, Any] = {name: numbers(_finite(data[name].values)) for name in (*names, *asked)}
     every["friction_laws"] = _each(data, "law", _BY_LAW)
     every["film_laws"] = _each(data, "film_law", _BY_FILM_LAW)
-    return every
+    return {**every, "notes": film_notes(data)}
+
+
+def film_notes(data: xr.Dataset) -> list[str]:
+    """Sentences without which figures of films mislead.
+
+    Args:
+        data: with the smallest film.
+    """
+    return [OVERLAP] if float(data["smallest_film"]) < 0.0 else []
 
 
 def _finite(values: np.ndarray) -> np.ndarray:

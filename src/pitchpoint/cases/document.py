@@ -2,6 +2,7 @@
 
 import copy
 import io
+import math
 import os
 import re
 import tomllib
@@ -25,6 +26,7 @@ __all__ = [
     "demand_shallow",
     "files_of",
     "leaves",
+    "parsed",
     "put",
     "read",
     "setting",
@@ -106,7 +108,7 @@ def read(path: Path) -> Tree:
         text = _text(path)
         if max(part.count(".") for part in _BETWEEN_KEYS.split(text)) > _MANY_DOTS:
             raise _too_deep(path.name)  # the reader would take hours to say so
-        tree = tomllib.loads(text)
+        tree = parsed(text)
     except UnicodeDecodeError:
         raise InputError("is not UTF-8 text, so it is no TOML file", file=path.name) from None
     except RecursionError:
@@ -123,6 +125,28 @@ def read(path: Path) -> Tree:
     for one in (tree, *overlays.values()):
         _find_files(one, path.parent)
     return tree
+
+
+def parsed(text: str) -> Tree:
+    """Tables of a text in TOML; a number that is no number of a computer stays as it was written.
+
+    Args:
+        text: of a case file, or a part of one.
+
+    Raises:
+        ValueError: it is not TOML.
+
+    Example:
+        >>> parsed("module = 1e400")
+        {'module': '1e400'}
+    """
+    return tomllib.loads(text, parse_float=_as_written)
+
+
+def _as_written(text: str) -> float | str:
+    number, digits = float(text), text.lower().partition("e")[0]
+    lost = math.isinf(number) or (number == 0.0 and re.search("[1-9]", digits))
+    return text if lost and re.search("[0-9]", text) else number
 
 
 def _find_files(tree: Tree, folder: Path) -> None:

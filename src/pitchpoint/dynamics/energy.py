@@ -8,7 +8,7 @@ from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.system import System
 from pitchpoint.factored import Arrays
 
-__all__ = ["Account", "Energies", "energies"]
+__all__ = ["Account", "Energies", "energies", "relative_closure"]
 
 Pairs = Float[Array, "pair element node"]
 Each = Float[Array, ""]
@@ -41,8 +41,20 @@ class Energies(eqx.Module):
     def closure(self) -> Each:
         """What is left, relative to the largest part; zero where nothing moves."""
         parts = jnp.stack([self.load, self.damping, self.mesh, self.error, self.arm])
-        largest = jnp.max(jnp.abs(parts))
-        return jnp.abs(self.sum) / jnp.where(largest > 0.0, largest, 1.0)
+        return relative_closure(self.sum, parts)
+
+
+def relative_closure(left: Array, parts: Array) -> Each:
+    """Most that is left of a balance, relative to its largest part; NaN where any of them is none.
+
+    Args:
+        left: what is left, at one or several times [J].
+        parts: of the balance [J].
+    """
+    largest = jnp.max(jnp.abs(parts))
+    ratio = jnp.max(jnp.abs(left)) / jnp.where(largest > 0.0, largest, 1.0)
+    # The compiler may take NaN out of a maximum, and leave minus infinity.
+    return jnp.where(jnp.all(jnp.isfinite(parts)), ratio, jnp.nan)
 
 
 class Account(eqx.Module):
@@ -92,9 +104,7 @@ class Account(eqx.Module):
     @property
     def closure(self) -> Each:
         """Most that is ever left, relative to the largest part; zero where nothing moves."""
-        parts = jnp.stack(jax.tree.leaves(self))
-        largest = jnp.max(jnp.abs(parts))
-        return jnp.max(jnp.abs(self.sum)) / jnp.where(largest > 0.0, largest, 1.0)
+        return relative_closure(self.sum, jnp.stack(jax.tree.leaves(self)))
 
 
 def energies(system: System, response: Response) -> Energies:

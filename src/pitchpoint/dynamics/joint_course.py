@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.dynamics.energy import relative_closure
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.joint import Joint, respond
 from pitchpoint.factored import Arrays
@@ -118,8 +119,7 @@ class Course(eqx.Module):
         stored = self.kinetic + self.elastic
         parts = jnp.stack([stored - stored[0], self.put_in, self.damping, self.friction])
         left = parts[1] - parts[0] - parts[2] - parts[3]
-        largest = jnp.max(jnp.abs(parts))
-        return jnp.max(jnp.abs(left)) / jnp.where(largest > 0.0, largest, 1.0)
+        return relative_closure(left, parts)
 
 
 class Settled(eqx.Module):

@@ -201,8 +201,8 @@ def _whole(path: Path, content: bytes, *, lasting: bool) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         _renamed(path, content, lasting=lasting)
     except OSError as error:
-        told = f"{error.strerror}; what was finished before is kept and found again"
-        raise OSError(error.errno, told, str(path)) from None
+        kept = "; what was finished before is kept and found again" if lasting else ""
+        raise OSError(error.errno, f"{error.strerror}{kept}", str(path)) from None
 
 
 def _renamed(path: Path, content: bytes, *, lasting: bool) -> None:

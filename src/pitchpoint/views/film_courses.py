@@ -7,6 +7,7 @@ from itertools import cycle
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.films import film_notes
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -457,8 +458,7 @@ def beneath(data: xr.Dataset) -> Iterator[Paragraph]:
         yield Paragraph(rests, "note")
     yield from (Paragraph(data.attrs[name], "note") for name in _NOTES if data.attrs.get(name))
     yield Paragraph(_thinnest(data), "note")
-    if _overlap(data):
-        yield Paragraph(OVERLAP, "note")
+    yield from (Paragraph(text, "note") for text in film_notes(data))
 
 
 def place_of(data: xr.Dataset, phase: int, pair: int, part: int) -> str:
@@ -536,7 +536,7 @@ def counted(data: xr.Dataset) -> str:
                 str(data.attrs.get("leaning", "")),
                 str(data.attrs.get("sharp", "")),
                 str(data.attrs["below_hertz"]),
-                OVERLAP if _overlap(data) else "",
+                *film_notes(data),
             ),
         )
     )
@@ -546,10 +546,3 @@ def _assumed(data: xr.Dataset) -> str:
     """What rests on assumed asperities, as a sentence; empty if nothing does."""
     words = str(data.attrs["assumed"])
     return f"{words[0].upper()}{words[1:]}." if words else ""
-
-
-def _overlap(data: xr.Dataset) -> bool:
-    return float(data["smallest_film"]) < 0.0
-
-
-OVERLAP = "Films below zero: the mean planes of the rough flanks overlap."

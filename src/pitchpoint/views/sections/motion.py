@@ -268,7 +268,8 @@ def _works(data: xr.Dataset) -> Table:
     """Energies of one period that are not nothing, and how well they balance."""
     rows = [(titled(name, data), _cell(data, name)) for name in _WORKS if float(data[name])]
     closure = float(data["energy_closure"])
-    rows.append(("What is left of their balance, of the largest", f"{closure:.0e}"))
+    left = f"{closure:.0e}" if np.isfinite(closure) else "not known"
+    rows.append(("What is left of their balance, of the largest", left))
     return Table(["Energy of one period", ""], rows, compact=True)
 
 
@@ -428,6 +429,14 @@ def start_panel(name: str, outcome: Outcome) -> Panel:
     return Panel("", [*figures, *_bearings(name, data)])
 
 
+def _balance(data: xr.Dataset) -> str:
+    """What is left of the balance of energy, as a sentence; empty where there is no motion."""
+    closure = float(data["energy_closure"])
+    if not np.isfinite(closure):
+        return ""
+    return f"Of the balance of energy {closure:.0e} of its largest part is left. "
+
+
 # ---- the section
 
 
@@ -444,8 +453,7 @@ def motion_blocks(page: Page) -> Iterator[Block]:
         yield Heading(f"Start: {title}" if title else "Start")
         data = outcome.parts["start_up"]
         yield Paragraph(
-            f"Under the torques of the case: {data.attrs['sentence']}. Of the balance of energy "
-            f"{float(data['energy_closure']):.0e} of its largest part is left. At rest "
+            f"Under the torques of the case: {data.attrs['sentence']}. {_balance(data)}At rest "
             "nothing sticks; below a hundredth of the operating speed friction is that of the law at it."
         )
         if np.isfinite(data["largest_mesh_force"]):
