@@ -19,6 +19,7 @@ from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.drive import rates
 from pitchpoint.gears.strain_wave.family import FAMILY
 from pitchpoint.results.store import dataset
+from pitchpoint.runs.designs import main_results
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.explorer import Reader
@@ -566,6 +567,30 @@ def test_the_transmission_error_is_drawn_around_its_mean(whole: Outcome) -> None
     half = 0.005 * float(data["wind_up"][-1]) * np.degrees(1.0) * 3600.0
     assert last["x"] == pytest.approx([0.0, 0.3, 0.8, 1.0])
     assert last["y"] == pytest.approx([-0.2 * half, half, -half, -0.2 * half], rel=1e-4)
+
+
+def test_designs_have_their_results_as_rows_and_their_curves_on_the_same_axes(
+    whole: Outcome,
+) -> None:
+    data = whole.parts["torsion"]
+    stiffer = data.assign(torsional_stiffness=2.0 * data["torsional_stiffness"])
+    both = {"thin": whole, "thick": replace(whole, parts={**whole.parts, "torsion": stiffer})}
+    drawn = payload(render(both, designs=True))["figures"]
+    thin, thick = drawn["torsion_of_designs_torsional_stiffness"]["data"]
+    assert (thin["name"], thick["name"]) == ("thin", "thick")
+    known = [(a, b) for a, b in zip(thin["y"], thick["y"], strict=True) if a is not None]
+    assert len(known) > 1
+    assert [b for _, b in known] == pytest.approx([2.0 * a for a, _ in known], rel=1e-4)
+    assert not any(
+        name.startswith("torsion_of_designs") for name in payload(render(both))["figures"]
+    )
+    rows = {(one.name, one.place): one.values["thin"] for one in main_results(both)}
+    error = whole.parts["kinematic_error"]["kinematic_error_range"]
+    for curve in map(str, error["curve"].values):
+        told = float(error.sel(curve=curve, cause="both"))
+        assert rows.get(("kinematic_error_range", curve), 0.0) == told
+    operation = whole.parts["operation"]
+    assert rows["mean_drag_loss", ""] == float(operation["mean_drag_loss"].values[0, 0])
 
 
 def test_play_that_rounding_leaves_is_none(whole: Outcome) -> None:

@@ -218,14 +218,23 @@ _OF_GEARS = {
 """What is shown of both gears of a stage."""
 
 _MORE = {
-    "operation": ("contact_ratio", "circumferential_backlash"),
+    "operation": (
+        "contact_ratio",
+        "circumferential_backlash",
+        "mean_drag_loss",
+        "stage_loss",
+        "stage_efficiency",
+    ),
     "cycle": tuple(_EXTREMES),
+    "load_limits": ("goodman_safety", "limit_margin", "bearing_life"),
+    "stiffness": ("mean_stiffness", "stiffness_variation"),
+    "torsion": ("slope_stiffness", "catalogue_lost_motion", "hysteresis_loss"),
     "back_driving": ("mean_efficiency",),
 }
 """Figures beside the main ones of an analysis."""
 
 _FEW = 4
-"""Most values of a figure that are shown one by one."""
+"""Most values of a figure along one axis that are shown one by one."""
 
 _LABELLED = ("stage", "case")
 """Axes whose label is told of a single value too: of a rated stage, of the backlash without tolerances."""
@@ -263,7 +272,7 @@ def _of_design(outcome: Outcome, shared: Sequence[str]) -> Iterator[tuple[Keys, 
         if data is None:
             continue
         twice = _EXTREMES if name == "operation" else ()
-        for variable in dict.fromkeys((*_MORE.get(name, ()), *analysis.main)):
+        for variable in dict.fromkeys((*analysis.main, *_MORE.get(name, ()))):
             if variable in data and variable not in twice and data[variable].dtype.kind in "fiu":
                 yield from _of_variable(outcome, name, variable, shared)
 
@@ -323,9 +332,13 @@ def _places(array: xr.DataArray) -> Iterator[tuple[str, float]]:
     left = array.squeeze(single, drop=True)
     if left.dims == ("stage", "gear"):
         yield from _of_stages(left)
-    elif left.dims == ("gear", "case"):
-        for gear in left["gear"].values:
-            yield from ((f"{gear}, {case}", of) for case, of in _places(left.sel(gear=gear)))
+    elif left.dims[1:] == ("cause",):
+        yield from _along(left.sel(cause="both"))
+    elif left.ndim == 2 and max(left.shape) <= _FEW:
+        for label, row in zip(left[left.dims[0]].values, left, strict=True):
+            yield from (
+                (f"{label}, {place}", of) for place, of in _places(row.drop_vars(left.dims[0]))
+            )
     elif left.ndim == 0:
         yield "", float(left)
     elif left.ndim == 1 and left.size <= _FEW and left.dims[0] in left.coords:

@@ -145,7 +145,7 @@ def _meant(outcomes: Mapping[str, Outcome], more: int) -> Iterator[tuple[str, ..
         ("efficiency is that of the", _efficiency),
         ("stiffness is that of", _yields),
     ):
-        each = [told(one) for one in outcomes.values()]
+        each = [told(one).partition(";")[0] for one in outcomes.values()]
         if any(each):
             yield (words, *(one or NOTHING for one in each), *("" for _ in range(more)))
 

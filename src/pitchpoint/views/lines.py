@@ -1,12 +1,24 @@
 """Lines over the mesh cycle and along the way of a pair: gaps at events, bands of lubrication regimes."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint.views.figures import Trace
-from pitchpoint.views.show import described
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    DASHES,
+    PALETTE,
+    Figure,
+    Key,
+    Trace,
+    continued,
+    display,
+    layout,
+    plain,
+    short_axis,
+)
 
 __all__ = [
     "REGIMES",
@@ -15,6 +27,7 @@ __all__ = [
     "Points",
     "folded",
     "gapped",
+    "overlaid",
     "regimes",
     "titled",
     "values_of",
@@ -78,9 +91,45 @@ def values_of(data: xr.Dataset, name: str) -> np.ndarray:
     return np.asarray(data[name].values)
 
 
+def overlaid(
+    name: str, title: str, across: str, up: str, designs: Mapping[str, xr.Dataset]
+) -> Figure:
+    """One variable of several designs over another, a line for each that has it in the units of the first.
+
+    Args:
+        name: of the figure in the page.
+        title: of the figure.
+        across, up: variables on its axes.
+        designs: datasets by design.
+    """
+    like = next(iter(designs.values()))
+    alike = {
+        design: data
+        for design, data in designs.items()
+        if [show.unit_of(one, data) for one in (across, up)]
+        == [show.unit_of(one, like) for one in (across, up)]
+    }
+    keys = [
+        Key(design, PALETTE[k % len(PALETTE)], DASHES[k // len(PALETTE) % len(DASHES)])
+        for k, design in enumerate(alike)
+    ]
+    traces = [
+        plain(
+            key,
+            *continued(*(display(one, data[one].values, data) for one in (across, up))),
+            show.unit_of(up, data),
+        )
+        for key, data in zip(keys, alike.values(), strict=True)
+    ]
+    axes = layout(
+        show.axis_title(across, like), short_axis(up, like), yaxis={"rangemode": "tozero"}
+    )
+    return Figure(name, title, traces, axes, keys=tuple(keys))
+
+
 def titled(name: str, of: Any = None) -> str:
     """Long name of a variable as a title, see `show.described`."""
-    words = described(name, of).long_name
+    words = show.described(name, of).long_name
     return words[0].upper() + words[1:]
 
 

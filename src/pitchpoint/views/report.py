@@ -104,8 +104,8 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
             sections=made,
             absent=_absent(bare, lacking),
             version=page.version,
-            pictured=next((one for one in page.sections if one.picture), None),
-            glimpse=next(iter(figures), None),
+            pictured=None if designs else next((one for one in page.sections if one.picture), None),
+            glimpse=None if designs else next(iter(figures), None),
             data=packed(_shared(_payload(shown))),
             plotly=packed_plotly(),
         )

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from pitchpoint.views.designs import Compared, differing, law_words, result_table
+from pitchpoint.views.designs import Compared, differing, law_words, of_several, result_table
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
 
 __all__ = ["DESIGNS"]
@@ -11,7 +11,13 @@ __all__ = ["DESIGNS"]
 def _blocks(page: Page) -> Iterator[Block]:
     yield Paragraph(law_words(page.outcomes))
     results = result_table(page.outcomes)
-    yield Table(results.head, results.rows)
+    shared, _ = of_several(results, len(page.outcomes))
+    yield Table(shared.head, shared.rows)
+    alone = [row for row in results.rows if row not in shared.rows]
+    if alone:
+        columns = slice(results.names + len(page.outcomes))
+        yield Heading("Results that one design alone has")
+        yield Table(results.head[columns], [row[columns] for row in alone])
     for title, table in differing(page.outcomes).items():
         yield from _inputs(title, table)
 

@@ -25,6 +25,7 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
+from pitchpoint.views.lines import overlaid
 from pitchpoint.views.point import Period, period_of
 from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Table, key_figure, tabbed
 
@@ -168,6 +169,12 @@ def stiffness_blocks(page: Page) -> Iterator[Block]:
     if told := _of_publication(page.first.get("source", "")):
         yield Paragraph(told, "note")
     yield _table(page)
+    having = page.having("stiffness")
+    if page.designs and len(having) > 1:
+        parts = {name: one.parts["stiffness"] for name, one in having.items()}
+        title = "Mesh stiffness over the mesh cycle"
+        figure = overlaid("stiffness_of_designs", title, "phase", "mesh_stiffness", parts)
+        yield Panel("Designs on the same axes", [figure])
     yield from tabbed((it.title, _of_variant(it)) for it in stiffness_panels(page.outcomes))
 
 

@@ -26,7 +26,7 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
-from pitchpoint.views.lines import folded
+from pitchpoint.views.lines import folded, overlaid
 from pitchpoint.views.point import Period, operating_point, period_of
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
@@ -409,9 +409,25 @@ def _down(rows: list[dict[str, str]]) -> list[dict[str, str]]:
 
 def torsion_blocks(page: Page) -> Iterator[Block]:
     """Blocks of the section."""
-    panels = torsion_panels(page.outcomes, page.curves)
-    there = zip(panels, page.having("torsion").values(), strict=True)
-    return tabbed((it.title, _of_variant(it, outcome)) for it, outcome in there)
+    panels, having = torsion_panels(page.outcomes, page.curves), page.having("torsion")
+    if page.designs and len(having) > 1:
+        yield _of_designs({name: one.parts["torsion"] for name, one in having.items()})
+    there = zip(panels, having.values(), strict=True)
+    yield from tabbed((it.title, _of_variant(it, outcome)) for it, outcome in there)
+
+
+def _of_designs(designs: Mapping[str, xr.Dataset]) -> Panel:
+    """Wind-up and stiffness of several designs on the same axes."""
+    drawn = (
+        ("wind_up", "torque", "Load over wind-up, without friction"),
+        ("torque", "torsional_stiffness", "Stiffness against load"),
+        ("torque", "angular_transmission_error_range", "Transmission error, peak to peak"),
+    )
+    like = {name: data.where(data["torque"] > 0.0) for name, data in designs.items()}
+    figures = [
+        overlaid(f"torsion_of_designs_{up}", title, across, up, like) for across, up, title in drawn
+    ]
+    return Panel("Designs on the same axes", figures)
 
 
 def _of_variant(it: Panel, outcome: Outcome) -> Iterator[Block]:
