@@ -116,7 +116,9 @@ def overlaid(
     traces = [
         plain(
             key,
-            *continued(*(display(one, data[one].values, data) for one in (across, up))),
+            *continued(
+                display(across, data[across].values, data), display(up, data[up].values, data)
+            ),
             show.unit_of(up, data),
         )
         for key, data in zip(keys, alike.values(), strict=True)
