@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Iterable, Sequence
-from typing import ClassVar, ParamSpec, Self, TypeVar
+from typing import Any, ClassVar, ParamSpec, Self, TypeVar
 
 __all__ = [
     "CollectedInputError",
@@ -44,6 +44,9 @@ class InputError(PitchpointError, ValueError):
         value: the offending value, for programs that want to show it themselves.
         allowed: the values that would have been accepted, where they can be listed.
 
+    Attributes:
+        cures: changes by dotted key, as a case file has the values; the input is sound after any of them.
+
     Example:
         >>> str(InputError("must be positive", key="gears.module"))
         'gears.module: must be positive'
@@ -66,6 +69,7 @@ class InputError(PitchpointError, ValueError):
         self.key = key
         self.value = value
         self.allowed = tuple(allowed)
+        self.cures: tuple[dict[str, Any], ...] = ()
 
     def __str__(self) -> str:
         where = (shorten(part, LONGEST_PLACE) for part in (self.file, self.key) if part)
@@ -174,6 +178,10 @@ class Complaints:
         for one in error.errors if isinstance(error, CollectedInputError) else (error,):
             key = ".".join(filter(None, (self._table, one.key))) or None
             located = one.at(file=one.file or self._file, key=key)
+            located.cures = tuple(
+                {".".join(filter(None, (self._table, name))): cure[name] for name in cure}
+                for cure in one.cures
+            )
             self._told.setdefault((key or one.message, str(one.value)), located)
 
     @property

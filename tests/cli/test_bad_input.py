@@ -1238,8 +1238,8 @@ GEAR_WORDS = {
     ),
     "interference with the fillet": (
         ("gears", {"teeth": [40, 120], "addendum": [1.0, 1.5], "dedendum": 1.2}),
-        "gears.addendum: the tip of gear 2 meets the fillet of gear 1",
-        "parts them",
+        "gears.addendum: the tip of gear 2 runs into the fillet of gear 1",
+        "parts them; it runs with addendum = [1, ",
     ),
     "overlapping flanks": (
         ("gears", {"centre_distance": "83 mm"}),

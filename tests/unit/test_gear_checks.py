@@ -115,6 +115,45 @@ def test_helical_gears_are_measured_in_normal_modules():
     )
 
 
+def test_a_tip_that_enters_a_fillet_by_little_runs_with_a_warning():
+    (text,) = check_cylindrical(build((20, -60), **(RING | {"addendum": (1.0, 1.0)})))
+    assert text == (
+        "The tip of gear 2 enters the fillet of gear 1 by 0.0042 modules, which these figures leave "
+        "out; a smaller fillet radius of gear 1 or a shorter addendum of gear 2 keeps it out."
+    )
+
+
+def test_a_tip_stays_within_the_base_circle_of_its_mate():
+    """It would enter the fillet by 0.0038 modules only."""
+    shallow = {"dedendum": (1.35, 1.25), "fillet_radius": (0.1, 0.2)}
+    error = refusal((22, -58), profile_shift=(0.086, -0.074), addendum=(0.9, 1.16), **shallow)
+    assert "reaches 0.22142839 mm" in error.message
+    assert "beyond the point in which the line of action touches" in error.message
+
+
+NREL = {"teeth": (18, 36), "module": 21e-3, "profile_shift": (0.389, 0.504)}
+
+
+def test_a_printed_centre_distance_runs_where_it_is_too_small_by_what_is_rounded():
+    (text,) = check_cylindrical(build(**NREL, centre_distance=0.584))
+    assert "without backlash is 584.00229 mm, 2.29 um away, taken for what is rounded" in text
+
+
+def test_allowances_that_leave_backlash_let_nominal_flanks_overlap():
+    pair = build(**NREL, centre_distance=0.5838)
+    (text,) = check_cylindrical(pair, least_backlash=1e-5)
+    assert "their allowances leave a backlash of 10 um" in text
+    with pytest.raises(InputError, match=r"overlap at .* and their allowances leave -10 um"):
+        check_cylindrical(pair, least_backlash=-1e-5)
+
+
+def test_an_overlap_tells_the_shifts_that_the_centre_distance_asks_for():
+    """ISO 21771: x1 + x2 = (z1 + z2)/(2 tan 20) (inv alpha_w - inv 20), cos alpha_w = 30 cos 20/30.6."""
+    changes = {"module": 2e-3, "addendum": (1.0, 0.8), "dedendum": (1.25, 1.25)}
+    error = refusal((20, -50), centre_distance=30.6e-3, fillet_radius=(0.38, 0.2), **changes)
+    assert "asks for profile shifts that sum to -0.3212 instead of 0" in error.message
+
+
 def test_pinion_that_goes_into_its_ring_along_the_axis_only():
     (text,) = check_cylindrical(build((52, -60), **(RING | {"profile_shift": (0.3, -0.37)})))
     assert text == (
@@ -147,7 +186,7 @@ def test_the_allowed_centre_distance_is_accepted_as_printed():
     assert check_cylindrical(build(centre_distance=float(allowed) / 1e3, **shifted)) == []
 
 
-@pytest.mark.parametrize("distance", [60.001e-3, 61e-3])
+@pytest.mark.parametrize("distance", [60.01e-3, 61e-3])
 def test_overlapping_flanks_of_a_ring(distance):
     error = refusal((20, -60), **RING, centre_distance=distance)
     assert error.key == "centre_distance"
@@ -224,9 +263,8 @@ REFUSED = [
     (
         {"dedendum": (1.05, 1.25)},
         "addendum",
-        "the tip of gear 2 meets the fillet of gear 1: on the line of action, counted from the "
-        "base circle of gear 1, it reaches down to 1.7400571 mm, but the involute begins at "
-        "2.217697 mm; a shorter addendum of gear 2 or a larger dedendum of gear 1 parts them",
+        "the tip of gear 2 runs into the fillet of gear 1: they overlap by 0.0418 modules; a "
+        "shorter addendum of gear 2 or a smaller fillet radius of gear 1 parts them",
     ),
     (
         {"addendum": (0.4, 0.4), "dedendum": (1.25, 1.25)},
@@ -241,7 +279,8 @@ REFUSED = [
     (
         {"profile_shift": (-0.5, 0.0), "teeth": (6, 36)},
         "profile_shift",
-        "is 0.3133 and must be at least 1; undercut takes 1.44 away; longer addenda",
+        "is 0.3133 and must be at least 1; undercut takes 1.44 away; a larger profile shift of "
+        "gear 1, a larger pressure angle or more teeth take less",
     ),
     (
         {"addendum": (7.0, 7.0), "fillet_radius": (0.1, 0.1)}
@@ -296,17 +335,15 @@ REFUSED_RINGS = [
         "lies beyond the point of the teeth, where the flanks cross; it may be",
     ),
     (
-        {"addendum": (1.0, 1.0)},
+        {"teeth": (18, -48), "profile_shift": (0.0, 0.0), "addendum": (1.0, 1.0)},
         "addendum",
-        "tip of gear 2 meets the fillet of gear 1: on the line of action, counted from the base "
-        "circle of gear 1, it reaches down to 3.4356277 mm, but the involute begins at 4.1208988",
+        "tip of gear 2 runs into the fillet of gear 1: they overlap by 0.0208 modules",
     ),
     (
         {"teeth": (40, -60), "addendum": (1.2, 0.8), "fillet_radius": (0.3, 0.3)},
         "addendum",
-        "tip of gear 1 meets the fillet of gear 2: on the line of action, counted from the base "
-        "circle of gear 2, it reaches out to 41.58743 mm, but the involute ends at 41.354697 mm; a "
-        "shorter addendum of gear 1 or a larger dedendum of gear 2 parts them",
+        "tip of gear 1 runs into the fillet of gear 2: they overlap by 0.0206 modules; a shorter "
+        "addendum of gear 1 or a smaller fillet radius of gear 2 parts them",
     ),
     (
         {"addendum": (1.29, 0.8)},

@@ -17,7 +17,6 @@ from pitchpoint.gears.cylindrical.inspection import (
     backlash_limits,
     disc,
 )
-from pitchpoint.gears.cylindrical.iso_286 import symmetrical_deviation
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
 from pitchpoint.gears.cylindrical.table import CylindricalGears, Inspection
 from pitchpoint.results.store import dataset
@@ -198,7 +197,7 @@ def _plays(
     pair: list[_Measured], table: CylindricalGears, asked: Inspection, distance: float
 ) -> list[Backlash]:
     """Backlash of the nominal gears, and least, mean and largest one where tolerances are given."""
-    gears, deviation = [one.toothing for one in pair], _deviation(asked, distance)
+    gears, deviation = [one.toothing for one in pair], asked.deviation(distance)
     nominal, allowed = backlash(gears[0], gears[1], distance), table.thickness_allowances
     if allowed is None and deviation is None:
         return [nominal]
@@ -207,13 +206,6 @@ def _plays(
         gears[0], gears[1], distance, upper=upper, lower=lower, deviation=deviation or 0.0
     )
     return [nominal, *limits]
-
-
-def _deviation(asked: Inspection, distance: float) -> float | None:
-    """Deviation of the centre distance to either side [m]; None where none is given."""
-    if asked.centre_distance_field is not None:
-        return symmetrical_deviation(asked.centre_distance_field, distance)
-    return asked.centre_distance_deviation
 
 
 def _discs(built: Built) -> dict[str, Any]:

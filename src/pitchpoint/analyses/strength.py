@@ -39,7 +39,7 @@ _OF_GEARS = ("contact_stress", "root_stress", "flank_safety", "root_safety")
 _SHARED = 2.0
 _LEAST_NOTCH, _MOST_NOTCH = 1.0, 8.0
 _DEEPEST = 2.5
-_HELIX = np.radians(30.0)
+_HELIX = np.radians(30.0) * (1.0 + 1e-12)  # 30 degrees of a file may be above by a bit
 
 _METHOD = (
     "ISO 6336-2:2019 and ISO 6336-3:2019, method B; K_v by method C of ISO 6336-1 unless it is given, the "

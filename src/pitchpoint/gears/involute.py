@@ -21,14 +21,18 @@ __all__ = [
     "inverse_involute",
     "involute",
     "transverse_angle",
+    "usual_dedenda",
     "usual_depths",
     "usual_fillet",
+    "usual_ring_fillet",
 ]
 
 FILLET_STATIONS = 16
 """Gauss nodes along a fillet."""
 
 _AVAILABLE_FILLET = 0.38
+_RING_FILLET = 0.2  # fits the narrow spaces of most rings
+_USUAL_CLEARANCE = 0.25
 
 
 def usual_fillet(dedendum: float, angle: float) -> float:
@@ -44,11 +48,83 @@ def usual_fillet(dedendum: float, angle: float) -> float:
     return min(_AVAILABLE_FILLET, max(largest, 0.0))
 
 
+def usual_ring_fillet(
+    *,
+    teeth: float,
+    profile_shift: float,
+    dedendum: float,
+    pressure_angle: float,
+    helix_angle: float,
+) -> float:
+    """Fillet radius of a ring where none is given, in modules: 0.2, or all that its root has room for.
+
+    Args:
+        teeth: number of teeth, with or without the sign of a ring.
+        profile_shift, dedendum: of the ring, in modules.
+        pressure_angle, helix_angle: normal one, and that of the reference cylinder [rad].
+
+    Source: ISO 21771:2007, half angle of a space; an arc that touches involute and root circle has its
+        centre on a parallel involute.
+
+    Example:
+        >>> from math import radians
+        >>> ring = {"teeth": 40, "profile_shift": -0.6, "dedendum": 1.25, "helix_angle": 0.0}
+        >>> round(usual_ring_fillet(**ring, pressure_angle=radians(25.0)), 4)
+        0.1049
+    """
+    reference = abs(teeth) / (2.0 * math.cos(helix_angle))
+    transverse = math.atan(math.tan(pressure_angle) / math.cos(helix_angle))
+    base, tip = reference * math.cos(transverse), reference + dedendum - profile_shift
+    shift = 2.0 * profile_shift * math.tan(pressure_angle)
+    space = (math.pi / 2.0 - shift) / abs(teeth) + math.tan(transverse) - transverse
+
+    def land(rounding: float) -> float:
+        """Angle from the middle of the space to the centre of the arc."""
+        angle = math.acos(min(base / (tip - rounding), 1.0))
+        return space - rounding / base - (math.tan(angle) - angle)
+
+    most = min(_RING_FILLET, tip - base)
+    if most <= 0.0 or land(0.0) <= 0.0:
+        return 0.0
+    if land(most) >= 0.0:
+        return most
+    from scipy.optimize import brentq
+
+    return float(brentq(land, 0.0, most, xtol=1e-12))
+
+
+def usual_dedenda(addendum: np.ndarray, *, ring: bool = False) -> np.ndarray:
+    """Dedenda of both basic racks where none are given, in modules: 0.25 more than the addendum of the mate.
+
+    The tip of a ring reaches deeper into its pinion than that of a rack: the pinion's dedendum is also at
+    least 0.25 more than its own addendum.
+
+    Args:
+        addendum: of both racks, shape (..., 2), in modules.
+        ring: True if gear 2 is a ring.
+
+    Source: ISO 53:1998, profile A, tip clearance.
+
+    Example:
+        >>> import numpy as np
+        >>> usual_dedenda(np.array([1.25, 0.75])).tolist()
+        [1.0, 1.5]
+        >>> usual_dedenda(np.array([1.0, 0.75]), ring=True).tolist()
+        [1.25, 1.25]
+    """
+    mates = addendum[..., ::-1]
+    if ring:
+        mates = np.stack([addendum.max(axis=-1), addendum[..., 0]], axis=-1)
+    return mates + _USUAL_CLEARANCE
+
+
 def usual_depths(
     addendum: tuple[float, float],
     dedendum: tuple[float, float] | None,
     fillet: tuple[float, float] | None,
     angle: float,
+    *,
+    ring: bool = False,
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Dedenda and fillet radii of two basic racks in modules, the usual ones where none are given.
 
@@ -56,10 +132,12 @@ def usual_depths(
         addendum: of both racks, in modules.
         dedendum, fillet: as given; None where left open.
         angle: normal pressure angle [rad].
+        ring: True if gear 2 is a ring, whose fillet is not that of a rack.
 
     Source: ISO 53:1998, profile A.
     """
-    depth = dedendum or (addendum[0] + 0.25, addendum[1] + 0.25)
+    first, second = usual_dedenda(np.array(addendum), ring=ring).tolist()
+    depth = dedendum or (first, second)
     return depth, fillet or (usual_fillet(depth[0], angle), usual_fillet(depth[1], angle))
 
 

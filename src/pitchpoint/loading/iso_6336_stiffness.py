@@ -219,7 +219,10 @@ def range_warnings(
 
     Source: ISO 6336-1:2006, method B, what it says of its range.
     """
-    values = (contact_ratio, math.degrees(helix_angle), sum(profile_shift))
+    # Without the last bits, which the conversion of units makes.
+    values = [
+        round(value, 9) for value in (contact_ratio, math.degrees(helix_angle), sum(profile_shift))
+    ]
     found = [
         Doubt(
             f"a {text.format(value)} for which ISO 6336-1 gives its estimate of the stiffness",

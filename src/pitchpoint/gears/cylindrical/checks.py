@@ -6,12 +6,13 @@ import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import chain
-from typing import TYPE_CHECKING, Any, NoReturn
+from math import nan
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.doubts import REMARKED, Doubt
+from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO
 from pitchpoint.gears.designs import Faults, Number, each, padded
@@ -22,17 +23,29 @@ from pitchpoint.roots import root
 if TYPE_CHECKING:
     from pitchpoint.gears.cylindrical.pair import CylindricalPair
 
-__all__ = ["cannot_run", "check_cylindrical", "check_cylindrical_pairs"]
+__all__ = [
+    "Remedy",
+    "UnsoundPairError",
+    "cannot_run",
+    "check_cylindrical",
+    "check_cylindrical_pairs",
+    "runs_well",
+]
 
 _THIN_TIP = 0.2  # modules
 _SMALL_CLEARANCE = 0.1  # modules
+_FAIR_RATIO = 1.1
 _GIVEN = ("module", "profile_shift", "addendum", "dedendum", "fillet_radius")
-# Drawings round the centre distance; an overlap this small is no fault [modules].
-_ROUNDED_DISTANCE = 1e-4
+# Profile shifts and distances are printed with three decimals: a smaller overlap is no fault [modules].
+_ROUNDED_DISTANCE = 1e-3
+# Below this nobody is told of it [modules].
+_TOLD_DISTANCE = 1e-4
 # Points on the path of a tip corner: its curvature between two of them is of no account.
 _SAMPLES = 400
-# The usual fillet radius 0.38 is rounded up from 0.25/(1 - sin 20 deg) [modules].
-_ROUNDED_FILLET = 1e-3
+# A tip that enters a fillet no deeper is told of and runs [modules].
+_DEEPEST_IN_FILLET = 5e-3
+# The usual fillet radius 0.38 is rounded up from 0.25/(1 - sin 20 deg): that is no overlap [modules].
+_TOLD_IN_FILLET = 1e-4
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -82,7 +95,9 @@ class _Gear:
 class _Pair:
     """Numbers of the pair, plain or traced: lengths [m]; the zero-backlash distance is NaN if none exists.
 
-    The base sum is that of signed radii, without its sign; the gaps are those of a ring [modules].
+    The base sum is that of signed radii, without its sign; the needed sum of profile shifts that of the
+    centre distance; the gaps are those of a ring [modules]; the least backlash is that by allowances of the
+    tooth thickness, NaN without any.
     """
 
     internal: bool
@@ -98,8 +113,10 @@ class _Pair:
     contact_ratio: Number
     pinion_teeth: Number
     wheel_teeth: Number
+    needed_shift_sum: Number
     tip_gap: Number = 0.0
     radial_gap: Number = 0.0
+    least_backlash: Number = nan
 
     @property
     def modules(self) -> str:
@@ -110,19 +127,46 @@ def _unit(helical: bool) -> str:
     return "normal modules" if helical else "modules"
 
 
-def check_cylindrical(pair: CylindricalPair) -> list[str]:
+class Remedy(NamedTuple):
+    """What to change of a pair that cannot run.
+
+    Attributes:
+        key: of the gears table.
+        sense: 1.0 for larger values, -1.0 for smaller ones, 0.0 for the one that follows from the rest.
+        members: numbers of the gears whose value it is, from 0; none of what both have in common.
+    """
+
+    key: str
+    sense: float
+    members: tuple[int, ...] = ()
+
+
+class UnsoundPairError(InputError):
+    """Gears that cannot run, with what may mend them.
+
+    Attributes:
+        remedies: the better one first; how large a change is needed is left open.
+    """
+
+    remedies: tuple[Remedy, ...] = ()
+
+
+def check_cylindrical(pair: CylindricalPair, *, least_backlash: float = nan) -> list[str]:
     """Warnings for a design that runs but should not be made so; an error for one that cannot run.
 
     Args:
         pair: two external gears, or a pinion and a ring; spur or helical.
+        least_backlash: by allowances of the tooth thickness, along the normal [m]; where they leave some, the
+            nominal flanks may overlap.
 
     Returns:
         One sentence for each warning: undercut, a tip thinner than 0.2 modules, a tip clearance
-        below 0.1 modules, a transverse contact ratio below 1, a pinion that does not go into its
-        ring radially in every position. Empty for a sound pair.
+        below 0.1 modules, a tip that enters a fillet by up to 0.005 modules, a transverse contact ratio
+        below 1, flanks that overlap by what is rounded or by less than their allowances, a pinion that does
+        not go into its ring radially in every position. Empty for a sound pair.
 
     Raises:
-        InputError: the flanks overlap or never meet, a tip is pointed, a tip runs into the mate's
+        UnsoundPairError: the flanks overlap or never meet, a tip is pointed, a tip runs into the mate's
             root, fillet or (in a ring) tip, tool or fillet are impossible, or the contact ratio is
             not from 1 to 24. Its key is the entry of the gears table to change. What is wrong with
             each gear by itself is told of both.
@@ -131,14 +175,35 @@ def check_cylindrical(pair: CylindricalPair) -> list[str]:
 
     Source: geometry of ISO 21771:2007; tool tip of ISO 53:1998.
     """
-    return _told(*_measure(pair))
+    whole, gears = _measure(pair)
+    return _told(dataclasses.replace(whole, least_backlash=least_backlash), gears)
 
 
-def check_cylindrical_pairs(group: CylindricalPair) -> list[list[str] | InputError]:
+def runs_well(pair: CylindricalPair, *, least_backlash: float = nan) -> bool:
+    """True for a pair that runs with a contact ratio above 1.1, its tips clear of roots and fillets.
+
+    Args:
+        pair, least_backlash: see `check_cylindrical`.
+    """
+    whole, gears = _measure(pair)
+    try:
+        _told(dataclasses.replace(whole, least_backlash=least_backlash), gears)
+    except UnsoundPairError:
+        return False
+    clear = all(
+        gear.fillet_overlap <= _TOLD_IN_FILLET and not _small_clearance(gear) for gear in gears
+    )
+    return clear and bool(whole.contact_ratio >= _FAIR_RATIO)
+
+
+def check_cylindrical_pairs(
+    group: CylindricalPair, least_backlash: Sequence[float]
+) -> list[list[str] | InputError]:
     """The same for each of some pairs, with the error in the place of warnings.
 
     Args:
         group: with an axis of designs in front, of one static structure.
+        least_backlash: of each design, see `check_cylindrical`.
     """
     alike = each(_plain, group, 1)
     count = len(group.module)
@@ -146,17 +211,18 @@ def check_cylindrical_pairs(group: CylindricalPair) -> list[list[str] | InputErr
     columns = [{key: values.tolist() for key, values in part.items()} for part in numbers]
     return [
         _told_or_error(
-            group, [{key: values[row] for key, values in part.items()} for part in columns]
+            group, [{key: values[row] for key, values in part.items()} for part in columns], least
         )
-        for row in range(count)
+        for row, least in enumerate(least_backlash)
     ]
 
 
 def _told_or_error(
-    pair: CylindricalPair, numbers: Sequence[Mapping[str, Number]]
+    pair: CylindricalPair, numbers: Sequence[Mapping[str, Number]], least: float
 ) -> list[str] | InputError:
+    whole, gears = _records(pair, numbers)
     try:
-        return _told(*_records(pair, numbers))
+        return _told(dataclasses.replace(whole, least_backlash=least), gears)
     except InputError as error:
         return error
 
@@ -255,6 +321,7 @@ def _measures_of_many(group: CylindricalPair) -> list[dict[str, Float[Array, " d
 
 def _pair_measures(pair: CylindricalPair) -> dict[str, Float[Array, ""]]:
     transverse = involute(pair.transverse_pressure_angle)
+    per_angle = jnp.sum(pair.teeth) / (2.0 * jnp.tan(pair.pressure_angle))
     return {
         "module": pair.module,
         "base_pitch": pair.base_pitch,
@@ -262,7 +329,8 @@ def _pair_measures(pair: CylindricalPair) -> dict[str, Float[Array, ""]]:
         "zero_backlash": pair.zero_backlash_centre_distance,
         "base_sum": jnp.abs(jnp.sum(pair.base_radii)),
         "shift_sum": jnp.sum(pair.profile_shift),
-        "limit_shift_sum": -transverse * jnp.sum(pair.teeth) / (2.0 * jnp.tan(pair.pressure_angle)),
+        "limit_shift_sum": -transverse * per_angle,
+        "needed_shift_sum": (involute(pair.working_pressure_angle) - transverse) * per_angle,
         "transverse_ratio": pair.transverse_contact_ratio,
         "contact_ratio": pair.contact_ratio,
         "pinion_teeth": pair.teeth[0],
@@ -328,32 +396,32 @@ def _meeting_measures(
         "clearance": clearance / pair.module,
         "mate_reach": reach,
         "missing": gear.side * (gear.form_roll_length - reach),
-        "fillet_overlap": _fillet_overlap(pair, gear, mate, reach) / pair.module
-        if gear.undercut
-        else jnp.zeros(()),
+        "fillet_overlap": _fillet_overlap(pair, gear, mate, reach) / pair.module,
     }
 
 
 def _fillet_overlap(
     pair: CylindricalPair, gear: InvoluteGear, mate: InvoluteGear, reach: Float[Array, ""]
 ) -> Float[Array, ""]:
-    """Depth to which the mate's tip corner enters the undercut fillet of an external gear [m].
+    """Depth to which the mate's tip corner enters the fillet of a gear [m]; none if it stays out.
 
     Positions are complex numbers: the gear's centre is the origin, the line of centres the real axis.
     """
     direction = jnp.exp(-1j * pair.working_pressure_angle)
     centre = mate.side * pair.centre_distance
-    start = (gear.base_radius + 1j * reach) * direction - centre
-    way = jnp.linspace(0.0, 2.0, _SAMPLES) * jnp.angle(start / -mate.side)
+    base = jnp.abs(gear.base_radius)
+    start = (base + 1j * reach) * direction - centre
+    way = jnp.linspace(0.0, 2.0, _SAMPLES) * jnp.angle(start / (-mate.side * gear.side))
     corner = centre + start * jnp.exp(-1j * way)
     turned = way * mate.side * jnp.abs(mate.teeth) / gear.teeth
-    axis = turned + reach / gear.base_radius - pair.working_pressure_angle
+    # Where the involute through the corner would begin on the base circle.
+    origin = turned + reach / base - pair.working_pressure_angle
     radius = jnp.abs(corner)
     fillet, half = gear._fillet(jnp.linspace(0.0, 1.0, _SAMPLES))
-    inside = jnp.interp(radius, fillet, half) - jnp.angle(
-        corner * jnp.exp(1j * (gear.half_thickness_angle(gear.base_radius) - axis))
+    inside = jnp.interp(gear.side * radius, gear.side * fillet, half) - (
+        gear.half_thickness_angle(base) + gear.side * jnp.angle(corner * jnp.exp(-1j * origin))
     )
-    return jnp.max(jnp.where(radius < fillet[-1], inside * radius, 0.0))
+    return jnp.max(jnp.where(gear.side * (fillet[-1] - radius) > 0.0, inside * radius, 0.0))
 
 
 def _ring_gaps(pair: CylindricalPair) -> dict[str, Float[Array, ""]]:
@@ -426,17 +494,35 @@ def _check_distance(pair: _Pair) -> Faults:
             f"{_mm(pair.base_sum)}; there is no working pressure angle",
         ),
     )
-    overlap = pair.zero_backlash - pair.centre_distance
-    allowed = "allow at most" if pair.internal else "need at least"
     yield (
-        (-overlap if pair.internal else overlap) > _ROUNDED_DISTANCE * pair.module,
+        (_flank_overlap(pair) > _ROUNDED_DISTANCE * pair.module)
+        & ((pair.least_backlash < 0.0) | _unknown(pair.least_backlash)),
         lambda: _refuse(
             "centre_distance",
             pair.centre_distance,
-            f"the flanks of gear 1 and gear 2 overlap at the centre distance "
-            f"{_mm(pair.centre_distance)}; these teeth {allowed} {_mm(pair.zero_backlash)}, "
-            "which is without backlash",
+            _overlapping(pair),
+            Remedy("profile_shift", 0.0),
+            Remedy("centre_distance", 0.0),
         ),
+    )
+
+
+def _flank_overlap(pair: _Pair) -> Number:
+    """By how much the centre distance would have to change for flanks without backlash [m]."""
+    overlap = pair.zero_backlash - pair.centre_distance
+    return -overlap if pair.internal else overlap
+
+
+def _overlapping(pair: _Pair) -> str:
+    allowed = "allow at most" if pair.internal else "need at least"
+    known = not _unknown(pair.least_backlash)
+    by_allowances = (
+        f", and their allowances leave {1e6 * pair.least_backlash:.3g} um" if known else ""
+    )
+    return (
+        f"the flanks of gear 1 and gear 2 overlap at the centre distance {_mm(pair.centre_distance)}; these "
+        f"teeth {allowed} {_mm(pair.zero_backlash)}, which is without backlash{by_allowances}; this distance "
+        f"asks for profile shifts that sum to {pair.needed_shift_sum:.4g} instead of {pair.shift_sum:.4g}"
     )
 
 
@@ -520,6 +606,7 @@ def _check_fillet_radius(gear: _Gear, where: str) -> Faults:
             gear.fillet_radius,
             f"the fillet radius of {gear.name} is {gear.fillet_radius:.4g} {gear.modules}, but "
             f"{where} room for {gear.largest_fillet_radius:.4g} {gear.modules} at most",
+            Remedy("fillet_radius", -1.0, (gear.number - 1,)),
         ),
     )
 
@@ -543,6 +630,9 @@ def _check_circles(gear: _Gear) -> Faults:
             f"{_tip_circle(gear)} lies beyond the point of the teeth, where the flanks cross; it "
             f"may be {_mm(gear.pointed_diameter)} at {'least' if gear.internal else 'most'}; without a "
             "tip_alteration, least_tip_thickness shortens it",
+            Remedy("least_tip_thickness", 1.0),
+            Remedy("profile_shift", 1.0 if gear.internal else -1.0, (gear.number - 1,)),
+            Remedy("addendum", -1.0, (gear.number - 1,)),
         ),
     )
     left = gear.tip_diameter - gear.form_diameter
@@ -554,6 +644,7 @@ def _check_circles(gear: _Gear) -> Faults:
             f"no involute is left on {gear.name}: its form circle ({_mm(gear.form_diameter)}) must "
             f"lie {'outside' if gear.internal else 'inside'} its tip circle "
             f"({_mm(gear.tip_diameter)})",
+            Remedy("profile_shift", -1.0 if gear.internal else 1.0, (gear.number - 1,)),
         ),
     )
 
@@ -604,36 +695,44 @@ def _check_meeting(pair: _Pair, gear: _Gear) -> Faults:
             gear.clearance,
             f"the tip of {gear.name} runs into the root of {gear.mate}: the tip clearance is "
             f"{gear.clearance:.4g} {gear.modules} and must be positive",
+            Remedy("dedendum", 1.0, (2 - gear.number,)),
+            Remedy("dedendum", 1.0, (0, 1)),
+            Remedy("addendum", -1.0, (gear.number - 1,)),
         ),
     )
     yield (
-        gear.fillet_overlap > _ROUNDED_FILLET,
+        gear.fillet_overlap > _DEEPEST_IN_FILLET,
         lambda: _refuse(
             "addendum",
             gear.fillet_overlap,
-            f"the tip of {gear.mate} runs into the undercut fillet of {gear.name}: they overlap by "
+            f"the tip of {gear.mate} runs into the {_fillet(gear)} of {gear.name}: they overlap by "
             f"{gear.fillet_overlap:.3g} {gear.modules}; a shorter addendum of {gear.mate} or a "
-            f"larger profile shift of {gear.name} parts them",
+            f"{'larger profile shift' if gear.undercut else 'smaller fillet radius'} of {gear.name} "
+            "parts them",
+            Remedy("addendum", -1.0, (2 - gear.number,)),
+            Remedy("fillet_radius", -1.0, (gear.number - 1,)),
+            Remedy("profile_shift", 1.0, (gear.number - 1,)),
         ),
     )
-    out, ends = ("out", "ends") if gear.internal else ("down", "begins")
     yield (
-        (not gear.undercut) & (gear.missing > _ROUNDED_FILLET * pair.module),
+        (not (gear.undercut or gear.internal)) & (gear.mate_reach <= 0.0),
         lambda: _refuse(
             "addendum",
             gear.mate_reach,
-            f"the tip of {gear.mate} meets the fillet of {gear.name}: on the line of action, "
-            f"counted from the base circle of {gear.name}, it reaches {out} to "
-            f"{_mm(gear.mate_reach)}, but the involute {ends} at {_mm(gear.form_length)}; a "
-            f"shorter addendum of {gear.mate} or a larger dedendum of {gear.name} parts them",
+            f"the tip of {gear.mate} reaches {_mm(-gear.mate_reach)} beyond the point in which the line of "
+            f"action touches the base circle of {gear.name}; a shorter addendum of {gear.mate} keeps within",
+            Remedy("addendum", -1.0, (2 - gear.number,)),
         ),
     )
+
+
+def _fillet(gear: _Gear) -> str:
+    return "undercut fillet" if gear.undercut else "fillet"
 
 
 def _check_contact_ratio(pair: _Pair, gears: list[_Gear]) -> Faults:
     def low(name: str, value: Number, least: float) -> NoReturn:
-        lost = sum(_lost_ratio(pair, gear) for gear in gears)
-        _refuse_contact_ratio(pair, name, float(value), least, lost)
+        _refuse_contact_ratio(pair, gears, name, float(value), least)
 
     yield (
         pair.helical & (pair.transverse_ratio <= 0.0),
@@ -654,19 +753,45 @@ def _check_contact_ratio(pair: _Pair, gears: list[_Gear]) -> Faults:
 
 
 def _refuse_contact_ratio(
-    pair: _Pair, name: str, value: float, least: float, lost: float
+    pair: _Pair, gears: list[_Gear], name: str, value: float, least: float
 ) -> NoReturn:
-    allowed = f"at least {least:g}" if least else "positive"
-    undercut = f"; undercut takes {lost:.3g} away" if lost > 0.0 else ""
-    wider = "a wider face, " if pair.helical and least else ""
-    change = "larger" if pair.internal else "smaller"
+    lost = sum(_lost_ratio(pair, gear) for gear in gears)
+    cut = [gear for gear in gears if _lost_ratio(pair, gear) > 0.0]
+    cut.sort(key=lambda gear: -_lost_ratio(pair, gear))
     _refuse(
         "profile_shift" if value + lost >= least else "addendum",
         value,
-        f"the {name} of gear 1 and gear 2 is {value:.4g} and must be {allowed}{undercut}; {wider}"
-        f"longer addenda, more teeth, a smaller pressure angle or a {change} centre distance "
-        "raise it",
+        f"the {name} of gear 1 and gear 2 is {value:.4g} and must be "
+        f"{f'at least {least:g}' if least else 'positive'}; "
+        + (_against_undercut(cut, lost) if cut else _longer_path(pair, wider=least > 0.0)),
+        *_raising(cut),
     )
+
+
+def _against_undercut(cut: list[_Gear], lost: float) -> str:
+    names = " or ".join(gear.name for gear in cut)
+    return (
+        f"undercut takes {lost:.3g} away; a larger profile shift of {names}, a larger pressure angle or more "
+        "teeth take less"
+    )
+
+
+def _longer_path(pair: _Pair, *, wider: bool) -> str:
+    face = "a wider face, " if pair.helical and wider else ""
+    change = "larger" if pair.internal else "smaller"
+    return (
+        f"{face}longer addenda, more teeth, a smaller pressure angle or a {change} centre distance "
+        "raise it"
+    )
+
+
+def _raising(cut: list[_Gear]) -> tuple[Remedy, ...]:
+    """What raises a contact ratio."""
+    if cut:
+        numbers = [(gear.number - 1,) for gear in cut]
+        shifts = [Remedy("profile_shift", 1.0, which) for which in (*numbers, (0, 1))]
+        return *shifts[: 1 + len(cut)], Remedy("pressure_angle", 1.0)
+    return Remedy("centre_distance", 0.0), Remedy("addendum", 1.0, (0, 1))
 
 
 def _check_tips(pair: _Pair) -> Faults:
@@ -678,6 +803,8 @@ def _check_tips(pair: _Pair) -> Faults:
             f"the tips of gear 1 and gear 2 run into each other where their tip circles cross: "
             f"they overlap by {-pair.tip_gap:.3g} {pair.modules}; shorter addenda, fewer teeth of "
             "gear 1 or more teeth of gear 2 part them",
+            Remedy("addendum", -1.0, (0, 1)),
+            Remedy("profile_shift", -1.0, (1,)),
         ),
     )
 
@@ -687,7 +814,7 @@ def _check_finite(pair: _Pair, gears: list[_Gear], only: tuple[str, ...] = ()) -
     for name, numbers in named:
         for key in only or numbers:
             value = numbers.get(key, 0.0)
-            if key != "zero_backlash":
+            if key not in ("zero_backlash", "least_backlash"):
                 yield value - value != 0.0, partial(_refuse_endless, name, key, value)
 
 
@@ -713,7 +840,7 @@ def _warnings(pair: _Pair, gear: _Gear) -> list[Doubt]:
         )
     if gear.undercut:
         found.append(_undercut_warning(pair, gear))
-    if gear.clearance < _SMALL_CLEARANCE * (1.0 - 1e-9):
+    if _small_clearance(gear):
         found.append(
             Doubt(
                 f"The tip of {gear.name} clears the root of {gear.mate} by {gear.clearance:.3g} "
@@ -721,7 +848,23 @@ def _warnings(pair: _Pair, gear: _Gear) -> list[Doubt]:
                 moves=REMARKED,
             )
         )
+    if gear.fillet_overlap > _TOLD_IN_FILLET:
+        found.append(_fillet_warning(pair, gear))
     return found
+
+
+def _fillet_warning(pair: _Pair, gear: _Gear) -> Doubt:
+    beyond = max(float(gear.missing), 0.0) / float(pair.base_pitch * pair.contact_ratio)
+    return Doubt(
+        f"The tip of {gear.mate} enters the {_fillet(gear)} of {gear.name} by "
+        f"{gear.fillet_overlap:.2g} {gear.modules}, which these figures leave out; a smaller fillet "
+        f"radius of {gear.name} or a shorter addendum of {gear.mate} keeps it out.",
+        moves=max(beyond, REMARKED),
+    )
+
+
+def _small_clearance(gear: _Gear) -> bool:
+    return bool(gear.clearance < _SMALL_CLEARANCE * (1.0 - 1e-9))
 
 
 def _pair_warnings(pair: _Pair) -> list[Doubt]:
@@ -735,6 +878,8 @@ def _pair_warnings(pair: _Pair) -> list[Doubt]:
                 moves=REMARKED,
             )
         )
+    if _flank_overlap(pair) > _TOLD_DISTANCE * pair.module:
+        found.append(_overlap_warning(pair))
     if pair.internal and pair.radial_gap < 0.0:
         found.append(
             Doubt(
@@ -744,6 +889,22 @@ def _pair_warnings(pair: _Pair) -> list[Doubt]:
             )
         )
     return found
+
+
+def _overlap_warning(pair: _Pair) -> Doubt:
+    overlap = float(_flank_overlap(pair))
+    rounded = overlap <= _ROUNDED_DISTANCE * pair.module
+    taken = (
+        "taken for what is rounded"
+        if rounded
+        else f"and their allowances leave a backlash of {1e6 * pair.least_backlash:.3g} um"
+    )
+    return Doubt(
+        "The nominal flanks of gear 1 and gear 2 overlap: the centre distance without backlash is "
+        f"{_mm(pair.zero_backlash)}, {1e6 * overlap:.3g} um away, {taken}; figures are those of nominal "
+        "teeth, whose backlash is negative.",
+        moves=REMARKED if rounded else LEFT_OUT,
+    )
 
 
 def _undercut_warning(pair: _Pair, gear: _Gear) -> Doubt:
@@ -767,8 +928,10 @@ def _lost_ratio(pair: _Pair, gear: _Gear) -> float:
     return float(max(gear.missing, 0.0) / pair.base_pitch) if gear.undercut else 0.0
 
 
-def _refuse(entry: str, value: Number, message: str) -> NoReturn:
-    raise InputError(message, key=entry, value=value)
+def _refuse(entry: str, value: Number, message: str, *remedies: Remedy) -> NoReturn:
+    error = UnsoundPairError(message, key=entry, value=value)
+    error.remedies = remedies
+    raise error
 
 
 def _mm(length: Number) -> str:

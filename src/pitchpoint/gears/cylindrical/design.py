@@ -15,6 +15,7 @@ from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO, SLICES, lanes_
 from pitchpoint.gears.cylindrical.checks import cannot_run, check_cylindrical
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.designs import Designs, Group, alike, check_counts, each, padded, rows
+from pitchpoint.gears.involute import usual_dedenda
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
 
@@ -72,8 +73,8 @@ def build_cylindrical_pair(
         face_width, centre_distance: [m]; without backlash if no centre distance is given.
         pressure_angle, helix_angle: of the basic rack and of the reference cylinders [rad].
         profile_shift: x1, x2.
-        addendum, dedendum, fillet_radius: of the basic racks in modules; dedendum defaults to
-            addendum + 0.25.
+        addendum, dedendum, fillet_radius: of the basic racks in modules; dedendum defaults to the
+            addendum of the mate + 0.25, see `usual_dedenda`.
         tip_alteration: k1, k2; keeps the rack's tip clearance by default.
         least_tip: thickness in the normal section, in modules, to which tips that would be thinner
             are shortened; for tip alterations that are not given.
@@ -259,7 +260,7 @@ def _opened(given: Values, helical: bool, internal: bool) -> CylindricalPair:
     angle = np.asarray(values["pressure_angle"], dtype=float)
     rims = RIM_RATIO, RING_RIM_RATIO if internal else RIM_RATIO
     usual: Values = {
-        "dedendum": of_both + 0.25,
+        "dedendum": usual_dedenda(of_both, ring=internal),
         "tip_alteration": np.zeros_like(of_both),
         "centre_distance": np.zeros_like(angle),
         "rim_ratio": np.broadcast_to(rims, of_both.shape),

@@ -1,7 +1,10 @@
 """A pair of cylindrical gears from its table in a case file."""
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import replace
+from functools import partial
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -10,12 +13,19 @@ from pitchpoint._jax import array, jax
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import MEMBERS
-from pitchpoint.gears.cylindrical.checks import check_cylindrical, check_cylindrical_pairs
+from pitchpoint.gears.cylindrical.checks import (
+    UnsoundPairError,
+    check_cylindrical,
+    check_cylindrical_pairs,
+    runs_well,
+)
+from pitchpoint.gears.cylindrical.cures import cures, told_with_cures
 from pitchpoint.gears.cylindrical.design import (
     build_cylindrical_pair,
     cylindrical_pairs_apart,
     with_bores,
 )
+from pitchpoint.gears.cylindrical.inspection import Toothing, backlash_limits
 from pitchpoint.gears.cylindrical.iso_286 import symmetrical_deviation
 from pitchpoint.gears.cylindrical.modified import (
     Modifications,
@@ -26,21 +36,65 @@ from pitchpoint.gears.cylindrical.modified import (
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.family import Family, Made, waves
-from pitchpoint.gears.involute import usual_depths
+from pitchpoint.gears.involute import usual_depths, usual_ring_fillet
 from pitchpoint.gears.layers import LAYERS, labels
 
 __all__ = ["FAMILY"]
 
 USUAL_TIP = 0.25
 """Tip thickness of helical teeth that is kept where none is given, in normal modules."""
-_RING_FILLET = 0.2  # fits the narrow spaces of most rings
 
 
 def _cylindrical(gears: CylindricalGears, driver: str, slices: int) -> Made:
-    pair = build_cylindrical_pair(**_given(gears, driver), slices=slices)
-    pair = with_bores(pair, gears.bore_diameter)
-    _check_field(pair, gears)
-    return _made(pair, gears, slices, check_cylindrical(pair))
+    try:
+        pair = build_cylindrical_pair(**_given(gears, driver), slices=slices)
+        pair = with_bores(pair, gears.bore_diameter)
+        _check_field(pair, gears)
+        told = check_cylindrical(pair, least_backlash=_least_backlash(gears, pair))
+    except UnsoundPairError as error:
+        raise _with_cures(error, gears, driver) from None
+    return _made(pair, gears, slices, told)
+
+
+def _with_cures(error: UnsoundPairError, gears: CylindricalGears, driver: str) -> InputError:
+    """A refusal with changes of the table after which it runs."""
+    values = _given(gears, driver)
+    values["least_tip_thickness"] = values["least_tip"]
+    changes = cures(gears, error.remedies, values, partial(_running, driver=driver))
+    told = copy(error)
+    told.message, told.cures = told_with_cures(error.message, changes), changes
+    return told
+
+
+def _running(gears: CylindricalGears, driver: str) -> CylindricalPair | None:
+    """The pair if it runs well."""
+    try:
+        pair = build_cylindrical_pair(**_given(gears, driver), slices=1)
+    except InputError:
+        return None
+    return pair if runs_well(pair, least_backlash=_least_backlash(gears, pair)) else None
+
+
+def _least_backlash(gears: CylindricalGears, pair: CylindricalPair) -> float:
+    """Least backlash along the normal by allowances and deviations [m]; NaN without allowances."""
+    allowed, asked = gears.thickness_allowances, gears.inspection
+    if allowed is None or asked is None:
+        return nan
+    common = gears.module, gears.pressure_angle, gears.helix_angle
+    first, second = (
+        Toothing(teeth, *common, shift)
+        for teeth, shift in zip(gears.teeth, gears.profile_shift, strict=True)
+    )
+    distance = float(pair.centre_distance)
+    try:
+        deviation = asked.deviation(distance) or 0.0
+    except InputError:
+        deviation = 0.0  # told by _check_field
+    upper, lower = allowed
+    least, *_ = backlash_limits(
+        first, second, distance, upper=upper, lower=lower, deviation=deviation
+    )
+    return least.normal
 
 
 def _cylindrical_together(
@@ -59,10 +113,15 @@ def _cylindrical_together(
             key: np.array([given[n][key] for n in numbers]) for key in given[0].keys() - left
         }
         for group, pairs in cylindrical_pairs_apart(**columns, slices=slices):
-            each = zip(group.numbers, pairs, check_cylindrical_pairs(group.mesh), strict=True)
-            for number, pair, told in each:
+            least = [
+                nan if pair is None else _least_backlash(tables[numbers[number]], pair)
+                for number, pair in zip(group.numbers, pairs, strict=True)
+            ]
+            told = check_cylindrical_pairs(group.mesh, least)
+            each = zip(group.numbers, pairs, told, strict=True)
+            for number, pair, words in each:
                 at = numbers[number]
-                found[at] = _made_or_error(pair, tables[at], slices, told)
+                found[at] = _made_or_error(pair, tables[at], slices, words)
     return [found[number] for number in range(len(tables))]
 
 
@@ -161,10 +220,12 @@ def _shortened(pair: CylindricalPair, gears: CylindricalGears) -> list[str]:
 
 def _given(gears: CylindricalGears, driver: str) -> dict[str, Any]:
     """Arguments of `build_cylindrical_pair` by name."""
-    dedendum, usual = usual_depths(gears.addendum, gears.dedendum, None, gears.pressure_angle)
-    fillet = gears.fillet_radius or tuple(
-        _RING_FILLET if teeth < 0 else each for teeth, each in zip(gears.teeth, usual, strict=True)
+    ring = gears.teeth[1] < 0
+    dedendum, fillet = usual_depths(
+        gears.addendum, gears.dedendum, gears.fillet_radius, gears.pressure_angle, ring=ring
     )
+    if ring and gears.fillet_radius is None:
+        fillet = fillet[0], _ring_fillet(gears, dedendum[1])
     return {
         "teeth": (int(gears.teeth[0]), int(gears.teeth[1])),
         "module": gears.module,
@@ -174,13 +235,23 @@ def _given(gears: CylindricalGears, driver: str) -> dict[str, Any]:
         "profile_shift": gears.profile_shift,
         "addendum": gears.addendum,
         "dedendum": dedendum,
-        "fillet_radius": (fillet[0], fillet[1]),
+        "fillet_radius": fillet,
         "tip_alteration": gears.tip_alteration,
         "least_tip": _least_tip(gears),
         "centre_distance": gears.centre_distance,
         "driver": 2 if driver == "gear 2" else 1,
         "right_flank": gears.flank == "right",
     }
+
+
+def _ring_fillet(gears: CylindricalGears, dedendum: float) -> float:
+    return usual_ring_fillet(
+        teeth=gears.teeth[1],
+        profile_shift=gears.profile_shift[1],
+        dedendum=dedendum,
+        pressure_angle=gears.pressure_angle,
+        helix_angle=gears.helix_angle,
+    )
 
 
 _FOLLOWING = {

@@ -5,7 +5,9 @@ from functools import cached_property
 from itertools import product
 from math import acos, asin, atan, ceil, cos, floor, inf, log10, nan, pi, sin, tan
 
-__all__ = ["Backlash", "Toothing", "backlash", "backlash_limits", "disc"]
+from pitchpoint.errors import InputError
+
+__all__ = ["Backlash", "Toothing", "backlash", "backlash_limits", "disc", "profile_shift_sum"]
 
 
 @dataclass(frozen=True)
@@ -222,6 +224,46 @@ def backlash_limits(
     ]
     ends.sort(key=lambda one: one.normal)
     return ends[0], at(middle, centre_distance), ends[-1]
+
+
+def profile_shift_sum(
+    *,
+    teeth: tuple[float, float],
+    module: float,
+    pressure_angle: float,
+    helix_angle: float,
+    centre_distance: float,
+) -> float:
+    """Sum x1 + x2 of the profile shifts that leave no backlash at a centre distance.
+
+    Args:
+        teeth: z1, z2; z2 negative for a ring.
+        module: normal module [m].
+        pressure_angle, helix_angle: normal one, and that of the reference cylinders [rad].
+        centre_distance: positive [m].
+
+    Raises:
+        InputError: a centre distance below the sum of the base radii.
+
+    Source: ISO 21771:2007, inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) (x1 + x2)/(z1 + z2).
+
+    Example:
+        >>> from math import radians
+        >>> common = {"module": 2e-3, "pressure_angle": radians(20.0), "helix_angle": 0.0}
+        >>> round(profile_shift_sum(teeth=(20, -50), centre_distance=30.6e-3, **common), 4)
+        -0.3212
+    """
+    total = teeth[0] + teeth[1]
+    transverse = atan(tan(pressure_angle) / cos(helix_angle))
+    least = abs(total) * module / (2.0 * cos(helix_angle)) * cos(transverse)
+    if centre_distance <= least:
+        raise InputError(
+            f"the centre distance {1e3 * centre_distance:.8g} mm must be larger than that of the base "
+            f"circles, {1e3 * least:.8g} mm",
+            key="centre_distance",
+        )
+    working = acos(least / centre_distance)
+    return (involute(working) - involute(transverse)) * total / (2.0 * tan(pressure_angle))
 
 
 def disc(*, density: float, width: float, outer: float, inner: float) -> tuple[float, float]:

@@ -1,12 +1,16 @@
 """The table [gears] of a pair of cylindrical gears."""
 
-from math import cos, pi
+from dataclasses import dataclass
+from math import cos, isnan, nan, pi
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, BeforeValidator, model_validator
+from pydantic import AfterValidator, BeforeValidator, GetJsonSchemaHandler, model_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import MEMBERS, din_3967, iso_286
+from pitchpoint.gears.cylindrical.inspection import profile_shift_sum
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
@@ -24,7 +28,13 @@ from pitchpoint.gears.table import (
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named
 from pitchpoint.input.tables import Table
 
-__all__ = ["CylindricalGears", "FlankModifications", "GearDeviations", "Inspection"]
+__all__ = [
+    "FROM_CENTRE_DISTANCE",
+    "CylindricalGears",
+    "FlankModifications",
+    "GearDeviations",
+    "Inspection",
+]
 
 TEETH = Quantity("dimensionless", -10_000, 10_000, whole=True)
 TIP = Quantity("dimensionless", -2.0, 2.0)
@@ -56,7 +66,38 @@ def _teeth(value: tuple[float, float]) -> tuple[float, float]:
     return value
 
 
+FROM_CENTRE_DISTANCE = "from centre distance"
+"""In the place of a profile shift: the one that leaves no backlash at the centre distance."""
+
 _LENGTHS = ("tip_relief", "root_relief", "end_relief")
+
+
+@dataclass(frozen=True)
+class _Shifts(Pair):
+    """Profile shifts by value, or NaN where they are to follow from the centre distance."""
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """What editors know of the values."""
+        either = {"anyOf": [self.each.json_schema, {"const": FROM_CENTRE_DISTANCE}]}
+        both = {"type": "array", "items": either, "minItems": 2, "maxItems": 2}
+        return {"anyOf": [*either["anyOf"], both], "description": self.told}
+
+    @property
+    def told(self) -> str:
+        """Kind, range and units in words."""
+        return f'{super().told}; "{FROM_CENTRE_DISTANCE}" for both or for one of them'
+
+    def read(self, value: Any) -> tuple[float, float]:
+        """Coefficients of gear 1 and gear 2."""
+        every = list(value) if isinstance(value, list | tuple) else [value, value]
+        if len(every) != 2 or FROM_CENTRE_DISTANCE not in every:
+            return super().read(value)
+        first, second = (
+            nan if part == FROM_CENTRE_DISTANCE else self.each.read(part) for part in every
+        )
+        return first, second
 
 
 class FlankModifications(Table):
@@ -172,6 +213,16 @@ class Inspection(Table):
         upper, lower = self.upper_thickness_allowance, self.lower_thickness_allowance
         return None if upper is None or lower is None else (upper, lower)
 
+    def deviation(self, distance: float) -> float | None:
+        """Deviation of the centre distance to either side [m]; None where none is given.
+
+        Args:
+            distance: nominal centre distance [m].
+        """
+        if self.centre_distance_field is not None:
+            return iso_286.symmetrical_deviation(self.centre_distance_field, distance)
+        return self.centre_distance_deviation
+
     @model_validator(mode="after")
     def _limits(self) -> "Inspection":
         upper, lower = self.upper_thickness_allowance, self.lower_thickness_allowance
@@ -236,14 +287,14 @@ class CylindricalGears(GearsTable):
     """Normal pressure angle α_n of the basic rack."""
     helix_angle: Annotated[float, HELIX] = 0.0
     """Helix angle β on the reference cylinder; 0 for spur gears."""
-    profile_shift: Annotated[tuple[float, float], Pair(SHIFT)] = (0.0, 0.0)
-    """Profile shift coefficients x1, x2."""
+    profile_shift: Annotated[tuple[float, float], _Shifts(SHIFT)] = (0.0, 0.0)
+    """Profile shift coefficients x1, x2; "from centre distance" for both, in halves, or for one."""
     addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
     """Addendum of both basic racks, in modules."""
     dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
-    """Dedendum of both basic racks, in modules; addendum + 0.25 unless given."""
+    """Dedendum of both basic racks, in modules; addendum of the mate + 0.25 unless given."""
     fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
-    """Fillet radius ρ_fP of both basic racks in modules; 0.38 if it fits, of a ring 0.2, unless given."""
+    """Fillet radius ρ_fP of both racks in modules; 0.38, of a ring 0.2, or what fits, unless given."""
     tip_alteration: Annotated[tuple[float, float], Pair(TIP)] | None = None
     """Tip alteration coefficients k1, k2; those that keep the tip clearance unless given."""
     least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
@@ -336,6 +387,45 @@ class CylindricalGears(GearsTable):
                 )
         if self.deviations is not None:
             self.deviations.check(self.tooth_numbers, self.module)
+        return self
+
+    def shifts_from_distance(self, shifts: tuple[float, float]) -> tuple[float, float]:
+        """Profile shifts that leave no backlash at the centre distance.
+
+        Args:
+            shifts: x1, x2; NaN where one is open. Two open ones are alike.
+
+        Raises:
+            InputError: without a centre distance, or where they are out of range.
+        """
+        if self.centre_distance is None:
+            raise InputError(
+                f'"{FROM_CENTRE_DISTANCE}" was given without a centre_distance', key="profile_shift"
+            )
+        total = profile_shift_sum(
+            teeth=self.teeth,
+            module=self.module,
+            pressure_angle=self.pressure_angle,
+            helix_angle=self.helix_angle,
+            centre_distance=self.centre_distance,
+        )
+        left = [shift for shift in shifts if not isnan(shift)]
+        rest = (total - sum(left)) / (2 - len(left))
+        first, second = (rest if isnan(shift) else shift for shift in shifts)
+        for number, shift in enumerate((first, second), 1):
+            if not SHIFT.low <= shift <= SHIFT.high:
+                raise InputError(
+                    f"the centre distance {DISTANCE.show(self.centre_distance)} asks for profile shifts that "
+                    f"sum to {total:.4g}, with {shift:.4g} of gear {number}; {SHIFT.allowed}",
+                    key="profile_shift",
+                )
+        return first, second
+
+    @model_validator(mode="after")
+    def _shifts(self) -> "CylindricalGears":
+        if any(map(isnan, self.profile_shift)):
+            # The table is fixed once it is read, and it is not yet.
+            self.__dict__["profile_shift"] = self.shifts_from_distance(self.profile_shift)
         return self
 
     @model_validator(mode="after")

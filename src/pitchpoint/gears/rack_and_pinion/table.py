@@ -55,7 +55,7 @@ class RackAndPinionGears(GearsTable):
     addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
     """Addendum of the pinion's basic rack and of the rack, in modules."""
     dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
-    """Dedendum of the pinion's basic rack and of the rack, in modules; addendum + 0.25 unless given."""
+    """Dedendum of the pinion's basic rack and of the rack; the mate's addendum + 0.25 unless given."""
     fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
     """Fillet radius of the pinion's basic rack and of the rack in modules; 0.38 if it fits, unless given."""
     mounting_distance: Annotated[float, DISTANCE] | None = None

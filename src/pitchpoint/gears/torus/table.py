@@ -66,7 +66,7 @@ class TorusGears(GearsTable):
     addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
     """Addendum of both basic racks, in modules."""
     dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
-    """Dedendum of both basic racks, in modules; addendum + 0.25 unless given."""
+    """Dedendum of both basic racks, in modules; addendum of the mate + 0.25 unless given."""
     fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
     """Fillet radius ρ_fP of both basic racks in modules; 0.38 if it fits, unless given."""
     centre_distance: Annotated[float, DISTANCE] | None = None
