@@ -77,8 +77,8 @@ def test_a_film_law_that_is_out_of_its_range_says_so() -> None:
     data = cycle(models={"film_thickness": "pan_hamrock_1989"}, operation={"speed": "20 rpm"})
     told = json.loads(data.attrs["warnings"])
     assert (
-        "Pan-Hamrock, line: the speed parameter leaves the range of the law, 1e-12 to 5.05e-11, throughout; "
-        "its film is an extrapolation."
+        "pan_hamrock_1989: its film is an extrapolation throughout; the speed parameter leaves the range of "
+        "the law, 1e-12 to 5.05e-11."
     ) in told
 
 

@@ -51,17 +51,25 @@ def cycle(**changes: Any) -> dict[str, np.ndarray]:
     [
         (XU, {"locked": np.array([True, False])}, "its friction coefficient, 0.04, locks the mesh"),
         (XU, {"lambda_ratio": 0.4}, "the film is down to 0.4 of the composite roughness"),
-        (XU, {"friction": 0.42}, "reaches 0.42; steel in oil has at most about 0.2"),
-        (ISO, {"friction": 0.28}, "reaches 0.28; steel in oil has at most about 0.2"),
+        (
+            XU,
+            {"friction": 0.42},
+            "friction up to 0.42 is an extrapolation; steel in oil has at most about 0.2",
+        ),
+        (
+            ISO,
+            {"friction": 0.28},
+            "friction up to 0.28 is an extrapolation; steel in oil has at most about 0.2",
+        ),
         (
             XU,
             {"outside xu_2007 viscosity": np.array([True, False])},
-            "the viscosity leaves the range of the law, at least 1 mPa s, in 25 % of the mesh cycle",
+            "in 25 % of the mesh cycle; the viscosity leaves the range of the law, at least 1 mPa s",
         ),
         (
             ISO,
             {"outside iso_tr_14179_2 roughness_ra": np.array([True, True])},
-            "the roughness ra leaves the range of the law, at least 0.01 um, throughout",
+            "an extrapolation throughout; the roughness ra leaves the range of the law, at least 0.01 um",
         ),
     ],
 )

@@ -23,11 +23,12 @@ from pitchpoint.views.section import key_figures
 
 NUMBER = re.compile(r"\d[\d.,e−+-]*")
 REPORT = Path("results/pair/report.html")
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")
 def pair() -> dict[str, Outcome]:
-    return bank.outcomes(Path(__file__).parents[2] / "examples" / "pair_23_61.toml")
+    return bank.outcomes(EXAMPLES / "pair_23_61.toml")
 
 
 def doubting(outcome: Outcome, **sentences: list[str]) -> Outcome:
@@ -53,6 +54,16 @@ def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:
     assert {"Loss", "Stress of flanks", "Stress of roots", "Backlash"} <= {*by_name}
     assert f"Report: {REPORT}" in figures
     assert figures[-1] == "Tables by --full: answer, strength"  # it has no other tables
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize("example", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_example_answers_on_one_screen(example: Path) -> None:
+    outcomes = bank.outcomes(example)
+    whole = {line.text for line in first_screen(outcomes, REPORT, 1000)}
+    every = {number for text in whole for number in NUMBER.findall(text.replace("\u00a0", " "))}
+    for line in shown(outcomes):
+        assert {*NUMBER.findall(line)} <= every
 
 
 @pytest.mark.parametrize("width", [40, 60, 100])

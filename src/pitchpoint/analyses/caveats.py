@@ -198,8 +198,8 @@ def face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
     idle = 1.0 - mean / slices
     return [
         Doubt(
-            f"Of the contact lines that carry, {100.0 * idle:.2g} % get no load at {load}: there flanks do "
-            "not touch.",
+            f"Of the contact lines that carry, {100.0 * idle:.2g} % get no load at {load}; flanks do not "
+            "touch there.",
             moves=idle,
         )
     ]
@@ -235,7 +235,7 @@ def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndar
         told.append(
             Doubt(
                 f"At {partly.sum()} of {len(points)} points a part of the contact lines that carry, up to "
-                f"{100.0 * most:.2g} %, gets no load: there flanks do not touch.",
+                f"{100.0 * most:.2g} %, gets no load; flanks do not touch there.",
                 moves=most,
             )
         )
@@ -305,9 +305,7 @@ def _proportions(points: Sequence[Built]) -> list[str]:
 
 def film_warning(film: FilmThickness, run: Mapping[str, np.ndarray]) -> list[str]:
     """Conditions that leave the range of the film law, which answers there too."""
-    return told_of_law(
-        film, [reworded(one, f"{one}; its film is an extrapolation") for one in _leaves(film, run)]
-    )
+    return told_of_law(film, _leaves(film, run, "film"))
 
 
 def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
@@ -319,9 +317,9 @@ def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
     """
     warmest = float(np.nanmax(_rise(built, run), initial=0.0))
     if warmest == 0.0:
-        return f"{COLD}."
+        return f"{COLD}; {INLET}."
     felt = 1.0 - exp(-THINS * warmest)
-    told = f"{COLD}; its friction would warm it by up to about {warmest:.2g} K"
+    told = f"{COLD}, and friction would warm them by up to about {warmest:.2g} K; {INLET}"
     if warmest < WARM:
         return Doubt(f"{told}.", moves=felt)
     squeezes = built.case.film is not None and built.case.film.squeezes
@@ -333,7 +331,10 @@ def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
     )
 
 
-COLD = "The films are isothermal: the oil in a contact is as warm as that in its inlet"
+COLD, INLET = (
+    "The films are isothermal",
+    "the oil in a contact is taken as warm as that in its inlet",
+)
 
 THINS = 0.03
 """Part of a film that a kelvin takes: viscosity loses 4 to 5 %, and films go with its 0.7th power."""
@@ -370,16 +371,12 @@ def asperity_warning(law: AsperityLoad | None, run: Mapping[str, np.ndarray]) ->
     """Conditions that leave the range of the law of the load on asperities, and where it is cut."""
     if law is None:
         return []
-    reasons: list[str] = [
-        reworded(one, f"{one}; its asperity load ratio is an extrapolation")
-        for one in _leaves(law, run)
-    ]
+    reasons: list[str] = [*_leaves(law, run, "asperity load")]
     cut = np.any(run["asperity_load_ratio"] >= 1.0, axis=(1, 2))
     if cut.any():
         reasons.append(
             Doubt(
-                "its asperity load ratio reaches more than the 100 % at which it is cut, "
-                f"{_how_long(cut, run['weight'])}",
+                f"its asperity load is cut at 100 % {_how_long(cut, run['weight'])}; the law gives more",
                 moves=GUESSED * float(np.sum(cut * run["weight"])),
             )
         )
@@ -388,12 +385,12 @@ def asperity_warning(law: AsperityLoad | None, run: Mapping[str, np.ndarray]) ->
 
 def told_of_law(law: Limited, reasons: Sequence[str]) -> list[str]:
     """Sentences on a law."""
-    return [reworded(reason, f"{law.title}: {reason}.") for reason in reasons]
+    return [reworded(reason, f"{law.name}: {reason}.") for reason in reasons]
 
 
 def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
     """Why a law does not hold at an operating point, in words; empty where it does."""
-    reasons: list[str] = [*_leaves(law, run), *map(str, run.get("outside films", ()))]
+    reasons: list[str] = [*_leaves(law, run, "friction"), *map(str, run.get("outside films", ()))]
     if run["locked"].any():
         locks = f"its friction coefficient, {run['friction'].max():.2g}, locks the mesh"
         reasons.append(Doubt(locks, moves=WITHHELD))
@@ -405,16 +402,16 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
     if law.full_film and thinnest < 1.0:
         reasons.append(
             Doubt(
-                f"it describes contacts with a full film, but the film is down to {thinnest:.2g} of the "
-                f"composite roughness Rq; its friction coefficient, up to {highest:.2g}, is an extrapolation",
+                f"its friction up to {highest:.2g} is an extrapolation; the film is down to {thinnest:.2g} "
+                "of the composite roughness Rq, and the law describes contacts with a full film",
                 moves=GUESSED,
             )
         )
     elif highest > law.largest:
         reasons.append(
             Doubt(
-                f"its friction coefficient reaches {highest:.2g}; steel in oil has at most about "
-                f"{law.largest:g}, so that this is an extrapolation",
+                f"its friction up to {highest:.2g} is an extrapolation; steel in oil has at most about "
+                f"{law.largest:g}",
                 moves=highest / law.largest - 1.0,
             )
         )
@@ -431,13 +428,13 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
     return reasons
 
 
-def _leaves(law: Limited, run: Mapping[str, np.ndarray]) -> list[Doubt]:
-    """Which conditions leave the range of a law, in words."""
+def _leaves(law: Limited, run: Mapping[str, np.ndarray], gives: str) -> list[Doubt]:
+    """Which conditions leave the range of a law that `gives` a film, say, in words."""
     outside = {name: run[f"outside {law.name} {name}"] for name in law.ranges}
     return [
         Doubt(
-            f"the {name.replace('_', ' ')} leaves the range of the law, "
-            f"{limits_words(name, law.ranges[name])}, {_how_long(where, run['weight'])}",
+            f"its {gives} is an extrapolation {_how_long(where, run['weight'])}; the "
+            f"{name.replace('_', ' ')} leaves the range of the law, {limits_words(name, law.ranges[name])}",
             moves=GUESSED * float(np.sum(where * run["weight"])),
         )
         for name, where in outside.items()

@@ -263,7 +263,7 @@ def _of_pieces(parts: Sequence[xr.Dataset]) -> list[str]:
     ends = np.cumsum([0, *(part.sizes["point"] for part in parts)])
     kinds: dict[str, list[tuple[Doubt, str]]] = {}
     for k, part in enumerate(parts):
-        where = f"phases {ends[k] + 1} to {ends[k + 1]} of {ends[-1]}"
+        where = f", phases {ends[k] + 1} to {ends[k + 1]} of {ends[-1]}" if len(parts) > 1 else ""
         for doubt in doubts_of(part.attrs):
             kinds.setdefault(doubt.kind, []).append((doubt, where))
     return [_worst(told) for told in kinds.values()]
@@ -273,7 +273,7 @@ def _worst(told: Sequence[tuple[Doubt, str]]) -> Doubt:
     """The worst one of warnings of one kind, with their places."""
     doubt, where = max(told, key=lambda one: one[0].extent)
     others = ", and less at others" if len(told) > 1 else ""
-    return reworded(doubt, f"Films, {where}{others}: {doubt}.")
+    return reworded(doubt, f"Films{where}{others}: {doubt}.")
 
 
 def _about(built: Built, states: States, found: xr.Dataset) -> list[str]:

@@ -345,9 +345,8 @@ def _unloaded(
         return []
     return [
         Doubt(
-            f"Torsional vibration: at {beyond.size} of {speeds.size} speeds the torque swings by more than "
-            "the load; there the flanks change sides, which amplitudes by the tangent of the wind-up leave "
-            "out.",
+            f"Torsional vibration: flanks change sides at {beyond.size} of {speeds.size} speeds; the torque "
+            "swings by more than the load there, which amplitudes by the tangent of the wind-up leave out.",
             moves=beyond.size / speeds.size,
         )
     ]

@@ -16,7 +16,6 @@ import xarray as xr
 from pitchpoint.analyses.caveats import conformal, rolling_share
 from pitchpoint.analyses.figures import holding, why_not
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.cases.stages import Ready
 from pitchpoint.contact.contacts import Shape
@@ -315,12 +314,8 @@ def friction_laws(result: Result) -> str | None:
         return None
     names = result.parts["operation"]["law"].values
     reasons = {str(law): why_not(result.parts)[str(law)] for law in names}
-    told = "; ".join(f"{_title(law)}: {' and '.join(each)}" for law, each in reasons.items())
+    told = "; ".join(f"{law}: {' and '.join(each)}" for law, each in reasons.items())
     return f"no friction law holds at the operating point, efficiency and loss are extrapolations: {told}"
-
-
-def _title(law: str) -> str:
-    return FRICTION[law].title if law in FRICTION else law
 
 
 def edge_load(result: Result) -> str | None:

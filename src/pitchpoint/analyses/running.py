@@ -149,8 +149,8 @@ def _unloaded(built: Ready) -> list[str]:
     if any(float(drag.preload) or drag.holds for drag in drags):
         return []
     return [
-        "No preload of a bearing, no breakaway model and no breakaway_torque are given: measured drives take "
-        "many times these torques to start, either way."
+        "Torques to start are too low without what holds bearings at rest; measured drives take many times "
+        "as much, either way, and no preload, breakaway model or breakaway_torque is given."
     ]
 
 

@@ -228,8 +228,8 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
             )
     if _SHARED < float(ratio) <= _DEEPEST and not getattr(built.case.gears, "helix_angle", 0.0):
         yield (
-            "Above a transverse contact ratio of 2 Z_B and Z_D are 1 here; ISO 6336-2 has the inner point of "
-            "double contact."
+            "The flank stress leaves out the inner point of double contact; above a transverse contact ratio "
+            "of 2 Z_B and Z_D are 1 here, and ISO 6336-2 has that point."
         )
     if float(ratio) > _DEEPEST:
         yield f"A transverse contact ratio of {float(ratio):.3g} is above the 2.5 that ISO 6336-2 covers."

@@ -358,9 +358,9 @@ def _warnings(
     longest, span = float(np.max(np.asarray(cells.lengths))), float(cells.span[0])
     if line and span < BRIDGED * longest:
         told.append(
-            f"Wear: contacts reach {1e6 * span:.2g} um to each side on average, less than {BRIDGED:g} cells "
-            f"of {1e6 * longest:.2g} um: curvatures are averaged over these, and pressures on worn flanks "
-            "depend on wear.cells."
+            f"Wear: pressures on worn flanks depend on wear.cells; contacts reach {1e6 * span:.2g} um to "
+            f"each side on average, less than {BRIDGED:g} cells of {1e6 * longest:.2g} um, over which "
+            "curvatures are averaged."
         )
     if end == "outgrown" and line:
         told.append(

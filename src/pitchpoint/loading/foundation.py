@@ -111,7 +111,7 @@ def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
     if section.stiff:
         return (
             Doubt(
-                f"the compliance of {section.stiff} under its teeth has no formula here and counts as zero",
+                f"{section.stiff} under the teeth counts as rigid; its compliance has no formula here",
                 moves=GUESSED,
             ),
         )

@@ -51,7 +51,7 @@ def in_words(rows: Iterable[Row]) -> str:
     of_both: dict[str, list[Row]] = {}
     for row in rows:
         independent = row.kind == "reference"
-        source = "of an independent calculation" if independent else "of the publication"
+        source = "numbers of an independent calculation" if independent else "printed numbers"
         of_both.setdefault(source, []).append(row)
     every = sorted(of_both.items(), reverse=True)
     return "; ".join(f"{len(those)} {source}: {_tally(those)}" for source, those in every)

@@ -3,6 +3,7 @@
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import Literal
 
@@ -45,12 +46,16 @@ def first_screen(outcomes: Mapping[str, Outcome], report: Path, width: int) -> l
         width: of the screen, in characters; no line is longer, and no number cut.
     """
     outcome = next(iter(outcomes.values()))
-    title = [Line(show.first_clauses(_title(outcome, len(outcomes)), width), "title")]
+    title = _title(outcome, len(outcomes))
     at = _operation(outcome) if len(outcomes) == 1 else ""
-    head = [*title, *([Line(show.first_clauses(at, width))] if at else [])]
     doubts = _doubts(outcomes, width)
     foot = [*_rows_met(outcomes, width), *_more(outcomes, report, width)]
-    room = FEW_LINES - len(head) - len(doubts) - len(foot)
+    room = FEW_LINES - len(doubts) - len(foot) - bool(at)
+    titles = _folded(title, width)
+    titles = titles if len(titles) <= min(room, 2) else [show.first_clauses(title, width)]
+    head = [Line(text, "title") for text in titles]
+    head += [Line(show.first_clauses(at, width))] if at else []
+    room -= len(titles)
     figures = _aligned(key_figures(in_order(), outcome)[:room], width) if len(outcomes) == 1 else []
     fails, doubtful = (
         [line for line in doubts if line.style == style] for style in ("fails", "doubt")
@@ -109,15 +114,22 @@ def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
 
 
 def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
-    """Sentences of all variants, each once, those of some variants with their names."""
+    """Sentences of all variants, each once and the worst of each first, those of some with their variants."""
     told: dict[str, list[str]] = {}
-    for variant, outcome in outcomes.items():
-        for text in outcome.manifest[kind]:
-            told.setdefault(text, []).append(variant)
+    ranked = zip_longest(*(outcome.manifest[kind] for outcome in outcomes.values()))
+    for row in ranked:
+        for variant, text in zip(outcomes, row, strict=True):
+            if text is not None:
+                told.setdefault(text, []).append(variant)
     return [
-        text if len(names) == len(outcomes) else f"{', '.join(names)}: {text}"
+        text if len(names) == len(outcomes) else f"{_few(names, len(outcomes))}: {text}"
         for text, names in told.items()
     ]
+
+
+def _few(names: Sequence[str], variants: int) -> str:
+    """Some of the variants by name where that is short, else how many they are."""
+    return names[0] if len(names) == 1 else f"{len(names)} of {variants} variants"
 
 
 def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
@@ -135,7 +147,7 @@ def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
         if room < 0:  # words in place of a number
             lines.append(show.first_clauses(f"{name:<{name_width}}  {value}", width))
             continue
-        detail = show.first_clauses(figure.detail.lstrip(",; "), room) if figure.detail else ""
+        detail = show.first_clauses(figure.detail.lstrip(",; "), room, 0.0) if figure.detail else ""
         lines.append(f"{begin}{detail if len(detail) > _LEAST_DETAIL else ''}".rstrip())
     return [Line(text, "figure") for text in lines]
 
@@ -155,7 +167,7 @@ def _folded(text: str, width: int) -> list[str]:
 
 
 def _more(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Line]:
-    """Where everything else is, on two lines: the page, and of which sections there are tables."""
+    """Where everything else is: the page, and of which sections there are tables."""
     page = Page(outcomes, {})
     titles = [
         said(section.short, page)
@@ -167,4 +179,4 @@ def _more(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Lin
         )
     ]
     every = f"Tables by --full: {', '.join(titles).lower()}"
-    return [Line(f"Report: {report}"), Line(show.first_clauses(every, width))]
+    return [Line(text) for text in (f"Report: {report}", *_folded(every, width))]

@@ -228,8 +228,13 @@ def one_line(text: str) -> str:
     return re.sub(r"[ \t\r\n]+", " ", text).strip()
 
 
-def first_clauses(sentence: str, width: int) -> str:
+def first_clauses(sentence: str, width: int, filled: float = _MOST_OF) -> str:
     """As many clauses of a sentence as there is room for, else words; a number and its unit stay whole.
+
+    Args:
+        sentence: in one line.
+        width: of the line.
+        filled: part of the line that clauses must fill; else a sentence ends within one.
 
     Example:
         >>> first_clauses("Tips are thin, 0.2 modules; case-hardened teeth may break there.", 40)
@@ -241,7 +246,7 @@ def first_clauses(sentence: str, width: int) -> str:
     if len(sentence) <= width:
         return sentence
     ends = [found.start() for found in _CLAUSE.finditer(sentence) if found.start() <= width - 2]
-    if ends and ends[-1] >= _MOST_OF * width:
+    if ends and ends[-1] >= filled * width:
         return f"{sentence[: ends[-1]].rstrip()} …"
     words = sentence[: width - 1].rsplit(" ", 1)[0].split(" ")
     while len(words) > 1 and _NUMBER.fullmatch(words[-1]):

@@ -873,8 +873,8 @@ def _pair_warnings(pair: _Pair) -> list[Doubt]:
         overlap = pair.contact_ratio - pair.transverse_ratio
         found.append(
             Doubt(
-                f"The transverse contact ratio of gear 1 and gear 2 is {pair.transverse_ratio:.3g}: it "
-                f"is the overlap ratio, {overlap:.3g}, that keeps the teeth in contact.",
+                f"The transverse contact ratio of gear 1 and gear 2 is {pair.transverse_ratio:.3g}; "
+                f"it is the overlap ratio, {overlap:.3g}, that keeps the teeth in contact.",
                 moves=REMARKED,
             )
         )
@@ -909,16 +909,15 @@ def _overlap_warning(pair: _Pair) -> Doubt:
 
 def _undercut_warning(pair: _Pair, gear: _Gear) -> Doubt:
     lost = _lost_ratio(pair, gear)
-    cost = (
-        f"the path of contact ends at its form circle ({_mm(gear.form_diameter)}), which takes "
-        f"{lost:.2g} of the contact ratio between the tip circles"
+    circle = f"its form circle ({_mm(gear.form_diameter)})"
+    loses, ends = (
+        (f"loses {lost:.2g} of its contact ratio", f"the path of contact ends at {circle}")
         if lost > 0.0
-        else f"its form circle ({_mm(gear.form_diameter)}) lies below the path of contact, so that "
-        "no contact ratio is lost"
+        else ("loses no contact ratio", f"{circle} lies below the path of contact")
     )
     return Doubt(
-        f"The flanks of {gear.name} are undercut: its profile shift {gear.profile_shift:.4g} is "
-        f"below the limit {gear.undercut_limit:.4g}; {cost}.",
+        f"The undercut of {gear.name} {loses}; its profile shift {gear.profile_shift:.4g} is below the limit "
+        f"{gear.undercut_limit:.4g}, and {ends}.",
         moves=max(lost / float(pair.contact_ratio), REMARKED),
     )
 

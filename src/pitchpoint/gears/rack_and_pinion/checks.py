@@ -186,7 +186,7 @@ def _warnings(at: SimpleNamespace) -> Iterator[str]:
         )
     if at.shift < at.limit:
         yield (
-            f"The flanks of the pinion are undercut: its profile shift {at.shift:.4g} is below the limit "
+            f"The flanks of the pinion are undercut; its profile shift {at.shift:.4g} is below the limit "
             f"{at.limit:.4g}."
         )
     for name, clearance in (("pinion", at.clearance_1), ("rack", at.clearance_2)):
@@ -197,6 +197,6 @@ def _warnings(at: SimpleNamespace) -> Iterator[str]:
             )
     if at.transverse_ratio < 1.0:
         yield (
-            f"The transverse contact ratio of pinion and rack is {at.transverse_ratio:.3g}: it is the "
+            f"The transverse contact ratio of pinion and rack is {at.transverse_ratio:.3g}; it is the "
             "overlap ratio that keeps the teeth in contact."
         )
