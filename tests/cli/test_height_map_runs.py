@@ -152,7 +152,7 @@ def test_maps_that_take_too_long_to_pass_are_told(folder: Path) -> None:
 
 BAD = {
     "missing.csv": (None, "there is no such file of heights in /"),
-    "other.dat": ("1 2\n3 4\n", "those end in .csv, .txt or .npy"),
+    "other.dat": ("1 2\n3 4\n", "those end in .csv, .txt, .npy or .x3p"),
     "empty.csv": ("", "holds no heights"),
     "remarks.txt": ("# no more\n", "holds no heights"),
     "words.csv": ("1,2\n3,four\n", "no table of numbers"),

@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -235,6 +236,18 @@ def test_one_that_lacks_something_has_no_part(alone: None, tmp_path: Path) -> No
     assert figures(outcome)["passing"] == {}
     with pytest.raises(InputError, match="no part 'passing': the teeth stand still"):
         run_piece(str(case), {"analysis": "passing", "speed": 1.0})
+
+
+def test_programs_are_given_back_between_parts_too(
+    alone: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    register(toy(pieces=lambda built: [{"speed": 100.0}]))
+    case, asked = tmp_path / "pair.toml", Counter[str]()
+    case.write_text(PAIR, "utf-8")
+    monkeypatch.setattr(running, "bound_programs", lambda: asked.update(["parts"]))
+    for computed in (1, 1):  # what is read from disk takes no memory
+        run(str(case), folder=tmp_path / "out")
+        assert asked["parts"] == computed
 
 
 # ---- a section of a user's own

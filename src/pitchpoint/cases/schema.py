@@ -757,17 +757,24 @@ def _cells(value: float) -> float:
 class HeightTable(Table):
     """Measured heights of a surface in a file: rows across the contact, columns along it.
 
+    One column of heights is a profile, and so are two, of places and heights: it was measured along the
+    surface speeds, or across them as `direction` says, and is the same everywhere the other way. A profile
+    takes the step of its own way alone; places are evenly apart, in any unit of length. Files x3p
+    (ISO 25178-72) say steps and unit themselves.
+
     `unit` is what a height of one in the file is. The middle of the map lies in that of the contact unless
     `middle_along` and `middle_across` say otherwise. It has to cover the contact unless it is `periodic`: one
     that repeats, whose last row and column are the first ones of the next period, with the same heights.
     """
 
     file: Text
-    """File of the heights beside the case file: .csv, .txt or .npy."""
-    step_along: Annotated[float, MAP_STEP]
-    """Distance between columns, along the surface speeds."""
-    step_across: Annotated[float, MAP_STEP]
-    """Distance between rows, across the surface speeds."""
+    """File of the heights beside the case file: .csv, .txt, .npy or .x3p."""
+    step_along: Annotated[float, MAP_STEP] | None = None
+    """Distance between columns, along the surface speeds; needed by maps and by profiles along them."""
+    step_across: Annotated[float, MAP_STEP] | None = None
+    """Distance between rows, across the surface speeds; needed by maps and by profiles across them."""
+    direction: Literal["along", "across"] = "along"
+    """Way along which a profile was measured; a map has both."""
     unit: Annotated[float, MAP_UNIT] = 1e-6
     """What a height of one in the file is."""
     middle_along: Annotated[float, MAP_PLACE] = 0.0

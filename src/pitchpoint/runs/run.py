@@ -45,7 +45,7 @@ from pitchpoint.lubrication.registry import (
     FrictionLaw,
 )
 from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
-from pitchpoint.programs import surroundings
+from pitchpoint.programs import bound_programs, surroundings
 from pitchpoint.published.registry import publication_of
 from pitchpoint.registry import nearest
 from pitchpoint.results.store import (
@@ -541,6 +541,7 @@ def _part(
         if folder is not None:
             _drop_pieces(folder, job.name)  # of a run that was killed while it removed them
         return found
+    bound_programs()  # those of the parts before
     pieces: list[xr.Dataset] = []
     for piece in _pieces(job, variant, labels, folder, progress):
         pieces.append(piece)
