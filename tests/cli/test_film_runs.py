@@ -405,8 +405,7 @@ def test_films_in_series_yield_as_films_of_more_load_do(case: str) -> None:
             "stiffness_with_films",
         )
     )
-    # In series at each phase, and then the mean over them.
-    assert 1.0 / both == pytest.approx(1.0 / dry + 1.0 / films, rel=5e-3)
+    assert 1.0 / both == pytest.approx(1.0 / dry + 1.0 / films, rel=1e-9)
     assert 0.8 < both / dry < 1.0
     assert "less)" in film_answer(outcome)
 

@@ -163,6 +163,7 @@ def torsion() -> xr.Dataset:
             "wind_up": (("torque",), wind_up),
             "wind_up_range": (("torque",), 0.01 * wind_up),
             "torsional_stiffness": (("torque",), 1e4 + 100.0 * torque),
+            "tangent_torsional_stiffness": (("torque",), 1.1 * (1e4 + 100.0 * torque)),
             "loaded_pairs": (("torque",), 1.0 + torque / 4.0),
             "zone_load": (("torque", "zone"), np.stack([torque, torque], axis=-1)),
             "path": (("phase", "pair"), angle / (2.0 * np.pi)),

@@ -59,6 +59,6 @@ def series_figures(
     whole = np.nan if missing else 1.0
     return {
         "film_torsional_stiffness": np.asarray(whole / (compliance @ weight)),
-        "stiffness_without_films": np.asarray(dry @ weight),
-        "stiffness_with_films": np.asarray(whole * (1.0 / (1.0 / dry + compliance)) @ weight),
+        "stiffness_without_films": np.asarray(1.0 / (1.0 / dry @ weight)),
+        "stiffness_with_films": np.asarray(whole / ((1.0 / dry + compliance) @ weight)),
     }

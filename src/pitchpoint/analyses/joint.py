@@ -261,7 +261,7 @@ def _own(joints: Joint, order: Float[Array, " wave"]) -> dict[str, Array]:
             "natural_frequency": joint.natural_frequency,
             "joint_damping_ratio": joint.damping_ratio,
             "reduced_inertia": joint.reduced,
-            "torsional_stiffness": joint.stiffness,
+            "tangent_torsional_stiffness": joint.stiffness,
             "critical_speed": joint.critical_speed(order),
         }
 
@@ -371,7 +371,11 @@ def joint_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("joint")
     if data is None:
         return {"joint": {}}
-    names: Sequence[str] = ("natural_frequency", "joint_damping_ratio", "torsional_stiffness")
+    names: Sequence[str] = (
+        "natural_frequency",
+        "joint_damping_ratio",
+        "tangent_torsional_stiffness",
+    )
     by_motor = {
         str(motor): {name: float(data[name][k]) for name in names}
         | {

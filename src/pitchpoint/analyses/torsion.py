@@ -45,6 +45,8 @@ MUCH = 0.03
 SHOWN = 3
 """Every so many phases the load on every tooth is kept."""
 
+_OTHER_STIFFNESS = ("tangent_torsional_stiffness", "phase_mean_torsional_stiffness")
+
 
 def torsion_part(built: Ready) -> xr.Dataset:
     """Wind-up, stiffness and load on every pair for torques up to twice that of the operating point."""
@@ -68,8 +70,8 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
     def at_output(name: str) -> np.ndarray:
         return np.stack([step * found[name] for step, found in zip(steps, each, strict=True)], -1)
 
-    stiffness = np.stack([found["torsional_stiffness"] for found in each], -1) / steps**2
-    turned = at_output("wind_up")
+    slopes = np.stack([found["tangent_torsional_stiffness"] for found in each], -1) / steps**2
+    slope, turned = 1.0 / np.sum(1.0 / slopes, axis=-1), at_output("wind_up")
     told_parts = (one.design.mesh.yielding for one in built.stages)
     yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
     parts = _parts_of_stages(built, steps, each)
@@ -78,8 +80,12 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
         {
             "wind_up": (("torque",), turned.sum(axis=-1)),
             "stage_wind_up": (("torque", "stage"), turned),
-            "torsional_stiffness": (("torque",), 1.0 / np.sum(1.0 / stiffness, axis=-1)),
-            "stage_torsional_stiffness": (("torque", "stage"), stiffness),
+            "torsional_stiffness": (("torque",), _secant(torques, turned.sum(axis=-1), slope)),
+            "tangent_torsional_stiffness": (("torque",), slope),
+            "stage_torsional_stiffness": (
+                ("torque", "stage"),
+                _secant(torques[:, None], turned, slopes),
+            ),
             "angular_transmission_error_range": (
                 ("torque",),
                 at_output("angular_transmission_error_range").sum(axis=-1),
@@ -306,7 +312,7 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
         "mesh_torsional_stiffness": found.stiffness[:, ::SHOWN],
         "wind_up": turned,
         "wind_up_range": np.ptp(found.wind_up, axis=-1),
-        "torsional_stiffness": found.stiffness @ weight,
+        **_stiffness(torques, turned, found.stiffness, weight),
         "loaded_pairs": found.loaded_pairs @ weight,
         **_zone_load(found.inner_load @ weight),
         **_edge_share(design.mesh, found, weight),
@@ -318,6 +324,27 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
             built, known.contacts, weight, np.interp(built.case.operation.load, torques, turned)
         ),
     }
+
+
+def _stiffness(
+    torques: np.ndarray, turned: np.ndarray, slopes: np.ndarray, weight: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Torque over mean wind-up, the slope of that curve, and the mean of the slopes over the phases [torque].
+
+    Phases follow each other under one torque, so that compliances are averaged: the mean of the slopes is
+    above the slope of the mean.
+    """
+    slope = 1.0 / ((1.0 / slopes) @ weight)
+    return {
+        "torsional_stiffness": _secant(torques, turned, slope),
+        "tangent_torsional_stiffness": slope,
+        "phase_mean_torsional_stiffness": slopes @ weight,
+    }
+
+
+def _secant(torques: np.ndarray, turned: np.ndarray, slope: np.ndarray) -> np.ndarray:
+    """Torque over wind-up; its limit, the slope, without any."""
+    return np.where(turned > 0.0, torques / np.where(turned > 0.0, turned, 1.0), slope)
 
 
 def engaged_at(built: Built) -> Engagement:
@@ -453,7 +480,7 @@ def torsion_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     told = data["torsional_stiffness"].attrs
     of = {"stiffness_of": told.get("covers", "") + told.get("assumed", "")}
     return {
-        "torsion": by_torque(data, WIND_UP) | of | _slopes(data),
+        "torsion": by_torque(data, (*WIND_UP, *_OTHER_STIFFNESS)) | of | _slopes(data),
         "kinematic_play": float(data["kinematic_play"]),
     }
 

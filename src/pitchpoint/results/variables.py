@@ -166,8 +166,12 @@ VARIABLES: dict[str, Variable] = {
     "film_torsional_stiffness": torsional_stiffness(
         "torsional stiffness of the films alone", "K_film"
     ),
-    "stiffness_without_films": torsional_stiffness("torsional stiffness without films", "K"),
-    "stiffness_with_films": torsional_stiffness("torsional stiffness, films in series", "K'"),
+    "stiffness_without_films": torsional_stiffness(
+        "slope of torque over wind-up without films", "K"
+    ),
+    "stiffness_with_films": torsional_stiffness(
+        "slope of torque over wind-up, films in series", "K'"
+    ),
     "film_status": Variable("status of the film", "", "1"),
     "film_by_law": Variable("film thickness by regression", "h", "m", "um", "length"),
     "film_loss": power("loss of the teeth by their films", "P_EHL"),
@@ -418,6 +422,10 @@ VARIABLES: dict[str, Variable] = {
         "kinematic error, peak to peak", "Δφ range", "rad", "arcsec", "angle"
     ),
     "torsional_stiffness": torsional_stiffness("torsional stiffness", "K"),
+    "tangent_torsional_stiffness": torsional_stiffness("slope of torque over wind-up", "dT/dΔθ"),
+    "phase_mean_torsional_stiffness": torsional_stiffness(
+        "mean over the phases of the slopes of torque over wind-up", "mean K(φ)"
+    ),
     "edge_share": percent("part of the load on edges of the teeth", "F_e/F"),
     "wind_up_part": Variable("part of the wind-up", "Δθ", "rad", "arcmin", "angle"),
     "slope_stiffness": torsional_stiffness("torsional stiffness of a part of the curve", "K"),
@@ -535,6 +543,10 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
         "stage_torsional_stiffness": stiffness("stiffness of the stage, at the output", "K"),
         "wind_up_range": deviation("change of the deflection with the phase", "Δs range"),
         "torsional_stiffness": stiffness("stiffness at the output", "K"),
+        "tangent_torsional_stiffness": stiffness("slope of force over deflection", "dF/dΔs"),
+        "phase_mean_torsional_stiffness": stiffness(
+            "mean over the phases of the slopes of force over deflection", "mean K(φ)"
+        ),
         "mesh_torsional_stiffness": stiffness(
             "stiffness at the output over the mesh cycle", "K(φ)"
         ),

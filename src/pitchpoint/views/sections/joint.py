@@ -43,7 +43,12 @@ __all__ = [
     "joint_printed",
 ]
 
-_OWN = ("natural_frequency", "joint_damping_ratio", "reduced_inertia", "torsional_stiffness")
+_OWN = (
+    "natural_frequency",
+    "joint_damping_ratio",
+    "reduced_inertia",
+    "tangent_torsional_stiffness",
+)
 _CURVE = {
     "course_speed": "driver speed",
     "course_torque": "amplitude of the torque",

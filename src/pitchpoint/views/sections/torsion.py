@@ -59,6 +59,10 @@ _ELASTIC = Key("without friction", INK, "dash")
 _PAIRS = Key("pairs that carry, mean over the mesh cycle", PALETTE[2])
 
 
+_SLOPES = ("torsional_stiffness", "tangent_torsional_stiffness")
+_BENT = 0.01
+"""Part by which torque over wind-up differs from its slope, from which on both are told."""
+
 _PLAY = 1e-5
 """Play over the largest wind-up below which it is what dimensions are known to."""
 
@@ -82,19 +86,27 @@ def torsion_answer(outcome: Outcome) -> str:
         return "nothing is carried at the operating point"
     values = {
         name: float(np.interp(at, data["torque"], data[name]))
-        for name in ("torsional_stiffness", "wind_up", "loaded_pairs")
+        for name in (*_SLOPES, "wind_up", "loaded_pairs")
         if name in data
     }
     if not np.isfinite([*values.values()]).all():
         return "no equilibrium was found at the operating point"
     told = {name: level(name, value, data) for name, value in values.items()}
     return (
-        f"{told['torsional_stiffness']} at the operating point, where the drive has "
+        f"{told['torsional_stiffness']} at the operating point{_slope(values, told)}, where the drive has "
         f"{_words(data).yielded} by {told['wind_up']}"
         + _carrying(told.get("loaded_pairs", ""))
         + _free(data)
         + (f"; {note}" if (note := str(data.attrs.get("brief", ""))) else "")
     )
+
+
+def _slope(values: Mapping[str, float], told: Mapping[str, str]) -> str:
+    """Slope of the torque over the wind-up in words; empty where torque over wind-up is the same."""
+    secant, slope = (values.get(name) for name in _SLOPES)
+    if not secant or slope is None or abs(slope / secant - 1.0) < _BENT:
+        return ""
+    return f" ({told[_SLOPES[1]]} as the slope there)"
 
 
 def _carrying(pairs: str) -> str:
@@ -122,7 +134,7 @@ def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curv
         *([_loop(f"{name}_loop", variant, data, known)] if one_mesh else []),
         _against(
             f"{name}_stiffness",
-            "torsional_stiffness",
+            "tangent_torsional_stiffness",
             words.stiffness,
             data,
             slope,
