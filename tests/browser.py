@@ -110,6 +110,12 @@ class Browser:
         found = self.call("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)
         path.write_bytes(base64.b64decode(found["data"]))
 
+    def printed(self) -> bytes:
+        """The page on paper of A4, as a PDF."""
+        size = {"paperWidth": 210 / 25.4, "paperHeight": 297 / 25.4}
+        asked = {"preferCSSPageSize": True, "printBackground": True}
+        return base64.b64decode(self.call("Page.printToPDF", **size, **asked)["data"])
+
 
 @contextmanager
 def browser() -> Iterator[Browser]:

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import pytest
 from browser import CHROMIUM, Browser, browser
 from pages import payload
+from seen import faults_on_paper, faults_on_screen, faults_shown, pages
 from sound import SMOOTH, quick_first
 
 from pitchpoint.runs.run import run
@@ -81,6 +82,45 @@ def test_all_is_drawn_and_the_console_is_silent(
     )
     assert (ground == "rgb(255, 255, 255)") == (scheme == "light")
     assert chromium.console == []
+
+
+@pytest.mark.parametrize("scheme", quick_first(["light", "dark"]))
+def test_nothing_is_cut_empty_or_overlapping_on_screens_and_on_paper(
+    chromium: Browser, report: Path, scheme: str
+) -> None:
+    assert faults_on_screen(chromium, report, 500, scheme) == []
+    assert faults_on_screen(chromium, report, 1280, scheme) == []
+    before = chromium.run(_LOOKS)
+    assert pages(chromium.printed()) > 1
+    assert faults_on_paper(chromium) == []
+    assert chromium.run(_LOOKS) == before
+    chromium.window = None
+
+
+_LOOKS = """[
+  document.querySelector('#cycle_efficiency .main-svg').style.background,
+  document.querySelector('#cycle_efficiency').clientWidth,
+  document.querySelectorAll('details[open]').length,
+  document.querySelectorAll('.pane[hidden]').length,
+]"""
+"""What printing changes for a while."""
+
+_SPOILED = {
+    "wider than its window": "document.querySelector('#models table').style.width = '2000px'",
+    "overlap": "document.querySelector('#cycle h2').style.marginBottom = '-60px'",
+    "empty": "document.querySelectorAll('#cycle_friction .trace').forEach(one => one.remove())",
+    "cut": "document.querySelector('#cycle_input_torque .xtitle').setAttribute('x', 9999)",
+    '" on "': "Plotly.relayout('along_loss', {'yaxis.tickfont.size': 60})",
+    "told from its ground": "document.querySelector('#along_loss .xtitle').style.fill = '#fafafa'",
+}
+
+
+@pytest.mark.parametrize("fault", _SPOILED)
+def test_what_is_cut_empty_or_overlapping_is_found(wide: Browser, fault: str) -> None:
+    assert faults_shown(wide, 1280) == []
+    wide.run(f"({_SPOILED[fault]}, null)")
+    assert any(fault in words for words in faults_shown(wide, 1280))
+    wide.window = None
 
 
 def test_the_picture_beside_the_answer_moves_with_the_teeth(wide: Browser) -> None:

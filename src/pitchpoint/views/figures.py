@@ -227,17 +227,16 @@ def rounded(values: Any, digits: int = 5) -> list[Any]:
     return told
 
 
-def line_heights(values: Any) -> list[Any]:
-    """List of numbers for a line on an axis without decades: finer than a page of 1280 px can show."""
+def line_heights(values: Any, levels: int = 4000) -> list[Any]:
+    """List of numbers for a line on an axis without decades, in so many heights at least.
+
+    A figure is 300 px high, and may be enlarged.
+    """
     numbers = rounded(values)
     finite = [value for value in numbers if value is not None]
     span = max(finite, default=0.0) - min(finite, default=0.0)
-    decimals = ceil(log10(_LEVELS / span)) if span else None
+    decimals = ceil(log10(levels / span)) if span else None
     return [v if v is None or decimals is None else round(v, decimals) + 0.0 for v in numbers]
-
-
-_LEVELS = 4000
-"""Heights that a line has at least: a figure is 300 px high, and may be enlarged."""
 
 
 def _decimals(value: float, digits: int) -> int:

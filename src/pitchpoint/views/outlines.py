@@ -1,10 +1,13 @@
-"""Outlines for the page: no more corners than can be seen."""
+"""Outlines and courses for the page: no more corners than can be seen."""
 
 from math import hypot
 
 import numpy as np
 
-__all__ = ["simplified"]
+__all__ = ["simplified", "visible_points"]
+
+_WIDE, _HIGH, _FINE = 480.0, 240.0, 0.8
+"""Pixels of a figure beside another, and how far a course may be moved by."""
 
 
 def simplified(outline: np.ndarray, fine: float) -> np.ndarray:
@@ -12,6 +15,32 @@ def simplified(outline: np.ndarray, fine: float) -> np.ndarray:
 
     Source: Douglas and Peucker's method.
     """
+    corners: np.ndarray = outline[_corners(outline, fine)]
+    return corners
+
+
+def visible_points(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Places of the points of a course without which it would look otherwise, gaps among them [point].
+
+    Args:
+        x, y: the course, as high and wide in its figure as it can be; NaN where it is interrupted.
+    """
+    gaps = ~np.isfinite(x + y)
+    pixels = np.stack([_scaled(x, _WIDE), _scaled(y, _HIGH)], axis=1)
+    kept = gaps & ~np.append(gaps[1:], False)  # of a gap its last place
+    for run in np.split(np.arange(x.size), np.flatnonzero(np.diff(gaps)) + 1):
+        if run.size and not gaps[run[0]]:
+            kept[run] = _corners(pixels[run], _FINE)
+    return np.flatnonzero(kept)
+
+
+def _scaled(values: np.ndarray, pixels: float) -> np.ndarray:
+    finite = values[np.isfinite(values)]
+    return values * (pixels / (np.ptp(finite) or 1.0)) if finite.size else values
+
+
+def _corners(outline: np.ndarray, fine: float) -> np.ndarray:
+    """True for corners that stay [corner]."""
     kept = np.zeros(len(outline), bool)
     kept[[0, -1]] = True
     stack = [(0, len(outline) - 1)]
@@ -28,4 +57,4 @@ def simplified(outline: np.ndarray, fine: float) -> np.ndarray:
             middle = first + 1 + farthest
             kept[middle] = True
             stack += [(first, middle), (middle, last)]
-    return outline[kept]
+    return kept

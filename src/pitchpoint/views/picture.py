@@ -16,10 +16,14 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views.outlines import simplified
 from pitchpoint.views.path import PathOfContact, path_of
 from pitchpoint.views.point import period_of
 
 __all__ = ["Body", "Picture", "picture_of"]
+
+_FINE = 2e-4
+"""Largest distance that a corner of an outline may be moved by, in tooth heights."""
 
 Place = tuple[float, float]
 
@@ -117,7 +121,7 @@ class Body:
         return {
             "ring": self.ring,
             "turns": self.turns,
-            "tooth": _points(self.tooth),
+            "tooth": _points(simplified(self.tooth, _FINE * float(np.ptp(self.tooth[:, 1])))),
             "root_arc": _points(self._root_arc()),
             "repeats": [self._repeat(tooth) for tooth in range(self.count)],
             "place": (x, y),

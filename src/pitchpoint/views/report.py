@@ -21,6 +21,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, curves
 from pitchpoint.views.inputs import recorded_units
+from pitchpoint.views.one_page import one_page
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import (
     Block,
@@ -106,6 +107,7 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
             version=page.version,
             pictured=None if designs else next((one for one in page.sections if one.picture), None),
             glimpse=None if designs else next(iter(figures), None),
+            p=one_page(page, shown),
             data=packed(_shared(_payload(shown))),
             plotly=packed_plotly(),
         )
@@ -115,11 +117,13 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
 def _made(section: Section, page: Page) -> dict[str, Any]:
     """What the template shows of a section."""
     title, short = said(section.title, page), said(section.short, page)
+    beside = _aside(section, page)
     return {
         "name": section.name,
         "title": title,
         "short": short,
-        "folded": section.folded or _aside(section, page),
+        "folded": section.folded or beside,
+        "beside": beside,
         "blocks": _captioned(section.blocks(page), title),
     }
 
@@ -138,7 +142,7 @@ def _captioned(blocks: Iterable[Block], title: str) -> list[Block]:
         if isinstance(block, Heading):
             title = str(block.words)
         elif isinstance(block, Table) and not block.caption:
-            block = replace(block, caption=title)
+            block = replace(block, caption=title, repeats=True)
         elif isinstance(block, Variants):
             each = {name: _captioned(them, f"{title}, {name}") for name, them in block.each.items()}
             block = Variants(each)
@@ -167,15 +171,24 @@ def _drawn(block: Drawn) -> "markupsafe.Markup":
 def packed_plotly() -> str:
     """plotly.js, compressed: it is most of the page, and is kept, since packing it takes .2 s."""
     folder = _kept_pages()
-    path = None if folder is None else folder / f"plotly-{version('plotly')}"
+    path = None if folder is None else folder / f"plotly-b85-{version('plotly')}"
     packed = None if path is None else read(path)
     if packed is None:
         from plotly.offline import get_plotlyjs
 
-        packed = base64.b64encode(gzip.compress(get_plotlyjs().encode(), mtime=0))
+        text = _as_text(get_plotlyjs())
         if path is not None:
-            write(path, packed)
+            write(path, text.encode())
+        return text
     return packed.decode()
+
+
+def _as_text(content: str) -> str:
+    """Content compressed, five characters for four bytes, none of which HTML reads as anything else."""
+    return base64.b85encode(gzip.compress(content.encode(), mtime=0)).decode().translate(_PLAIN)
+
+
+_PLAIN = str.maketrans("<>&", ".:,")
 
 
 @cache
@@ -245,7 +258,7 @@ def _payload(each: Sequence[Panel]) -> dict[str, Any]:
 def packed(content: Mapping[str, Any]) -> str:
     """Content of a page for its script, compressed: `opened` in figures.js reads it."""
     text = json.dumps(content, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
+    return _as_text(text)
 
 
 _LONG = 8

@@ -57,7 +57,7 @@ class Table:
     """A table: names in the first column, numbers in the others.
 
     Its caption is the heading above it unless it has one of its own. A wide one keeps its lines whole and
-    scrolls sideways under its first column.
+    scrolls sideways under its first column. A caption that repeats the heading is for ears alone.
     """
 
     head: Sequence[str]
@@ -65,6 +65,7 @@ class Table:
     compact: bool = False
     caption: str = ""
     wide: bool = False
+    repeats: bool = False
     block: ClassVar[str] = "table"
 
 
@@ -284,6 +285,8 @@ class Section:
         closing: blocks at the end of the answer.
         warns: warnings that stand in the section, not at the top.
         screen: what the command line prints of one variant.
+        sums_up: tables of the gears and sentences on what is assumed, for the page that sums up one outcome.
+        main_figure: name of the figure that may stand on that page; empty without one.
         folded: True for one that a reader opens.
         picture: identity of its drawing that stands beside the answer; empty without one.
         moving: that drawing of one outcome which has its parts, by the name that it gets in a page.
@@ -301,6 +304,8 @@ class Section:
     closing: Callable[[Page], Iterable[Block]] = lambda page: ()
     warns: Callable[[Outcome], Iterable[str]] = lambda outcome: ()
     screen: Callable[[Outcome], Iterable[Printed]] = lambda outcome: ()
+    sums_up: Callable[[Outcome], Iterable[Table | Paragraph]] = lambda outcome: ()
+    main_figure: str = ""
     folded: bool = False
     picture: str = ""
     moving: Callable[[Outcome, str], Moving] | None = None

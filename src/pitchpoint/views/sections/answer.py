@@ -31,7 +31,16 @@ from pitchpoint.views.sections.back_driving import back_driving, jamming, locks_
 from pitchpoint.views.sections.beside import loss_split
 from pitchpoint.views.sections.spread import spread, spread_sentence
 
-__all__ = ["ANSWER", "bearing_rows", "beyond", "summary", "teeth_rows"]
+__all__ = [
+    "ANSWER",
+    "bearing_rows",
+    "beyond",
+    "operation_words",
+    "sharing_words",
+    "summary",
+    "teeth_rows",
+    "warned",
+]
 
 AVERAGES = {
     "base_pitch": "Averages run over one {pitch}, after which the state repeats.",
@@ -44,7 +53,7 @@ def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
     values = {
         "variants": variants,
-        "warnings": (warnings := _warned(page)),
+        "warnings": (warnings := warned(page)),
         "first_doubt": show.first_clauses(next(iter(warnings), ""), _SUMMED_UP),
         "several": page.several,
         "designs": page.designs,
@@ -102,13 +111,13 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         "name": name,
         "oil": manifest["oil"],
         "oil_note": _oil_note(outcome),
-        "sharing": "" if single else _sharing(manifest),
+        "sharing": "" if single else sharing_words(manifest),
         "tiles": [_tile(figure) for figure in figures],
         "facts": [
             (figure.name, figure.words) for figure in figures if len(figure.detail) > _IN_A_TILE
         ],
         "averaging": "" if single else _averaging(outcome),
-        "operation": _operation(outcome),
+        "operation": operation_words(outcome),
         "ratio": "" if single else _ratio(manifest),
         "laws": manifest["laws"],
         "finished": manifest["finished"],
@@ -161,7 +170,7 @@ def _instead(outcome: Outcome) -> list[dict[str, str]]:
     ]
 
 
-def _sharing(manifest: Mapping[str, Any]) -> str:
+def sharing_words(manifest: Mapping[str, Any]) -> str:
     """How the load is shared; in a drive whose stages differ, that of each."""
     each = ((model["effect"].partition(", "), model["title"]) for model in manifest["models"])
     named = [(place, title) for (effect, _, place), title in each if effect == "load sharing"]
@@ -185,7 +194,7 @@ def _oil_note(outcome: Outcome) -> str:
     )
 
 
-def _operation(outcome: Outcome) -> str:
+def operation_words(outcome: Outcome) -> str:
     """The operating point in words."""
     speed, torque, force, temperature = (
         show.pretty(words(outcome, "operation", key))
@@ -243,7 +252,7 @@ def _range(data: xr.Dataset, name: str, value: Callable[[str], float]) -> str:
     return show.span(*ends, [value(end) for end in ends], data)
 
 
-def _warned(page: Page) -> dict[str, list[str]]:
+def warned(page: Page) -> dict[str, list[str]]:
     """Sentences above every number, each with the variants that it is about."""
     found: dict[str, list[str]] = {}
     for name, outcome in page.outcomes.items():

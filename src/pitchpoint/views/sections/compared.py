@@ -1,6 +1,7 @@
 """Printed against computed numbers, misses first."""
 
 from collections.abc import Iterator, Mapping
+from itertools import groupby
 from math import ceil, log10
 from typing import Any
 
@@ -43,8 +44,8 @@ def _rows(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
     ordered = sorted(every, key=lambda pair: _ORDER.get(pair[1].verdict, 0))
     table = [{**_row(row), "variant": name} for name, row in ordered]
     return {
-        "open": [row for row in table if row["verdict"] != "pass"],
-        "passed": [row for row in table if row["verdict"] == "pass"],
+        "open": _reasoned([row for row in table if row["verdict"] != "pass"]),
+        "passed": _reasoned([row for row in table if row["verdict"] == "pass"]),
         "counts": [
             {"kind": kind, "verdicts": dict(verdicts), "variant": name}
             for name, rows in by_variant.items()
@@ -56,6 +57,17 @@ def _rows(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
         "variants": [*by_variant],
         "others": [name for name in outcomes if name not in by_variant],
     }
+
+
+def _reasoned(table: list[dict[str, str]]) -> list[dict[str, str]]:
+    """Rows of which the last of several with one reason says it for all of them."""
+    done = []
+    for reason, rows in groupby(table, key=lambda row: row["reason"]):
+        *before, last = rows
+        several = f"These {len(before) + 1} rows: " if before and reason else ""
+        done += [row | {"because": ""} for row in before]
+        done.append(last | {"because": f"{several}{reason}"})
+    return done
 
 
 def _row(row: Row) -> dict[str, str]:

@@ -276,4 +276,5 @@ CYCLE = Section(
     answer=_key_figures,
     card=_turns,
     screen=_screen,
+    main_figure="cycle_efficiency",
 )

@@ -19,7 +19,7 @@ from pitchpoint.views import show
 from pitchpoint.views.inputs import words
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import of_geometry
-from pitchpoint.views.section import Block, Drawn, Moving, Page, Section
+from pitchpoint.views.section import Block, Drawn, Moving, Page, Section, Table
 from pitchpoint.views.sections.passing import gap_panel
 from pitchpoint.views.way import place_of
 
@@ -153,6 +153,12 @@ def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
     ]
 
 
+def _sums_up(outcome: Outcome) -> Iterator[Table]:
+    """Main dimensions; what both splines share stands in both columns."""
+    rows = [row if len(row) == 3 else (*row, row[1]) for row in wave_dimensions(outcome)]
+    yield Table(["Gears", "flexspline", "circular spline"], rows, caption="Gears")
+
+
 def _depth(teeth: xr.Dataset) -> float:
     """From the tip of the circular spline's teeth to that of a flexspline tooth on the long axis [m]."""
     deepest, tip = teeth["passing"].values[..., 1].max(), teeth["space"].values[:, 1].min()
@@ -200,4 +206,5 @@ DRIVE = Section(
     blocks=_blocks,
     picture="drive0-close",
     moving=_moving,
+    sums_up=_sums_up,
 )

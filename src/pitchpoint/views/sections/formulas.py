@@ -31,6 +31,7 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.inputs import in_words
+from pitchpoint.views.outlines import visible_points
 from pitchpoint.views.section import (
     Block,
     Folded,
@@ -208,10 +209,8 @@ def _at(one: Curves, study: _Study, point: int) -> dict[str, list[Any]]:
     data = study.data
     if not _holds(data, one):
         return dict.fromkeys("xy", [[]] * len(one.names))
-    return {
-        "x": [_shown(one.along, data, point)] * len(one.names),
-        "y": [_heights(each, data, point, one) for each in one.names],
-    }
+    courses = [_course(each, data, point, one) for each in one.names]
+    return {"x": [x for x, _ in courses], "y": [y for _, y in courses]}
 
 
 def _families(name: str, studies: list[_Study], beside: Beside) -> Panel:
@@ -249,12 +248,7 @@ def _family(name: str, one: Curves, points: list[_Where], titles: list[str]) -> 
     keys = [Key(title, PALETTE[k]) for k, title in enumerate(titles)]
     unit = show.unit_of(variable)
     traces = [
-        plain(
-            key,
-            _shown(one.along, study.data, point),
-            _heights(variable, study.data, point, one),
-            unit,
-        )
+        plain(key, *_course(variable, study.data, point, one), unit)
         for key, (study, point) in zip(keys, points, strict=True)
     ]
     return _drawn(name, one, traces, keys)
@@ -289,10 +283,17 @@ def _shown(name: str, data: xr.Dataset, point: int) -> list[Any]:
     return rounded(display(name, data[name].values[point]))
 
 
-def _heights(name: str, data: xr.Dataset, point: int, one: Curves) -> list[Any]:
-    """Values of a course; on decades small ones keep their digits."""
-    values = display(name, data[name].values[point])
-    return rounded(values) if one.decades else line_heights(values)
+_LEVELS = 1000
+"""Places and heights of a course at least, of which a publication may have hundreds."""
+
+
+def _course(name: str, data: xr.Dataset, point: int, one: Curves) -> tuple[list[Any], list[Any]]:
+    """Places and values of a course that can be seen; on decades small values keep their digits."""
+    x, y = (display(of, data[of].values[point]) for of in (one.along, name))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        kept = visible_points(x, np.log10(y) if one.decades else y)
+    heights = rounded(y[kept]) if one.decades else line_heights(y[kept], _LEVELS)
+    return line_heights(x[kept], _LEVELS), heights
 
 
 def _figure(name: str, one: Curves, point: _Where, beside: Beside) -> Figure:

@@ -389,4 +389,5 @@ LOSS_MAP = Section(
     order=700.0,
     parts=("loss_map",),
     blocks=_blocks,
+    main_figure="map_mean_loss",
 )

@@ -117,5 +117,6 @@ STAGES = Section(
     blocks=_blocks,
     lacks=_lacks,
     card=_card,
+    main_figure="stages0",
     screen=lambda one: [Printed(rows=rows)] if (rows := stage_rows(one)) else [],
 )

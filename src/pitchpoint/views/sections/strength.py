@@ -191,6 +191,21 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
             yield KeyFigure(order, f"Stress of {where}", value, detail)
 
 
+def _sums_up(outcome: Outcome) -> Iterator[Table | Paragraph]:
+    """Stresses and safeties of each gear, and what is assumed for them."""
+    data = outcome.parts.get("strength")
+    if data is None:
+        return
+    rows = [
+        (_place(pair["gear"][at]), *(_cell(pair, name, at) for name in _STRESSES))
+        for _, pair in _pairs(data)
+        for at in range(2)
+    ]
+    yield Table(["Strength", *(head(name, data) for name in _STRESSES)], rows, caption="Strength")
+    for text in _told(data, "assumed"):
+        yield Paragraph(text)
+
+
 def _place(value: xr.DataArray) -> str:
     """Gear of a value, and its stage where there are several."""
     stage = f" of stage {value['stage'].values}" if "stage" in value.coords else ""
@@ -216,4 +231,5 @@ STRENGTH = Section(
         chain(*_doubts(one.parts["strength"]).values()) if "strength" in one.parts else ()
     ),
     screen=_screen,
+    sums_up=_sums_up,
 )

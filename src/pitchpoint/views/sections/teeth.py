@@ -14,7 +14,7 @@ from pitchpoint.views.inputs import words
 from pitchpoint.views.path import PathOfContact, path_of
 from pitchpoint.views.picture import picture_of
 from pitchpoint.views.point import of_geometry
-from pitchpoint.views.section import Block, Drawn, Moving, Page, Section
+from pitchpoint.views.section import Block, Drawn, Moving, Page, Section, Table
 from pitchpoint.views.sections.plane_of_action import plane_of_action
 from pitchpoint.views.sections.sliding import sliding_figure
 
@@ -87,6 +87,25 @@ def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
         *_numbers(teeth, _POINTS),
     ]
     return rows + (_numbers(teeth, _OVERLAP) if path.helical else [])
+
+
+_DETAILS = (
+    "smallest x",
+    "tip alteration",
+    "base ",
+    "form ",
+    "active ",
+    "specific ",
+    "transverse base ",
+)
+"""How dimensions begin that a page which sums up leaves out."""
+
+
+def _sums_up(outcome: Outcome) -> Iterator[Table]:
+    """Dimensions that a drawing has; what both gears share stands in both columns."""
+    rows = [row for row in dimensions(outcome) if not row[0].startswith(_DETAILS)]
+    both = [row if len(row) == 3 else (row[0], row[1], row[1]) for row in rows]
+    yield Table(["Gears", *outcome.manifest["members"][:2]], both, caption="Gears")
 
 
 Dimension = tuple[str, float, int, Variable]
@@ -212,4 +231,5 @@ TEETH = Section(
     blocks=_blocks,
     picture="mesh0-close",
     moving=_moving,
+    sums_up=_sums_up,
 )

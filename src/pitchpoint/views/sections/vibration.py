@@ -405,4 +405,5 @@ VIBRATION = Section(
     blocks=_blocks,
     answer=_answer,
     screen=_screen,
+    main_figure="vibration0_factor",
 )

@@ -14,6 +14,22 @@
     return `hsl(${hue.toFixed(0)}, ${(80 * share).toFixed(0)}%, ${(100 - 88 * light).toFixed(0)}%)`;
   }
 
+  // What `lit` did, taken back for white paper.
+  const unlit = (words) =>
+    words.replace(/hsl\((\d+), (\d+)%, (\d+)%\)/g, (_, h, s, l) => `hsl(${h}, ${s / 0.8}%, ${(100 - l) / 0.88}%)`);
+  const whiter = (key, value) => (key.endsWith("bgcolor") ? "#fff" : typeof value === "string" ? unlit(value) : value);
+
+  // Drawings of the page in the colours of white paper; what puts them back.
+  function whitened() {
+    return ["stroke", "fill", "style"].flatMap((name) =>
+      [...document.querySelectorAll(`[${name}*="hsl("]`)].filter((one) => !one.closest(".plot")).map((one) => {
+        const value = one.getAttribute(name);
+        one.setAttribute(name, unlit(value));
+        return () => one.setAttribute(name, value);
+      })
+    );
+  }
+
   function dressed(key, value) {
     if (dark.matches && key.endsWith("bgcolor")) return getComputedStyle(document.body).getPropertyValue("--paper").trim();
     const colour = dark.matches && typeof value === "string" && /^#([0-9a-f]{3}){1,2}$/i.test(value);
@@ -30,10 +46,25 @@
   }
   dark.addEventListener("change", () => location.reload());
 
+  // Bytes of a text that holds four in five characters of these, the last of them perhaps fewer.
+  function unpacked(text) {
+    const digits = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%,()*+-;.=:?@^_`{|}~";
+    const value = new Uint8Array(128);
+    for (let k = 0; k < 85; k++) value[digits.charCodeAt(k)] = k;
+    const groups = Math.ceil(text.length / 5);
+    const bytes = new DataView(new ArrayBuffer(4 * groups));
+    for (let group = 0; group < groups; group++) {
+      let sum = 0;
+      for (let k = 5 * group; k < 5 * group + 5; k++) sum = 85 * sum + (k < text.length ? value[text.charCodeAt(k)] : 84);
+      bytes.setUint32(4 * group, sum);
+    }
+    return bytes.buffer.slice(0, 4 * groups - (5 * groups - text.length));
+  }
+
   // Text that stands in the page compressed.
   async function opened(id) {
-    const packed = Uint8Array.from(atob(document.getElementById(id).textContent), (one) => one.charCodeAt(0));
-    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+    const packed = document.getElementById(id).textContent;
+    const stream = new Blob([unpacked(packed)]).stream().pipeThrough(new DecompressionStream("gzip"));
     return new Response(stream).text();
   }
 

@@ -284,13 +284,36 @@
     if (place) draw(place).then(() => setTimeout(next, 30));
     else seen.drawn = "all";
   })();
+  // On paper everything is open but sections that the case is not about; colours are those of white paper.
+  let restore = [];
   window.addEventListener("beforeprint", () => {
-    document.querySelectorAll("details").forEach((one) => (one.open = true));
-    document.querySelectorAll(".pane").forEach((one) => (one.hidden = false));
-    places.forEach((place) => draw(place).then(() => Plotly.relayout(place, { width: 340, height: 230 })));
+    const alone = seen.alone !== undefined;
+    const folded = alone ? [] : [...document.querySelectorAll("details:not([open]):not(.beside)")];
+    const hidden = alone ? [] : [...document.querySelectorAll(".pane[hidden]")];
+    for (const one of folded) one.open = true;
+    for (const one of hidden) one.hidden = false;
+    restore = folded.map((one) => () => (one.open = false));
+    restore.push(...hidden.map((one) => () => (one.hidden = true)), ...(dark.matches ? whitened() : []));
+    for (const place of places) {
+      const summed = place.closest("#one-page");
+      if (summed || !(alone || place.closest(".beside:not([open])"))) draw(place).then(() => print(place, !summed));
+    }
   });
   window.addEventListener("afterprint", () => {
-    document.querySelectorAll('.tabs button[aria-pressed="true"]').forEach((one) => one.click());
-    places.forEach((place) => Plotly.relayout(place, { width: null, height: null, autosize: true }));
+    for (const undo of restore) undo();
+    delete seen.alone;
   });
+  document.getElementById("print-one-page").addEventListener("click", () => {
+    seen.alone = "";
+    window.print();
+  });
+
+  // A figure in the colours of white paper, half as wide as a page where its place is not.
+  function print(place, resized) {
+    const { data, layout } = place;
+    const size = resized ? { width: place.closest(".glance") ? 270 : 338, height: 230 } : {};
+    const paper = dark.matches ? JSON.parse(JSON.stringify({ data, layout }), whiter) : { data, layout };
+    restore.push(() => Plotly.react(place, data, layout).then(() => Plotly.Plots.resize(place)));
+    return Plotly.react(place, paper.data, { ...paper.layout, autosize: !resized, font: { ...paper.layout.font, size: 10 }, ...size });
+  }
 })();

@@ -1,0 +1,155 @@
+"""The page that sums a report up on paper: gears, operating point, results, figures, doubts, assumptions."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import Figure, Key, Panel
+from pitchpoint.views.first_screen import beside_each_other
+from pitchpoint.views.inputs import input_rows
+from pitchpoint.views.section import Page, Paragraph, Table, key_figures
+from pitchpoint.views.sections.answer import operation_words, sharing_words, warned
+
+__all__ = ["one_page"]
+
+_RESULTS, _GEARS, _COLUMNS, _DOUBTS, _ASSUMED = 15, 17, 4, 4, 10
+"""How much one page has room for: key figures, rows of the gears, variants, doubts, assumed inputs."""
+
+_LINE, _BESIDE = 140, 64
+"""Characters of a doubt, and of what stands beside a key figure."""
+
+_CHOSEN = ("assumed", "fitted", "corrected")
+_USUAL = ("default", "derived")
+
+
+def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
+    """What the template shows of the first variant, and of all where they stand side by side.
+
+    Args:
+        page: with the sections that are shown.
+        shown: panels of the whole report, of which main figures are taken.
+    """
+    outcome = next(iter(page.outcomes.values()))
+    manifest = outcome.manifest
+    blocks = [] if page.designs else [b for s in page.sections for b in s.sums_up(outcome)]
+    tables = [block for block in blocks if isinstance(block, Table)]
+    remarks = [str(block.words) for block in blocks if isinstance(block, Paragraph)]
+    doubts = warned(page)
+    return {
+        "of": next(iter(page.outcomes)) if page.several else "",
+        "gears": [] if page.designs else [_cut(t) for t in tables or [_given_gears(outcome)]],
+        "facts": [] if page.designs else _facts(outcome),
+        "results": _results(page, outcome),
+        "more_variants": max(len(page.outcomes) - _COLUMNS, 0),
+        "figures": list(_main_figures(page, shown)),
+        "doubts": [show.first_clauses(text, _LINE) for text in [*doubts][:_DOUBTS]],
+        "more_doubts": max(len(doubts) - _DOUBTS, 0),
+        "assumed": "" if page.designs else _assumed(manifest),
+        "remarks": remarks,
+        "code": manifest["surroundings"].get("code", ""),
+        "fingerprints": _fingerprints(page),
+    }
+
+
+def _cut(table: Table) -> Table:
+    """A table of as many rows as there is room for."""
+    rows = list(table.rows)
+    rest = len(rows) - _GEARS
+    if rest <= 0:
+        return replace(table, rows=rows)
+    return replace(table, rows=rows[:_GEARS], caption=f"{table.caption}, {rest} more below")
+
+
+def _given_gears(outcome: Outcome) -> Table:
+    """Inputs of gears that no section sums up, those left as they are by default apart."""
+    rows = [
+        (_plain_key(row["key"]), show.pretty(row["value"]))
+        for row in input_rows(outcome.manifest)
+        if row["table"] in ("gears", "stages") and row["status"] not in _USUAL
+    ]
+    return Table(["Gears, as given", ""], rows, caption="Gears")
+
+
+def _plain_key(key: str) -> str:
+    """A dotted key of the case file in words."""
+    *tables, name = key.split(".")
+    stage = f"stage {tables[0]}, " if tables and tables[0].isdigit() else ""
+    return stage + name.replace("_", " ")
+
+
+def _place_of(row: Mapping[str, str]) -> str:
+    """What an input is of where its key alone does not say it."""
+    table = row["table"].partition(" ")[0]
+    return "" if table in ("gears", "stages") else f"{table}: "
+
+
+def _facts(outcome: Outcome) -> list[tuple[str, str]]:
+    """Operating point, materials, oil and models that the numbers stand on."""
+    manifest = outcome.manifest
+    rows = input_rows(manifest)
+    materials = [
+        f"{_plain_key(row['key'])} {row['value']}" for row in rows if row["table"] == "materials"
+    ]
+    laws = "; ".join(str(law["title"]) for law in manifest["laws"])
+    facts = [
+        ("Operating point", operation_words(outcome)),
+        ("Materials", ", ".join(materials)),
+        ("Oil", str(manifest["oil"])),
+        ("Friction", laws),
+        ("Load sharing", sharing_words(manifest)),
+    ]
+    return [(term, words) for term, words in facts if words]
+
+
+def _results(page: Page, outcome: Outcome) -> Table:
+    """Key figures: of one variant with what goes with them, of several side by side."""
+    if page.several:
+        few = dict([*page.outcomes.items()][:_COLUMNS])
+        rows = [[*row.values()] for row in beside_each_other(few)][:_RESULTS]
+        return Table(["", *few], rows, caption="Results")
+    figures = key_figures(page.sections, outcome)[:_RESULTS]
+    return Table(
+        ["", "", ""], [(f.name, f.value, _detail(f.detail)) for f in figures], caption="Results"
+    )
+
+
+def _detail(words: str) -> str:
+    return show.first_clauses(words.lstrip(",; "), _BESIDE)
+
+
+def _main_figures(page: Page, shown: Iterable[Panel]) -> Iterator[Figure]:
+    """The main figures of two sections, each with the legend of its panel."""
+    drawn = {f.name: (f, panel) for panel in shown for f in panel.figures if f.drawn}
+    wanted = [section.main_figure for section in page.sections]
+    for name in [name for name in wanted if name in drawn][:2]:
+        figure, panel = drawn[name]
+        curves = panel.curves if len(panel.curves) > 1 else []
+        keys = tuple(Key(curve.label, curve.colour, curve.dash) for curve in curves)
+        yield replace(figure, keys=figure.keys or keys)
+
+
+def _assumed(manifest: Mapping[str, Any]) -> str:
+    """Inputs that somebody chose, in words, and how many are as usual."""
+    rows = input_rows(manifest)
+    chosen = [
+        f"{_place_of(row)}{_plain_key(row['key'])} {show.pretty(row['value'])}"
+        for row in rows
+        if row["status"] in _CHOSEN
+    ]
+    usual = sum(row["status"] == "default" for row in rows)
+    rest = len(chosen) - _ASSUMED
+    more = f"; {rest} more under Inputs as resolved" if rest > 0 else ""
+    words = f"Inputs assumed, fitted or corrected: {'; '.join(chosen[:_ASSUMED])}{more}. "
+    return f"{words if chosen else ''}{usual} inputs are not given and taken as usual."
+
+
+def _fingerprints(page: Page) -> str:
+    """Fingerprint of the operating point of every variant, of its first part where there is none."""
+    parts = (
+        one.parts.get("operation", next(iter(one.parts.values()), None))
+        for one in page.outcomes.values()
+    )
+    marks = (str(part.attrs.get("fingerprint", "")) for part in parts if part is not None)
+    return ", ".join(dict.fromkeys(filter(None, marks)))

@@ -1,0 +1,60 @@
+// What a person would see to be wrong, in a window so many pixels wide or on paper that is as high as told.
+(([width, height]) => {
+  const drawn = ".scatterlayer path, .heatmaplayer image, .contourlayer path, .barlayer path, .imagelayer image";
+  const faults = [];
+  const shown = (one) => one.checkVisibility({ visibilityProperty: true }) && one.getClientRects().length > 0;
+  const box = (one) => one.getBoundingClientRect();
+  const name = (one) => `${one.localName}${one.id && "#" + one.id} "${one.textContent.trim().slice(0, 40)}"`;
+  const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 2 &&
+    Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 0.3 * Math.min(a.height, b.height);
+
+  if (document.documentElement.scrollWidth > width) faults.push("the page is wider than its window");
+  for (const one of document.querySelectorAll("main *:not(svg *):not(.plot *)")) {
+    if (!shown(one) || one.closest(".scroll, .spoken, .tabbed > .pane > h3")) continue;
+    if (box(one).right > width + 1 || box(one).left < -1) faults.push("out of the window: " + name(one));
+    if (height && /^(FIGURE|TR|svg)$/.test(one.nodeName) && box(one).height > height) faults.push("higher than a page: " + name(one));
+  }
+  if (height) for (const one of document.querySelectorAll(".scroll")) {
+    if (shown(one) && one.scrollWidth > one.clientWidth + 1) faults.push("wider than the paper: " + name(one));
+  }
+
+  // Parts of one parent that stand in the way of each other.
+  for (const parent of document.querySelectorAll("main, section, .pane, details, .card, .tiles, .facts, .figures, figure, .halves, .halves > div")) {
+    const parts = [...parent.children].filter((one) => {
+      const style = getComputedStyle(one);
+      return shown(one) && style.float === "none" && style.position === "static" && style.display !== "inline";
+    });
+    parts.forEach((one, k) => {
+      for (const other of parts.slice(k + 1, k + 3)) {
+        if (meet(box(one), box(other))) faults.push(`overlap: ${name(one)} and ${name(other)}`);
+      }
+    });
+  }
+
+  const light = (colour) => {
+    const [r, g, b] = colour.match(/[\d.]+/g).map((v) => v / 255).map((v) => (v > 0.03928 ? ((v + 0.055) / 1.055) ** 2.4 : v / 12.92));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05;
+  };
+  const ground = light(height ? "rgb(255, 255, 255)" : getComputedStyle(document.querySelector("section")).backgroundColor);
+  for (const plot of document.querySelectorAll(".plot")) {
+    if (!shown(plot)) continue;
+    const say = (words) => faults.push(`figure ${plot.id}: ${words}`);
+    const marks = [...plot.querySelectorAll(drawn)].map(box);
+    if (!marks.some((one) => one.width + one.height > 1)) say("empty");
+    const level = (one) => Math.min(Math.abs(one.getScreenCTM().a), Math.abs(one.getScreenCTM().b)) < 0.01;
+    const texts = [...plot.querySelectorAll("text")].filter((one) => shown(one) && one.textContent.trim() && level(one));
+    const [outer, boxes] = [box(plot), texts.map(box)];
+    texts.forEach((one, k) => {
+      const at = boxes[k];
+      if (at.left < outer.left - 2 || at.right > outer.right + 2 || at.top < outer.top - 2 || at.bottom > outer.bottom + 2) say(`cut: "${one.textContent}"`);
+      for (let other = k + 1; other < texts.length; other++) {
+        if (meet(at, boxes[other])) say(`"${one.textContent}" on "${texts[other].textContent}"`);
+      }
+      if (one.closest(".infolayer, .xaxislayer-above, .yaxislayer-above")) {
+        const [a, b] = [light(getComputedStyle(one).fill), ground];
+        if (Math.max(a, b) / Math.min(a, b) < 3) say(`"${one.textContent}" cannot be told from its ground`);
+      }
+    });
+  }
+  return [...new Set(faults)];
+})
