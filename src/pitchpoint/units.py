@@ -370,7 +370,9 @@ _SCALES = {"HV": "Vickers", "HB": "Brinell", "HBW": "Brinell", "HBS": "Brinell"}
 _NUMBER = re.compile(
     r"([+-]?(?:\d{1,40}(?:\.\d{0,40})?|\.\d{1,40})(?:[eE][+-]?\d{1,3})?)(.*)", re.ASCII
 )
-_SIGNS = str.maketrans({"µ": "u", "μ": "u", "²": "2", "³": "3", "·": " ", "⋅": " ", "°": "deg"})
+_SIGNS = str.maketrans(
+    {"µ": "u", "μ": "u", "²": "2", "³": "3", "·": " ", "⋅": " ", "°": "deg"} | {"⁻": "-", "¹": "1"}
+)
 _PRODUCT = re.compile(r"(?<!\*)\*(?!\*)|(?<=[A-Za-z0-9])\.(?=[A-Za-z])")
 _POWER = re.compile(r"(?<=[A-Za-z])\^(?=-?\d)")
 
@@ -378,8 +380,22 @@ _POWER = re.compile(r"(?<=[A-Za-z])\^(?=-?\d)")
 _FORCE, _LENGTH = "N|gf|lbf|ozf", "m|in|ft"
 _WORD = (
     rf"(?:da|[TGMkhdcmunp])?(?:(?:{_FORCE})[kdcmunp]?(?:{_LENGTH})|{_FORCE}|{_LENGTH}|kp|tf|g|lb|oz|t|l|L"
-    r"|Pa|bar|psi|ksi|kip|atm|s|min|h|d|Hz|rpm|rps|rev|turn|rad|deg[CFR]?|arcmin|arcsec|K|W|Wh|J|hp|P|St|mol)"
+    r"|Pa|bar|psi|ksi|kip|atm|s|min|h|d|Hz|rpm|rps|rev|turn|rad|grad|gon|deg[CFR]?|arcmin|arcsec|K|W|Wh|J|hp|P|St|mol)"
 )
+_OTHERWISE = {
+    "degC": ("c", "celsius", "deg c", "° c"),
+    "degF": ("f", "fahrenheit", "deg f"),
+    "rpm": ("min-1", "r/min", "u/min", "tr/min"),
+    "um": ("micron", "microns", "u", "mu"),
+    "in": ('"', "″", "inch", "inches", "in."),
+    "N": ("newton", "newtons"),
+    "N m": ("n-m", "newton meter", "newton metre"),
+    "lbf in": ("lb in", "lb-in"),
+    "in lbf": ("in lb", "in-lb", "in-lbf", "inlb"),
+    "lbf ft": ("lb ft", "ft lb", "ft-lb", "lb-ft", "ft-lbf", "ftlb"),
+}
+"""Spellings of others, in lower case, by the unit of the lists that they mean."""
+_MARKS = "“”„‟‘’‚«»″\"'"
 _SOUND = re.compile(rf"(?:1/)?\(?{_WORD}-?[1-9]?(?:[ /(]+{_WORD}-?[1-9]?)*\)?", re.ASCII)
 
 
@@ -634,20 +650,26 @@ def _plain(text: str | float) -> str:
 
 
 def _refuse_number(text: object, plain: str, wanted: _Kind) -> NoReturn:
-    comma = "; write the decimals after a point" if re.match(r"\s*[+-]?\d+,\d", plain) else ""
     raise UnitError(
-        f"{_quoted(text)} does not start with a plain finite number{comma or _like(wanted)}",
+        f"{_quoted(text)} does not start with a plain finite number; write {_meant(plain, wanted)}",
         value=text,
     )
 
 
-def _like(wanted: _Kind) -> str:
-    return f'; write {wanted.noun} like "{wanted.example}"'
+def _meant(plain: str, wanted: _Kind) -> str:
+    """The quantity without quotation marks of its own, with a point before decimals; else an example."""
+    meant = re.sub(r"(?<=\d),(?=\d+(?!\d*,))", ".", plain.strip().strip(_MARKS).strip())
+    match = _NUMBER.fullmatch(meant)
+    if match and meant != plain and _spelling(match.group(2)) in wanted.units:
+        return f'"{meant}"' if match.group(2) else meant
+    return f'{wanted.noun} like "{wanted.example}"'
 
 
 def _refuse_unit(text: str | float, number: str, unit: str, wanted: _Kind) -> NoReturn:
     other = _first_kind(unit)
-    if other is not None:
+    if re.match(r"\d{3}\b", unit):
+        reason = "has a space in its number"
+    elif other is not None:
         reason = f"is {_KINDS[other].noun}, but {wanted.noun} is needed"
     else:
         reason = f"is not {wanted.noun}{wanted.remark}"
@@ -661,13 +683,16 @@ def _refuse_unit(text: str | float, number: str, unit: str, wanted: _Kind) -> No
 def _advice(number: str, unit: str, other: str | None, wanted: _Kind) -> str:
     if "" in wanted.units:
         return f"give a number without a unit{', or in %' if '%' in wanted.units else ''}"
-    near = None if other else _near(unit, wanted)
+    near = None if other or unit[:1].isdigit() else _near(unit, wanted)
     meant = f' (did you mean "{number} {near}"?)' if near else ""
     return f"give a number with one of {_listed(wanted)}{meant}"
 
 
 def _near(unit: str, wanted: _Kind) -> str | None:
     """Unit of a kind that is spelled like a wrong one; none for a unit that means something else."""
+    for meant, spellings in _OTHERWISE.items():
+        if meant in wanted.units and unit.strip(_MARKS[:-2]).lower() in spellings:
+            return meant
     if _SOUND.fullmatch(unit):
         return None
     lower = {one.lower(): one for one in wanted.units}

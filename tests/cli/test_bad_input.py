@@ -1297,7 +1297,7 @@ FILES = {
     "not TOML": (b"[gears\nteeth = 3", "is not a TOML file: ", "at line 1"),
     "two of a kind": (b"a = 1\na = 2", "is not a TOML file: ", "overwrite"),
     "binary": (b"\x00\x01\x02", "is not a TOML file", "line 1"),
-    "not UTF-8": ("title = 'é'".encode("latin-1"), "is not UTF-8 text", "TOML"),
+    "not UTF-8": ("title = 'é'".encode("latin-1"), "is not UTF-8 text", "Latin-1"),
     "empty": (b"", "gears: is missing", "gears, lubricant, roughness, operation"),
     "only a remark": (b"# nothing", "gears: is missing", "gears, lubricant, roughness, operation"),
     "deep tables": (deep(50_000), "is nested more than 16 levels", "most allowed"),

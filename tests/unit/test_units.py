@@ -138,7 +138,7 @@ MESSAGES = [
     (
         "3,5 mm",
         "length",
-        '"3,5 mm" does not start with a plain finite number; write the decimals after a point',
+        '"3,5 mm" does not start with a plain finite number; write "3.5 mm"',
     ),
     (
         "nan mm",

@@ -7,16 +7,18 @@ import os
 import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from pitchpoint.cases.other_formats import neighbours, not_toml, not_utf_8
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import shown, text
 from pitchpoint.plain_files import content
 from pitchpoint.registry import nearest
 
 __all__ = [
+    "DIAMETRAL_PITCH",
     "MARKS",
     "STAGES",
     "STATUSES",
@@ -44,6 +46,9 @@ MAX_DEPTH = 16
 
 STAGES = "stages"
 """Table of the meshes of a drive, a list of them from the input to the output."""
+
+DIAMETRAL_PITCH = "diametral_pitch"
+"""Key of [gears] that may stand in the place of the module of gears without a helix."""
 
 MAX_VARIANTS = 50
 """Most variants of a case; each is computed by itself."""
@@ -109,14 +114,14 @@ def read(path: Path) -> Tree:
         if max(part.count(".") for part in _BETWEEN_KEYS.split(text)) > _MANY_DOTS:
             raise _too_deep(path.name)  # the reader would take hours to say so
         tree = parsed(text)
-    except UnicodeDecodeError:
-        raise InputError("is not UTF-8 text, so it is no TOML file", file=path.name) from None
+    except UnicodeDecodeError as error:
+        raise InputError(not_utf_8(error), file=path.name) from None
     except RecursionError:
         raise _too_deep(path.name) from None
     except InputError:
         raise
     except ValueError as error:
-        raise InputError(f"is not a TOML file: {error}", file=path.name) from None
+        raise InputError(not_toml(text, error), file=path.name) from None
     demand_shallow(tree, path.name)
     try:
         overlays = _overlays(tree)
@@ -198,6 +203,8 @@ def _from(folder: Path, name: str) -> str:
 
 
 def _text(path: Path) -> str:
+    if not os.path.exists(path):
+        raise InputError(f"there is no such case file{neighbours(path)}", file=str(path))
     held = io.BytesIO(content(path, MAX_BYTES, "case file"))
     return io.TextIOWrapper(held, encoding="utf-8-sig").read()  # ends lines as Macintoshes did
 
@@ -293,7 +300,23 @@ def resolve(
         _find_files(merged, folder)
     provenance: dict[str, Provenance] = {}
     plain = {key: strip(one, provenance, name=name, key=key) for key, one in merged.items()}
+    _respell(plain, "gears", provenance)
+    stages = plain.get(STAGES)
+    for number, stage in stages.items() if isinstance(stages, dict) else ():
+        _respell(stage, f"{STAGES}.{number}.gears", provenance)
     return Document(name, plain, provenance)
+
+
+def _respell(tables: Any, place: str, provenance: dict[str, Provenance]) -> None:
+    """The diametral pitch of gears becomes their module; that of helical ones has two meanings and stays."""
+    gears = tables.get("gears") if isinstance(tables, dict) else None
+    pitch = gears.get(DIAMETRAL_PITCH) if isinstance(gears, dict) else None
+    number = isinstance(pitch, int | float) and not isinstance(pitch, bool)
+    if number and isinstance(gears, dict) and not {"module", "helix_angle"} & gears.keys():
+        gears["module"] = f"{gears.pop(DIAMETRAL_PITCH)} DP"
+        mark = provenance.pop(f"{place}.{DIAMETRAL_PITCH}", Provenance())
+        note = "; ".join(filter(None, [mark.note, f"by the diametral pitch {pitch}"]))
+        provenance[f"{place}.module"] = replace(mark, note=note)
 
 
 def _numbered(tree: Tree) -> Tree:

@@ -16,6 +16,7 @@ from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quantity_at
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.gears.family import Followed
+from pitchpoint.gears.table import SmallerOfTwo
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.units import hardness_scale
@@ -281,8 +282,11 @@ def _rows(
 
 
 def _scaled(mark: Provenance, path: str, given: Any) -> Provenance:
-    """The mark of a value, with the scale of a hardness that was given as a number of one."""
+    """The mark of a value, with the scale of a hardness, and that of which two it is the smaller."""
     quantity = quantity_at(path)
+    if isinstance(quantity, SmallerOfTwo) and isinstance(given, list):
+        told = f"the smaller of {given[0]} and {given[1]}, as wide as which both bodies count"
+        return replace(mark, note="; ".join(filter(None, [mark.note, told])))
     scale = hardness_scale(given) if quantity is not None and quantity.kind == "hardness" else ""
     if not scale:
         return mark

@@ -9,9 +9,10 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
-from pitchpoint.cases.document import MARKS, STAGES, STATUSES
+from pitchpoint.cases.document import DIAMETRAL_PITCH, MARKS, STAGES, STATUSES
 from pitchpoint.cases.loss_sets import SET, SET_TOLD
 from pitchpoint.cases.schema import Case, DriveCase, measure_of, usual_words
+from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.tables import alternatives, sentences
 
 __all__ = ["case_schema"]
@@ -102,6 +103,14 @@ def _loosen(table: dict[str, Any], model: type[BaseModel]) -> None:
         words = _words(value, model.model_fields[key], told.get(key, ""))
         options = [value, *_other_ways(key, value), {"$ref": f"#/{_DEFS}/mark"}]
         table["properties"][key] = {**words, "anyOf": options}
+    if issubclass(model, GearsTable) and "module" in model.model_fields:
+        words = {
+            "description": "Diametral pitch P, in place of the module 1 in/P of gears without a helix."
+        }
+        options = [{"type": "number", "exclusiveMinimum": 0}, {"$ref": f"#/{_DEFS}/mark"}]
+        table["properties"][DIAMETRAL_PITCH] = {**words, "anyOf": options}
+        table["required"].remove("module")
+        table["anyOf"] = [{"required": [key]} for key in ("module", DIAMETRAL_PITCH)]
 
 
 def _words(value: dict[str, Any], info: FieldInfo, sentence: str) -> dict[str, Any]:

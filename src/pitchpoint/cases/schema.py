@@ -23,6 +23,7 @@ from pitchpoint import units
 from pitchpoint.cases.document import STAGES, Document, check_name
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import expanded, named_set
+from pitchpoint.cases.wishes import answer, answered
 from pitchpoint.contact.registry import (
     ELLIPTIC_CONTACT,
     END_PROFILES,
@@ -1869,7 +1870,8 @@ def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | 
             return COEFFICIENT  # a law's own parameter
         if not holding:
             known = dict.fromkeys(name for each in fields for name in each)
-            raise InputError(f"there is no such key{nearest(part, known)}", key=key)
+            told = answer(parts[: position + 1], None, {}, known) or nearest(part, known)
+            raise InputError(f"there is no such key{told}", key=key)
         if position == len(parts) - 1:
             return quantity_of(holding[0])
         tree = tree.get(part, {}) if isinstance(tree, Mapping) else None
@@ -2020,8 +2022,10 @@ def _left_missing(
     place: tuple[str, ...], same: Sequence[Any], unknown: Sequence[tuple[str, ...]]
 ) -> bool:
     """True for a missing key that stands there in another spelling."""
-    beside = (one[-1] for one in unknown if one[:-1] == place[:-1])
-    return same[0]["type"] == "missing" and any(alike(one, place[-1:]) for one in beside)
+    beside = (one for one in unknown if one[:-1] == place[:-1])
+    return same[0]["type"] == "missing" and any(
+        place[-1] in answered(one) or alike(one[-1], place[-1:]) for one in beside
+    )
 
 
 def _sentences(detail: Any, document: Document, model: type[BaseModel]) -> Sequence[InputError]:
@@ -2034,7 +2038,7 @@ def _sentences(detail: Any, document: Document, model: type[BaseModel]) -> Seque
         return [
             one.at(file=document.name, key=".".join(filter(None, (key, one.key)))) for one in each
         ]
-    return [InputError(_message(detail, model), file=document.name, key=key)]
+    return [InputError(_message(detail, document, model), file=document.name, key=key)]
 
 
 def _clearest(details: list[Any]) -> Any:
@@ -2067,15 +2071,14 @@ def _words(document: Document, detail: Any) -> set[str]:
     return words
 
 
-def _message(detail: Any, model: type[BaseModel]) -> str:
+def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
     kind, given, context = detail["type"], detail.get("input"), detail.get("ctx", {})
     if kind == "missing":
         return f"is missing{_needed(detail['loc'], model)}"
     if kind == "extra_forbidden":
-        what = "table" if isinstance(given, dict) else "key"
-        return (
-            f"is not a known {what}{nearest(str(detail['loc'][-1]), _fields(detail['loc'], model))}"
-        )
+        what, fields = "table" if isinstance(given, dict) else "key", _fields(detail["loc"], model)
+        told = answer(_place_of(detail, document), given, document.tree, fields)
+        return f"is not a known {what}{told or nearest(str(detail['loc'][-1]), fields)}"
     if kind == "literal_error":
         allowed = _options(detail["loc"], model) or context["expected"]
         return f"{shown(given)} is not allowed; use {allowed}"

@@ -1,18 +1,23 @@
 """What the table [gears] of every family says, and values that several families take."""
 
+import re
 from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal
 from math import nan, pi
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
+from pydantic.json_schema import JsonSchemaValue
 
 from pitchpoint.errors import InputError
-from pitchpoint.input.quantities import Quantity
+from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table
 
 __all__ = [
     "ANGLE",
     "BORE",
+    "COMMON_WIDTH",
     "DEVIATION",
     "DISTANCE",
     "FILLET",
@@ -25,13 +30,60 @@ __all__ = [
     "WIDTH",
     "Deviation",
     "GearsTable",
+    "Module",
     "PairDeviations",
+    "SmallerOfTwo",
     "WavesAround",
     "check_waves",
 ]
 
-MODULE = Quantity("length", 1e-5, 0.1, "mm")
+
+@dataclass(frozen=True)
+class Module(Quantity):
+    """A module by its length, or by its diametral pitch P as "20 DP" or "20 1/in": 1 in/P."""
+
+    def si(self, value: Any) -> float:
+        """Module [m] of text of either kind, in its range or not."""
+        number = _PITCH.fullmatch(value) if isinstance(value, str) else None
+        if number is None or not float(number[1]):
+            return super().si(value)
+        return float(Decimal("0.0254") / Decimal(number[1]))
+
+    @property
+    def told(self) -> str:
+        """Kind, range and units in words."""
+        return f"{super().told}; or a diametral pitch as 20 DP"
+
+
+_PITCH = re.compile(r"\s*(\d{1,9}(?:\.\d{1,9})?) ?(?:DP|1/in)\s*", re.ASCII)
+
+MODULE = Module("length", 1e-5, 0.1, "mm")
+
+
+@dataclass(frozen=True)
+class SmallerOfTwo(Quantity):
+    """A quantity that both gears have in common, also as a list of two, of which the smaller one counts."""
+
+    def read(self, value: Any) -> float:
+        """SI value of text or number, or of the smaller of two; InputError if it is not what is needed."""
+        return (
+            min(Pair(self).read(value)) if isinstance(value, list | tuple) else super().read(value)
+        )
+
+    @property
+    def json_schema(self) -> JsonSchemaValue:
+        """What editors know of the values."""
+        each = super().json_schema
+        return {"anyOf": [each, {"type": "array", "items": each, "minItems": 2, "maxItems": 2}]}
+
+    @property
+    def told(self) -> str:
+        """Kind, range and units in words."""
+        return f"{super().told}; one value for both gears, or a list of two"
+
+
 WIDTH = Quantity("length", 1e-5, 10.0, "mm")
+COMMON_WIDTH = SmallerOfTwo("length", 1e-5, 10.0, "mm")
 ANGLE = Quantity("angle", 5 * pi / 180, 45 * pi / 180, "deg")
 RACK = Quantity("dimensionless", 0.1, 4.0)
 HELIX = Quantity("angle", 0.0, 60 * pi / 180, "deg")
@@ -106,6 +158,13 @@ class GearsTable(Table):
     def drivers(self) -> tuple[str, ...]:
         """Members that may drive, the usual one first."""
         return self.members
+
+    @property
+    def relative_torques(self) -> Mapping[str, float]:
+        """Torques [N m] or forces [N] of the members without losses, up to a common factor."""
+        return (
+            dict(zip(self.members, self.tooth_numbers, strict=True)) if self.tooth_numbers else {}
+        )
 
     @property
     def loss_scales(self) -> Mapping[str, float]:

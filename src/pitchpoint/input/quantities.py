@@ -1,7 +1,7 @@
 """Values of a case file with kind and allowed range, as pydantic types."""
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from datetime import date, time
 from itertools import islice
@@ -164,11 +164,19 @@ class Pair:
             if len(value) != 2:
                 raise InputError(
                     f"{shown(value)} has {len(value)} values; give one for both gears, or a list "
-                    f"of two; {self.each.allowed}"
+                    f"of two{_with_points(value)}; {self.each.allowed}"
                 )
             return self.each.read(value[0]), self.each.read(value[1])
         both = self.each.read(value)
         return both, both
+
+
+def _with_points(value: Sequence[Any]) -> str:
+    """The list of two that four whole numbers mean whose commas stand before decimals."""
+    if len(value) != 4 or not all(type(one) is int for one in value) or min(value[1::2]) < 0:
+        return ""
+    first, second = (f"{shown(one)}.{shown(part)}" for one, part in (value[:2], value[2:]))
+    return f" (decimals stand after a point: [{first}, {second}])"
 
 
 def named(

@@ -22,6 +22,7 @@ from pitchpoint.cases.document import (
 )
 from pitchpoint.cases.schema import DriveCase, StageTable, in_form, keys, quantity_at, validate
 from pitchpoint.cases.variant import Variant
+from pitchpoint.cases.wishes import WISHES, answer
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.lubrication.registry import FrictionLaw
@@ -115,7 +116,9 @@ class Case:
             return found[0]
         if not found:
             ends = dict.fromkeys(key.rpartition(".")[2] for key in _every_key(tree))
-            raise InputError(f"there is no such key{nearest(name, ends)}", key=shorten(name))
+            wishes = (answer((table, name), None, {}, ends) for table in WISHES)
+            told = next(filter(None, wishes), nearest(name, ends))
+            raise InputError(f"there is no such key{told}", key=shorten(name))
         listed = [*found[:_LISTED], *["..."] * (len(found) > _LISTED)]
         raise InputError(f"several keys end so; give one of {', '.join(listed)}", key=name)
 

@@ -14,6 +14,7 @@ from pitchpoint.gears.cylindrical.inspection import profile_shift_sum
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
+    COMMON_WIDTH,
     DEVIATION,
     DISTANCE,
     FILLET,
@@ -21,7 +22,6 @@ from pitchpoint.gears.table import (
     MODULE,
     RACK,
     SHIFT,
-    WIDTH,
     GearsTable,
     PairDeviations,
 )
@@ -280,9 +280,9 @@ class CylindricalGears(GearsTable):
     teeth: Annotated[tuple[float, float], Pair(TEETH), AfterValidator(_teeth)]
     """Numbers of teeth z1, z2; negative for a ring as gear 2."""
     module: Annotated[float, MODULE]
-    """Normal module m_n."""
-    face_width: Annotated[float, WIDTH]
-    """Common face width b."""
+    """Normal module m_n; for spur gears a key diametral_pitch = 20 may stand in its place."""
+    face_width: Annotated[float, COMMON_WIDTH]
+    """Common face width b, also as a list of that of each gear, of which the smaller one counts."""
     pressure_angle: Annotated[float, ANGLE] = pi / 9
     """Normal pressure angle α_n of the basic rack."""
     helix_angle: Annotated[float, HELIX] = 0.0

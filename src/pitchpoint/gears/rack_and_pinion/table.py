@@ -1,12 +1,13 @@
 """The table [gears] of a rack and pinion."""
 
-from math import pi
+from math import cos, pi
 from typing import Annotated, ClassVar, Literal
 
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
+    COMMON_WIDTH,
     DISTANCE,
     FILLET,
     HELIX,
@@ -14,7 +15,6 @@ from pitchpoint.gears.table import (
     MODULE,
     RACK,
     SHIFT,
-    WIDTH,
     GearsTable,
     Load,
 )
@@ -44,8 +44,8 @@ class RackAndPinionGears(GearsTable):
     """Number of teeth z of the pinion."""
     module: Annotated[float, MODULE]
     """Normal module m_n."""
-    face_width: Annotated[float, WIDTH]
-    """Common face width b."""
+    face_width: Annotated[float, COMMON_WIDTH]
+    """Common face width b, also as a list of that of each gear, of which the smaller one counts."""
     pressure_angle: Annotated[float, ANGLE] = pi / 9
     """Normal pressure angle α_n of the rack."""
     helix_angle: Annotated[float, HELIX] = 0.0
@@ -71,6 +71,12 @@ class RackAndPinionGears(GearsTable):
     def opposed(self) -> "RackAndPinionGears":
         """The same gears pressing their other flanks."""
         return self.model_copy(update={"flank": "right" if self.flank == "left" else "left"})
+
+    @property
+    def relative_torques(self) -> dict[str, float]:
+        """Torque of the pinion [N m] for a unit force of the rack [N]."""
+        radius = self.teeth * self.module / (2.0 * cos(self.helix_angle))
+        return dict(zip(self.members, (radius, 1.0), strict=True))
 
     @property
     def drivers(self) -> tuple[str, ...]:

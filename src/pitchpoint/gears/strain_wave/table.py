@@ -419,6 +419,12 @@ class StrainWaveGears(GearsTable):
         return self.module
 
     @property
+    def relative_torques(self) -> dict[str, float]:
+        """That of the wave generator is the difference of those of both splines."""
+        first, second = self.tooth_numbers
+        return dict(zip(self.members, (second - first, first, second), strict=True))
+
+    @property
     def loss_scales(self) -> dict[str, float]:
         """Pitch diameter of the flexspline [m], and the deflection on the long axis over it."""
         first, second = self.tooth_numbers

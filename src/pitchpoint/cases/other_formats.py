@@ -1,0 +1,86 @@
+"""Why a file is no case file, and what to write: other formats, signs and names that are nearly right."""
+
+import re
+from pathlib import Path
+
+from pitchpoint.errors import shorten
+from pitchpoint.registry import alike
+
+__all__ = ["neighbours", "not_toml", "not_utf_8"]
+
+_CASE = 'a case file is TOML, with tables such as [gears] and lines such as module = "2 mm"'
+
+_SHAPES = (
+    ("JSON", re.compile(r"\s*\{\s*(\"|\}|$)")),
+    ("YAML", re.compile(r"(?:[ \t]*(?:#.*)?\n|---[ \t]*\n)*[ \t]*(?:- )?[A-Za-z_][\w .-]*:(\s|$)")),
+    ("XML or HTML", re.compile(r"\s*<[?!A-Za-z]")),
+    (
+        "a table of values, CSV say",
+        re.compile(r"(?:[ \t]*#.*\n)*[^=\n\[\]]*[,;\t][^=\n\[\]]*(\n|$)"),
+    ),
+)
+"""Formats, and how a file of each begins."""
+
+_QUOTES = re.compile("[\u201c\u201d\u201e\u201f\u2018\u2019\u201a\u00ab\u00bb\u2033\u00b4]")
+_COMMA = re.compile(r"(?<![\w.\"'])([+-]?\d+),(\d+)(?![\w.,])")
+_BARE = re.compile(
+    r"[\w.]+\s*=\s*([+-]?[\d.]+(?:e[+-]?\d+)? ?[A-Za-z\u00b5\u03bc\u00b0%/][^\"'#]*?)\s*(?:#.*)?"
+)
+_COLON = re.compile(r"([\w.]+)\s*:\s+(\S.*)")
+_LINE = re.compile(r"\(at line (\d+), column")
+
+
+def not_utf_8(error: UnicodeDecodeError) -> str:
+    """Why a file is no UTF-8 text: in what it was saved, and the first sign that shows it."""
+    content = bytes(error.object)
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "is UTF-16 text; save it as UTF-8"
+    if b"\0" in content:
+        return "is not text, so it is no case file"
+    line = content.count(b"\n", 0, error.start) + 1
+    sign = content[error.start : error.start + 1].decode("cp1252", "replace")
+    told = f'"{sign}" in Latin-1' if sign.isprintable() and sign != "\ufffd" else "no sign"
+    return f"is not UTF-8 text: line {line} has a byte that is {told}; save it as UTF-8"
+
+
+def not_toml(text: str, error: ValueError) -> str:
+    """Why a text is not TOML, with what to write where that can be told.
+
+    Args:
+        text: of the file.
+        error: of the reader.
+    """
+    for name, shape in _SHAPES:
+        if shape.match(text[:2000]):
+            return f"looks like {name}; {_CASE}"
+    number = int((_LINE.search(str(error)) or [0, 0])[1])
+    line = [*text.splitlines(), ""][number - 1] if 0 < number <= text.count("\n") + 1 else ""
+    return f"is not a TOML file: {_mended(line, number) or error}"
+
+
+def _mended(line: str, number: int) -> str:
+    """What is wrong with a line and what it should have; empty where that is not known."""
+    code, at = line.partition("#")[0].strip()[:200], f"line {number}"
+    if quote := _QUOTES.search(code):
+        straight = shorten(_QUOTES.sub('"', code))
+        return f"{at} has the quotation mark {quote[0]}; write straight ones, {straight}"
+    if bare := _BARE.fullmatch(code):
+        return (
+            f'{at} has a value with its unit outside of quotation marks; write "{shorten(bare[1])}"'
+        )
+    if comma := _COMMA.search(code):
+        return f"{at} has a comma before decimals, {comma[0]}; write {comma[1]}.{comma[2]}"
+    if colon := _COLON.fullmatch(code):
+        return f"{at} has a colon; write {shorten(f'{colon[1]} = {colon[2]}')}"
+    return ""
+
+
+def neighbours(path: Path) -> str:
+    """End of a sentence on a file that is not there: case files beside it whose names are nearly the same."""
+    try:
+        known = sorted(path.parent.glob("*.toml"))[:1000]
+    except (OSError, ValueError):
+        return ""
+    close = alike(path.name.partition(".")[0], [one.stem for one in known])
+    names = [one.name for one in known if one.stem in close]
+    return f"; did you mean {' or '.join(map(shorten, names))}?" if names else ""

@@ -1,0 +1,565 @@
+"""Quantities that a case file says by other keys: what to write in their place, with its number.
+
+A name that is spelled like a key may mean something else: "input_torque" is no misspelt "torque". What is
+asked for often stands here, and is answered before any neighbour is offered.
+"""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from math import atan, cos, inf, pi, radians, tan
+from typing import Any
+
+from pydantic import TypeAdapter
+
+from pitchpoint import units
+from pitchpoint.gears.cylindrical.table import TIP, CylindricalGears
+from pitchpoint.gears.families import Gears
+from pitchpoint.gears.table import ANGLE, DISTANCE, FILLET, HELIX, MODULE, RACK, SHIFT, GearsTable
+from pitchpoint.input.quantities import Pair, Quantity
+from pitchpoint.materials.data import oil_names
+from pitchpoint.registry import letters, listed
+
+__all__ = ["WISHES", "Wish", "answer", "answered"]
+
+Tree = Mapping[str, Any]
+Write = Callable[[Any, Tree, Tree], str]
+"""What to write for a value, by the table in which it stands and the whole case."""
+
+_LENGTH, _RATIO = Quantity("length", 0.0, inf, "mm"), Quantity("dimensionless", -inf, inf)
+_TORQUE = Quantity("torque", 0.0, 1e8, "N m")
+_FORCE = Quantity("force", 0.0, 1e7, "N")
+_SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
+_ROUGHNESS = Quantity("length", 0.0, 1e-4, "um")
+_TEETH = Pair(Quantity("dimensionless", -10_000, 10_000, whole=True))
+_OF_PAIR: Mapping[str, Quantity | Pair] = {
+    "teeth": _TEETH,
+    "module": MODULE,
+    "helix_angle": HELIX,
+    "pressure_angle": ANGLE,
+    "profile_shift": Pair(SHIFT),
+    "addendum": Pair(RACK),
+}
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A quantity under names that are no keys.
+
+    Attributes:
+        names: under which it is asked for, in whatever case and with whatever signs between the words.
+        keys: of the same table that say it; empty where nothing in the table does.
+        why: what is to be known, a clause.
+        write: the line to write in its place; an error where no number follows.
+    """
+
+    names: tuple[str, ...]
+    keys: tuple[str, ...]
+    why: str
+    write: Write | None = None
+
+
+def answer(place: Sequence[str], value: Any, tree: Tree, fields: Collection[str]) -> str | None:
+    """What is told of a key that is a wish, after "is not a known key"; None where it is none.
+
+    Args:
+        place: tables and key.
+        value: that stands there.
+        tree: plain values of the case.
+        fields: keys of the table in which it stands.
+    """
+    wish = _wish(place)
+    if wish is None:
+        return None
+    if wish.keys and not any(key in fields for key in wish.keys):
+        return f"; known are {listed(fields)}"  # a neighbour in spelling would mean something else
+    line = _line(wish, place, value, tree)
+    if line or not wish.keys:
+        return f": {wish.why}{f'; write {line}' if line else ''}"
+    return f": {wish.why}; the key is {wish.keys[0]}"
+
+
+def answered(place: Sequence[str]) -> tuple[str, ...]:
+    """Keys that say what stands at a place under a name of its own; none where it is no wish."""
+    wish = _wish(place)
+    return () if wish is None else wish.keys
+
+
+def _wish(place: Sequence[str]) -> Wish | None:
+    table = next((part for part in reversed(place[:-1]) if not part.isdecimal()), "")
+    return _BY_NAME.get((table, letters(place[-1])))
+
+
+def _line(wish: Wish, place: Sequence[str], value: Any, tree: Tree) -> str:
+    """The line to write; empty where no number follows from what the case says."""
+    table: Any = tree
+    try:
+        for part in place[:-1]:
+            table = table[part]
+        return "" if wish.write is None else wish.write(value, table, tree)
+    except (ArithmeticError, LookupError, TypeError, ValueError):
+        return ""
+
+
+def _said(key: str, quantity: Quantity, *values: float) -> str:
+    """A line of a case file with one value, or a list; InputError for one that the key does not take."""
+    shown = [
+        quantity.show(quantity.read(f"{value!r} {units.si_unit(quantity.kind)}"))
+        for value in values
+    ]
+    written = [one if quantity.unit == "1" else f'"{one}"' for one in shown]
+    several = ", ".join(written)
+    return f"{key} = {several if len(written) == 1 else f'[{several}]'}"
+
+
+def _renamed(key: str) -> Write:
+    """The same value under its key."""
+    return lambda value, table, tree: f"{key} = {_plain(value)}"
+
+
+def _plain(value: Any) -> str:
+    if isinstance(value, str) and value.isprintable() and '"' not in value and len(value) < 40:
+        return f'"{value}"'
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return f"{value:.6g}"
+    raise TypeError
+
+
+def _of_pair(table: Tree, key: str) -> Any:
+    """SI value at a key of a cylindrical pair, the usual one where it is left out."""
+    if table.get("family", "cylindrical") != "cylindrical":
+        raise LookupError
+    info = CylindricalGears.model_fields[key]
+    if key not in table and not info.is_required():
+        return info.default
+    return _OF_PAIR[key].read(table[key])
+
+
+def _both(value: Any, quantity: Quantity) -> tuple[float, float]:
+    return Pair(quantity).read(value)
+
+
+def _sides(value: Any, table: Tree) -> list[tuple[float, float, float]]:
+    """Of each gear how far a diameter lies beyond the reference circle, in modules; x; addendum."""
+    module, teeth = _of_pair(table, "module"), _of_pair(table, "teeth")
+    shift, addendum = _of_pair(table, "profile_shift"), _of_pair(table, "addendum")
+    cosine = cos(_of_pair(table, "helix_angle"))
+    beyond = [
+        (diameter / module * (1.0 if z > 0 else -1.0) - z / cosine) / 2.0
+        for diameter, z in zip(_both(value, _LENGTH), teeth, strict=True)
+    ]
+    return list(zip(beyond, shift, addendum, strict=True))
+
+
+def _by_tips(value: Any, table: Tree, tree: Tree) -> str:
+    return _said("tip_alteration", TIP, *(far - x - h for far, x, h in _sides(value, table)))
+
+
+def _by_roots(value: Any, table: Tree, tree: Tree) -> str:
+    return _said("dedendum", RACK, *(x - far for far, x, _ in _sides(value, table)))
+
+
+def _by_reference(value: Any, table: Tree, tree: Tree) -> str:
+    cosine, teeth = cos(_of_pair(table, "helix_angle")), _of_pair(table, "teeth")
+    modules = [d * cosine / abs(z) for d, z in zip(_both(value, _LENGTH), teeth, strict=True)]
+    if abs(modules[0] / modules[1] - 1.0) > 1e-3:
+        raise ValueError  # of one gear only, or of no pair
+    return _said("module", MODULE, modules[0])
+
+
+def _by_transverse_module(value: Any, table: Tree, tree: Tree) -> str:
+    return _said("module", MODULE, MODULE.read(value) * cos(_of_pair(table, "helix_angle")))
+
+
+def _by_circular_pitch(value: Any, table: Tree, tree: Tree) -> str:
+    return _said("module", MODULE, _LENGTH.read(value) / pi * cos(_of_pair(table, "helix_angle")))
+
+
+def _by_diametral_pitch(value: Any, table: Tree, tree: Tree) -> str:
+    pitch, helix = _RATIO.read(value), _of_pair(table, "helix_angle")
+    normal = f'module = "{pitch:.6g} DP"'
+    MODULE.read(f"{pitch:.6g} DP")
+    if not helix:
+        return normal
+    transverse = _said("module", MODULE, 0.0254 / pitch * cos(helix))
+    return f"{normal} if it is that of the normal section, {transverse} if of the transverse one"
+
+
+def _by_transverse_angle(value: Any, table: Tree, tree: Tree) -> str:
+    normal = atan(tan(ANGLE.read(value)) * cos(_of_pair(table, "helix_angle")))
+    return _said("pressure_angle", ANGLE, normal)
+
+
+def _by_lead_angle(value: Any, table: Tree, tree: Tree) -> str:
+    return _said("helix_angle", HELIX, pi / 2.0 - units.parse(value, "angle"))
+
+
+def _transverse(table: Tree) -> tuple[float, float, float]:
+    """Sum of teeth with its sign, base radius of both together [m], transverse pressure angle."""
+    helix, total = _of_pair(table, "helix_angle"), sum(_of_pair(table, "teeth"))
+    angle = atan(tan(_of_pair(table, "pressure_angle")) / cos(helix))
+    return total, abs(total) * _of_pair(table, "module") / (2.0 * cos(helix)) * cos(angle), angle
+
+
+def _by_working_angle(value: Any, table: Tree, tree: Tree) -> str:
+    return _said(
+        "centre_distance", DISTANCE, _transverse(table)[1] / cos(units.parse(value, "angle"))
+    )
+
+
+def _by_backlash(value: Any, table: Tree, tree: Tree) -> str:
+    """The centre distance whose backlash on the pitch circles is the given one.
+
+    j_wt = 2 a (inv α_wt - inv α_w0) with α_w0 without backlash, a negative for a ring: both by ISO 21771.
+    """
+    total, base, angle = _transverse(table)
+    without: float = tan(angle) - angle
+    without += (
+        2.0 * tan(_of_pair(table, "pressure_angle")) * sum(_of_pair(table, "profile_shift")) / total
+    )
+    sign, wanted = (1.0 if total > 0 else -1.0), _LENGTH.read(value)
+    near, far = _least(lambda a: tan(a) - a - without), (radians(65.0) if sign > 0 else 0.0)
+
+    def lacking(at: float) -> float:
+        return wanted - 2.0 * sign * base / cos(at) * (tan(at) - at - without)
+
+    if lacking(far) > 0.0:
+        raise ValueError
+    return _said("centre_distance", DISTANCE, base / cos(_between(lacking, near, far)))
+
+
+def _least(rising: Callable[[float], float]) -> float:
+    """Working pressure angle at which a function that rises with it is zero [rad]."""
+    return _between(lambda at: -rising(at), 0.0, radians(65.0))
+
+
+def _between(falling: Callable[[float], float], one: float, other: float) -> float:
+    """Place between two at which a function that is positive at the first changes its sign, by halves."""
+    for _ in range(60):
+        middle = (one + other) / 2.0
+        one, other = (middle, other) if falling(middle) > 0.0 else (one, middle)
+    return one
+
+
+def _in_modules(key: str, quantity: Quantity) -> Write:
+    """A dimension of the basic rack under its key, in modules."""
+
+    def write(value: Any, table: Tree, tree: Tree) -> str:
+        each = value if isinstance(value, list) else [value]
+        module = _of_pair(table, "module")
+        return _said(
+            key,
+            quantity,
+            *(_LENGTH.read(v) / module if isinstance(v, str) else _RATIO.read(v) for v in each),
+        )
+
+    return write
+
+
+def _share_of_planets(value: Any, table: Tree, tree: Tree) -> str:
+    torque = _TORQUE.read(tree["operation"]["torque"]) / _RATIO.read(value)
+    return f"{_said('torque', _TORQUE, torque)} in [operation] for one of {value} planets"
+
+
+def _chain(tree: Tree) -> list[tuple[GearsTable, str]]:
+    """Gears from the input to the output, each with the member that drives."""
+    point: Any = tree.get("operation", {})
+    tables = [*tree["stages"].values()] if "stages" in tree else [{**point, "gears": tree["gears"]}]
+    every = [
+        (TypeAdapter(Gears).validate_python(one["gears"]), one.get("driver")) for one in tables
+    ]
+    return [(gears, driver or gears.drivers[0]) for gears, driver in every]
+
+
+def _at_output(tree: Tree) -> tuple[float, bool]:
+    """Load of the output for a unit torque of the input without losses [N m or N], and True for a force."""
+    ratio, force = 1.0, False
+    for gears, driver in _chain(tree):
+        torques = gears.relative_torques
+        loaded = [one for one in torques if one not in (driver, getattr(gears, "fixed", ""))]
+        ratio *= torques[loaded[0]] / torques[driver]
+        force = gears.load == "force"
+    return ratio, force
+
+
+def _load(torque: float, tree: Tree) -> str:
+    """The load of the output for a torque of the input without losses."""
+    ratio, force = _at_output(tree)
+    line = (
+        _said("force", _FORCE, torque * ratio)
+        if force
+        else _said("torque", _TORQUE, torque * ratio)
+    )
+    return f"{line}, what arrives there without losses"
+
+
+def _by_input_torque(value: Any, table: Tree, tree: Tree) -> str:
+    return _load(_TORQUE.read(value), tree)
+
+
+def _by_power(value: Any, table: Tree, tree: Tree) -> str:
+    return _load(units.parse(value, "power") / _SPEED.read(table["speed"]), tree)
+
+
+def _by_output_speed(value: Any, table: Tree, tree: Tree) -> str:
+    ratio, force = _at_output(tree)
+    speed = units.parse(value, "velocity") if force else _SPEED.read(value)
+    return _said("speed", _SPEED, speed * ratio)
+
+
+def _by_rz(value: Any, table: Tree, tree: Tree) -> str:
+    each = value if isinstance(value, list) else [value]
+    return f"{_said('ra', _ROUGHNESS, *(_ROUGHNESS.read(one) / 6.0 for one in each))}, Rz/6 as ISO 6336-2"
+
+
+def _by_grade(value: Any, table: Tree, tree: Tree) -> str:
+    names = [one for one in oil_names() if one.endswith(f"-vg-{value}")]
+    return f'name = "{names[0]}", say' if names else ""
+
+
+_RACK = "the teeth are those of a basic rack"
+
+WISHES: Mapping[str, tuple[Wish, ...]] = {
+    "gears": (
+        Wish(
+            ("transverse_module", "module_transverse", "m_t"),
+            ("module",),
+            "the module is that of the normal section",
+            _by_transverse_module,
+        ),
+        Wish(
+            ("diametral_pitch", "normal_diametral_pitch", "dp", "p_d", "p_nd", "pitch_diametral"),
+            ("module",),
+            "the module says the size of the teeth, also by a diametral pitch",
+            _by_diametral_pitch,
+        ),
+        Wish(
+            ("circular_pitch", "transverse_pitch"),
+            ("module",),
+            "the module says the size of the teeth",
+            _by_circular_pitch,
+        ),
+        Wish(
+            ("pitch_diameter", "reference_diameter", "pitch_diameters", "reference_diameters"),
+            ("module",),
+            "the reference diameter follows from module and teeth",
+            _by_reference,
+        ),
+        Wish(
+            (
+                *("tip_diameter", "tip_diameters", "outside_diameter", "outside_diameters"),
+                *("outer_diameter", "addendum_diameter", "d_a", "head_diameter"),
+            ),
+            ("tip_alteration", "addendum"),
+            "the tip diameter follows from addendum, profile shift and tip alteration",
+            _by_tips,
+        ),
+        Wish(
+            ("root_diameter", "root_diameters", "d_f", "dedendum_diameter"),
+            ("dedendum",),
+            "the root diameter follows from dedendum and profile shift",
+            _by_roots,
+        ),
+        Wish(
+            ("backlash", "circumferential_backlash", "nominal_backlash", "j_wt", "j_t"),
+            ("centre_distance",),
+            "the backlash follows from the centre distance",
+            _by_backlash,
+        ),
+        Wish(
+            ("working_pressure_angle", "operating_pressure_angle", "alpha_wt"),
+            ("centre_distance",),
+            "the working pressure angle follows from the centre distance",
+            _by_working_angle,
+        ),
+        Wish(
+            ("transverse_pressure_angle", "alpha_t"),
+            ("pressure_angle",),
+            "the pressure angle is that of the normal section",
+            _by_transverse_angle,
+        ),
+        Wish(
+            ("lead_angle",),
+            ("helix_angle",),
+            "the lead is given by the helix angle",
+            _by_lead_angle,
+        ),
+        Wish(
+            ("planets", "number_of_planets", "planet_count"),
+            (),
+            "a planetary gear is not a family; sun with planet and planet with ring are pairs of their own, "
+            "each at its share of the torque",
+            _share_of_planets,
+        ),
+        Wish(
+            ("sun", "ring", "planet", "carrier", "sun_teeth", "planet_teeth", "ring_teeth"),
+            (),
+            "a planetary gear is not a family; write sun with planet, or planet with ring, as a pair, "
+            "a ring with its number of teeth negative",
+        ),
+        Wish(
+            ("hand", "hand_of_helix", "helix_hand", "helix_direction", "handedness"),
+            (),
+            "a pair of the other hand is the mirror image, with the same loads and losses, its axial "
+            "forces the other way; leave it out",
+        ),
+        Wish(
+            ("hob_addendum", "cutter_addendum", "tool_addendum", "rack_addendum"),
+            ("dedendum",),
+            f"{_RACK}, whose addendum makes the dedendum",
+            _in_modules("dedendum", RACK),
+        ),
+        Wish(
+            (
+                *(
+                    "tip_radius",
+                    "cutter_tip_radius",
+                    "hob_tip_radius",
+                    "tool_tip_radius",
+                    "edge_radius",
+                ),
+                *("root_fillet", "root_radius", "rack_tip_radius"),
+            ),
+            ("fillet_radius",),
+            f"{_RACK}, whose rounding makes the fillet",
+            _in_modules("fillet_radius", FILLET),
+        ),
+        Wish(
+            (
+                "protuberance",
+                "protuberance_angle",
+                "protuberance_amount",
+                "grinding_stock",
+                "stock",
+            ),
+            (),
+            f"{_RACK} without protuberance or stock; dedendum and fillet_radius say the finished root",
+        ),
+        Wish(
+            (
+                "cutter_teeth",
+                "shaper_teeth",
+                "cutter_shift",
+                "pinion_cutter",
+                "cutter",
+                "hob",
+                "tool",
+            ),
+            (),
+            f"{_RACK}, of a ring those of its counterpart; dedendum and fillet_radius say the root",
+        ),
+        Wish(
+            ("shaft_angle", "axis_angle", "axes_angle", "crossing_angle"),
+            (),
+            "gears whose axes cross are not here; leave it out where they are parallel",
+        ),
+        Wish(
+            ("ratio", "gear_ratio", "transmission_ratio", "reduction"),
+            ("teeth",),
+            "the ratio follows from the numbers of teeth",
+        ),
+        Wish(
+            ("contact_ratio",),
+            ("addendum",),
+            "the contact ratio follows from the teeth, and stands in the result",
+        ),
+        Wish(
+            (
+                "quality",
+                "accuracy",
+                "accuracy_grade",
+                "iso_quality",
+                "din_quality",
+                "agma_quality",
+                "iso_class",
+            ),
+            ("inspection",),
+            "the class of ISO 1328-1 is a key of [gears.deviations] and of [gears.inspection]",
+            lambda value, table, tree: f"inspection = {{ iso_class = {_plain(value)} }}",
+        ),
+    ),
+    "operation": (
+        Wish(
+            (
+                *("input_torque", "torque_in", "torque_input", "driver_torque", "driving_torque"),
+                *("motor_torque", "pinion_torque", "torque_1", "drive_torque"),
+            ),
+            ("torque", "force"),
+            "torque counts at the driven gear",
+            _by_input_torque,
+        ),
+        Wish(
+            ("power", "input_power", "output_power", "motor_power", "power_in", "rated_power"),
+            ("torque", "force"),
+            "load and speed say the power",
+            _by_power,
+        ),
+        Wish(
+            ("output_torque", "load_torque", "torque_2", "driven_torque", "torque_out"),
+            ("torque",),
+            "the torque is that of the driven member",
+            _renamed("torque"),
+        ),
+        Wish(
+            ("output_speed", "driven_speed", "load_speed", "speed_2", "speed_out", "n_2"),
+            ("speed",),
+            "the speed counts at the driving member",
+            _by_output_speed,
+        ),
+        Wish(
+            (
+                "input_speed",
+                "motor_speed",
+                "driver_speed",
+                "driving_speed",
+                "speed_1",
+                "speed_in",
+                "n_1",
+            ),
+            ("speed",),
+            "the speed is that of the driving member",
+            _renamed("speed"),
+        ),
+        Wish(
+            ("oil_temperature", "ambient_temperature"),
+            ("temperature",),
+            "the temperature is that of the oil and around the gears",
+            _renamed("temperature"),
+        ),
+        Wish(
+            ("planets", "number_of_planets"),
+            (),
+            "the load is that of one mesh; of equal planets, each carries its share",
+            _share_of_planets,
+        ),
+    ),
+    "roughness": (
+        Wish(
+            ("rz", "rz_1", "rz_iso"),
+            ("ra",),
+            "roughness counts by Ra or Rq, and Rz is neither",
+            _by_rz,
+        ),
+    ),
+    "lubricant": (
+        Wish(
+            ("vg", "iso_vg", "grade", "viscosity_grade"),
+            ("name",),
+            "a grade is part of the name of an oil; pitchpoint models lists them",
+            _by_grade,
+        ),
+        Wish(
+            ("viscosity", "kinematic_viscosity", "dynamic_viscosity", "nu", "eta"),
+            ("viscosity_40",),
+            "viscosity changes with temperature; an oil has a name, or viscosity_40 with viscosity_100 and "
+            "base",
+        ),
+    ),
+}
+"""What is asked for often, by table."""
+
+_BY_NAME = {
+    (table, letters(name)): wish
+    for table, wishes in WISHES.items()
+    for wish in wishes
+    for name in wish.names
+}

@@ -1,0 +1,195 @@
+"""Quantities by other names than their keys: each answered in a sentence, and what it says to write runs."""
+
+import copy
+import re
+import tomllib
+from math import cos, isclose, pi, radians, tan
+
+import pytest
+
+from pitchpoint import Case
+from pitchpoint.cases.document import resolve
+from pitchpoint.cases.schema import Case as Schema
+from pitchpoint.cases.schema import validate
+from pitchpoint.cases.wishes import WISHES
+from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.families import TABLES
+from pitchpoint.registry import letters
+
+BASE = tomllib.loads("""
+[gears]
+teeth = [20, 40]
+module = "2 mm"
+face_width = "10 mm"
+[lubricant]
+name = "mineral-vg-100"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "6 N m"
+speed = "1000 rpm"
+temperature = "60 degC"
+""")
+
+
+def asked(key, value, **gears):
+    """The case with a wish, in the place of the keys that would say the same."""
+    tree = copy.deepcopy(BASE)
+    tree["gears"] |= gears
+    table, name = key.split(".")
+    wish = next(one for one in WISHES[table] if name in one.names)
+    for one in wish.keys:
+        tree[table].pop(one, None)
+    tree[table][name] = value
+    return tree
+
+
+def read(tree):
+    return validate(resolve(tree, name="case", variant="default"))
+
+
+def refused(tree):
+    with pytest.raises(InputError) as error:
+        read(tree)
+    return str(error.value)
+
+
+WRITTEN = {
+    "operation.input_torque": ("3 N m", {}, 'torque = "6 N m"'),
+    "operation.motor_torque": ("3 N m", {"teeth": [20, 60]}, 'torque = "9 N m"'),
+    "operation.driver_torque": (
+        "0.5 N m",
+        {"family": "strain_wave", "teeth": [200, 202], "module": "0.3 mm"},
+        'torque = "50 N m"',
+    ),
+    "operation.torque_in": (
+        "3 N m",
+        {"family": "rack_and_pinion", "teeth": 20, "module": "2 mm"},
+        'force = "150 N"',
+    ),
+    "operation.power": ("1 kW", {}, 'torque = "19.0986 N m"'),
+    "operation.output_speed": ("500 rpm", {}, 'speed = "1000 rpm"'),
+    "operation.oil_temperature": ("50 degC", {}, 'temperature = "50 degC"'),
+    "operation.planets": (3, {}, 'torque = "2 N m"'),
+    "gears.transverse_module": ("2 mm", {"helix_angle": "15 deg"}, 'module = "1.93185 mm"'),
+    "gears.pitch_diameter": (["40 mm", "80 mm"], {}, 'module = "2 mm"'),
+    "gears.tip_diameter": (["43.8 mm", "84 mm"], {}, "tip_alteration = [-0.05, 0]"),
+    "gears.root_diameter": (["35 mm", "75 mm"], {}, "dedendum = [1.25, 1.25]"),
+    "gears.hob_addendum": ("2.4 mm", {}, "dedendum = 1.2"),
+    "gears.tip_radius": ("0.5 mm", {}, "fillet_radius = 0.25"),
+    "gears.lead_angle": ("75 deg", {}, 'helix_angle = "15 deg"'),
+    "gears.accuracy": (6, {}, "inspection = { iso_class = 6 }"),
+    "roughness.rz": ("3 um", {}, 'ra = "0.5 um"'),
+    "lubricant.iso_vg": (220, {}, 'name = "mineral-vg-220"'),
+}
+
+
+@pytest.mark.parametrize("key", WRITTEN)
+def test_what_a_wish_is_told_to_write_runs(key):
+    value, gears, line = WRITTEN[key]
+    tree, (table, name) = asked(key, value, **gears), key.split(".")
+    told = refused(tree)
+    assert told.startswith(f"case: {key}: is not a known key: ")
+    assert f"; write {line}" in told and "\n" not in told
+    del tree[table][name]
+    tree[table] |= tomllib.loads(line)
+    read(tree)
+
+
+def test_torque_of_the_driver_is_never_taken_for_that_of_the_driven_gear():
+    told = refused(asked("operation.input_torque", "2.5 N m"))
+    assert "torque counts at the driven gear" in told and "did you mean" not in told
+    assert 'torque = "1.25 N m"' in refused(
+        asked("operation.input_torque", "2.5 N m")
+        | {"operation": {**BASE["operation"], "driver": "gear 2", "input_torque": "2.5 N m"}}
+    )
+    stages = {key: value for key, value in BASE.items() if key != "gears"}
+    stages["stages"] = [{"gears": BASE["gears"]}, {"gears": BASE["gears"]}]
+    stages["operation"] = {**BASE["operation"], "input_torque": "1 N m"}
+    assert 'torque = "4 N m"' in refused(stages)
+
+
+@pytest.mark.parametrize("ring", [40, -60])
+def test_the_centre_distance_for_a_backlash_has_it(ring):
+    told = refused(asked("gears.backlash", "0.1 mm", teeth=[20, ring], profile_shift=[0.2, 0.1]))
+    distance = 1e-3 * float(re.search(r'centre_distance = "([\d.]+) mm"', told)[1])
+    pair = build_cylindrical_pair(
+        teeth=(20, ring),
+        module=2e-3,
+        pressure_angle=radians(20.0),
+        face_width=0.01,
+        profile_shift=(0.2, 0.1),
+        centre_distance=distance,
+    )
+    assert isclose(float(pair.backlash), 1e-4, rel_tol=2e-3)
+
+
+def test_tip_alterations_for_tip_diameters_make_them():
+    tree = asked("gears.tip_diameter", ["44.3 mm", "116.2 mm"], teeth=[20, -60])
+    alteration = tomllib.loads(refused(tree).partition("; write ")[2])["tip_alteration"]
+    addendum, module = 1.0, 2.0
+    made = [
+        z * module + 2.0 * module * (addendum + k)
+        for z, k in zip((20, -60), alteration, strict=True)
+    ]
+    assert made == pytest.approx([44.3, -116.2], abs=1e-4)
+
+
+def test_angles_of_other_sections():
+    told = refused(asked("gears.alpha_wt", "22 deg"))
+    assert f'"{60.0 * cos(radians(20)) / cos(radians(22)):.6g} mm"' in told
+    told = refused(asked("gears.transverse_pressure_angle", "20 deg", helix_angle="15 deg"))
+    normal = float(re.search(r'pressure_angle = "([\d.]+) deg"', told)[1]) * pi / 180
+    assert tan(normal) / cos(radians(15)) == pytest.approx(tan(radians(20)), rel=1e-5)
+
+
+def test_a_diametral_pitch_is_a_module():
+    tree = copy.deepcopy(BASE)
+    tree["gears"]["module"] = "20 DP"
+    assert read(tree).gears.module == 1.27e-3
+    tree["gears"]["module"] = "20 1/in"
+    assert read(tree).gears.module == 1.27e-3
+    document = resolve(asked("gears.diametral_pitch", 20), name="case", variant="default")
+    assert validate(document).gears.module == 1.27e-3
+    assert document.provenance["gears.module"].note == "by the diametral pitch 20"
+    told = refused(asked("gears.diametral_pitch", 20, helix_angle="15 deg"))
+    assert 'module = "20 DP"' in told and 'module = "1.22673 mm"' in told and "missing" not in told
+    tree["gears"]["diametral_pitch"] = 20
+    assert 'write module = "20 DP"' in refused(tree)
+
+
+def test_of_two_face_widths_the_smaller_one_is_common():
+    tree = copy.deepcopy(BASE)
+    tree["gears"]["face_width"] = ["20 mm", "18 mm"]
+    assert read(tree).gears.face_width == 0.018
+    assert Case(BASE).set(face_width=["12 mm", 0.011])["gears.face_width"] == 0.011
+    tree["gears"]["face_width"] = ["20 mm", "18 mm", "3 mm"]
+    assert "has 3 values" in refused(tree)
+
+
+def test_what_gears_do_not_have_is_told_without_a_neighbour_in_spelling():
+    wave = {"family": "strain_wave", "teeth": [200, 202]}
+    for key, value in (("tip_diameter", "80 mm"), ("hob_addendum", 1.2)):
+        told = refused(asked(f"gears.{key}", value, **wave))
+        assert "did you mean" not in told and "; known are family, teeth" in told
+    told = refused(asked("gears.tip_diameter", "much"))  # no number, and no sentence about that
+    assert told.endswith("tip alteration; the key is tip_alteration")
+
+
+def test_python_and_settings_answer_too():
+    with pytest.raises(InputError, match="torque counts at the driven gear; the key is torque"):
+        Case(BASE).set(input_torque="2.5 N m")
+    with pytest.raises(InputError, match="follows from the centre distance"):
+        Case(BASE).set({"gears.backlash": "0.1 mm"})
+
+
+@pytest.mark.parametrize("table", WISHES)
+def test_no_wish_is_a_key_and_none_stands_twice(table):
+    names = [letters(name) for wish in WISHES[table] for name in wish.names]
+    assert len(names) == len(set(names))
+    tables = TABLES if table == "gears" else [Schema.model_fields[table].annotation]
+    for one in tables:
+        fields = {letters(key): key for key in one.model_fields}
+        taken = {fields[name] for name in names if name in fields}
+        assert taken <= {"backlash"}  # a key of strain wave gears, and of no others
