@@ -19,7 +19,6 @@ from pitchpoint.gears.cylindrical.checks import (
     check_cylindrical_pairs,
     runs_well,
 )
-from pitchpoint.gears.cylindrical.cures import cures, told_with_cures
 from pitchpoint.gears.cylindrical.design import (
     build_cylindrical_pair,
     cylindrical_pairs_apart,
@@ -58,6 +57,8 @@ def _cylindrical(gears: CylindricalGears, driver: str, slices: int) -> Made:
 
 def _with_cures(error: UnsoundPairError, gears: CylindricalGears, driver: str) -> InputError:
     """A refusal with changes of the table after which it runs."""
+    from pitchpoint.gears.cylindrical.cures import cures, told_with_cures  # few gears are refused
+
     values = _given(gears, driver)
     values["least_tip_thickness"] = values["least_tip"]
     changes = cures(gears, error.remedies, values, partial(_running, driver=driver))
