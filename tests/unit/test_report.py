@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 from html.parser import HTMLParser
+from importlib.metadata import version
 from math import atan2, cos, pi, sin
 from pathlib import Path
 from typing import Any
@@ -29,11 +30,13 @@ from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.units import convert, kind_of, kinds, parse, units_of
 from pitchpoint.views import show
-from pitchpoint.views.figures import curves, laws, rounded
+from pitchpoint.views.figures import Figure, Panel, curves, laws, rounded
 from pitchpoint.views.lines import gapped
+from pitchpoint.views.outlines import visible_points
 from pitchpoint.views.path import path_of
 from pitchpoint.views.picture import Body, Picture, picture_of
 from pitchpoint.views.report import render, write_report
+from pitchpoint.views.section import Paragraph, naming
 from pitchpoint.views.sections.answer import summary
 from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.path import loss_places, loss_sentence
@@ -239,6 +242,47 @@ def test_every_figure_has_a_place_and_data(page: str) -> None:
     for name, figure in figures.items():
         assert figure["data"], name
         assert all(finite(trace) for trace in figure["data"]), name
+
+
+def test_the_page_that_sums_up_has_gears_results_figures_and_assumptions(page: str) -> None:
+    summed = page[page.index('id="one-page"') : page.index("</header>")]
+    text = " ".join(Words(summed).text.split())
+    for words in (
+        "number of teeth z",
+        "centre distance",
+        "Efficiency",
+        "Loss",
+        "Oil",
+        "Load sharing",
+    ):
+        assert words in text
+    assert "Inputs assumed, fitted or corrected: " in text
+    assert "inputs are not given and taken as usual" in text
+    assert f"Computed with Pitchpoint {version('pitchpoint')}, code " in text
+    assert len(re.findall(r'class="plot" id="one-page-[^"]+" data-figure=', summed)) == 2
+
+
+def test_a_figure_of_one_variant_names_it() -> None:
+    figure, words = Figure("name", "Title", [], {}), Paragraph("words")
+    (panel, same) = naming("cold", [Panel("", [figure]), words])
+    assert [one.title for one in panel.figures] == ["Title · cold"]
+    assert same is words
+    (panel,) = naming("", [Panel("", [figure])])
+    assert panel.figures == [figure]
+
+
+def test_a_course_keeps_every_point_that_can_be_seen() -> None:
+    x = np.linspace(0.0, 1.0, 2001)
+    y = np.where(np.abs(x - 0.5) < 0.1, np.nan, np.sin(4.0 * x))
+    kept = visible_points(x, y)
+    assert kept.size < 60
+    assert np.count_nonzero(np.isnan(y[kept])) == 1
+    left = x < 0.4
+    within = kept[left[kept]]
+    off = np.interp(x[left], x[within], y[within]) - y[left]
+    assert (
+        np.abs(off).max() < 2.0 * np.ptp(y[left]) / 240.0
+    )  # two pixels of 240, at 45 degrees at most
 
 
 def test_a_menu_changes_traces_that_exist(page: str) -> None:

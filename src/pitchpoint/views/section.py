@@ -1,7 +1,7 @@
 """The contract of a section of the report and the screen: what it shows, what it lacks, its words."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from pitchpoint.registry import Deferred, code_at
@@ -27,6 +27,7 @@ __all__ = [
     "by_variant",
     "key_figure",
     "key_figures",
+    "naming",
     "of_part",
     "panels",
     "reason",
@@ -238,13 +239,23 @@ def by_variant(
 
 def tabbed(groups: Iterable[tuple[str, Iterable[Block]]]) -> Iterator[Block]:
     """Blocks by title of their variant, one variant at a time; one alone stands under its title, if any."""
-    each = {title: tuple(blocks) for title, blocks in groups}
+    each = {title: tuple(naming(title, blocks)) for title, blocks in groups}
     if len(each) > 1:
         yield Variants(each)
         return
     for title, blocks in each.items():
         yield from [Heading(title)] if title else []
         yield from blocks
+
+
+def naming(variant: str, blocks: "Iterable[Any]") -> Iterator[Any]:
+    """Blocks whose figures name a variant at the end of their titles; as they are without a variant."""
+    for block in blocks:
+        if variant and isinstance(block, Panel):
+            figures = [replace(one, title=f"{one.title} · {variant}") for one in block.figures]
+            yield replace(block, figures=figures)
+        else:
+            yield block
 
 
 def panels(blocks: Iterable[Block]) -> Iterator[Panel]:

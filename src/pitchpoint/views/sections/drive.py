@@ -19,7 +19,7 @@ from pitchpoint.views import show
 from pitchpoint.views.inputs import words
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import of_geometry
-from pitchpoint.views.section import Block, Drawn, Moving, Page, Section, Table
+from pitchpoint.views.section import Block, Drawn, Moving, Page, Section, Table, naming
 from pitchpoint.views.sections.passing import gap_panel
 from pitchpoint.views.way import place_of
 
@@ -175,7 +175,7 @@ def _told_arcs(outcome: Outcome) -> str:
 def _blocks(page: Page) -> Iterator[Block]:
     groups = of_geometry(page.having(*_PARTS), page.several)
     for position, (variants, outcome) in enumerate(groups):
-        gap = gap_panel(outcome, f"drive{position}")
+        (gap,) = naming(variants, [gap_panel(outcome, f"drive{position}")])
         values = {
             "variants": variants,
             "picture": picture(outcome, f"drive{position}"),

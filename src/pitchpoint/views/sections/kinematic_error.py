@@ -25,7 +25,16 @@ from pitchpoint.views.figures import (
     text,
 )
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Heading, KeyFigure, Page, Paragraph, Printed, key_figure
+from pitchpoint.views.section import (
+    Block,
+    Heading,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    key_figure,
+    naming,
+)
 
 __all__ = [
     "error_blocks",
@@ -180,7 +189,7 @@ def error_blocks(page: Page) -> Iterator[Block]:
         if it.title:
             yield Heading(it.title)
         yield Paragraph(it.note)
-        yield it
+        yield from naming(it.title, [it])
 
 
 def error_facts(outcome: Outcome) -> Iterator[KeyFigure]:

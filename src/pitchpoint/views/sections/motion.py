@@ -40,6 +40,7 @@ from pitchpoint.views.section import (
     Table,
     by_variant,
     key_figure,
+    naming,
 )
 
 __all__ = [
@@ -448,7 +449,7 @@ def motion_blocks(page: Page) -> Iterator[Block]:
         data = outcome.parts["motion_against_speed"]
         yield from _gaps(data)
         yield from _critical(data)
-        yield speeds_panel(f"speeds{position}", outcome)
+        yield from naming(title, [speeds_panel(f"speeds{position}", outcome)])
     for position, title, outcome in page.each("start_up"):
         yield Heading(f"Start: {title}" if title else "Start")
         data = outcome.parts["start_up"]
@@ -458,7 +459,7 @@ def motion_blocks(page: Page) -> Iterator[Block]:
         )
         if np.isfinite(data["largest_mesh_force"]):
             yield _start_table(data)
-        yield start_panel(f"start{position}", outcome)
+        yield from naming(title, [start_panel(f"start{position}", outcome)])
 
 
 def _of_period(position: int, outcome: Outcome) -> Iterator[Block]:

@@ -22,7 +22,7 @@ from pitchpoint.views.figures import (
 )
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Heading, Page, Printed, Section, Table
+from pitchpoint.views.section import Block, Heading, Page, Printed, Section, Table, naming
 
 __all__ = ["STAGES", "stage_rows"]
 
@@ -77,7 +77,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Table(["Stage", "Friction law", *titles], rows)
     for position, title, outcome in page.each("torsion.stage_wind_up"):
         figure = _wind_up(f"stages{position}", outcome.parts["torsion"])
-        yield Panel(title, [figure])
+        yield from naming(title, [Panel(title, [figure])])
 
 
 def _wind_up(name: str, data: xr.Dataset) -> Figure:

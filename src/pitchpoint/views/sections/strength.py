@@ -14,7 +14,7 @@ from pitchpoint.views import show
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
     Block,
-    Heading,
+    Folded,
     KeyFigure,
     Page,
     Paragraph,
@@ -158,11 +158,11 @@ def _blocks_of(_: int, outcome: Outcome) -> Iterator[Block]:
     for text in _caveats(whole):
         yield Paragraph(text, "note")
     for name, data in _pairs(whole):
-        if name:
-            yield Heading(name)
-        yield _table("Load factors", _LOAD, data)
-        yield _table("Flank", _FLANK, data)
-        yield _table("Root", _ROOT, data)
+        tables = [
+            _table(title, names, data)
+            for title, names in (("Load factors", _LOAD), ("Flank", _FLANK), ("Root", _ROOT))
+        ]
+        yield Folded(f"Factors and limits behind them{f', {name}' if name else ''}", tables)
 
 
 def _blocks(page: Page) -> Iterator[Block]:

@@ -14,7 +14,7 @@ from pitchpoint.views.inputs import words
 from pitchpoint.views.path import PathOfContact, path_of
 from pitchpoint.views.picture import picture_of
 from pitchpoint.views.point import of_geometry
-from pitchpoint.views.section import Block, Drawn, Moving, Page, Section, Table
+from pitchpoint.views.section import Block, Drawn, Moving, Page, Section, Table, naming
 from pitchpoint.views.sections.plane_of_action import plane_of_action
 from pitchpoint.views.sections.sliding import sliding_figure
 
@@ -29,7 +29,8 @@ PLAIN = Variable("", "", "1")
 def _blocks(page: Page) -> Iterator[Block]:
     groups = of_geometry(page.having(*_PARTS), page.several)
     for position, (variants, outcome) in enumerate(groups):
-        sliding = Panel("", [sliding_figure(f"sliding{position}", outcome)])
+        panel = Panel("", [sliding_figure(f"sliding{position}", outcome)])
+        (sliding,) = naming(variants, [panel])
         values = {
             "variants": variants,
             "picture": picture_of(outcome).svg(f"mesh{position}"),

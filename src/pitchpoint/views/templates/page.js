@@ -294,6 +294,9 @@
     for (const one of hidden) one.hidden = false;
     restore = folded.map((one) => () => (one.open = false));
     restore.push(...hidden.map((one) => () => (one.hidden = true)), ...(dark.matches ? whitened() : []));
+    const sheet = document.querySelector("#one-page > div");
+    sheet.style.zoom = 1;
+    sheet.style.zoom = Math.min(1, 1005 / sheet.offsetHeight); // pixels of A4 between its margins
     for (const place of places) {
       const summed = place.closest("#one-page");
       if (summed || !(alone || place.closest(".beside:not([open])"))) draw(place).then(() => print(place, !summed));
@@ -314,6 +317,6 @@
     const size = resized ? { width: place.closest(".glance") ? 270 : 338, height: 230 } : {};
     const paper = dark.matches ? JSON.parse(JSON.stringify({ data, layout }), whiter) : { data, layout };
     restore.push(() => Plotly.react(place, data, layout).then(() => Plotly.Plots.resize(place)));
-    return Plotly.react(place, paper.data, { ...paper.layout, autosize: !resized, font: { ...paper.layout.font, size: 10 }, ...size });
+    return Plotly.react(place, paper.data, { ...paper.layout, autosize: !resized, font: { ...paper.layout.font, size: 9 }, ...size });
   }
 })();
