@@ -280,9 +280,9 @@ def test_a_course_keeps_every_point_that_can_be_seen() -> None:
     left = x < 0.4
     within = kept[left[kept]]
     off = np.interp(x[left], x[within], y[within]) - y[left]
-    assert (
-        np.abs(off).max() < 2.0 * np.ptp(y[left]) / 240.0
-    )  # two pixels of 240, at 45 degrees at most
+    pixel = (np.nanmax(y) - np.nanmin(y)) / 240.0
+    # 0.8 pixels across the course, which is nowhere steeper than 49 degrees.
+    assert np.abs(off).max() < 1.25 * pixel
 
 
 def test_a_menu_changes_traces_that_exist(page: str) -> None:
