@@ -171,7 +171,9 @@ def main() -> None:
     except typer.TyperException as error:
         told = error.format_message().rstrip(".")
         if told:  # without arguments the help is all there is to say
-            _complain(f"error: {shorten(told, 200)}; see pitchpoint --help")
+            context = getattr(error, "ctx", None)
+            of = "pitchpoint" if context is None else context.command_path
+            _complain(f"error: {shorten(told, 200)}; see {of} --help")
         status = error.exit_code
     except BrokenPipeError:
         sys.stderr.close()
@@ -339,7 +341,7 @@ def explore(
     It opens offline. The page holds figures that were computed beforehand, and interpolates between them.
     """
     from pitchpoint.cases.record import default_folder
-    from pitchpoint.results.store import make_folder
+    from pitchpoint.results.store import demand_room, make_folder
     from pitchpoint.runs.explore import explore as compute
     from pitchpoint.views.explorer import Reader, write_explorer
 
@@ -349,6 +351,7 @@ def explore(
     path = output or default_folder(case, Path("results"), settings) / "explorer.html"
     if path.suffix.lower() not in (".html", ".htm"):
         raise InputError("is no name of a page; give one that ends in .html", file=str(path))
+    demand_room(path.parent)
     read = Reader()
     with _progress(None) as progress:
         found = compute(
@@ -751,7 +754,8 @@ def _sweeps(texts: list[str], option: str) -> "Iterator[Sweep]":
         given = _SWEEP.fullmatch(text)
         if given is None:
             raise InputError(
-                f"{shown(text)} is not KEY=START:STOP:COUNT with a count of 1 to 100000",
+                f"{shown(text)} is not KEY=START:STOP:COUNT with a count of 1 to 100000, such as "
+                '"operation.speed=500 rpm:3000 rpm:11"',
                 key=option,
             )
         key, start, stop, count = map(str.strip, given.groups())

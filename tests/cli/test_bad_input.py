@@ -1477,10 +1477,10 @@ def test_nothing_to_cite(name: str, refuse: Callable[..., str], tmp_path: Path) 
         ),
         (["--sweep", "models.friction=1:2:3"], ["--sweep: models.friction: cannot be swept"]),
         (["--sweep", "gears.addendum=1:2.1:3"], ["--sweep: at gears.addendum = 2.1: ", "2.158"]),
-        (["--bogus"], ["No such option: --bogus; see pitchpoint --help"]),
+        (["--bogus"], ["No such option: --bogus; see pitchpoint run --help"]),
         (["--variant"], ["--variant", "requires an argument; see pitchpoint --help"]),
         (["--variant", "x"], ['variants: "x" is not a variant', "known are default"]),
-        (["extra"], ["extra", "see pitchpoint --help"]),
+        (["extra"], ["extra", "see pitchpoint run --help"]),
     ],
     ids=lambda given: " ".join(given)[:50],
 )
@@ -1491,6 +1491,15 @@ def test_command_lines(
     for word in words:
         assert word in told
     assert not (tmp_path / "results").exists()
+
+
+def test_a_page_that_cannot_be_written_is_refused_before_its_designs_are_computed(
+    refuse: Callable[..., str], tmp_path: Path
+) -> None:
+    (tmp_path / "file").touch()
+    told = refuse("explore", written(tomllib.loads(PAIR), tmp_path), "-o", tmp_path / "file/x.html")
+    assert "cannot be written to: a file stands where a folder belongs" in told
+    assert "designs" not in told
 
 
 def test_no_such_command(refuse: Callable[..., str]) -> None:

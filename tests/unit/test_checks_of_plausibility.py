@@ -159,7 +159,7 @@ def parts(
     [
         (parts(1.01), "101 %: more power would come out than goes in"),
         (parts(-0.2), "-20 %: more power is lost than goes in"),
-        (parts(outside=("xu_2007",), there=0), "regression: it is."),
+        (parts(outside=("xu_2007",), there=0), "extrapolations: xu_2007: it is."),
         (parts(edge=0.7), "edges of the teeth"),
     ],
 )

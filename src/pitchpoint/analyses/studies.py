@@ -297,7 +297,7 @@ def sweep_values(
             return [_read(quantity, value) for value in sweep.values], quantity
         if quantity is None:
             raise InputError(
-                f"{shown(sweep.key)} is no number; give values in place of start and stop"
+                "is no number; a study in the case file takes values in place of start and stop"
             )
         ends = quantity.read(sweep.start), quantity.read(sweep.stop)
         grid = np.linspace(*ends, int(sweep.count))

@@ -27,6 +27,7 @@ from pitchpoint.status import DIRECT
 
 __all__ = [
     "dataset",
+    "demand_room",
     "describe",
     "fingerprint",
     "load",
@@ -137,11 +138,26 @@ def load(path: Path) -> xr.Dataset:
 
 def make_folder(folder: Path) -> None:
     """Make a folder for results; InputError if it cannot be written to."""
-    try:
+    with _unwritable(folder):
         folder.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()
+
+
+def demand_room(folder: Path) -> None:
+    """InputError if a folder cannot be made or written to: told before what takes long."""
+    with _unwritable(folder):
+        there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
+        tempfile.TemporaryFile(dir=there).close()
+
+
+@contextmanager
+def _unwritable(folder: Path) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
-        raise InputError(f"cannot be written to: {error.strerror}", file=str(folder)) from None
+        blocked = isinstance(error, FileExistsError | NotADirectoryError)
+        why = "a file stands where a folder belongs" if blocked else error.strerror
+        raise InputError(f"cannot be written to: {why}", file=str(folder)) from None
 
 
 def write_text(path: Path, text: str) -> None:

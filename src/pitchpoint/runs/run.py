@@ -322,7 +322,8 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
     demand_arguments(folder=folder)
     where = Path(folder)
     if not os.path.isfile(where / RUN):  # be the name longer than any file's
-        raise InputError("holds no result of pitchpoint", file=str(folder))
+        told = "holds no result of pitchpoint; give a folder that pitchpoint run wrote"
+        raise InputError(told, file=str(folder))
     paths = {name: where / name / MANIFEST for name in Record.read(where / RUN).variants}
     opened = {name: _opened(path) for name, path in paths.items() if path.is_file()}
     if not opened:
@@ -447,7 +448,8 @@ def rows_of(
     """
     built = made.built({})
     if not built.case.targets:
-        raise InputError("has no targets to compare with", file=made.name)
+        told = "has no targets to compare with; give several designs, or a published case"
+        raise InputError(told, file=made.name)
     needed = {target.reads for target in built.case.targets}
     work = jobs(made, {})
     demand_parts(built.case.targets, [job.name for job in work], made.name)
