@@ -1,4 +1,4 @@
-"""Hostile case files, records and command lines, thousands: each is shown or refused in one sentence.
+"""Hostile case files, records, command lines and values of Python: each is shown or refused in a sentence.
 
 Run beside the suite: `python tests/fuzz_inputs.py --seconds 300 --seed 1`. A seed repeats its files.
 Prints how they ended; whatever ends in a traceback, in several sentences or in signs that steer a terminal
@@ -19,15 +19,19 @@ import time
 import traceback
 from collections import Counter
 from collections.abc import Iterator
+from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import jax
+import numpy as np
 
-from pitchpoint import cli
+from pitchpoint import Case, cli, study
 from pitchpoint.cases.document import read
 from pitchpoint.cases.library import names, path_of
 from pitchpoint.cases.schema import keys
+from pitchpoint.errors import InputError
 from pitchpoint.results.store import without_nan
 from pitchpoint.runs.run import describe
 
@@ -41,12 +45,32 @@ KEYS = [
     "losses.a.between",
     "studies.a.sweep",
     "studies.a.change.gears",
+    "variants",
+    "variants.a",
+    "variants.a.value",
+    *(f"film.heights.both.{key}" for key in ("file", "direction", "step_along")),
+    "worn.file",
 ]
 
 RECORDS = 0.25
 """Part of the files that are records of results."""
 
-NUMBERS = (0, -0.0, 1, -1, 2, 3.5, 1e-300, 1e308, -1e308, math.inf, -math.inf, math.nan, 10**30)
+NUMBERS = (
+    10**400,
+    0,
+    -0.0,
+    1,
+    -1,
+    2,
+    3.5,
+    1e-300,
+    1e308,
+    -1e308,
+    math.inf,
+    -math.inf,
+    math.nan,
+    10**30,
+)
 UNITS = (
     "mm",
     "m",
@@ -77,6 +101,26 @@ SIGNS = (
     "\n",
     ".",
 )
+TEXTS = (
+    "=cmd|' /C calc'!A0",
+    "x; =1+1",
+    '"""\nimport os\n"""',
+    "*/ x /*",
+    "1e400",
+    "-1e400 mm",
+    "/dev/zero",
+    "/dev/stdin",
+    "/proc/self/mem",
+    ".",
+    "_",
+    "~",
+    "/",
+)
+"""What would run, has no end or no letter elsewhere."""
+
+COMMANDS = ("new", "docs", "models", "cite", "open", "show", "check", "export")
+"""Commands that take a name."""
+
 LONG = ("k" * 100_000, "." * 5000, "a.b" * 2000, "9" * 4000, "[" * 3000, " " * 3000)
 
 
@@ -107,7 +151,11 @@ class Hostile:
     def text(self) -> str:
         signs = "".join(self.random.choices(SIGNS, k=self.random.randrange(1, 4)))
         return self.random.choice(
-            (signs, "x", "", "gear 1", "steel", "equal", self.random.choice(LONG))
+            (
+                *(signs, "x", "", "gear 1", "steel", "equal"),
+                self.random.choice(LONG),
+                self.random.choice(TEXTS),
+            )
         )
 
     def scaled(self, value: Any) -> Any:
@@ -170,6 +218,17 @@ class Hostile:
         chosen = [one for _ in range(2) for one in self.random.choice(options)]
         return [one.replace("\x00", "") for one in chosen]
 
+    def of_python(self) -> Any:
+        """A value that Python may hand over, of another kind than tables of a case file hold."""
+        itself: dict[str, Any] = {}
+        itself["a"] = [itself]
+        deep: Any = self.value()
+        for _ in range(self.random.choice((1, 20, 5000))):
+            deep = self.random.choice(([deep], {"a": deep}, (deep, deep)))
+        kinds = (Fraction(1, 3), Decimal("1.5"), 1j, b"1", {1, 2}, len, object(), "\udc80")
+        arrays = (np.array([1j]), np.array([object()]), np.float32(3.0), np.zeros((2, 2, 2)))
+        return self.random.choice((*kinds, *arrays, {(1, 2): 3}, itself, deep, self.value()))
+
     def broken(self, content: bytes) -> bytes:
         """The file with some of its bytes changed, doubled or cut off."""
         content = bytearray(content)
@@ -228,6 +287,27 @@ def ended(arguments: list[str]) -> str:
     return "refused"
 
 
+def handed_over(value: Any, key: str) -> str:
+    """How a value of Python ended at one of the doors; raises whatever is no sentence."""
+    pair = SEEDS[0]
+    doors = (
+        lambda: Case({**pair, key.partition(".")[0]: value}),
+        lambda: Case(value),
+        lambda: Case(pair).set({key: value}),
+        lambda: Case(pair).set(value),
+        lambda: describe(Case(pair), settings={key: value}),
+        lambda: study(pair, {key: [value, value]}, how="zip", n=value, seed=value),
+    )
+    refused = 0
+    for door in doors:
+        try:
+            door()
+        except InputError as error:
+            refused += 1
+            assert all(len(line) < 1000 for line in str(error).splitlines()), "a long sentence"
+    return "refused" if refused else "shown"
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=300.0, help="of processor time")
@@ -243,7 +323,8 @@ def main() -> int:
         hostile, began = Hostile(seed), time.process_time()
         is_record = hostile.random.random() < RECORDS
         tree = hostile.random.choice(records if is_record else SEEDS)
-        kind = hostile.random.choice(("unusual", "unusual", "changed", "broken", "command line"))
+        kinds = ("unusual", "unusual", "changed", "broken", "command line", "name", "python")
+        kind = hostile.random.choice(kinds)
         changed = {"unusual": hostile.unusual, "changed": hostile.changed}.get(kind, dict)(tree)
         path = given.keep / f"case.{'json' if is_record else 'toml'}"
         if is_record:
@@ -252,8 +333,14 @@ def main() -> int:
             content = "".join(f"{json.dumps(k)} = {toml(v)}\n" for k, v in changed.items()).encode()
         path.write_bytes(hostile.broken(content) if kind == "broken" else content)
         arguments = ["show", str(path), *(hostile.arguments() if kind == "command line" else [])]
+        if kind == "name":
+            command, name = hostile.random.choice(COMMANDS), hostile.text().replace("\0", "")
+            arguments = [command, name, *["--csv"] * (command == "export")]
+        key = hostile.random.choice(KEYS)
         try:
-            counts[ended(arguments)] += 1
+            counts[
+                handed_over(hostile.of_python(), key) if kind == "python" else ended(arguments)
+            ] += 1
         except Exception as error:
             name = f"{type(error).__name__}: {str(error)[:80]!a}"
             counts[name] += 1

@@ -125,13 +125,15 @@
     if (kind === "csv") setTimeout(() => URL.revokeObjectURL(address), 1000);
   }
 
+  // Where a spreadsheet would begin a formula, also one whose cells end at semicolons or tabs.
+  const FORMULA = /(^|[;\t\r\n])(?=\s*[=+@\-\uff1d\uff0b\uff0d\uff20])/g;
+
   // Values of the curves that are shown, one point a line.
   function table(place) {
     const cell = (value) => {
       if (value === null || value === undefined) return "";
       if (typeof value === "number") return String(value);
-      // What a spreadsheet would run is text, also behind what it may take for the end of a cell.
-      const words = bare(String(value)).replace(/(^|[;\t\r\n])(?=\s*[=+@\-\uff1d\uff0b\uff0d\uff20])/g, "$1'");
+      const words = bare(String(value)).replace(FORMULA, "$1'");
       return `"${words.replace(/"/g, '""')}"`;
     };
     const title = (name) => bare(place.layout[name] && place.layout[name].title && place.layout[name].title.text);
