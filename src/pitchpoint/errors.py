@@ -76,8 +76,16 @@ class InputError(PitchpointError, ValueError):
         return ": ".join((*where, self.message))
 
     def at(self, *, file: str | None = None, key: str | None = None) -> Self:
-        """Return a copy with the location filled in; what is not given stays as it was."""
+        """Return a copy with the location filled in; what is not given stays as it was.
+
+        Cures move with the key into the table that it is told to be in.
+        """
         located = copy.copy(self)
+        if key and self.key and key.endswith(self.key):
+            table = key.removesuffix(self.key)
+            located.cures = tuple(
+                {f"{table}{name}": cure[name] for name in cure} for cure in self.cures
+            )
         located.file = file if file is not None else self.file
         located.key = key if key is not None else self.key
         return located
@@ -178,10 +186,6 @@ class Complaints:
         for one in error.errors if isinstance(error, CollectedInputError) else (error,):
             key = ".".join(filter(None, (self._table, one.key))) or None
             located = one.at(file=one.file or self._file, key=key)
-            located.cures = tuple(
-                {".".join(filter(None, (self._table, name))): cure[name] for name in cure}
-                for cure in one.cures
-            )
             self._told.setdefault((key or one.message, str(one.value)), located)
 
     @property

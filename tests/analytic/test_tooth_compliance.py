@@ -9,6 +9,7 @@ from bare_contacts import line_contacts
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from pitchpoint import units
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.flattening import line_compression, yang_sun_1985
 from pitchpoint.contact.hertz import line_half_width
@@ -587,6 +588,7 @@ def test_standard_says_where_it_does_not_hold():
         "contact_ratio": 1.46,
     }
     assert iso.range_warnings(**inside) == ()
+    assert iso.range_warnings(**{**inside, "helix_angle": units.parse("30 deg", "angle")}) == ()
     outside = {
         "virtual_teeth": ((4.75, 60.5), "4.75 virtual teeth"),
         "profile_shift": ((0.4, 0.5), "x1 >= x2"),

@@ -144,6 +144,26 @@ def test_a_centre_distance_that_gives_none_is_refused(gears: dict[str, Any], tol
     assert told in refusal(variant, {}).message
 
 
+def test_allowances_of_the_thickness_decide_on_a_smaller_centre_distance() -> None:
+    """0.1 mm less centre distance takes 2 tan 20 times as much backlash, 73 um of thickness."""
+
+    def inspected(each: int) -> Variant:
+        limits = {"upper_thickness_allowance": f"-{each} um", "lower_thickness_allowance": "-60 um"}
+        return pair(teeth=[18, 36], centre_distance="53.9 mm", inspection=limits)
+
+    told = inspected(40).built({}).warnings
+    assert any("their allowances leave a backlash of 7.25" in text for text in told)
+    assert "and their allowances leave -30.3 um" in refusal(inspected(20), {}).message
+
+
+def test_stages_are_told_their_advice_under_their_own_keys() -> None:
+    sound = COMMON | {"teeth": [18, 36]}
+    stages = {"1": {"gears": sound}, "2": {"gears": sound | {"dedendum": [1.05, 1.25]}}}
+    drive = Variant(copy.deepcopy(CASE) | {"stages": stages}, "drive.toml", "default", {})
+    (cure,) = refusal(drive, {}).cures
+    assert {*cure} == {"stages.2.gears.addendum"}
+
+
 def test_usual_dedenda_leave_the_tips_a_quarter_of_a_module() -> None:
     angle = radians(20.0)
     assert usual_depths((1.0, 1.0), None, None, angle) == ((1.25, 1.25), (0.38, 0.38))

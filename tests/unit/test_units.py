@@ -14,6 +14,8 @@ import pytest
 from pitchpoint import units
 from pitchpoint.cases.schema import HARDNESS
 from pitchpoint.errors import InputError
+from pitchpoint.gears.table import HELIX
+from pitchpoint.input.quantities import Quantity
 from pitchpoint.units import UnitError, convert, kind_of, kinds, parse, si_unit, units_of
 
 GOOD = [
@@ -350,3 +352,13 @@ def test_what_is_offered_is_as_large_as_what_was_meant(kind: str) -> None:
                 offered = re.search(r'did you mean "(.*?)"', str(error))
                 found = meant if offered is None else units.parse(offered[1], kind)
             assert found == meant, written
+
+
+def test_a_bound_in_another_unit_is_within_its_range():
+    """60 deg converts to a bit more than 60 pi/180."""
+    assert HELIX.read("60 deg") > HELIX.high
+    for beyond in ("60.0000001 deg", "-1e-9 deg"):
+        with pytest.raises(InputError, match="is out of range; allowed is 0 deg to 60 deg"):
+            HELIX.read(beyond)
+    with pytest.raises(InputError, match="is out of range; allowed is above 1 to 2"):
+        Quantity("dimensionless", 1.0, 2.0, open_low=True).read(1.0)

@@ -91,12 +91,20 @@ class Quantity:
         number = self.si(value)
         if isinstance(value, SIValue):
             return number
-        below = number <= self.low if self.open_low else number < self.low
-        if not math.isfinite(number) or below or number > self.high:
+        if not math.isfinite(number) or self._outside(number):
             raise InputError(f"{shown(value)} is out of range; {self.allowed}", value=value)
         if self.whole and number != round(number):
             raise InputError(f"{shown(value)} is not a whole number; {self.allowed}", value=value)
         return number
+
+    def _outside(self, number: float) -> bool:
+        """Beyond the range, by more than the last bit that converting a bound such as 60 deg leaves."""
+        below = number <= self.low if self.open_low else number < self.low
+        converted = any(
+            number != bound and math.isclose(number, bound, rel_tol=1e-15)
+            for bound in (self.low, self.high)
+        )
+        return (below or number > self.high) and not converted
 
     @property
     def allowed(self) -> str:
