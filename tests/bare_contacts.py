@@ -39,7 +39,9 @@ def conditions(shape, **changed):
         ("nominal_load", "speed", "viscosity", "kinematic_viscosity", "pressure_viscosity"),
         array(1.0),
     )
-    scalars |= dict.fromkeys(("viscosity_slope", "conductivity", "lubricant_factor"), array(1.0))
+    scalars |= dict.fromkeys(
+        ("temperature", "viscosity_slope", "conductivity", "lubricant_factor"), array(1.0)
+    )
     scalars |= dict.fromkeys(("roughness_ra", "roughness_rq", "hardness"), array(1.0))
     scalars |= {"slip": one, "roll": one, "modulus": array(226e9)}
     scalars |= {name: array(value) for name, value in changed.items()}

@@ -1,12 +1,16 @@
 """Friction laws: check values of the table, printed unit values, exponents and limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from bare_contacts import conditions
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.lubrication.conditions import UNITS, arguments
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.conditions import UNITS, arguments, evaluate
 from pitchpoint.lubrication.friction_coefficient import iso_tr_14179_2, xu_2007
-from pitchpoint.lubrication.registry import LAWS
+from pitchpoint.lubrication.registry import FILM_THICKNESS, LAWS, FrictionLaw
 
 BY_NAME = {law.name: law for law in LAWS}
 
@@ -107,3 +111,31 @@ def test_laws_are_finite_and_never_negative(law, scale):
     assert np.isfinite(found)
     assert float(found) >= 0.0
     assert all(np.isfinite(slope) for slope in slopes.values())
+
+
+def test_a_law_of_ones_own_asks_for_film_temperature_and_place():
+    film = FILM_THICKNESS["dowson_higginson_1959"]
+    given = {"viscosity": 0.05, "pressure_viscosity": 2e-8, "roughness_rq": 0.5e-6}
+    at = conditions("line", temperature=330.0, **given)
+
+    def law(*, lambda_ratio, film_thickness, temperature, path_position, face_position):
+        return jnp.stack([lambda_ratio, film_thickness, lambda_ratio * 0.0 + temperature]).sum(0)
+
+    known = FrictionLaw("law", "law", law, film=film)
+    thickness = float(evaluate(film, at)[0, 0])
+    assert thickness > 1e-9
+    found = float(evaluate(known, at)[0, 0])
+    assert found == pytest.approx(thickness / 0.5e-6 + thickness + 330.0, rel=1e-12)
+    with pytest.raises(InputError, match="no film law stands beside this law"):
+        evaluate(FrictionLaw("law", "law", law), at)
+
+
+def test_a_contact_without_load_has_no_film_and_finite_slopes():
+    film = FILM_THICKNESS["dowson_higginson_1959"]
+    law = FrictionLaw("law", "law", lambda *, film_thickness: film_thickness, film=film)
+
+    def value(load):
+        return evaluate(law, replace(conditions("line"), load=jnp.full((1, 1), load)))[0, 0]
+
+    assert float(value(0.0)) == 0.0
+    assert np.isfinite(jax.grad(value)(0.0))

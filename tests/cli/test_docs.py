@@ -25,6 +25,7 @@ from pitchpoint.cases.document import Document
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.schema import Case, DriveCase, Target, keys, validate
 from pitchpoint.cases.variant import Variant
+from pitchpoint.lubrication.conditions import UNITS as CONDITIONS
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.store import dataset, save
 from pitchpoint.results.variables import VARIABLES
@@ -162,6 +163,16 @@ def test_every_key_and_variable_has_its_line() -> None:
     listed = {name: line for name, *line in every}
     assert {name for each in (VARIABLES, *own) for name in each} == listed.keys()
     assert all(told and unit and shown for told, _, unit, shown, *_ in listed.values())
+
+
+def test_the_guide_has_every_condition_of_a_law() -> None:
+    table = PAGES["guide/python.md"].partition("may ask for\n")[2]
+    told = [line.split("|")[1:3] for line in table.splitlines() if line.startswith("| `")]
+    listed = [name for names, _ in told for name in re.findall(r"`(\w+)`", names)]
+    assert sorted(listed) == sorted(CONDITIONS)
+    for names, units in told:
+        of = [CONDITIONS[name] for name in re.findall(r"`(\w+)`", names)]
+        assert units.strip() in (", ".join(of), of[0]) and (len(set(of)) == 1 or ", " in units)
 
 
 def test_every_public_name_stands_under_one_task() -> None:

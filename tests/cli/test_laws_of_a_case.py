@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from pitchpoint.analyses.cycle import CYCLE
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.registry import FILM_THICKNESS, INLET_HEATING
+from pitchpoint.lubrication.registry import FILM_THICKNESS, INLET_HEATING, FrictionLaw
 from pitchpoint.views.inputs import input_rows
 
 TREE = tomllib.loads(PAIR)
@@ -122,3 +123,18 @@ def test_a_hardness_on_a_scale_is_a_pressure_and_says_so() -> None:
     )
     shown = {one["key"]: one["value"] for one in input_rows({"inputs": rows})}
     assert shown["gear_1.hardness"] == "1.96133 GPa"
+
+
+@pytest.mark.whole
+def test_a_law_of_ones_own_has_the_film_that_the_result_shows() -> None:
+    """With the heat in the inlet; temperature and place are those of the case and of its contacts."""
+
+    def law(*, lambda_ratio: Any, temperature: Any, face_position: Any) -> Any:
+        return 0.02 + 0.08 / (1.0 + lambda_ratio) * (temperature / 333.15) + 0.0 * face_position
+
+    own = FrictionLaw("own", "own", law)
+    heated = variant(models={"inlet_heating": "murch_wilson_1975"})
+    data = CYCLE.compute(replace(heated, own=own).built({}), None, lambda _: None)
+    temperature = 273.15 + float(TREE["operation"]["temperature"].split()[0])
+    expected = 0.02 + 0.08 / (1.0 + loaded(data, "lambda_ratio")) * (temperature / 333.15)
+    np.testing.assert_allclose(loaded(data, "friction"), expected, rtol=1e-9)

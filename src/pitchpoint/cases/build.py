@@ -60,7 +60,7 @@ from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.loading.sharing import demand_sharing
 from pitchpoint.loading.tooth_compliance import Terms, terms_of, uncovered
 from pitchpoint.lubrication.applicability import applies
-from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
+from pitchpoint.lubrication.conditions import FILM, Law, arguments, demand_shape
 from pitchpoint.lubrication.inlet_heating import Inlet, with_inlet_heating
 from pitchpoint.lubrication.registry import (
     ASPERITY_LOAD,
@@ -610,10 +610,28 @@ def _models(
 ) -> tuple[Models, ...]:
     """Models under each law of the case, or under the user's own."""
     names = [choice.name for choice in case.models.friction]
-    laws = [_law(name, case, used, mesh) for name in names] if own is None else [own]
+    laws = (
+        [_law(name, case, used, mesh) for name in names]
+        if own is None
+        else [_beside_film(own, case)]
+    )
     if any(law.films is not None for law in laws):
         return _under(laws, _common(case.models), _given(case.models))
     return _under_formulas(tuple(laws), case.models)
+
+
+def _beside_film(own: FrictionLaw, case: Case) -> FrictionLaw:
+    """A law of the user's own, with the film law of the case where it asks for a film."""
+    wanted, _ = arguments(own.function)
+    if own.film is not None or not {*FILM} & {*wanted}:
+        return own
+    return _of_film(own, _inlet(FILM_THICKNESS[case.models.film_thickness], case.models))
+
+
+@lru_cache(maxsize=64)
+def _of_film(own: FrictionLaw, film: FilmThickness) -> FrictionLaw:
+    """One record for each pair: another one of the same content would be another program."""
+    return replace(own, film=film)
 
 
 @remembering

@@ -220,7 +220,7 @@ def _by_backlash(value: Any, table: Tree, tree: Tree) -> str:
     near, far = _least(lambda a: tan(a) - a - without), (radians(65.0) if sign > 0 else 0.0)
 
     def lacking(at: float) -> float:
-        return wanted - 2.0 * sign * base / cos(at) * (tan(at) - at - without)
+        return float(wanted - 2.0 * sign * base / cos(at) * (tan(at) - at - without))
 
     if lacking(far) > 0.0:
         raise ValueError

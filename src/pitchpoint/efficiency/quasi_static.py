@@ -121,6 +121,7 @@ class Design(eqx.Module):
             roll=along(contacts.roll_arm, motion),
             speed=operation.speed,
             modulus=self.modulus,
+            temperature=temperature,
             viscosity=oil.viscosity(temperature),
             kinematic_viscosity=oil.kinematic_viscosity(temperature),
             pressure_viscosity=oil.pressure_viscosity(temperature),

@@ -2,6 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from types import FunctionType
 from typing import Any, Protocol, runtime_checkable
@@ -19,6 +20,8 @@ from pitchpoint.factored import Numbers, as_array, product
 from pitchpoint.gears.mesh import Reference
 
 __all__ = [
+    "FILM",
+    "UNITS",
     "Conditions",
     "Law",
     "arguments",
@@ -42,6 +45,7 @@ class Conditions(eqx.Module):
         slip, roll: difference and sum of the surface velocities per radian of the driver [m/rad].
         speed: of the driver [rad/s].
         modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+        temperature: of the oil [K].
         viscosity, kinematic_viscosity: dynamic [Pa s] and kinematic [m2/s], at oil temperature.
         pressure_viscosity: alpha at oil temperature [1/Pa].
         viscosity_slope: -d ln eta/dT at oil temperature [1/K].
@@ -52,6 +56,7 @@ class Conditions(eqx.Module):
         hardness: Vickers hardness of the softer flank [Pa]; not a number where one is not known.
         reference: pitch-point values, or None.
         elliptic: how an elliptic contact follows from its load; static.
+        film: law of the film thickness that a law asks for; None where it asks for none; static.
     """
 
     contacts: Contacts
@@ -61,6 +66,7 @@ class Conditions(eqx.Module):
     roll: Lanes
     speed: Each
     modulus: Float[Array, ""]
+    temperature: Each
     viscosity: Each
     kinematic_viscosity: Each
     pressure_viscosity: Each
@@ -72,6 +78,7 @@ class Conditions(eqx.Module):
     hardness: Float[Array, ""]
     reference: Reference | None
     elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT[USUAL_ELLIPSE])
+    film: "Law | None" = eqx.field(static=True, default=None)
 
     @property
     def shape(self) -> Shape:
@@ -230,6 +237,35 @@ class Conditions(eqx.Module):
         return ratio
 
     @property
+    def film_thickness(self) -> Lanes:
+        """Film thickness by the film law of the case, minimum or central as that law has it [m].
+
+        That of a contact without load, which no law describes, is zero.
+        """
+        if self.film is None:
+            raise InputError("asks for the film thickness, and no film law stands beside this law")
+        load = as_array(self.load)
+        at = replace(self, load=jnp.where(load > 0.0, load, 1.0), film=None)
+        return jnp.where(load > 0.0, evaluate(self.film, at), 0.0)
+
+    @property
+    def lambda_ratio(self) -> Lanes:
+        """Film thickness over composite Rq, lambda [1]; infinite between flanks without roughness."""
+        rough = self.roughness_rq > 0.0
+        ratio = self.film_thickness / jnp.where(rough, self.roughness_rq, 1.0)
+        return jnp.where(rough, ratio, jnp.inf)
+
+    @property
+    def path_position(self) -> Lanes:
+        """Position of the contact from the start of its path [base pitches, circular pitches or turns]."""
+        return self.contacts.path
+
+    @property
+    def face_position(self) -> Lanes:
+        """Position of the contact across the face [m], counted as `Contacts.width`."""
+        return self.contacts.width
+
+    @property
     def face_width(self) -> Float[Array, ""]:
         """Face width of the mesh [m]."""
         return self._pitch_point.width
@@ -277,6 +313,9 @@ class Conditions(eqx.Module):
         return self.reference
 
 
+FILM = ("film_thickness", "lambda_ratio")
+"""Conditions that follow from the film law that stands beside a law."""
+
 # Unit of every condition that a law may ask for by name.
 UNITS: Mapping[str, str] = {
     "line_load": "N/m",
@@ -298,6 +337,11 @@ UNITS: Mapping[str, str] = {
     "viscosity_slope": "1/K",
     "conductivity": "W/m/K",
     "lubricant_factor": "1",
+    "temperature": "K",
+    "film_thickness": "m",
+    "lambda_ratio": "1",
+    "path_position": "1",
+    "face_position": "m",
     "roughness_ra": "m",
     "roughness_rq": "m",
     "hardness": "Pa",
@@ -464,6 +508,9 @@ def evaluate(
         InputError: the law holds for contacts of another shape.
     """
     demand_shape(law, conditions.shape)
+    film = getattr(law, "film", None)
+    if film is not None:
+        conditions = replace(conditions, film=film)
     function = _function(law)
     wanted, _ = arguments(function)
     values = {name: getattr(conditions, name) for name in wanted}

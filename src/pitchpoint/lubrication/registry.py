@@ -54,6 +54,7 @@ class FrictionLaw:
         shape: of the contacts for which it holds; None where what it asks for says that.
         films: choices by which the films of the contacts are solved, in turns with the balance of forces;
             None of a formula.
+        film: law of the film thickness, for one that asks for it; None for others.
     """
 
     name: str
@@ -69,6 +70,7 @@ class FrictionLaw:
     whole: bool = False
     shape: Shape | None = None
     films: FilmModel | None = None
+    film: FilmThickness | None = None
 
     @property
     def rivals(self) -> "Iterable[FrictionLaw]":
