@@ -677,7 +677,8 @@ def new(
         ),
     ],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FILE", help="Default: the screen.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="Default: the screen, as for -."),
     ] = None,
 ) -> None:
     """Write a case file to begin with.
@@ -690,8 +691,8 @@ def new(
 
 
 def _write(text: str, path: Path | None) -> None:
-    """Text into a file that is not there yet, or to the screen."""
-    if path is None:
+    """Text into a file that is not there yet, or to the screen, for which "-" stands too."""
+    if path is None or str(path) == "-":
         typer.echo(text, nl=False)
         return
     try:

@@ -95,3 +95,25 @@ def test_names_as_people_write_them(
         assert caught.value.code == status
     assert path.read_text("utf-8") == template("spur")
     assert "is there already" in capsys.readouterr().err
+
+
+def test_a_strain_wave_gear_comes_with_all_that_loses_and_yields() -> None:
+    text = template("strain_wave")
+    tree = tomllib.loads(text)
+    assert tree["losses"] == {"set": "strain_wave_component"}
+    assert tree["gears"]["wave_generator"]["bearing"] == tree["gears"]["yielding"] == {}
+    case = validate(resolve(tree, name="new", variant="default"))
+    assert {"wave_generator_bearing"} <= case.losses.keys()
+    assert "losses" not in tomllib.loads(template("spur"))
+
+
+def test_a_dash_stands_for_the_screen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "new", "spur", "-o", "-"])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert caught.value.code == 0
+    assert capsys.readouterr().out == template("spur")
+    assert not [*tmp_path.iterdir()]

@@ -13,7 +13,7 @@ from sound import PAIR, WAVE
 
 import pitchpoint as pp
 from pitchpoint import programs
-from pitchpoint.cases.build import ALONE, BEARING_FREE, TEETH_ALONE
+from pitchpoint.cases.build import ALONE, BEARING_FREE, LACKING, TEETH_ALONE
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.runs import run as running
@@ -130,12 +130,13 @@ def test_an_efficiency_without_losses_is_that_of_the_teeth_alone(folder: Path) -
     alone = Variant({**tree, "losses": {}}, name, "default").built({})
     assert with_losses.covers == {}
     assert TEETH_ALONE not in with_losses.warnings
-    assert alone.covers == {"covers": ALONE}
+    assert alone.covers == {"covers": ALONE, "lacks": LACKING}
     assert ALONE.startswith("teeth alone: bearings, seals and grease")
     assert alone.warnings.count(TEETH_ALONE) == 1
     seal = {"seal": tree["losses"]["seal"]}
     some = Variant({**tree, "losses": seal}, name, "default").built({})
-    assert some.covers == {"covers": "teeth, seal: the bearing inside the drive is not in it"}
+    told = "teeth, seal: the bearing inside the drive is not in it"
+    assert some.covers == {"covers": told, "lacks": LACKING}
     assert some.warnings.count(BEARING_FREE) == 1
     assert TEETH_ALONE not in some.warnings
 

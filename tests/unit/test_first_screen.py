@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pitchpoint.cases.build import ALONE, LACKING
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.columns import fitted
@@ -64,6 +65,23 @@ def test_every_example_answers_on_one_screen(example: Path) -> None:
     every = {number for text in whole for number in NUMBER.findall(text.replace("\u00a0", " "))}
     for line in shown(outcomes):
         assert {*NUMBER.findall(line)} <= every
+
+
+def test_the_teeth_alone_are_no_headline_of_a_drive(pair: dict[str, Outcome]) -> None:
+    """Where no loss stands for the bearing inside a drive, its efficiency is not known."""
+    outcome = pair["default"]
+    data = outcome.parts["operation"].copy(deep=True)
+    told = {"covers": ALONE, "lacks": LACKING}
+    data["mean_efficiency"] = data["mean_efficiency"].assign_attrs(told)
+    alone = replace(outcome, parts={**outcome.parts, "operation": data})
+    every, figures = key_figures(in_order(), outcome), key_figures(in_order(), alone)
+    assert (figures[0].name, figures[0].value) == ("Efficiency", "not known")
+    (teeth,) = [figure for figure in figures if figure.name == "Efficiency without it"]
+    assert teeth.value == next(one.value for one in every if one.name == "Efficiency")
+    assert "teeth alone" in teeth.detail
+    assert any(
+        re.match("Efficiency  +not known +losses has none", line) for line in shown({"": alone})
+    )
 
 
 @pytest.mark.parametrize("width", [40, 60, 100])

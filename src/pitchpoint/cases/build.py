@@ -103,9 +103,12 @@ T = TypeVar("T")
 ALONE = "teeth alone: bearings, seals and grease are not in it"
 """What an efficiency is of where a case has no losses beside the teeth."""
 
+LACKING = "bearing of the wave generator"
+"""What an efficiency lacks to be that of a drive where no loss stands for the bearing inside it."""
+
 TEETH_ALONE = Doubt(
     "The efficiency is that of the teeth alone: the case has no [losses], by which bearings, seals and "
-    "churning take their part.",
+    'churning take their part; losses = { set = "strain_wave_component" } has those of such a drive.',
     moves=GUESSED,
     about=("mean_efficiency",),
 )
@@ -580,18 +583,19 @@ def _left_out(built: Built) -> list[str]:
 
 
 def covered(places: Sequence[str], *, lacks_bearing: bool) -> dict[str, str]:
-    """Attribute on what an efficiency is of; none where it is of a whole drive.
+    """Attributes on what an efficiency is of, and on what it lacks; none where it is of a whole drive.
 
     Args:
         places: beside the teeth where power is lost, by name.
         lacks_bearing: True if the bearing inside a drive is none of them.
     """
+    lacks = {"lacks": LACKING} if lacks_bearing else {}
     if not places:
-        return {"covers": ALONE}
+        return {"covers": ALONE, **lacks}
     some = f"teeth, {', '.join(places)}: the bearing inside the drive is not in it".replace(
         "_", " "
     )
-    return {"covers": some} if lacks_bearing else {}
+    return {"covers": some, **lacks} if lacks_bearing else {}
 
 
 def without_bearing(built: Any) -> list[str]:

@@ -12,6 +12,7 @@ from pydantic import BaseModel, BeforeValidator
 from pydantic.fields import FieldInfo
 
 from pitchpoint.cases.document import STAGES, Tree
+from pitchpoint.cases.loss_sets import SET
 from pitchpoint.cases.schema import Case, DriveCase, quantity_of
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import TABLES, sample_of
@@ -21,8 +22,17 @@ from pitchpoint.registry import known_as, nearest
 
 __all__ = ["FAMILIES", "template"]
 
-_CYLINDRICAL = {"spur": {}, "helical": {"helix_angle": "15 deg"}}
-"""Kinds of cylindrical gears, and what their table has more."""
+_CYLINDRICAL = ("spur", "helical")
+"""Kinds of cylindrical gears."""
+
+_MORE: Mapping[str, Tree] = {
+    "helical": {"gears": {"helix_angle": "15 deg"}},
+    "strain_wave": {
+        "gears": {"wave_generator": {"bearing": {}}, "yielding": {}},
+        "losses": {"set": "strain_wave_component"},
+    },
+}
+"""What a case to begin with has beside the sample of its family, such as all that loses and yields."""
 
 _STAGES = "two_stages"
 
@@ -72,8 +82,9 @@ def _sample(family: str) -> tuple[type[BaseModel], Tree]:
     name = "cylindrical" if family in _CYLINDRICAL else family
     table = next(table for table in TABLES if tag(table) == name)
     tree = tomllib.loads(sample_of(table).read_text("utf-8"))
-    tree["gears"] = {"family": name, **tree["gears"], **_CYLINDRICAL.get(family, {})}
-    return Case, tree
+    more = _MORE.get(family, {})
+    tree["gears"] = {"family": name, **tree["gears"], **more.get("gears", {})}
+    return Case, {**tree, **{key: table for key, table in more.items() if key != "gears"}}
 
 
 def _of_table(model: type[BaseModel], key: str, tree: Tree) -> Iterator[str]:
@@ -84,8 +95,11 @@ def _of_table(model: type[BaseModel], key: str, tree: Tree) -> Iterator[str]:
     if key == STAGES:
         yield from _of_stages(tree[STAGES])
     elif get_origin(info.annotation) is dict:
+        live = "" if SET in (given or {}) else "# "
         yield ""
-        yield from (f"# {line}" for line in tomlkit.dumps({key: given or {}}).splitlines() if given)
+        yield from (
+            f"{live}{line}" for line in tomlkit.dumps({key: given or {}}).splitlines() if given
+        )
     else:
         meant = forms(info.annotation, given)[0]
         yield from _lines(meant, key, given or {}, live=key in _MEANT and key in tree)

@@ -467,7 +467,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         for place, name in enumerate(CONTACT):
             yield figure(10.0 + 0.1 * place, VARIABLES[name].long_name, name)
         return
-    yield figure(10.0, "Efficiency", "mean_efficiency", _certainty(outcome, data))
+    yield from _efficiencies(figure, outcome, data)
     yield figure(20.0, "Input", "mean_input_torque", _ripple(data))
     yield figure(25.0, "Loss", "mean_loss", _drag(data, 0))
     law = str(data["law"].values[0])
@@ -488,6 +488,17 @@ _BRIEFLY = {
     "room to the end of the face": "room to the end",
 }
 """Names of key figures where a column of names is narrow."""
+
+
+def _efficiencies(
+    figure: Callable[[float, str, str, str], KeyFigure], outcome: Outcome, data: xr.Dataset
+) -> Iterator[KeyFigure]:
+    """The efficiency; where a drive lacks a part that loses, that first, and below it what is known."""
+    lacks = str(data["mean_efficiency"].attrs.get("lacks", ""))
+    if lacks:
+        yield KeyFigure(10.0, "Efficiency", "not known", f"losses has none of the {lacks}")
+    place, name = (26.0, "Efficiency without it") if lacks else (10.0, "Efficiency")
+    yield figure(place, name, "mean_efficiency", _certainty(outcome, data))
 
 
 def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
