@@ -8,11 +8,11 @@ import pytest
 from scipy.optimize import brentq, minimize, minimize_scalar
 
 from pitchpoint.errors import InputError
+from pitchpoint.gears.bodies import disc
 from pitchpoint.gears.cylindrical.inspection import (
     Toothing,
     backlash,
     backlash_limits,
-    disc,
     involute,
 )
 from pitchpoint.gears.cylindrical.iso_286 import standard_tolerance, symmetrical_deviation

@@ -53,8 +53,8 @@ speed_count = 2
 temperatures = ["20 degC", "60 degC"]
 """
 )
-PARTS = ["teeth", "load_limits", "cycle", "operation", "laws", "torsion", "kinematic_error"]
-PARTS += ["running", "loss_map", "back_driving"]
+PARTS = ["teeth", "load_limits", "bodies", "cycle", "operation", "laws", "torsion"]
+PARTS += ["kinematic_error", "running", "loss_map", "back_driving"]
 
 MAPPED = f"""{PAIR}
 [loss_map]

@@ -467,8 +467,8 @@ def test_deviations_that_cannot_be(key: str, waves: Any, words: str) -> None:
 
 def test_the_parts_of_a_drive() -> None:
     names = [job.name for job in jobs(drive(), {})]
-    assert names[:3] == ["teeth", "load_limits", "cycle"]
-    assert names[3:] == ["operation", "laws", "torsion", "loss_map", "back_driving"]
+    assert names[:4] == ["teeth", "load_limits", "bodies", "cycle"]
+    assert names[4:] == ["operation", "laws", "torsion", "loss_map", "back_driving"]
 
 
 def test_sweeps_of_a_drive_are_looked_at_before_they_run() -> None:

@@ -10,12 +10,12 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.teeth import drawing_of
 from pitchpoint.cases.build import Built
+from pitchpoint.gears.bodies import disc
 from pitchpoint.gears.cylindrical.inspection import (
     Backlash,
     Toothing,
     backlash,
     backlash_limits,
-    disc,
 )
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
 from pitchpoint.gears.cylindrical.table import CylindricalGears, Inspection

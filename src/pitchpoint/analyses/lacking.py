@@ -6,6 +6,7 @@ from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.loading.registry import LOAD_SHARING
 
 __all__ = [
+    "no_bodies",
     "no_deviations",
     "no_joint",
     "no_quadrants",
@@ -62,6 +63,15 @@ def without_films(built: Ready) -> str | None:
     if built.design.mesh.touching and built.case.loss_map is None:
         return f"{why_not}, and one with a table [loss_map] has it from films at few of them"
     return None if built.design.mesh.touching else why_not
+
+
+def no_bodies(built: Built) -> str | None:
+    """Why there are no masses of bodies."""
+    if built.family.bodies is not None:
+        return None
+    if not built.transmits:
+        return Unasked("a test rig has bodies of any mass")
+    return Unasked("masses of cylindrical gears stand with the dimensions of their drawing")
 
 
 def no_joint(built: Built) -> str | None:

@@ -12,7 +12,7 @@ from pitchpoint.analyses.analysis import Analysis, Several, of_gears_with
 from pitchpoint.analyses.cycle import CYCLE
 from pitchpoint.analyses.figures import WIND_UP
 from pitchpoint.analyses.films import FILM, FILM_SQUEEZE, FINITE_FILM
-from pitchpoint.analyses.lacking import no_deviations, no_joint, no_quadrants, rigid
+from pitchpoint.analyses.lacking import no_bodies, no_deviations, no_joint, no_quadrants, rigid
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
 from pitchpoint.analyses.running import RUNNING
@@ -40,6 +40,13 @@ LOAD_LIMITS = Analysis(
     lacks=of_gears_with("limits", "a flexspline is that of a strain wave gear"),
     compute="pitchpoint.analyses.load_limits:load_limits_of",
     main=("alternating_stress", "torsional_stress", "mean_stress", "flexspline_torque"),
+)
+BODIES = Analysis(
+    name="bodies",
+    title="bodies",
+    lacks=no_bodies,
+    compute="pitchpoint.analyses.bodies:bodies_of",
+    main=("body_mass", "body_inertia"),
 )
 TORSION = Analysis(
     name="torsion",
@@ -81,6 +88,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     TEETH,
     INSPECTION,
     LOAD_LIMITS,
+    BODIES,
     CYCLE,
     OPERATION,
     LAWS_THERE,

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from pitchpoint.cases.other_formats import neighbours, not_toml, not_utf_8
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import shown, text
 from pitchpoint.plain_files import content
@@ -115,12 +114,16 @@ def read(path: Path) -> Tree:
             raise _too_deep(path.name)  # the reader would take hours to say so
         tree = parsed(text)
     except UnicodeDecodeError as error:
+        from pitchpoint.cases.other_formats import not_utf_8
+
         raise InputError(not_utf_8(error), file=path.name) from None
     except RecursionError:
         raise _too_deep(path.name) from None
     except InputError:
         raise
     except ValueError as error:
+        from pitchpoint.cases.other_formats import not_toml
+
         raise InputError(not_toml(text, error), file=path.name) from None
     demand_shallow(tree, path.name)
     try:
@@ -204,6 +207,8 @@ def _from(folder: Path, name: str) -> str:
 
 def _text(path: Path) -> str:
     if not os.path.exists(path):
+        from pitchpoint.cases.other_formats import neighbours
+
         raise InputError(f"there is no such case file{neighbours(path)}", file=str(path))
     held = io.BytesIO(content(path, MAX_BYTES, "case file"))
     return io.TextIOWrapper(held, encoding="utf-8-sig").read()  # ends lines as Macintoshes did

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from pitchpoint import published
 from pitchpoint.cases.document import Tree, read
-from pitchpoint.cases.other_formats import neighbours
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.registry import nearest
 
@@ -32,6 +31,8 @@ def path_of(case: str) -> Path:
     if case in names():
         return Path(str(resources.files(published) / case / "case.toml"))
     if Path(case).suffix == "" and not _exists(Path(case)):
+        from pitchpoint.cases.other_formats import neighbours
+
         told = f"'{shorten(case)}' is neither a shipped case nor a file"
         raise InputError(f"{told}{neighbours(Path(case)) or nearest(case, names())}")
     return Path(case)

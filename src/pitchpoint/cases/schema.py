@@ -23,7 +23,6 @@ from pitchpoint import units
 from pitchpoint.cases.document import STAGES, Document, check_name
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import expanded, named_set
-from pitchpoint.cases.wishes import answer, answered
 from pitchpoint.contact.registry import (
     ELLIPTIC_CONTACT,
     END_PROFILES,
@@ -1870,6 +1869,8 @@ def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | 
             return COEFFICIENT  # a law's own parameter
         if not holding:
             known = dict.fromkeys(name for each in fields for name in each)
+            from pitchpoint.cases.wishes import answer
+
             told = answer(parts[: position + 1], None, {}, known) or nearest(part, known)
             raise InputError(f"there is no such key{told}", key=key)
         if position == len(parts) - 1:
@@ -2022,6 +2023,8 @@ def _left_missing(
     place: tuple[str, ...], same: Sequence[Any], unknown: Sequence[tuple[str, ...]]
 ) -> bool:
     """True for a missing key that stands there in another spelling."""
+    from pitchpoint.cases.wishes import answered
+
     beside = (one for one in unknown if one[:-1] == place[:-1])
     return same[0]["type"] == "missing" and any(
         place[-1] in answered(one) or alike(one[-1], place[-1:]) for one in beside
@@ -2077,6 +2080,8 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
         return f"is missing{_needed(detail['loc'], model)}"
     if kind == "extra_forbidden":
         what, fields = "table" if isinstance(given, dict) else "key", _fields(detail["loc"], model)
+        from pitchpoint.cases.wishes import answer
+
         told = answer(_place_of(detail, document), given, document.tree, fields)
         return f"is not a known {what}{told or nearest(str(detail['loc'][-1]), fields)}"
     if kind == "literal_error":

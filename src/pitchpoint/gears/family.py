@@ -10,6 +10,7 @@ import numpy as np
 from pitchpoint._jax import array
 from pitchpoint.contact.surface import Surfaces, Waves
 from pitchpoint.errors import InputError
+from pitchpoint.gears.bodies import MassInertia
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.table import Deviation
 
@@ -72,6 +73,8 @@ class Family:
         turning: words of a turn around which they repeat themselves.
         drawing: dimensions of the arrays of a drawing.
         coordinates: labels along those dimensions.
+        bodies: mass and moment of inertia of each member, from the table, the mesh and the densities of both
+            materials, and a sentence on how they are made up; None where they stand elsewhere, or nowhere.
         together: as `build` for many tables at once, with the error in the place of gears that cannot run;
             None where they are built one by one.
     """
@@ -82,6 +85,7 @@ class Family:
     turning: Turning = Turning()
     drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, Any] = field(default_factory=dict)
+    bodies: Callable[[Any, Any, Sequence[float]], tuple[list[MassInertia], str]] | None = None
     together: Callable[[Sequence[Any], str, int], list[Made | InputError]] | None = None
 
 

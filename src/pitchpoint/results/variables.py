@@ -78,6 +78,10 @@ VARIABLES: dict[str, Variable] = {
     "disc_inertia": Variable(
         "moment of inertia of a gear as a disc", "J", "kg m2", "kg cm2", "moment of inertia"
     ),
+    "body_mass": Variable("mass of a body", "m", "kg", "kg", "mass"),
+    "body_inertia": Variable(
+        "moment of inertia of a body about its axis", "J", "kg m2", "kg cm2", "moment of inertia"
+    ),
     "bending_strain": Variable("largest strain by which the wave bends", "ε_b", "1"),
     "bending_amplitude": pressure("alternating bending stress of the flexspline", "σ_b"),
     "alternating_stress": pressure("alternating equivalent stress of the flexspline", "σ_a"),

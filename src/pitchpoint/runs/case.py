@@ -22,7 +22,6 @@ from pitchpoint.cases.document import (
 )
 from pitchpoint.cases.schema import DriveCase, StageTable, in_form, keys, quantity_at, validate
 from pitchpoint.cases.variant import Variant
-from pitchpoint.cases.wishes import WISHES, answer
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.lubrication.registry import FrictionLaw
@@ -116,6 +115,8 @@ class Case:
             return found[0]
         if not found:
             ends = dict.fromkeys(key.rpartition(".")[2] for key in _every_key(tree))
+            from pitchpoint.cases.wishes import WISHES, answer
+
             wishes = (answer((table, name), None, {}, ends) for table in WISHES)
             told = next(filter(None, wishes), nearest(name, ends))
             raise InputError(f"there is no such key{told}", key=shorten(name))

@@ -123,6 +123,15 @@ LOAD_LIMITS = Section(
     answer=of_part("load_limits", "pitchpoint.views.sections.load_limits:limits_facts"),
     screen=of_part("load_limits", "pitchpoint.views.sections.load_limits:limits_printed"),
 )
+BODIES = Section(
+    name="bodies",
+    title="Masses and moments of inertia",
+    short="Masses",
+    order=107.0,
+    parts=("bodies",),
+    blocks="pitchpoint.views.sections.bodies:bodies_blocks",
+    screen=of_part("bodies", "pitchpoint.views.sections.bodies:bodies_printed"),
+)
 MOTION = Section(
     name="motion",
     title="Motion with friction",
@@ -143,6 +152,7 @@ SECTIONS: Registry[Section] = Registry(
     TEETH,
     INSPECTION,
     LOAD_LIMITS,
+    BODIES,
     PATH,
     STRENGTH,
     DRIVE,

@@ -7,7 +7,7 @@ from math import acos, asin, atan, ceil, cos, floor, inf, log10, nan, pi, sin, t
 
 from pitchpoint.errors import InputError
 
-__all__ = ["Backlash", "Toothing", "backlash", "backlash_limits", "disc", "profile_shift_sum"]
+__all__ = ["Backlash", "Toothing", "backlash", "backlash_limits", "profile_shift_sum"]
 
 
 @dataclass(frozen=True)
@@ -264,23 +264,6 @@ def profile_shift_sum(
         )
     working = acos(least / centre_distance)
     return (involute(working) - involute(transverse)) * total / (2.0 * tan(pressure_angle))
-
-
-def disc(*, density: float, width: float, outer: float, inner: float) -> tuple[float, float]:
-    """Mass [kg] and moment of inertia about its axis [kg m2] of a ring-shaped disc.
-
-    Args:
-        density: [kg/m3].
-        width: along the axis [m].
-        outer, inner: radii, in either order [m].
-
-    Example:
-        >>> mass, inertia = disc(density=7850.0, width=0.02, outer=0.05, inner=0.0)
-        >>> round(mass, 4), round(1e4 * inertia, 3)
-        (1.2331, 15.413)
-    """
-    mass = pi * density * width * abs(outer**2 - inner**2)
-    return mass, mass * (outer**2 + inner**2) / 2.0
 
 
 def involute(angle: float) -> float:

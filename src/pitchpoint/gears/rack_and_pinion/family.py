@@ -1,13 +1,15 @@
 """A rack and pinion from its table in a case file."""
 
+from collections.abc import Sequence
 from dataclasses import replace
-from math import nan
+from math import cos, nan
 from typing import Any
 
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.gears.bodies import MassInertia, disc
 from pitchpoint.gears.contact_lines import lanes_for
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.involute import InvoluteGear, usual_depths
@@ -115,9 +117,26 @@ def _following(gears: RackAndPinionGears, mesh: RackAndPinion) -> dict[str, Any]
     return {"dedendum": depth, "fillet_radius": fillet, "mounting_distance": mesh.distance}
 
 
+def _bodies(
+    gears: RackAndPinionGears, mesh: RackAndPinion, densities: Sequence[float]
+) -> tuple[list[MassInertia], str]:
+    """The pinion as a disc, as a vibration takes it, and what the rack moves as the case gives it."""
+    pinion, moved = mesh.pinion, nan if gears.mass is None else gears.mass
+    outer = gears.teeth * gears.module / (2.0 * cos(gears.helix_angle))
+    root = outer - gears.module * (float(pinion.dedendum) - gears.profile_shift)
+    inner = root / float(mesh.rim_ratio)
+    made = disc(density=densities[0], width=gears.face_width, outer=outer, inner=inner)
+    told = (
+        "The pinion is a disc from its bore to its reference circle; the mass of the rack and of all that "
+        "moves with it is gears.mass."
+    )
+    return [made, (moved, nan)], told
+
+
 FAMILY = Family(
     _build,
     _following,
+    bodies=_bodies,
     drawing={**LAYERS, "points": ("point",)},
     coordinates=labels(MEMBERS, ("N1",)),
 )

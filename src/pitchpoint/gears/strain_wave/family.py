@@ -1,17 +1,20 @@
 """A strain wave gear from its table in a case file."""
 
+from collections.abc import Sequence
 from dataclasses import fields, replace
-from math import inf
+from math import inf, pi
 from typing import Any
 
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
+from pitchpoint.gears.bodies import MassInertia, as_one, disc
 from pitchpoint.gears.family import Family, Followed, Turning, waves
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.strain_wave.ball_bearing import Balls
+from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_circle
 from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave, check_strain_wave
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.in_series import Behind, dimensions
+from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, DoubleArcForm
 from pitchpoint.gears.strain_wave.table import (
     BallBearing,
@@ -167,6 +170,70 @@ def _deviations(gears: StrainWaveGears, drive: StrainWave) -> Surfaces:
     return waves(given.flexspline), waves(given.circular_spline)
 
 
+def _bodies(
+    gears: StrainWaveGears, drive: StrainWave, densities: Sequence[float]
+) -> tuple[list[MassInertia], str]:
+    """Wave generator, flexspline and circular spline of rings, tubes and discs."""
+    pitch, width = gears.module * gears.teeth[0], gears.face_width
+    rim, told = (
+        drive.rim,
+        (_IN_PARTS if gears.flexspline.rim_thickness else f"{_IN_PARTS} {_USUAL}"),
+    )
+    radius, thickness = float(rim.radius), float(rim.thickness)
+    sizes = PROPORTIONS.behind(pitch) | {"bottom_thickness": thickness}
+    if gears.yielding is not None:
+        sizes |= dimensions(_behind(gears.yielding), pitch, thickness)
+    first, second = densities
+    wall, length = float(rim.wall_thickness), float(rim.cup_length)
+    within = radius - thickness / 2.0
+    flexspline = [
+        disc(density=first, width=width, outer=pitch / 2.0, inner=within),
+        disc(density=first, width=length, outer=within + wall, inner=within),
+        disc(density=first, width=sizes["bottom_thickness"], outer=within, inner=0.0),
+    ]
+    outer, inner = sizes["outside_diameter"] / 2.0, gears.module * gears.teeth[1] / 2.0
+    spline = disc(density=second, width=width, outer=outer, inner=inner)
+    wave = _wave_generator(gears, within, sizes["shaft_diameter"] / 2.0, first)
+    return [wave, as_one(flexspline), spline], told
+
+
+def _wave_generator(
+    gears: StrainWaveGears, within: float, shaft: float, density: float
+) -> MassInertia:
+    """A plug with the inner race, balls that go round with half its speed about, an outer race that rests.
+
+    Args:
+        gears: table.
+        within: radius inside the rim [m].
+        shaft: radius of the shaft [m].
+        density: of the plug [kg/m3].
+    """
+    pitch, width = gears.module * gears.teeth[0], gears.face_width
+    table = gears.wave_generator.bearing
+    balls = Balls() if table is None else _balls(table)
+    sizes = balls.sizes(pitch)
+    circle, ball = ball_circle(balls, pitch, 2.0 * within), sizes["ball_diameter"]
+    mass, inertia = disc(density=density, width=width, outer=(circle - ball) / 2.0, inner=shaft)
+    race, _ = disc(
+        density=_STEEL, width=width, outer=within, inner=within - sizes["race_thickness"]
+    )
+    rolling = sizes["balls"] * _STEEL * pi / 6.0 * ball**3
+    cage = (1.0 - ball / circle) / 2.0
+    return mass + race + rolling, inertia + rolling * (cage * circle / 2.0) ** 2
+
+
+_STEEL = 7830.0
+"""Of balls and races [kg/m3], whatever the flexspline is made of."""
+
+_IN_PARTS = (
+    "The wave generator is a plug of the flexspline's material as wide as the teeth, with balls and outer "
+    "race of steel; its moment of inertia is what its shaft feels, with the balls at their own speed and the "
+    "outer race at rest. The flexspline is a toothed ring, a tube and a bottom, the circular spline a ring. "
+    "Bosses, screws and couplings are not in it."
+)
+_USUAL = "Dimensions that the case leaves open are in usual proportion to the pitch diameter."
+
+
 FAMILY = Family(
     _strain_wave,
     _of_drive,
@@ -180,6 +247,7 @@ FAMILY = Family(
         "difference, so that the errors of both add up differently in later turns; those of one "
         "spline alone, shown by order, stay as they are.",
     ),
+    bodies=_bodies,
     drawing={
         "tooth": ("corner", "xy"),
         "space": ("space_corner", "xy"),

@@ -1,14 +1,16 @@
 """A torus-involute pair from its table in a case file."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
+import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
+from pitchpoint.gears.bodies import MassInertia, disc
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair, with_bores
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
@@ -173,10 +175,24 @@ def _deviations(gears: TorusGears, pair: TorusPair) -> Surfaces:
     return (waves(asked.gear_1), waves(asked.gear_2)) if asked is not None else ((), ())
 
 
+def _bodies(
+    gears: TorusGears, pair: TorusPair, densities: Sequence[float]
+) -> tuple[list[MassInertia], str]:
+    """Discs as wide as the face of each gear, as a vibration takes them."""
+    made, shifts, depths = [], np.asarray(pair.middle_shift), np.asarray(pair.dedendum)
+    for number, (teeth, width) in enumerate(zip(gears.teeth, gears.face_width, strict=True)):
+        outer = teeth * gears.module / 2.0
+        root = outer - gears.module * float(depths[number] - shifts[number])
+        inner = root / float(np.asarray(pair.rim_ratio)[number])
+        made.append(disc(density=densities[number], width=width, outer=outer, inner=inner))
+    return made, "Discs as wide as the face of each gear, from the bore to the reference circle."
+
+
 FAMILY = Family(
     _build,
     _following,
     _deviations,
+    bodies=_bodies,
     drawing={**LAYERS, "points": ("point",)},
     coordinates=labels(MEMBERS, ("N1", "N2")),
 )

@@ -1,0 +1,45 @@
+"""Masses and moments of inertia of the bodies of a mesh."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.section import Block, Page, Paragraph, Printed, Table, by_variant
+
+__all__ = ["bodies_blocks", "bodies_printed"]
+
+_TITLES = {"body_mass": "mass m", "body_inertia": "moment of inertia J"}
+
+
+def bodies_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
+    yield from by_variant(page, "bodies", _of_variant)
+
+
+def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
+    data = outcome.parts["bodies"]
+    heads = [f"{title} [{show.unit_of(name)}]" for name, title in _TITLES.items()]
+    yield Table(["body", *heads], _rows(data), compact=True)
+    yield Paragraph(data.attrs["note"], "note")
+
+
+def bodies_printed(outcome: Outcome) -> Iterator[Printed]:
+    """What the screen shows."""
+    data = outcome.parts["bodies"]
+    heads = ["body", *(f"{title} [{show.unit_of(name)}]" for name, title in _TITLES.items())]
+    yield Printed(rows=[dict(zip(heads, row, strict=True)) for row in _rows(data)])
+
+
+def _rows(data: xr.Dataset) -> list[tuple[str, ...]]:
+    values = zip(*(data[name].values for name in _TITLES), strict=True)
+    return [
+        (str(member), *(_cell(name, float(v)) for name, v in zip(_TITLES, each, strict=True)))
+        for member, each in zip(data["member"].values, values, strict=True)
+    ]
+
+
+def _cell(name: str, value: float) -> str:
+    return show.quantity(name, value, with_unit=False) if np.isfinite(value) else "–"

@@ -1,0 +1,115 @@
+"""Masses and moments of inertia of bodies: closed forms, those that a vibration takes, and of catalogues."""
+
+import copy
+import tomllib
+from math import isnan, pi
+
+import numpy as np
+import pytest
+from sound import WAVE
+
+from pitchpoint._jax import array
+from pitchpoint.analyses.bodies import bodies_of
+from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.cases.variant import Variant
+from pitchpoint.gears.families import TABLES, sample_of
+from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
+from pitchpoint.gears.torus.table import TorusGears
+
+STEEL = 7830.0
+
+
+def built(tree):
+    return Variant(tree, "case", "default").built({})
+
+
+def bodies(tree):
+    data = bodies_of(built(tree), {}, lambda *_: None)
+    return data["body_mass"].values, data["body_inertia"].values
+
+
+@pytest.mark.parametrize("table", [RackAndPinionGears, TorusGears])
+def test_gears_are_the_discs_that_a_vibration_takes(table):
+    tree = tomllib.loads(sample_of(table).read_text())
+    made = built(tree)
+    densities = array([float(solid.density) for solid in made.design.solids])
+    taken = np.asarray(made.design.mesh.inertia(densities))
+    mass, inertia = bodies(tree)
+    if table is RackAndPinionGears:
+        assert mass[1] == taken[1] and isnan(inertia[1])  # it travels
+        assert inertia[0] == pytest.approx(taken[0], rel=1e-12)
+    else:
+        assert inertia == pytest.approx(taken, rel=1e-12)
+
+
+def test_a_rack_without_a_mass_has_none():
+    tree = tomllib.loads(sample_of(RackAndPinionGears).read_text())
+    del tree["gears"]["mass"]
+    tree.pop("dynamics", None)
+    assert isnan(bodies(tree)[0][1])
+
+
+def drive(**gears):
+    tree = copy.deepcopy(tomllib.loads(WAVE))
+    tree["gears"] = {"family": "strain_wave", "teeth": [200, 202], "module": "0.3 mm"} | gears
+    return tree
+
+
+def test_parts_of_a_strain_wave_gear():
+    """A drive of 60 mm by its volumes, worked out beside the code."""
+    mass, inertia = bodies(
+        drive(
+            face_width="10 mm",
+            flexspline={
+                "rim_thickness": "0.6 mm",
+                "wall_thickness": "0.3 mm",
+                "cup_length": "30 mm",
+            },
+            yielding={"outside_diameter": "80 mm", "bottom_thickness": "0.5 mm"},
+        )
+    )
+    spline = STEEL * pi * 0.01 * (0.04**2 - 0.0303**2)
+    assert mass[2] == pytest.approx(spline, rel=1e-12)
+    assert inertia[2] == pytest.approx(spline * (0.04**2 + 0.0303**2) / 2.0, rel=1e-12)
+    middle = float(built(drive(face_width="10 mm")).design.mesh.rim.radius)
+    # Tube and bottom of thin walls, a toothed ring: to the order of their thickness over the radius.
+    thin = (
+        2.0 * pi * middle * 0.01 * (0.03 - middle + 0.0003)
+        + 2.0 * pi * middle * 0.03 * 0.0003
+        + pi * middle**2 * 0.0005
+    )
+    assert mass[1] == pytest.approx(STEEL * thin, rel=0.05)
+    # Balls of 4.68 mm on a circle of 52.2 mm round a plug that carries them, on a shaft of 10.2 mm.
+    within = middle - 0.0003
+    circle = 2.0 * within - 2.0 * 0.00075 - 0.00468
+    plug = STEEL * pi * 0.01 * (((circle - 0.00468) / 2.0) ** 2 - 0.0051**2)
+    balls = 23 * STEEL * pi / 6.0 * 0.00468**3
+    race = STEEL * pi * 0.01 * (within**2 - (within - 0.00075) ** 2)
+    assert mass[0] == pytest.approx(plug + balls + race, rel=1e-12)
+    cage = (1.0 - 0.00468 / circle) / 2.0
+    of_plug = plug * (((circle - 0.00468) / 2.0) ** 2 + 0.0051**2) / 2.0
+    assert inertia[0] == pytest.approx(of_plug + balls * (cage * circle / 2.0) ** 2, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("diameter", "width", "expected"), [(35.6e-3, 7e-3, 0.033e-4), (63.5e-3, 10e-3, 0.413e-4)]
+)
+def test_wave_generators_are_near_those_of_catalogues(diameter, width, expected):
+    """Component sets of sizes 14 and 25, moments of inertia [kg m2]; widths assumed, that of 25 recalled."""
+    gears = {"module": f"{1e3 * diameter / 200} mm", "face_width": f"{1e3 * width} mm"}
+    assert bodies(drive(**gears))[1][0] == pytest.approx(expected, rel=0.35)
+
+
+def test_which_gears_have_bodies():
+    told = {
+        table.__name__: ANALYSES["bodies"].why_not(
+            built(tomllib.loads(sample_of(table).read_text()))
+        )
+        for table in TABLES
+    }
+    assert [name for name, why in told.items() if why is None] == [
+        "StrainWaveGears",
+        "RackAndPinionGears",
+        "TorusGears",
+    ]
+    assert "drawing" in told["CylindricalGears"] and "test rig" in told["BallOnDiscRig"]
