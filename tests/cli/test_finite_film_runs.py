@@ -211,9 +211,18 @@ DUB = {"film.end_length": "1 mm", "film.end_radius": "200 mm"}
 
 @pytest.mark.whole
 def test_a_ball_on_a_disc_has_an_ellipse_once_for_all_phases() -> None:
-    outcome = running.run(BALL, settings={"film.nodes": 33})["default"]
+    settings = {"film.nodes": 33, "film.refractive_index": 1.47}
+    outcome = running.run(BALL, settings=settings)["default"]
     data = outcome.parts["finite_film"]
     assert "mean_line_loss" not in data
+    # An index of 1.47 under the density of Dowson and Higginson at the pressure in the middle.
+    pressed = 1e-9 * float(data["film_pressure"].max())
+    refraction = (1.0 + 0.6 * pressed / (1.0 + 1.7 * pressed)) * (1.47**2 - 1.0) / (1.47**2 + 2.0)
+    index = np.sqrt((1.0 + 2.0 * refraction) / (1.0 - refraction))
+    read = float(data["read_film"].max() / data["central_film"].max())
+    assert read == pytest.approx(index / 1.47, rel=5e-3) and read > 1.03
+    words = f"too thick, as compressed oil is denser: by {100.0 * (read - 1.0):.2g} % in the middle"
+    assert words in data.attrs["interferometry"] and words in render({"default": outcome})
     assert np.unique(data["central_film"].values).size == 1
     assert float(data["film_pressure"].max()) == pytest.approx(
         float(data["pressure"].max()), rel=0.02

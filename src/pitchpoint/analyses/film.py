@@ -19,6 +19,7 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 
 __all__ = [
+    "GRID_ERRORS",
     "OF_LINES",
     "film_part",
     "films_of_lines",
@@ -27,6 +28,9 @@ __all__ = [
     "pieces",
     "values_of_lines",
 ]
+
+GRID_ERRORS = ("central_film_error", "minimum_film_error")
+"""Estimates of the error that the grid makes of film in the middle and smallest film."""
 
 TOGETHER = 6
 """Phases of a piece, so that little is lost when a run is stopped."""
@@ -74,6 +78,8 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     films, codes, back = films_of_lines(built, some, done)
     values = values_of_lines(films.film, some, back)
     values["minimum_lambda"] = over_rough(built, values["minimum_film"])
+    for name, error in zip(GRID_ERRORS, (films.ended.grid, films.ended.grid_minimum), strict=True):
+        values[name] = np.where(back < 0, np.nan, error[back])
     profiles = _kept(films.film, given, some, back)
     # Contacts that have no film are counted over the whole cycle.
     told = [doubt for doubt in films.warnings if doubt.kind != UNSOLVED]

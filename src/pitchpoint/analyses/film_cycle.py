@@ -51,6 +51,7 @@ def whole(
     lanes: tuple[str, ...],
     more: Lanes,
     again: Again,
+    of_grid: Sequence[Doubt] = (),
     **attributes: Any,
 ) -> xr.Dataset:
     """Films of the cycle, with those by film laws and friction by the laws of the case beside them.
@@ -62,6 +63,7 @@ def whole(
         lanes: names of the axes of a contact.
         more: what else the dataset holds.
         again: solves the contact of a lane with another set of summits.
+        of_grid: doubts about the grid of contacts that were solved on another one too.
         attributes: of the dataset.
     """
     found = xr.concat(parts, "point", combine_attrs="drop").rename(point="phase")
@@ -90,6 +92,7 @@ def whole(
         warnings=[
             *_lost(codes[loaded]),
             *_of_pieces(parts),
+            *of_grid,
             *_about(built, states, found),
             *_of_summits(spread),
         ],
@@ -186,6 +189,8 @@ def _extremes(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     high = {
         "largest_film_pressure": "film_pressure",
         "largest_asperity_share": "asperity_share",
+        "largest_central_film_error": "central_film_error",
+        "largest_minimum_film_error": "minimum_film_error",
         "largest_film_rise": "film_rise",
         "largest_flash_rise": "flash_rise",
     }

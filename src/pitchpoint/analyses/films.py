@@ -20,6 +20,8 @@ _MAIN = (
     "smallest_lambda",
     "largest_film_pressure",
     "largest_asperity_share",
+    "largest_central_film_error",
+    "largest_minimum_film_error",
     "largest_film_rise",
     "largest_flash_rise",
     "mean_film_friction",

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.film import OF_LINES, films_of_lines, over_rough, values_of_lines
 from pitchpoint.analyses.film_contacts import alike, asked, film_model_of, states
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.build import Built, tooth_size
 from pitchpoint.cases.films import patch_grid
 from pitchpoint.doubts import WITHHELD, Doubt
 from pitchpoint.errors import InputError
@@ -23,7 +24,9 @@ from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.heat import PatchTemperatures
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST
-from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
+from pitchpoint.lubrication.ehl.registry import COARSE, ISOTHERMAL
+from pitchpoint.lubrication.ehl.solve import OF_HALF
+from pitchpoint.materials.rheology import lorentz_lorenz_1880
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 
@@ -197,9 +200,30 @@ def _values(
         for name, shape in _SHAPES.items()
         if line or name not in _ROWS
     }
+    if asked(built).refractive_index is not None:
+        pressures = [
+            _in_the_middle(one.film) if isinstance(one, PatchFilms) else np.nan for one in films
+        ]
+        found["read_film"] = found["central_film"] * _read_over_true(built, lane(pressures))
     status = np.array([*codes, int(Code.UNLOADED)])[lanes]
     found["minimum_lambda"] = over_rough(built, found["minimum_film"])
     return found | {"film_status": status, "film_defect": lane(defects)}
+
+
+def _in_the_middle(film: PatchFilm) -> float:
+    """Pressure in the middle of an ellipse [Pa]."""
+    rows = [np.interp(0.0, film.x, row) for row in np.asarray(film.pressure)]
+    return float(np.interp(0.0, film.y, rows))
+
+
+def _read_over_true(built: Built, pressure: np.ndarray) -> np.ndarray:
+    """Film that interferometry reads with the index at ambient pressure, over the true one."""
+    index = np.asarray(asked(built).refractive_index)
+    oil = film_model_of(built).fluid(built.design.lubricant, float(built.operation.temperature))
+    denser = oil.density_ratio(array(pressure))
+    compressed = lorentz_lorenz_1880(refractive_index=array(index), density_ratio=denser)
+    read: np.ndarray = np.asarray(compressed) / index
+    return read
 
 
 def _code(one: PatchFilms | Refused) -> Code:
@@ -407,9 +431,10 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         if name in parts[0]
     }
     fields = _fields(built, parts, values)
+    coarse = _coarse(built, fields["kept_at"][1])
     more = {
         **fields,
-        **_coarse(built, fields["kept_at"][1]),
+        **coarse,
         **_line_figures(given.states, values),
         **_finite_figures(values),
         "line_length": (_LANES, given.states["weight_of_line"]),
@@ -435,6 +460,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         _LANES,
         more,
         again,
+        _of_grid(values, fields["kept_at"][1], coarse),
         title="films of finite contacts",
         solver=table.solver,
         grid=json.dumps([nodes, cells]),
@@ -442,6 +468,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         end_profile=table.end_profile or "",
         sharp=_sharp(given.states, values),
         leaning=_leaning(values),
+        interferometry=_interferometry(built, values),
     )
     return data.set_coords(["direction", "end", "distance", "kept"])
 
@@ -454,6 +481,7 @@ _FOR_FIGURES = (
     "film_pressure",
     "largest_place",
     "dry_half_width",
+    "read_film",
 )
 
 NEAR = 1
@@ -474,6 +502,41 @@ def _finite_figures(
     return {
         name: (dims, np.where(np.isinf(one), np.nan, one)) for name, (dims, one) in found.items()
     }
+
+
+def _of_grid(
+    values: Mapping[str, np.ndarray], at: np.ndarray, coarse: Mapping[str, tuple[Any, np.ndarray]]
+) -> list[Doubt]:
+    """Errors by the grid of the kept contacts, estimated as those of lines, where they count."""
+    errors = []
+    for name, part in zip(("central_film", "minimum_film"), OF_HALF, strict=True):
+        fine = np.array([values[name][tuple(place)] if place[0] >= 0 else np.nan for place in at])
+        change = np.abs(coarse[f"coarse_{name}"][1] / np.where(fine > 0.0, fine, np.nan) - 1.0)
+        errors.append(float(part * np.max(change[np.isfinite(change)], initial=0.0)))
+    worst = max(errors)
+    if worst < COARSE:
+        return []
+    central, minimum = (100.0 * error for error in errors)
+    sentence = (
+        "Films: the grid is coarse for the contact that carries most or that with the thinnest film: in the "
+        f"middle it may be off by {central:.2g} %, at its thinnest by {minimum:.2g} %; take more `nodes`."
+    )
+    return [Doubt(sentence, "grid of kept", worst, moves=worst)]
+
+
+def _interferometry(built: Built, values: Mapping[str, np.ndarray]) -> str:
+    """How films of bodies without teeth, on which rigs read them, are read, in words."""
+    if built.design.mesh.shape == "line" or tooth_size(built.design.mesh) is not None:
+        return ""
+    words = (
+        "Interferometry that reads films with the index of the oil at ambient pressure finds them too thick, "
+        "as compressed oil is denser"
+    )
+    if "read_film" not in values:
+        return f"{words}: give the `refractive_index` to have them as they are read."
+    read = np.nanmax(values["read_film"] / values["central_film"]) - 1.0
+    index = asked(built).refractive_index
+    return f"{words}: by {100.0 * read:.2g} % in the middle with an index of {index:g} there."
 
 
 def _leaning(values: Mapping[str, np.ndarray]) -> str:

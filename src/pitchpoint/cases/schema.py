@@ -131,6 +131,7 @@ END_ANGLE = Quantity("angle", 0.0, pi / 2.0, "deg", open_low=True)
 LINE_LOAD = Quantity("line load", 0.0, 1e9, "N/mm", open_low=True)
 FILM_PHASES = Quantity("dimensionless", 3, 400, whole=True)
 STRESS = Quantity("pressure", 1e3, 1e10, "MPa")
+REFRACTIVE_INDEX = Quantity("dimensionless", 1.0, 2.0, open_low=True)
 OF_SUMMITS = Quantity("dimensionless", 0.0, 10.0, open_low=True)
 PATTERN = Quantity("dimensionless", 1 / 9, 9.0)
 INLET = Quantity("length", 0.0, 10.0, "mm", open_low=True)
@@ -875,6 +876,8 @@ class FilmTable(Table):
     """Peklenik's number γ of the roughness; 1, without a direction, unless given."""
     boundary_friction: Annotated[float, COEFFICIENT] | None = None
     """Friction coefficient of asperities that touch; 0.1 unless given, assumed."""
+    refractive_index: Annotated[float, REFRACTIVE_INDEX] | None = None
+    """Index of the oil at ambient pressure, with which interferometry reads films; none unless given."""
     inlet: Annotated[float, INLET] | None = None
     """Distance ahead of a contact at which oil begins; a module, without teeth flooded, unless given."""
     thermal: (
@@ -972,14 +975,16 @@ _STEADY = (
 _EVEN = (
     'lines of this solver have one profile all along; take solver = "finite_line", or leave it out'
 )
+_NOT_READ = 'films that are read by interferometry are those of solver = "elliptic"; leave it out'
 _ELLIPSE = "an ellipse ends by itself; leave it out"
 _NOT_OF: Mapping[str, Mapping[str, str]] = {
     "line": {
         **{key: _NO_ENDS for key in ("cells", "ends", "end_profile", *_OF_ENDS)},
         **dict.fromkeys(("time", "moments"), _STEADY),
         "heights": _EVEN,
+        "refractive_index": _NOT_READ,
     },
-    "finite_line": {},
+    "finite_line": {"refractive_index": _NOT_READ},
     "elliptic": {key: _ELLIPSE for key in ("ends", "end_profile", *_OF_ENDS)},
 }
 """Keys that a solver of films has nothing to do with, and why."""

@@ -18,6 +18,7 @@ __all__ = [
     "barus_1893",
     "dowson_higginson_1966",
     "incompressible",
+    "lorentz_lorenz_1880",
     "newtonian",
     "ree_eyring_1955",
     "roelands_1966",
@@ -164,6 +165,25 @@ def incompressible(*, pressure: Each, temperature_rise: Each) -> Each:
         temperature_rise: T - T0 [K].
     """
     return jnp.ones(jnp.broadcast_shapes(jnp.shape(pressure), jnp.shape(temperature_rise)))
+
+
+def lorentz_lorenz_1880(*, refractive_index: Each, density_ratio: Each) -> Each:
+    """Refractive index n of a compressed oil [1], (n^2 - 1)/(n^2 + 2) = rho/rho0 (n0^2 - 1)/(n0^2 + 2).
+
+    Args:
+        refractive_index: n0, at ambient pressure [1].
+        density_ratio: rho/rho0, density over that at ambient pressure [1].
+
+    What a molecule refracts is taken not to change with pressure. Source: Lorentz (1880), Lorenz (1880).
+
+    Example:
+        >>> round(float(lorentz_lorenz_1880(refractive_index=1.47, density_ratio=1.15)), 4)
+        1.5548
+    """
+    squared = refractive_index**2
+    refraction = density_ratio * (squared - 1.0) / (squared + 2.0)
+    found: Each = jnp.sqrt((1.0 + 2.0 * refraction) / (1.0 - refraction))
+    return found
 
 
 def newtonian(*, viscosity: Each, shear_rate: Each, pressure: Each) -> Each:

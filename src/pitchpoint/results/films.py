@@ -97,7 +97,8 @@ _ENDED: Final = {
     "load": _number("defect of the load over it"),
     "gap": _number("defect of the gap over the smallest one"),
     "iterations": _number("iterations of Newton's method"),
-    "grid": _number("estimated error of the film by the grid"),
+    "grid": _number("estimated error of the film in the middle by the grid"),
+    "grid_minimum": _number("estimated error of the smallest film by the grid"),
     "temperature": _number("defect of the temperature over the largest rise"),
     "turns": _number("turns between pressure and temperature"),
 }
@@ -296,7 +297,8 @@ def films_of_dataset(data: xr.Dataset) -> Films:
     Raises:
         InputError: it lacks a variable of films.
     """
-    lacks = [name for name in (*_FILM, "ended_code", "domain") if name not in data.variables]
+    needed = (*_FILM, "ended_code", "ended_grid_minimum", "domain")
+    lacks = [name for name in needed if name not in data.variables]
     if lacks:
         raise InputError(f"a dataset without '{lacks[0]}' is none of solved films")
     heat = Temperatures(**_part(data, "heat_")) if "heat_film" in data else None

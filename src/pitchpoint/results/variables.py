@@ -199,6 +199,25 @@ VARIABLES: dict[str, Variable] = {
     ),
     "smallest_lambda": Variable("smallest film over composite Rq", "Λ_min", "1"),
     "largest_film_pressure": pressure("largest pressure of the films", "p_max"),
+    "read_film": Variable(
+        "film in the middle as read with the index at ambient pressure",
+        "h_read",
+        "m",
+        "um",
+        "length",
+    ),
+    "central_film_error": percent(
+        "estimated error of the film in the middle by the grid", "Δh_c/h_c"
+    ),
+    "minimum_film_error": percent(
+        "estimated error of the smallest film by the grid", "Δh_min/h_min"
+    ),
+    "largest_central_film_error": percent(
+        "largest estimated error of films in the middle by the grid", "Δh_c/h_c max"
+    ),
+    "largest_minimum_film_error": percent(
+        "largest estimated error of smallest films by the grid", "Δh_min/h_min max"
+    ),
     "summits_share": percent("the same there, with every set of summits", "L_a"),
     "summits_friction": Variable("friction coefficient there, with every set of summits", "μ", "1"),
     "largest_asperity_share": percent("largest part of a contact's load on asperities", "L_a max"),

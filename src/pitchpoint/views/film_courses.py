@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.films import film_notes
-from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
+from pitchpoint.lubrication.ehl.registry import COARSE, ISOTHERMAL
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -61,6 +61,8 @@ _FIGURES = (
     "smallest_lambda",
     "largest_film_pressure",
     "largest_asperity_share",
+    "largest_central_film_error",
+    "largest_minimum_film_error",
 )
 _PARTS = {
     "mean_film_friction": ("mean_boundary_part",),
@@ -90,7 +92,7 @@ IN_SERIES = (
     "there are none. Their own stiffness wavers with the grid, by some 10 %."
 )
 
-_NOTES = ("leaning", "sharp", "below_hertz", "other_rolling")
+_NOTES = ("leaning", "sharp", "interferometry", "below_hertz", "other_rolling")
 """Attributes with sentences under the figures of the films."""
 
 _CENTRAL = ("longdash", "dashdot", "dot")
@@ -102,8 +104,8 @@ def answered(data: xr.Dataset) -> str:
     if int(data["solved_contacts"]) == 0:
         return _none(data)
     words = (
-        f"{_least(data)}, {told(data, 'smallest_lambda')} of Rq{_near_ends(data)}; asperities "
-        f"carry up to {told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
+        f"{_least(data)}{_by_grid(data)}, {told(data, 'smallest_lambda')} of Rq{_near_ends(data)}; "
+        f"asperities carry up to {told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
     )
     words += _spread(data)
     if rests := str(data.attrs["assumed"]):
@@ -157,6 +159,15 @@ def _least(data: xr.Dataset) -> str:
     return f"{middle} at least in the middle of a contact, {least} anywhere"
 
 
+def _by_grid(data: xr.Dataset) -> str:
+    """How far off the grid makes smallest films, in words; empty where that is little, or not known."""
+    if not float(data.get("largest_minimum_film_error", np.nan)) > COARSE:
+        return ""
+    return (
+        f" (the grid may make smallest films up to {told(data, 'largest_minimum_film_error')} off)"
+    )
+
+
 def _near_ends(data: xr.Dataset) -> str:
     """Largest pressure near the ends of lines, in words."""
     if "largest_end_pressure" not in data:
@@ -172,7 +183,7 @@ def _thermal(data: xr.Dataset) -> str:
 def _main(data: xr.Dataset) -> tuple[str, ...]:
     """Names of the figures of the films themselves."""
     known = (name for name in _FINITE if name in data and np.isfinite(float(data[name])))
-    found = (*known, *_FIGURES)
+    found = (*known, *(name for name in _FIGURES if name in data))
     return found if _thermal(data) == ISOTHERMAL else (*found, *_WARMTH)
 
 

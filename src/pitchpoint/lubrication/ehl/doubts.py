@@ -14,6 +14,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.line import FLOODED, LineContact
+from pitchpoint.lubrication.ehl.registry import COARSE
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
 from pitchpoint.lubrication.groups import line_groups
@@ -30,9 +31,6 @@ __all__ = [
     "starved",
     "warnings",
 ]
-
-COARSE: Final = 0.03
-"""Error by the grid from which on it is told."""
 
 LARGE: Final = 100.0
 """Relative radius [m] above which millimetres may have been meant."""
@@ -126,7 +124,7 @@ def warnings(
         contact: contacts `b`.
         film: theirs.
         code: of `Code`, what became of each, shape (b,).
-        grid_error: estimate of each, shape (b,).
+        grid_error: estimates of film in the middle and smallest film of each, shape (2, b).
         size: of the teeth, such as the module [m].
     """
     solved = code == Code.SOLVED
@@ -142,7 +140,7 @@ def warnings(
     yield from _of_half_space(some, half_width, size)
     yield from _of_inlet(some, half_width)
     yield from _of_long_inlet(some, found)
-    yield from _of_grid(grid_error[solved])
+    yield from _of_grid(*grid_error[:, solved])
     yield from _of_shear(some, found)
     if some.texture is not None:
         yield from _of_roughness(np.asarray(some.texture.rq), half_width)
@@ -325,15 +323,17 @@ def _of_thinning(fluid: Fluid) -> Iterator[Doubt]:
         )
 
 
-def _of_grid(error: NDArray[np.float64]) -> Iterator[Doubt]:
-    rough = error > COARSE
-    if rough.any():
+def _of_grid(central: NDArray[np.float64], minimum: NDArray[np.float64]) -> Iterator[Doubt]:
+    worst = np.fmax(central, minimum)
+    coarse = worst > COARSE
+    if coarse.any():
         yield Doubt(
-            f"the grid is coarse for the thin films of {rough.sum()} of {rough.size} contacts: they may be "
-            f"off by {100.0 * error.max():.2g} %; take more nodes",
+            f"the grid is coarse for the films of {coarse.sum()} of {coarse.size} contacts: in the middle "
+            f"they may be off by {100.0 * np.nanmax(central):.2g} %, smallest ones by "
+            f"{100.0 * np.nanmax(minimum):.2g} %; take more nodes",
             "grid",
-            error.max(),
-            moves=error.max(),
+            np.nanmax(worst),
+            moves=np.nanmax(worst),
         )
 
 

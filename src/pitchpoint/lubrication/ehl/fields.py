@@ -9,9 +9,9 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.lubrication.ehl.grid import Grid
+from pitchpoint.lubrication.ehl.grid import Grid, lowest
 from pitchpoint.lubrication.ehl.heat import Temperatures, temperatures
-from pitchpoint.lubrication.ehl.line import LineContact, Problem
+from pitchpoint.lubrication.ehl.line import NEAR, LineContact, Problem
 from pitchpoint.lubrication.ehl.work import filled, shear_stress, work_of_pressure
 
 __all__ = ["LineFilm", "line_film"]
@@ -131,7 +131,7 @@ def line_film(
     full = filled(flow, oil, room)
     stress = full * shear_stress(flow, oil, room, sliding)
     carried = jnp.sum(at.widths * asperities) / problem.load
-    place, least = _minimum(at.x, gap, jnp.abs(at.x) < 1.5 / problem.yielding)
+    place, least = _minimum(at.x, gap, jnp.abs(at.x) < NEAR / problem.yielding)
     spike_place, spike = _spike(at.x, pressure)
     sheared = jnp.sum(stress * at.widths) * length
     rubbed = flow.texture.boundary_friction * carried * contact.line_load * jnp.sign(sliding)
@@ -169,7 +169,7 @@ def line_film(
 
 def _minimum(x: Arrays, film: Array, where: Bool[Array, " node"]) -> tuple[Array, Array]:
     """Place and value of the lowest point about the lowest node."""
-    return _lowest(x, film, jnp.argmin(jnp.where(where, film, jnp.inf)))
+    return lowest(x, film, jnp.argmin(jnp.where(where, film, jnp.inf)))
 
 
 def _spike(x: Arrays, pressure: Array) -> tuple[Array, Array]:
@@ -179,21 +179,9 @@ def _spike(x: Arrays, pressure: Array) -> tuple[Array, Array]:
     peak = jnp.max(jnp.where((here > before) & (here >= after) & (x[1:-1] > 0.0), inner, 0))
     valley = jnp.max(jnp.where((here < before) & (here < after) & (inner < peak), inner, 0))
     stands_out = pressure[peak] - pressure[valley] > STANDS_OUT * jnp.max(pressure)
-    place, lowest = _lowest(x, -pressure, peak)
+    place, deepest = lowest(x, -pressure, peak)
     found = (valley > 0) & stands_out
-    return jnp.where(found, place, jnp.nan), jnp.where(found, -lowest, jnp.nan)
-
-
-def _lowest(x: Arrays, values: Array, node: Array) -> tuple[Array, Array]:
-    """Place and value of the lowest point of the parabola through a lowest node and its neighbours."""
-    near = jnp.clip(node, 1, x.shape[0] - 2) + jnp.arange(-1, 2)
-    (x0, x1, x2), (h0, h1, h2) = jnp.asarray(x)[near], values[near]
-    first, second = (h1 - h0) / (x1 - x0), (h2 - h1) / (x2 - x1)
-    bend = (second - first) / (x2 - x0)
-    level = jnp.where(bend > 0.0, bend, 1.0)
-    at = jnp.clip(0.5 * (x0 + x1 - first / level), x0, x2)
-    value = h0 + (at - x0) * (first + bend * (at - x1))
-    return jnp.where(bend > 0.0, at, x1), jnp.where(bend > 0.0, value, h1)
+    return jnp.where(found, place, jnp.nan), jnp.where(found, -deepest, jnp.nan)
 
 
 def _turned(film: LineFilm, turned: Array) -> LineFilm:

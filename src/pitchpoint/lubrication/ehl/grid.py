@@ -13,7 +13,18 @@ from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 
-__all__ = ["ENDS", "Along", "Ends", "Grid", "Row", "fewer", "grid", "line_kernel", "prolongation"]
+__all__ = [
+    "ENDS",
+    "Along",
+    "Ends",
+    "Grid",
+    "Row",
+    "fewer",
+    "grid",
+    "line_kernel",
+    "lowest",
+    "prolongation",
+]
 
 Ends = Literal["entrained", "squeezed"]
 
@@ -29,9 +40,6 @@ elastic ones far less.
 
 FEWEST: Final = 33
 """Nodes of the coarsest grid."""
-
-ENOUGH: Final = 64
-"""Intervals on which most contacts are solved from a guess."""
 
 _FINER, _OVER = 3.0, 0.15
 """By how much the grid is finer about the ends of the dry contact, where pressure and film turn, and how far
@@ -121,9 +129,7 @@ def fewer(nodes: int) -> int | None:
             f"{nodes} nodes across a contact; their number is one more than a power of two, "
             f"{FEWEST}, 65, 129, 257, ..."
         )
-    if nodes == FEWEST:
-        return None
-    return nodes // 2 + 1 if nodes < 4 * ENOUGH else nodes // 4 + 1
+    return None if nodes == FEWEST else nodes // 2 + 1
 
 
 def line_kernel(x: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -139,6 +145,18 @@ def line_kernel(x: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[n
     away = np.where(distance == 0.0, 1.0, np.abs(distance))
     integral = distance * (np.log(away) - 1.0)
     return np.diff(integral, axis=1) / np.pi
+
+
+def lowest(x: Arrays, values: Array, node: Array) -> tuple[Array, Array]:
+    """Place and value of the lowest point of the parabola through a lowest node and its neighbours."""
+    near = jnp.clip(node, 1, x.shape[0] - 2) + jnp.arange(-1, 2)
+    (x0, x1, x2), (h0, h1, h2) = jnp.asarray(x)[near], values[near]
+    first, second = (h1 - h0) / (x1 - x0), (h2 - h1) / (x2 - x1)
+    bend = (second - first) / (x2 - x0)
+    level = jnp.where(bend > 0.0, bend, 1.0)
+    at = jnp.clip(0.5 * (x0 + x1 - first / level), x0, x2)
+    value = h0 + (at - x0) * (first + bend * (at - x1))
+    return jnp.where(bend > 0.0, at, x1), jnp.where(bend > 0.0, value, h1)
 
 
 @lru_cache(maxsize=16)

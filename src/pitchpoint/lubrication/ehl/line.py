@@ -12,7 +12,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.hertz import line_half_width, line_pressure
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import Grid
+from pitchpoint.lubrication.ehl.grid import Grid, lowest
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth, Texture
 from pitchpoint.lubrication.film_thickness import moes_1992
@@ -32,6 +32,9 @@ INLETS: Final = 4.0
 
 LEAST: Final = 0.1
 """Gap of smooth surfaces over its guess below which no solution has it; a trial may."""
+
+NEAR: Final = 1.5
+"""Half-widths from the middle of a dry contact within which a smallest film is looked for."""
 
 FLOODED: Final = 1e9
 """Distance at which oil begins where there is enough of it [m]."""
@@ -124,10 +127,12 @@ class Problem(eqx.Module):
         """Gap of the mean planes at every node, shape (node,)."""
         return level + 0.5 * at.x**2 + self.yielding * (at.kernel @ pressure)
 
-    def film_in_the_middle(self, pressure: Array, level: Array, at: Grid) -> Array:
-        """Gap that is open to the oil at the middle node."""
-        found: Array = self.flow.room(self.gap(pressure, level, at))[at.middle]
-        return found
+    def two_films(self, pressure: Array, level: Array, at: Grid) -> Array:
+        """Gap that is open to the oil at the middle node, and the smallest one, shape (2,)."""
+        room = self.flow.room(self.gap(pressure, level, at))
+        near = jnp.abs(at.x) < NEAR / self.yielding
+        _, least = lowest(at.x, room, jnp.argmin(jnp.where(near, room, jnp.inf)))
+        return jnp.stack([room[at.middle], least])
 
     def mean_film(self, pressure: Array, level: Array, at: Grid) -> Array:
         """Mean gap of the mean planes over the dry contact, of the lines between the nodes."""

@@ -47,7 +47,8 @@ class State(NamedTuple):
         steps: since the last start.
         total: all steps.
         residual: largest one.
-        coarse: film in the middle that was found on the grid before; NaN on the first one.
+        coarse: film in the middle and smallest film that were found on the grid before, shape (2,); NaN on
+            the first one.
     """
 
     pressure: Float[Array, " node"]
@@ -56,7 +57,7 @@ class State(NamedTuple):
     steps: Int[Array, ""]
     total: Int[Array, ""]
     residual: Float[Array, ""]
-    coarse: Float[Array, ""]
+    coarse: Float[Array, "2"]
 
 
 def residual(problem: Problem, pressure: Array, level: Array, at: Grid) -> Array:
@@ -182,7 +183,7 @@ def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State
         )
 
     zero = jnp.asarray(0)
-    begin = State(pressure, level, zero, zero, zero, jnp.asarray(jnp.inf), jnp.asarray(jnp.nan))
+    begin = State(pressure, level, zero, zero, zero, jnp.asarray(jnp.inf), jnp.full(2, jnp.nan))
     found: State = jax.lax.while_loop(unfinished, onward, begin)
     return found
 
@@ -199,7 +200,7 @@ def from_coarse(problem: Problem, grids: Sequence[Grid]) -> State:
     for before, at in pairwise(grids):
         finer = prolongation(before.x.shape[0], at.x.shape[0])
         pressure = jnp.maximum(finer @ state.pressure, 0.0).at[jnp.array([0, -1])].set(0.0)
-        coarse = problem.film_in_the_middle(state.pressure, state.level, before)
+        coarse = problem.two_films(state.pressure, state.level, before)
         state = iterated(problem, pressure, state.level, at)._replace(coarse=coarse)
         total = total + state.total
     return state._replace(total=total)

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ASPERITIES",
+    "COARSE",
     "ISOTHERMAL",
     "SMOOTH",
     "THERMAL",
@@ -20,6 +21,9 @@ __all__ = [
     "AsperityLaw",
     "ThermalEffect",
 ]
+
+COARSE: Final = 0.03
+"""Error by the grid from which on it is told."""
 
 ISOTHERMAL: Final = "isothermal"
 """Name of no heat: the film is as warm as its inlet everywhere."""
