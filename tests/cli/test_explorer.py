@@ -23,8 +23,10 @@ from pitchpoint.runs.case import Case
 from pitchpoint.runs.explore import Explored, explore, usual
 from pitchpoint.runs.run import Outcome, run
 from pitchpoint.views import show
+from pitchpoint.views.explorer import Reader, write_explorer
 from pitchpoint.views.report import packed
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 CASE = f"""
 title = "A pair & <b>its</b> </script><i>loss</i>"
 {SMOOTH}
@@ -163,13 +165,13 @@ def test_what_is_not_possible_has_a_sentence_and_no_numbers(
         assert [held["why"][law][number] > 0 for law in range(2)] == [True, True]
         assert "meets the fillet" in held["sentences"][held["why"][0][number]]
         assert all(one["values"][law][number] is None for one in held["figures"] for law in (0, 1))
-        assert held["drawing"][number] is None
+        assert held["drawing"][number] == []
     assert not any(held["why"][law][number] for law in (0, 1) for number in range(8))
     assert "4 of 12 points are not possible." in page.read_text("utf-8")
 
 
 def test_only_the_design_changes_the_teeth(held: dict[str, Any]) -> None:
-    assert held["drawing"][:8] == [0] * 4 + [1] * 4
+    assert held["drawing"][:8] == [[0]] * 4 + [[1]] * 4
     assert [axis["shapes"] for axis in held["axes"]] == [True, False, False]
 
 
@@ -194,7 +196,7 @@ def test_the_page_is_one_small_file(page: Path) -> None:
 def test_errors_between_points_are_measured(folder: Path) -> None:
     """Along one key: the mean of both ends against a run between them."""
     over = [Sweep(key="operation.speed", start="900 rpm", stop="1800 rpm", count=2.0)]
-    found: Explored[None] = explore(str(folder / "pair.toml"), over, read=lambda _: None)
+    found: Explored[None] = explore(str(folder / "pair.toml"), over, read=lambda _, __: None)
     assert found.midpoints == 1
     data = computed(folder, operation__speed="1350 rpm").parts["operation"]
     for name in ("mean_loss", "mean_friction"):
@@ -398,6 +400,32 @@ def test_what_one_law_is_warned_of_stands_under_that_law(
     choose = "(m => { m.selectedIndex = 1; m.dispatchEvent(new Event('input', {bubbles: true})) })"
     chromium.run(f"{choose}(document.getElementById('law'))")
     chromium.wait(f"{told}.includes({title!r} + ': too thin a film.')")
+
+
+@in_browser
+@pytest.mark.whole
+def test_stages_turn_together(chromium: Browser, tmp_path: Path) -> None:
+    """The wheel of one stage and the pinion of the next are on one shaft."""
+    read = Reader()
+    over = [Sweep(key="operation.speed", start="1000 rpm", stop="1500 rpm", count=2.0)]
+    found = explore(str(EXAMPLES / "two_stage.toml"), over, read=read)
+    write_explorer(found, read.drawings, tmp_path / "drive.html")
+    chromium.open(tmp_path / "drive.html", 1280, prefers_reduced_motion="reduce")
+    chromium.wait(DRAWN)
+    turns = "[...document.querySelectorAll('.moving:not([hidden]) .close .gear')].map(one => "
+    turns += "Number(one.getAttribute('transform').match(/rotate.([-0-9.]+)/)[1]))"
+    before = np.array(chromium.run(turns))
+    phase = "(s => { s.value = 0.5; s.dispatchEvent(new Event('input')) })"
+    chromium.run(f"{phase}(document.getElementById('phase'))")
+    wheel, first, other, pinion = np.array(chromium.run(turns)) - before
+    assert abs(pinion) > 1.0
+    assert pinion == pytest.approx(wheel, rel=1e-6)
+    assert wheel * first < 0.0
+    assert other * pinion < 0.0
+    place = chromium.run("document.getElementById('place').textContent")
+    assert place.startswith("Stage 1, phase 0.50: ")
+    assert "; Stage 2, phase 0.1" in place
+    assert chromium.console == []
 
 
 @in_browser

@@ -30,11 +30,13 @@ from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.units import convert, kind_of, kinds, parse, units_of
 from pitchpoint.views import show
+from pitchpoint.views.explorer import Reader
 from pitchpoint.views.figures import Figure, Panel, curves, laws, rounded
 from pitchpoint.views.lines import gapped
 from pitchpoint.views.outlines import visible_points
 from pitchpoint.views.path import path_of
 from pitchpoint.views.picture import Body, Picture, picture_of
+from pitchpoint.views.point import period_of
 from pitchpoint.views.report import render, write_report
 from pitchpoint.views.section import Paragraph, naming
 from pitchpoint.views.sections.answer import summary
@@ -351,6 +353,19 @@ def test_the_scale_of_maps_is_that_of_laws_in_their_range(published: Outcomes) -
     assert panel.figures[0].data[0]["zmax"] == pytest.approx(others[-1])
     assert max(losses.values()) > 1.02 * others[-1]
     assert "that of the laws in their range: under " in render(cut)
+
+
+def test_an_explorer_draws_every_stage_and_turns_each_at_its_speed(
+    wheel: Outcomes, published: Outcomes
+) -> None:
+    read = Reader()
+    drive, second = wheel["default"], published["physical"]
+    point = read(drive, {2: drive, 1: second})
+    assert point.drawing == [0, 1]
+    assert [one.title for one in read.drawings] == ["Stage 2", "Stage 1"]
+    assert point.pace == pytest.approx([1.0, period_of(drive).time / period_of(second).time])
+    assert read(drive).drawing == [2]
+    assert read(drive, {2: drive, 1: second}).drawing == [0, 1]
 
 
 def test_maps_of_the_efficiency_begin_above_rest(page: str) -> None:

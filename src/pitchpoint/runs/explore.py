@@ -43,6 +43,9 @@ VALUES = 5
 PARTS = ("teeth", "cycle", "stiffness")
 """Parts of a result that are computed at every point, where they exist."""
 
+TEETH = ("teeth",)
+"""The same of a stage."""
+
 WITHOUT_CYCLE = ("operation",)
 """The same of a case that has no mesh cycle of its own: what is said of it stands there."""
 
@@ -102,7 +105,7 @@ def explore(
     case: CaseLike,
     over: Sequence[Sweep] = (),
     *,
-    read: Callable[[Outcome], T],
+    read: Callable[[Outcome, Mapping[int, Outcome]], T],
     variant: str | None = None,
     settings: Mapping[str, Any] | None = None,
     progress: Progress | None = None,
@@ -113,7 +116,8 @@ def explore(
         case: a `Case`, or what makes one.
         over: keys and their values, to which that of the case is added where it lies between them; by default
             load and speed, and the key that the table of the gears names.
-        read: what is kept of the parts at a point, which are too large to be kept whole.
+        read: what is kept of the parts at a point, which are too large to be kept whole, and of the teeth of
+            each stage by its number; no stages where the case is one mesh.
         variant: of the case, the first one by default.
         settings: values by dotted key that replace those of the case.
         progress: told about points.
@@ -137,7 +141,7 @@ def explore(
         )
     told.expect(4)
     told.part("", "the case itself", False)
-    own = _computed(base)
+    own, _ = _computed(base)
     told.part("", f"{count} designs", False)
     figures = study(chosen, {axis.key: axis.values for axis in axes})
     told.part("", "places between them", False)
@@ -208,15 +212,30 @@ def _given(case: Case, over: Sequence[Sweep]) -> Iterator[Axis]:
         yield Axis(sweep.key, quantity, several, number)
 
 
-def _computed(variant: Variant, changes: Mapping[str, Any] | None = None) -> Outcome:
-    """A case at one point of the grid, with those of the parts that exist."""
+def _computed(
+    variant: Variant, changes: Mapping[str, Any] | None = None
+) -> tuple[Outcome, dict[int, Outcome]]:
+    """A case at one point of the grid, with those of the parts that exist, and the teeth of its stages."""
     one = replace(variant, settings={**variant.settings, **(changes or {})})
     built = one.built({})
     there = _there(built, PARTS)
     if all(one.name != "cycle" for one in there):
         there += _there(built, WITHOUT_CYCLE)
-    work = [Job(one, built) for one in there]
-    return run_variant(one, work, folder=None, studies={}, progress=Progress())
+    work = [Job(each, built) for each in there]
+    outcome = run_variant(one, work, folder=None, studies={}, progress=Progress())
+    return outcome, _of_stages(one, built) if isinstance(built, BuiltDrive) else {}
+
+
+def _of_stages(variant: Variant, drive: BuiltDrive) -> dict[int, Outcome]:
+    """Teeth of each stage by its number, in the order of the power."""
+    found = {}
+    for number, stage, inside in zip(drive.numbers, drive.stages, drive.documents, strict=True):
+        alone = Variant(inside.tree, inside.name, variant.variant, folder=variant.folder)
+        work = [Job(teeth, stage) for teeth in _there(stage, TEETH)]
+        found[number] = run_variant(
+            alone, work, folder=None, studies={}, progress=Progress(), whole=False
+        )
+    return found
 
 
 def _there(built: Ready, names: Sequence[str]) -> list[Analysis]:
@@ -228,7 +247,7 @@ def _there(built: Ready, names: Sequence[str]) -> list[Analysis]:
 def _seen(
     variant: Variant,
     axes: Sequence[Axis],
-    read: Callable[[Outcome], T],
+    read: Callable[[Outcome, Mapping[int, Outcome]], T],
     refused: dict[int, str],
     progress: Progress,
 ) -> Iterator[T | None]:
@@ -236,7 +255,7 @@ def _seen(
     texts = [[*written(axis.key, axis.values)] for axis in axes]
     for number, row in enumerate(product(*texts)):
         try:
-            found = read(_computed(variant, dict(zip((a.key for a in axes), row, strict=True))))
+            found = read(*_computed(variant, dict(zip((a.key for a in axes), row, strict=True))))
         except PitchpointError as error:
             refused[number] = getattr(error, "message", str(error))
             found = None

@@ -2,9 +2,10 @@
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
+from itertools import islice, pairwise
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -71,15 +72,17 @@ class Point:
     Attributes:
         courses: by name.
         implausible, warnings: sentences.
-        drawing: number of its drawing; None without one.
-        acting: see `Moving`.
+        drawing: numbers of its drawings, one of each stage; none where nothing is drawn.
+        acting: of each drawing, see `Moving`.
+        pace: of each drawing, what its slider counts while that of the first counts one.
     """
 
     courses: Mapping[str, Course]
     implausible: Sequence[str]
     warnings: Sequence[str]
-    drawing: int | None
-    acting: Any
+    drawing: Sequence[int]
+    acting: Sequence[Any]
+    pace: Sequence[float]
 
 
 class Reader:
@@ -93,23 +96,34 @@ class Reader:
         self.drawings: list[Moving] = []
         self._known: dict[str, int] = {}
 
-    def __call__(self, outcome: Outcome) -> Point:
-        """What the page shows of a case at one point."""
-        number, acting = self._drawing(outcome)
+    def __call__(
+        self, outcome: Outcome, stages: Mapping[int, Outcome] = MappingProxyType({})
+    ) -> Point:
+        """What the page shows of a case at one point, and of the teeth of its stages by number."""
+        titled_ones = {f"Stage {number}": one for number, one in stages.items()} or {"": outcome}
+        drawn = [one for title, of in titled_ones.items() for one in self._drawn(of, title)]
         told = outcome.manifest
         with shown_in(recorded_units({"": outcome})):
             courses = _courses(outcome)
-        return Point(courses, told["implausible"], told["warnings"], number, acting)
+        rates = [rate for *_, rate in drawn]
+        return Point(
+            courses,
+            told["implausible"],
+            told["warnings"],
+            [number for number, *_ in drawn],
+            [acting for _, acting, _ in drawn],
+            [rate / rates[0] for rate in rates],
+        )
 
-    def _drawing(self, outcome: Outcome) -> tuple[int | None, Any]:
-        made = next(_movings(outcome, f"drawing{len(self.drawings)}"), None)
-        if made is None:
-            return None, None
-        mark = json.dumps({**made.picture, "name": ""})
-        number = self._known.setdefault(mark, len(self.drawings))
-        if number == len(self.drawings):
-            self.drawings.append(made)
-        return number, made.acting
+    def _drawn(self, outcome: Outcome, title: str) -> Iterator[tuple[int, Any, float]]:
+        """Number of a drawing, what acts in it, and what its slider counts in a second; none without one."""
+        name = f"drawing{len(self.drawings)}"
+        for made in islice(_movings(outcome, name), 1):
+            mark = json.dumps({**made.picture, "name": title})
+            number = self._known.setdefault(mark, len(self.drawings))
+            if number == len(self.drawings):
+                self.drawings.append(replace(made, title=title))
+            yield number, made.acting, made.period / period_of(outcome).time
 
 
 def _movings(outcome: Outcome, name: str) -> Iterator[Moving]:
@@ -191,8 +205,9 @@ def _rendered(found: Explored[Point], drawings: Sequence[Moving]) -> str:
         "figures": figures,
         **_sentences(found),
         "courses": courses,
-        "drawing": [None if one is None else one.drawing for one in found.seen],
-        "acting": [None if one is None else one.acting for one in found.seen],
+        "drawing": [[] if one is None else one.drawing for one in found.seen],
+        "acting": [[] if one is None else one.acting for one in found.seen],
+        "pace": [[] if one is None else one.pace for one in found.seen],
         "over": layout("", ""),
     }
     return (

@@ -103,7 +103,9 @@ class Moving:
         picture: what the macros draw.
         words: what its slider counts.
         span, step: length of that slider and of a step on it.
+        period: what the slider counts in one mesh cycle.
         acting: what changes with the load, as JSON has it; None where nothing does.
+        title: stands above it where there are several.
     """
 
     kind: str
@@ -111,7 +113,9 @@ class Moving:
     words: str
     span: float
     step: float
+    period: float = 1.0
     acting: Any = None
+    title: str = ""
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.inputs import words
 from pitchpoint.views.outlines import simplified
-from pitchpoint.views.point import of_geometry
+from pitchpoint.views.point import of_geometry, period_of
 from pitchpoint.views.section import Block, Drawn, Moving, Page, Section, Table, naming
 from pitchpoint.views.sections.passing import gap_panel
 from pitchpoint.views.way import place_of
@@ -191,9 +191,10 @@ def _moving(outcome: Outcome, name: str) -> Moving:
     drawn = picture(outcome, name)
     motion = json.loads(drawn["motion_json"])
     still = {"motion_json": json.dumps({**motion, "arcs": []}), "loaded": True}
-    return Moving(
-        "drive", {**drawn, **still}, f"Angle, {drawn['turns']}", 360.0, 0.5, motion["arcs"]
-    )
+    driven_by = motion["rates"][motion["members"].index(outcome.manifest["driver"])]
+    period = degrees(period_of(outcome).angle) / abs(driven_by)
+    words = f"Angle, {drawn['turns']}"
+    return Moving("drive", {**drawn, **still}, words, 360.0, 0.5, period, motion["arcs"])
 
 
 DRIVE = Section(

@@ -115,7 +115,7 @@
       return it.members.map((one, k) => one + " " + signed((rates[k] * deg).toFixed(2)) + "°").join(", ");
     }
 
-    return { set, onward: (angle) => (angle + 0.5) % 360 };
+    return { set, onward: (angle, by = 0.5) => (((angle + by) % 360) + 360) % 360, direction: 1 };
   }
 
   const signed = (words) => words.replace("-", "\u2212").replace(/^\u22120\.0+$/, (zero) => zero.slice(1));

@@ -90,24 +90,37 @@
   const drawings = [...document.querySelectorAll(".moving")];
   const pictures = drawings.map((one) => movers[one.dataset.kind](one));
   const phase = named("phase");
-  let shown = 0;
+  let shown = it.drawing.find((one) => one.length) || [];
+  let pace = shown.map(() => 1);
+  let phases = shown.map(() => 0);
 
+  // Stages turn together: of each the phase of its own mesh cycle.
   function move() {
     if (!pictures.length) return;
-    const carrying = it.acting[nearest(stands())];
-    text("place", pictures[shown].set(Number(phase.value), carrying ? { carrying } : {}));
+    const acting = it.acting[nearest(stands())];
+    const told = shown.map((one, k) => {
+      const words = pictures[one].set(phases[k], acting[k] ? { carrying: acting[k] } : {});
+      const title = shown.length > 1 ? drawings[one].querySelector("h3").textContent + ", " : "";
+      return title + words;
+    });
+    text("place", told.join("; "));
+  }
+
+  function onward(by) {
+    phases = phases.map((one, k) => pictures[shown[k]].onward(one, by * pace[k]));
   }
 
   function teeth(place) {
     if (!pictures.length) return;
     const point = nearest(place);
     const drawing = it.drawing[point];
-    if (drawing === null) {
+    if (!drawing.length) {
       text("drawn", "Not drawn at this place, where the gears are not possible; these are the last ones that were.");
       return;
     }
-    drawings.forEach((one, k) => (one.hidden = k !== drawing));
+    drawings.forEach((one, k) => (one.hidden = !drawing.includes(k)));
     shown = drawing;
+    pace = it.pace[point];
     const shaping = it.axes.map((axis, k) => [axis, values(point)[k]]).filter(([axis]) => axis.shapes);
     const at = shaping.map(([axis, value]) => axis.words + " = " + placed(value, axis)).join("; ");
     text("drawn", at ? "Drawn to scale at the nearest computed value: " + at + "." : "Drawn to scale; these inputs leave the teeth as they are.");
@@ -120,7 +133,8 @@
     clearInterval(timer);
     timer = on
       ? setInterval(() => {
-          phase.value = pictures[shown].onward(Number(phase.value));
+          onward(Number(phase.step));
+          phase.value = phases[0];
           move();
         }, 60)
       : 0;
@@ -265,7 +279,11 @@
   named("shown").selectedIndex = 0;
   if (pictures.length) {
     phase.value = 0;
-    phase.addEventListener("input", move);
+    phase.addEventListener("input", () => {
+      onward((Number(phase.value) - phases[0]) * pictures[shown[0]].direction);
+      phases[0] = Number(phase.value);
+      move();
+    });
     player.addEventListener("click", () => play(!timer));
   }
   await set();

@@ -38,5 +38,6 @@
       );
     }
 
-    return { set, onward: (phase) => (phase + motion.direction / 48 + 1) % 1 };
+    const onward = (phase, by = 1 / 48) => (((phase + motion.direction * by) % 1) + 1) % 1;
+    return { set, onward, direction: motion.direction };
   }
