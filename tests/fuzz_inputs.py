@@ -31,6 +31,7 @@ from pitchpoint import Case, cli, study
 from pitchpoint.cases.document import read
 from pitchpoint.cases.library import names, path_of
 from pitchpoint.cases.schema import keys
+from pitchpoint.cases.wishes import WISHES
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import without_nan
 from pitchpoint.runs.run import describe
@@ -50,7 +51,12 @@ KEYS = [
     "variants.a.value",
     *(f"film.heights.both.{key}" for key in ("file", "direction", "step_along")),
     "worn.file",
+    *(f"{table}.{name}" for table in WISHES for wish in WISHES[table] for name in wish.names),
+    "gears.diametral_pitch",
 ]
+
+OTHERS = ("broken", "of another kind", "command line")
+"""Kinds of files and commands beside those whose values are changed."""
 
 RECORDS = 0.25
 """Part of the files that are records of results."""
@@ -86,6 +92,7 @@ UNITS = (
     "kg",
     "%",
     "",
+    *("C", "F", "min-1", "min⁻¹", "DP", "1/in", "ft-lb", "micron", "grad", "kW", "m/s"),
 )
 SIGNS = (
     "\x1b[2J",
@@ -100,6 +107,9 @@ SIGNS = (
     '"',
     "\n",
     ".",
+    ",",
+    "“",
+    "’",
 )
 TEXTS = (
     "=cmd|' /C calc'!A0",
@@ -146,7 +156,8 @@ class Hostile:
         return self.random.choice((*NUMBERS, own, round(own)))
 
     def quantity(self) -> str:
-        return f"{self.number()} {self.random.choice(UNITS)}"
+        text = f"{self.number()} {self.random.choice(UNITS)}"
+        return self.random.choice((text, text, text.replace(".", ","), f"“{text}”"))
 
     def text(self) -> str:
         signs = "".join(self.random.choices(SIGNS, k=self.random.randrange(1, 4)))
@@ -239,6 +250,20 @@ class Hostile:
             )
         return bytes(content[: self.random.choice((len(content), len(content) // 2))])
 
+    def of_another_kind(self, content: bytes) -> bytes:
+        """The file as another program, editor or format would have it."""
+        text = content.decode()
+        made = (
+            text.replace('"', self.random.choice("“”„’«")),
+            text.replace(".", ","),
+            text.replace(" = ", self.random.choice((": ", ";", "\t", ","))),
+            text.replace('"', ""),
+            f"{{{text}}}",
+            f"{self.random.choice(('<?xml?>', '- ', '---', 'a,b', '#'))}\n{text}",
+        )
+        coding = self.random.choice(("utf-8", "utf-16", "latin-1", "cp1252", "utf-32"))
+        return self.random.choice(made).encode(coding, "replace")
+
 
 def places(node: Any) -> Iterator[tuple[Any, Any]]:
     """Every table or list and key in it."""
@@ -325,13 +350,15 @@ def main() -> int:
         tree = hostile.random.choice(records if is_record else SEEDS)
         kinds = ("unusual", "unusual", "changed", "broken", "command line", "name", "python")
         kind = hostile.random.choice(kinds)
+        kind = hostile.random.choice(("unusual", "unusual", "changed", *OTHERS))
         changed = {"unusual": hostile.unusual, "changed": hostile.changed}.get(kind, dict)(tree)
         path = given.keep / f"case.{'json' if is_record else 'toml'}"
         if is_record:
             content = json.dumps(without_nan(changed), default=str).encode()
         else:
             content = "".join(f"{json.dumps(k)} = {toml(v)}\n" for k, v in changed.items()).encode()
-        path.write_bytes(hostile.broken(content) if kind == "broken" else content)
+        spoilt = {"broken": hostile.broken, "of another kind": hostile.of_another_kind}
+        path.write_bytes(spoilt.get(kind, bytes)(content))
         arguments = ["show", str(path), *(hostile.arguments() if kind == "command line" else [])]
         if kind == "name":
             command, name = hostile.random.choice(COMMANDS), hostile.text().replace("\0", "")

@@ -1,6 +1,7 @@
 """Masses and moments of inertia of bodies: closed forms, those that a vibration takes, and of catalogues."""
 
 import copy
+import re
 import tomllib
 from math import isnan, pi
 
@@ -113,3 +114,21 @@ def test_which_gears_have_bodies():
         "TorusGears",
     ]
     assert "drawing" in told["CylindricalGears"] and "test rig" in told["BallOnDiscRig"]
+
+
+def test_a_rim_is_judged_by_what_its_material_bears():
+    """Of steel by usual cups; of plastic by the strain of its wave, silent with the rim that is told."""
+
+    def told(young, thickness):
+        tree = drive(teeth=[68, 70], module="0.9 mm", face_width="12 mm")
+        tree["gears"]["flexspline"] = {"rim_thickness": thickness}
+        tree["materials"] = {"gear_1": {"young": young, "poisson": 0.36}}
+        return [text for text in built(tree).warnings if "rim" in text]
+
+    assert told("3.3 GPa", "1.2 mm") == []
+    (steel,) = told("206 GPa", "1.2 mm")
+    assert "usual for its size and its wave are 0.26 mm" in steel
+    (soft,) = told("3.3 GPa", "3.6 mm")
+    within = re.search(r"strains the rim of the flexspline by (\S+) %; .* 0\.5 % at (\S+) mm", soft)
+    assert float(within[1]) == pytest.approx(0.57, abs=0.06)
+    assert told("3.3 GPa", f"{0.95 * float(within[2])} mm") == []

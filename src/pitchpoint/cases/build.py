@@ -449,7 +449,8 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     fitted = loss_sets()[name].fitted if name else None
     point = operation_at(case.operation)
     built = Built(case, design, point, models, oil, used, tuple(told), fitted=fitted)
-    return replace(built, told=(*told, *_left_out(built), *_extrapolated(built)))
+    of_materials = built.family.of_materials(design.mesh, design.solids)
+    return replace(built, told=(*told, *of_materials, *_left_out(built), *_extrapolated(built)))
 
 
 def gears_of(case: Case, wrong: Complaints) -> tuple[Mesh, tuple[str, ...]] | None:

@@ -13,6 +13,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.bodies import MassInertia
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.table import Deviation
+from pitchpoint.materials.solids import Solid
 
 __all__ = ["Family", "Followed", "Made", "Turning", "waves"]
 
@@ -75,6 +76,7 @@ class Family:
         coordinates: labels along those dimensions.
         bodies: mass and moment of inertia of each member, from the table, the mesh and the densities of both
             materials, and a sentence on how they are made up; None where they stand elsewhere, or nowhere.
+        of_materials: what is to be said of a mesh whose members are of these materials.
         together: as `build` for many tables at once, with the error in the place of gears that cannot run;
             None where they are built one by one.
     """
@@ -86,6 +88,7 @@ class Family:
     drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, Any] = field(default_factory=dict)
     bodies: Callable[[Any, Any, Sequence[float]], tuple[list[MassInertia], str]] | None = None
+    of_materials: Callable[[Any, Sequence[Solid]], tuple[str, ...]] = lambda mesh, solids: ()
     together: Callable[[Sequence[Any], str, int], list[Made | InputError]] | None = None
 
 

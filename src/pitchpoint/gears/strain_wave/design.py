@@ -40,6 +40,7 @@ __all__ = [
     "InvoluteForm",
     "build_strain_wave",
     "build_strain_waves",
+    "check_rim",
     "check_strain_wave",
     "designed",
     "double_arc_flank",
@@ -57,6 +58,10 @@ INTERFERENCE = 1e-4
 SWEPT_ACCURACY = 1e-3
 """Overlap in a groove that the flexspline itself sweeps, which is an error of the table, in modules."""
 
+SOFT = 20e9
+"""Young's modulus below which a flexspline is of plastic, and proportions of steel cups say nothing [Pa]."""
+BORNE = 5e-3
+"""Strain that plastics bear for short lives at least; assumed, as printed drives are designed."""
 FAR_FROM_USUAL = 4.0
 """Thickness of the rim over the usual one, or the other way round, from which on a sentence says so."""
 
@@ -526,17 +531,39 @@ def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
             f"The circular spline's flank could not be found at {lost} of {NODES} heights: curvature, "
             "pressure and film there say nothing."
         )
-    usual = rim_by_strain(mesh.pitch_diameter, float(mesh.line.deflection))
-    if not 1.0 / FAR_FROM_USUAL < float(mesh.rim.thickness) / usual < FAR_FROM_USUAL:
-        told.append(
-            f"The rim of the flexspline is {1e3 * float(mesh.rim.thickness):.3g} mm thick; usual for its "
-            f'size and its wave are {1e3 * usual:.3g} mm, which walls = "bending strain" takes.'
-        )
     if widest > 0.1 * float(mesh.line.radius):
         told.append(
             "The deflection is above a tenth of the radius; the ring theory here is linear."
         )
     return tuple(told)
+
+
+def check_rim(mesh: StrainWave, young: float) -> tuple[str, ...]:
+    """Sentence on a rim that is far from usual, or one of a soft material that its wave strains too far.
+
+    Args:
+        mesh: of the drive.
+        young: Young's modulus of the flexspline [Pa].
+    """
+    thickness, deflection = float(mesh.rim.thickness), float(mesh.line.deflection)
+    if young >= SOFT:
+        usual = rim_by_strain(mesh.pitch_diameter, deflection)
+        if 1.0 / FAR_FROM_USUAL < thickness / usual < FAR_FROM_USUAL:
+            return ()
+        return (
+            f"The rim of the flexspline is {1e3 * thickness:.3g} mm thick; usual for its "
+            f'size and its wave are {1e3 * usual:.3g} mm, which walls = "bending strain" takes.',
+        )
+    per_thickness = (
+        1.5 * deflection / float(mesh.rim.radius) ** 2
+    )  # of the ring's curvature 3 w0/r^2
+    if per_thickness * thickness <= BORNE:
+        return ()
+    percent, within = 100.0 * per_thickness * thickness, 1e3 * BORNE / per_thickness
+    return (
+        f"The wave strains the rim of the flexspline by {percent:.2g} %; plastics bear {100 * BORNE:g} to "
+        f"1 % for short lives, {100 * BORNE:g} % at {within:.3g} mm of rim.",
+    )
 
 
 @program

@@ -11,7 +11,12 @@ from pitchpoint.gears.bodies import MassInertia, as_one, disc
 from pitchpoint.gears.family import Family, Followed, Turning, waves
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_circle
-from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave, check_strain_wave
+from pitchpoint.gears.strain_wave.design import (
+    InvoluteForm,
+    build_strain_wave,
+    check_rim,
+    check_strain_wave,
+)
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.in_series import Behind, dimensions
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
@@ -248,6 +253,7 @@ FAMILY = Family(
         "spline alone, shown by order, stay as they are.",
     ),
     bodies=_bodies,
+    of_materials=lambda drive, solids: check_rim(drive, float(solids[0].young)),
     drawing={
         "tooth": ("corner", "xy"),
         "space": ("space_corner", "xy"),
