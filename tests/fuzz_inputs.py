@@ -1,8 +1,8 @@
 """Hostile case files, records, command lines and values of Python: each is shown or refused in a sentence.
 
 Run beside the suite: `python tests/fuzz_inputs.py --seconds 300 --seed 1`. A seed repeats its files.
-Prints how they ended; whatever ends in a traceback, in several sentences or in signs that steer a terminal
-is kept in a folder with its command line, and the exit status is then 1.
+Prints how they ended; whatever ends in a traceback, in lines that are no sentences or in signs that steer a
+terminal is kept in a folder with its command line, and the exit status is then 1.
 """
 
 import argparse
