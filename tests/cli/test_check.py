@@ -163,7 +163,7 @@ def test_a_sound_case_is_ok_with_what_warns(told: Run) -> None:
     assert told(PAIR) == (0, "ok\n", [])
     status, out, _ = told(PAIR.replace("[23, 61]", "[12, 120]"))
     assert status == 0
-    assert out.startswith("ok\nwarning: The flanks of gear 1 are undercut")
+    assert out.startswith("ok\nwarning: The undercut of gear 1 loses")
 
 
 def test_from_python_they_are_one_error(tmp_path: Path) -> None:

@@ -512,7 +512,7 @@ def test_the_examples_are_short() -> None:
 def test_every_example_is_sound(path: Path) -> None:
     (manifest,) = describe(str(path))
     told = " ".join(manifest["warnings"])
-    assert ("are undercut" in told) == (path.stem in ("pair_12_120_undercut", "pair_17_17"))
+    assert ("undercut" in told) == (path.stem in ("pair_12_120_undercut", "pair_17_17"))
 
 
 def contact_ratio(teeth: xr.Dataset, count: int | list[int]) -> float:
@@ -532,7 +532,7 @@ def contact_ratio(teeth: xr.Dataset, count: int | list[int]) -> float:
         ("pair_23_61_high_contact_ratio", ""),
         ("pair_17_17", ""),
         ("pair_12_120", ""),
-        ("pair_12_120_undercut", "The flanks of gear 1 are undercut"),
+        ("pair_12_120_undercut", "The undercut of gear 1 loses"),
         ("wheel_drives", ""),
     ],
 )

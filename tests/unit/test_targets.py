@@ -298,7 +298,7 @@ def test_a_number_surprises_that_is_missed_without_cause_or_met_in_spite_of_one(
     expected = [row("trend", "miss", known, True), row("trend", "pass", "a remark")]
     assert [one.surprises for one in surprising + expected] == [True, True, False, False]
     assert not row("excluded", "excluded", known).surprises
-    assert in_words(surprising[1:]) == "1 of the publication: 1 met in spite of its reason"
+    assert in_words(surprising[1:]) == "1 printed number: 1 met in spite of its reason"
 
 
 def test_numbers_of_an_independent_calculation_are_counted_apart():
@@ -310,7 +310,7 @@ def test_numbers_of_an_independent_calculation_are_counted_apart():
         row("definition", "pass"),
     ]
     of_the_publication = (
-        "5 of the publication: 2 met, 1 missed with a reason, 1 missed without a reason, 1 left out"
+        "5 printed numbers: 2 met, 1 missed with a reason, 1 missed without a reason, 1 left out"
     )
     assert in_words(rows) == of_the_publication
     beside = [row("reference", "pass"), row("reference", "miss")]

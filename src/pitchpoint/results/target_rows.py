@@ -51,10 +51,13 @@ def in_words(rows: Iterable[Row]) -> str:
     of_both: dict[str, list[Row]] = {}
     for row in rows:
         independent = row.kind == "reference"
-        source = "numbers of an independent calculation" if independent else "printed numbers"
+        source = "of an independent calculation" if independent else "printed numbers"
         of_both.setdefault(source, []).append(row)
     every = sorted(of_both.items(), reverse=True)
-    return "; ".join(f"{len(those)} {source}: {_tally(those)}" for source, those in every)
+    return "; ".join(
+        f"{len(those)} {source if len(those) > 1 else source.removesuffix('s')}: {_tally(those)}"
+        for source, those in every
+    )
 
 
 def _tally(rows: Iterable[Row]) -> str:
