@@ -238,12 +238,15 @@ def show(
 
 @app.command()
 def check(case: CaseName, variant: Variants = None, set_: Settings = None) -> None:
-    """Tell what is wrong with a case, or warns, before it is computed."""
+    """Tell what is wrong with a case, its teeth do not bear, or warns, before it is computed."""
+    from pitchpoint.doubts import apart
     from pitchpoint.runs.check import check as checked
 
-    warnings = checked(case, variant or [], _settings(set_ or []))
-    typer.echo("ok")
-    _warn(warnings)
+    told = apart(checked(case, variant or [], _settings(set_ or [])))
+    _failing(told["implausible"])
+    if not told["implausible"]:
+        typer.echo("ok")
+    _warn(told["warnings"])
 
 
 @app.command()

@@ -77,6 +77,7 @@ def strengths(**changed: Any) -> Strengths:
         "root": numbers(475e6, 475e6),
         "work_hardening": numbers(1.0, 1.0),
         "mean_stress": numbers(1.0, 1.0),
+        "over_cycles": jnp.full((4, 2), nan),
     }
     constants = Constants.of(treatments[0], treatments[1])
     return Strengths(constants=constants, plastic=jnp.asarray(plastic), **usual | changed)
@@ -227,6 +228,35 @@ def test_a_plastic_wheel_by_vdi_2736(base: CylindricalPair) -> None:
         2.0 * 35e6 / found["root_stress"][1]
     )  # Y_St = 2
     assert found["flank_safety"][1] == pytest.approx(80e6 / found["contact_stress"][1])
+
+
+@pytest.mark.parametrize(
+    ("name", "temperature", "cycles", "expected"),
+    [  # by hand, in MPa
+        ("POM-H", 50.0, 1e6, 26.0 - 0.0025 * 2500.0 + 400.0 / 15.8489),
+        ("POM-H", 90.0, 1e7, 5.75 + 400.0 / 25.1189),
+        ("POM-H", 20.0, 1e3, 70.0),  # no more than a bar without notch
+        ("PA66", 60.0, 1e6, 16.8 + (4600.0 - 900.0 * 3.41543) / 100.0),
+        ("PA66", 100.0, 1e8, 8.0 + (4600.0 - 900.0 * 3.98107) / 464.159),
+    ],
+)
+def test_plastic_roots_over_temperature_and_cycles(
+    base: CylindricalPair, name: str, temperature: float, cycles: float, expected: float
+) -> None:
+    record = solids.find(name)
+    assert record.root_strength is not None and record.tensile_strength is not None
+    curve = (*record.root_strength.at(temperature + 273.15), record.tensile_strength.value)
+    both = strengths(
+        plastic=(False, True),
+        root=numbers(430e6, nan),
+        over_cycles=jnp.asarray(np.stack([np.full(4, nan), curve], axis=1)),
+    )
+    found = rating(kst_e(base), duty(8.0, 2250.0, root=cycles), factors(), both)
+    assert found["root_endurance"] / 1e6 == pytest.approx([430.0, expected], rel=1e-5)
+    assert found["root_safety"][1] == pytest.approx(
+        2e6 * expected / found["root_stress"][1], rel=1e-5
+    )
+    assert found["root_cycles"][1] == cycles
 
 
 # Example 1 of ISO/TR 6336-30: dimensions and duty stand in two public repositories, tkuhn39/semesterthesis

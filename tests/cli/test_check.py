@@ -1,5 +1,6 @@
 """All that is wrong with a case file is told at once, each thing in one sentence."""
 
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -164,6 +165,26 @@ def test_a_sound_case_is_ok_with_what_warns(told: Run) -> None:
     status, out, _ = told(PAIR.replace("[23, 61]", "[12, 120]"))
     assert status == 0
     assert out.startswith("ok\nwarning: The undercut of gear 1 loses")
+
+
+ABSURD = PAIR.replace('torque = "50 N m"', 'torque = "60 kN m"')
+WHEEL = '[materials]\ngear_2 = "POM-H"\n'
+
+
+def test_teeth_that_cannot_be_are_not_ok(told: Run) -> None:
+    """60 kN m on teeth of module 2 mm, and a wheel of plastic that its stress breaks within a life."""
+    status, out, err = told(ABSURD)
+    assert (status, err) == (0, [])
+    told_of = " ".join(out.split())
+    assert re.match(
+        r"Fails: the root stress of gear \d reaches [\d.]+ GPa; the strongest teeth of steel",
+        told_of,
+    )
+    plastic = PAIR + WHEEL
+    assert told(plastic.replace('torque = "50 N m"', 'torque = "5 N m"'))[1].startswith("ok\n")
+    _, out, _ = told(plastic)
+    roots = re.search(r"Fails: the roots of gear 2 bear .*", " ".join(out.split()))
+    assert roots and "they break within 1e+08 load cycles" in roots[0]
 
 
 def test_from_python_they_are_one_error(tmp_path: Path) -> None:

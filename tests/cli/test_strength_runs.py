@@ -180,6 +180,8 @@ def test_a_pinion_of_steel_and_a_wheel_of_plastic() -> None:
     data = strength_of(path)
     assert "VDI 2736" in data.attrs["method"]
     assert np.all(np.isfinite(data["root_stress"]))
+    doubts = json.loads(data.attrs["warnings"])
+    assert any("contact ratio is 0.892: ISO 6336 and VDI 2736 rate" in text for text in doubts)
     told = json.loads(data.attrs["withheld"])
     assert any("'POM-H'" in text and "temperature and life" in text for text in told)
     limits = {

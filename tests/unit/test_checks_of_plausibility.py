@@ -128,6 +128,27 @@ def test_what_can_be_is_not_told(at: AtWork) -> None:
     assert implausible(at) == []
 
 
+@pytest.mark.parametrize(
+    ("gear", "stress", "words"),
+    [
+        (STEEL, 73.8e9, "reaches 73.8 GPa; the strongest teeth of steel bear about 2.6 GPa"),
+        (STEEL, 2.6e9, ""),
+        (PLASTIC, 171e6, "from 170 MPa on, twice the tensile strength of PA66"),
+        (PLASTIC, 169e6, ""),
+        (in_use("PEEK", tensile_strength=None), 181e6, "it strains PEEK by more than 5 %"),
+        (in_use("PEEK", tensile_strength=None), 179e6, ""),
+    ],
+)
+def test_roots_that_break_at_once(gear: SolidInUse, stress: float, words: str) -> None:
+    mesh = SimpleNamespace(
+        solids=(STEEL, gear), case=SimpleNamespace(gears=SimpleNamespace(rated=True))
+    )
+    strength = xr.Dataset({"root_stress": (("gear",), [1e8, stress])})
+    told = unlikely(SimpleNamespace(meshes=[mesh]), {"strength": strength})  # type: ignore[arg-type]
+    assert len(told) == bool(words)
+    assert words in "".join(told)
+
+
 def test_films_that_vanish_for_a_moment_are_sound() -> None:
     """Where surfaces come to rest and turn, under a small part of the load."""
     thin = np.array([[[1e-12], [1e-12]], [[1e-7], [1e-7]]])

@@ -25,6 +25,7 @@ from pitchpoint.lubrication.registry import BOUNDARY, ROLLING_RESISTANCE, Fricti
 from pitchpoint.materials import solids
 from pitchpoint.materials.solids import celsius
 from pitchpoint.registry import Registry
+from pitchpoint.strength.limits import STRESS_CORRECTION
 
 __all__ = ["OF_CONTACTS", "OF_RESULTS", "AtWork", "Check", "Result", "implausible", "unlikely"]
 
@@ -36,6 +37,9 @@ MEAN_PRESSURE: Final[Mapping[Shape, float]] = {"line": pi / 4.0, "ellipse": 2.0 
 
 SMALL_STRAIN = 0.05
 """Largest Hertz pressure over the reduced modulus that small strains allow, see `contact_strain`."""
+
+STRONGEST_ROOT = 2.6e9
+"""Root stress that the strongest case-hardened teeth bear once, 2.5 Y_ST sigma_Flim of quality ME [Pa]."""
 
 ATOM = 0.3e-9
 """Distance of atoms in a solid, roughly; molecules of oil are thicker [m]."""
@@ -333,6 +337,42 @@ def edge_load(result: Result) -> str | None:
     )
 
 
+def root_stress(result: Result) -> str | None:
+    """A stress at a root that its material does not bear even once."""
+    strength = result.parts.get("strength")
+    if strength is None:
+        return None
+    rated = [used for one in result.built.meshes if one.case.gears.rated for used in one.solids]
+    stresses = np.ravel(strength["root_stress"].values)
+    over = [
+        (float(stress) / limit, float(stress), why, place % 2 + 1)
+        for place, (stress, used) in enumerate(zip(stresses, rated, strict=True))
+        for limit, why in [_root_bears(used)]
+        if stress > limit
+    ]
+    if not over:
+        return None
+    _, stress, why, gear = max(over)
+    return f"the root stress of gear {gear} reaches {_pressure(stress)}; {why}"
+
+
+def _root_bears(used: SolidInUse) -> tuple[float, str]:
+    """Largest root stress of a material, once, and why."""
+    name, tensile = used.record.name, used.record.tensile_strength
+    if not used.plastic:
+        return (
+            STRONGEST_ROOT,
+            f"the strongest teeth of steel bear about {_pressure(STRONGEST_ROOT)}",
+        )
+    if tensile is None:
+        limit = SMALL_STRAIN * float(used.solid.young)
+        return limit, f"from {_pressure(limit)} on it strains {name} by more than 5 %"
+    limit = STRESS_CORRECTION * tensile.value
+    return limit, (
+        f"from {_pressure(limit)} on, twice the tensile strength of {name}, its whole section breaks at once"
+    )
+
+
 # ---- what they share
 
 
@@ -457,6 +497,15 @@ OF_RESULTS: Registry[Check[Result]] = Registry(
         title="A friction law that holds",
         told=friction_laws,
         note="None of the case and of the library is in its range at the operating point.",
+    ),
+    Check(
+        name="root_stress",
+        title="Stress at the roots that a material bears",
+        told=root_stress,
+        note="Steel: the static strength 2.5 Y_ST sigma_Flim of case-hardened teeth of quality ME, 2.6 GPa. "
+        "Plastics: Y_St = 2 times the tensile strength, at which the whole section yields; where that is not "
+        "known, 0.05 of the modulus, which is assumed.",
+        sources=("iso_6336_5_2016", "vdi_2736_2_2014"),
     ),
     Check(
         name="edge_load",

@@ -186,11 +186,14 @@ def _remarks(built: Built) -> Iterator[str]:
 def _failing(built: Built, found: Numbers) -> Iterator[str]:
     """Which teeth do not bear their stress."""
     endless = built.case.strength is None or built.case.strength.life is None
-    when = "sooner or later" if endless else "within the life that is asked"
     for at, gear in enumerate(("gear 1", "gear 2")):
         for part, (safety, stress, limit, how) in _PARTS.items():
             reached = float(found[safety][at])
             if reached < 1.0:
+                when = "sooner or later" if endless else "within the life that is asked"
+                if endless and part == "roots" and built.solids[at].plastic:
+                    cycles = float(found["root_cycles"][at])
+                    when = when if np.isnan(cycles) else f"within {cycles:g} load cycles"
                 bears, has = (found[name][at] / 1e6 for name in (limit, stress))
                 yield fails(
                     f"the {part} of {gear} bear {bears:.4g} MPa and have {has:.4g} MPa (safety "
@@ -230,6 +233,11 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
         yield (
             "The flank stress leaves out the inner point of double contact; above a transverse contact ratio "
             "of 2 Z_B and Z_D are 1 here, and ISO 6336-2 has that point."
+        )
+    if float(ratio) < 1.0:
+        yield (
+            f"The transverse contact ratio is {float(ratio):.3g}: ISO 6336 and VDI 2736 rate gears with one from "
+            "1 on, of which a pair always touches in every section; stresses here are extrapolations."
         )
     if float(ratio) > _DEEPEST:
         yield f"A transverse contact ratio of {float(ratio):.3g} is above the 2.5 that ISO 6336-2 covers."

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import nan
+from math import inf, nan
 
 import numpy as np
 from jaxtyping import Array
@@ -19,7 +19,7 @@ from pitchpoint.strength.flank import NO_MODIFICATION
 from pitchpoint.strength.limits import Constants
 from pitchpoint.strength.load_factors import CLASSES
 from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths
-from pitchpoint.strength.treatments import PLASTIC, TREATMENTS, Treatment
+from pitchpoint.strength.treatments import PLASTIC, PLASTIC_CYCLES, TREATMENTS, Treatment
 
 __all__ = ["UNRATED", "Rated", "check_strength", "rated_case"]
 
@@ -57,7 +57,8 @@ class Rated:
     @property
     def assumed(self) -> tuple[str, ...]:
         """What was not given, in the words of a list."""
-        return tuple(_assumed(self.table, self.grade, _plastic(self.used), helical=self.helical))
+        told = _assumed(self.table, self.grade, _plastic(self.used), helical=self.helical)
+        return *told, *_cycles(self.table, self.used)
 
     @property
     def withheld(self) -> tuple[str, ...]:
@@ -68,7 +69,9 @@ class Rated:
     def sources(self) -> tuple[str, ...]:
         """Keys of the bibliography."""
         plastic = any(_plastic(self.used))
-        return (*_SOURCES, *("vdi_2736_2_2014",) * plastic)
+        curves = (one.record.root_strength for one in self.used)
+        printed = [one.origin.source for one in curves if one is not None]
+        return (*_SOURCES, *("vdi_2736_2_2014",) * plastic, *dict.fromkeys(printed))
 
     def duty(self, point: Operation, life: float | None) -> Duty:
         """What the pair has to bear.
@@ -185,9 +188,18 @@ def _strengths(
         plastic=array(plastic),
         work_hardening=array(table.work_hardening or (1.0, 1.0)),
         mean_stress=array(table.mean_stress_factor or (1.0, 1.0)),
+        over_cycles=array(np.array([_over_cycles(one) for one in used]).T),
     )
     endured = [[getattr(one, part).many for one in (first, second)] for part in ("flank", "root")]
     return found, (array(endured[0]), array(endured[1]))
+
+
+def _over_cycles(used: SolidInUse) -> tuple[float, ...]:
+    """Root strength at the temperature of the teeth, see `Strengths`."""
+    known, tensile = used.record.root_strength, used.record.tensile_strength
+    if known is None or not used.plastic:
+        return (nan,) * 4
+    return *known.at(used.temperature), inf if tensile is None else tensile.value
 
 
 def _limits(given: tuple[float, float] | None, name: str, used: Used) -> list[float]:
@@ -276,12 +288,24 @@ def _assumed(
         yield "Rz = 10 µm at the roots"
 
 
+def _cycles(table: StrengthTable, used: Used) -> Iterator[str]:
+    """Load cycles of plastic roots where no life is asked."""
+    if table.life is None and table.sigma_flim is None and any(map(_by_cycles, used)):
+        yield f"{PLASTIC_CYCLES:g} load cycles at the roots of plastic"
+
+
+def _by_cycles(used: SolidInUse) -> bool:
+    return used.plastic and used.record.root_strength is not None
+
+
 def _withheld(strengths: Strengths, used: Used) -> Iterator[str]:
     """Why a gear has no safeties."""
     limits = zip(np.asarray(strengths.flank), np.asarray(strengths.root), used, strict=True)
     for gear, (flank, root, one) in enumerate(limits, 1):
         known = {"sigma_hlim": flank, "sigma_flim": root}
         missing = [name for name, value in known.items() if np.isnan(value)]
+        if _by_cycles(one) and "sigma_flim" in missing:
+            missing.remove("sigma_flim")
         if missing:
             yield _missing(gear, missing, one)
 

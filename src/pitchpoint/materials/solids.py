@@ -108,6 +108,37 @@ class ModulusPoint:
     young: Datum
 
 
+_WARMEST_ROOT, _COLDEST_ROOT = 120.0, 20.0  # degC, to which root strengths were fitted
+
+
+@dataclass(frozen=True)
+class RootStrength:
+    """Nominal root stress that plastic teeth endure, a - b T^p + (c - d T^q)/N^r with T in degC [MPa].
+
+    Args:
+        terms: a, b, p, c, d, q, r.
+        origin: status, source and note; its value says nothing.
+    """
+
+    terms: tuple[float, ...]
+    origin: Datum
+
+    def at(self, temperature: float) -> tuple[float, float, float]:
+        """Its parts at the temperature of the teeth [K]: without cycles, over N^r [Pa], and r.
+
+        Below 20 and above 120 degC as there. VDI 2736 Part 2 (2014), as its source has it.
+
+        Example:
+            >>> from pitchpoint.materials import solids
+            >>> endless, of_cycles, power = solids.find("POM-H").root_strength.at(323.15)
+            >>> round((endless + of_cycles / 1e6**power) / 1e6, 1)
+            45.0
+        """
+        a, b, p, c, d, q, r = self.terms
+        warm = min(max(temperature - ZERO_CELSIUS, _COLDEST_ROOT), _WARMEST_ROOT)
+        return 1e6 * (a - b * warm**p), 1e6 * (c - d * warm**q), r
+
+
 @dataclass(frozen=True, kw_only=True)
 class SolidRecord:
     """A solid with its name and the origin of each value; `build()` gives the bare numbers.
@@ -128,6 +159,8 @@ class SolidRecord:
         hardness: of its flanks, Vickers or Brinell [Pa], if known.
         sigma_hlim: contact stress that flanks of test gears endure [Pa], if known.
         sigma_flim: nominal root stress that test gears endure [Pa], if known.
+        tensile_strength: of a bar without notch at room temperature [Pa], of plastics, if known.
+        root_strength: nominal root stress that plastic teeth endure over temperature and cycles, if known.
         treatment: heat treatment to which these limits belong, as `strength.treatments` names it.
 
     Raises:
@@ -156,6 +189,8 @@ class SolidRecord:
     hardness: Datum | None = None
     sigma_hlim: Datum | None = None
     sigma_flim: Datum | None = None
+    tensile_strength: Datum | None = None
+    root_strength: RootStrength | None = None
     treatment: str = ""
 
     def __post_init__(self) -> None:
@@ -183,6 +218,7 @@ class SolidRecord:
             "hardness": self.hardness,
             "sigma_hlim": self.sigma_hlim,
             "sigma_flim": self.sigma_flim,
+            "tensile_strength": self.tensile_strength,
         }
         table = {f"young_at {celsius(p.temperature)}": p.young for p in self.young_at}
         return {key: datum for key, datum in every.items() if datum is not None} | table
@@ -322,8 +358,17 @@ def _record(name: str, entry: dict[str, Any]) -> SolidRecord:
         hardness=_optional(entry, "hardness_GPa", 1e9),
         sigma_hlim=_optional(entry, "sigma_hlim_MPa", 1e6),
         sigma_flim=_optional(entry, "sigma_flim_MPa", 1e6),
+        tensile_strength=_optional(entry, "tensile_strength_MPa", 1e6),
+        root_strength=_root_strength(entry.get("root_strength")),
         treatment=entry.get("treatment", ""),
     )
+
+
+def _root_strength(entry: dict[str, Any] | None) -> RootStrength | None:
+    if entry is None:
+        return None
+    known = {key: value for key, value in entry.items() if key != "terms"}
+    return RootStrength(tuple(entry["terms"]), read_datum({"value": 1.0, **known}))
 
 
 def _optional(entry: dict[str, Any], column: str, scale: float = 1.0) -> Datum | None:

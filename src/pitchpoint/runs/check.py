@@ -7,7 +7,7 @@ from pitchpoint.cases.document import variants
 from pitchpoint.cases.library import find
 from pitchpoint.cases.record import is_record, is_result
 from pitchpoint.errors import CollectedInputError, InputError
-from pitchpoint.runs.run import describe
+from pitchpoint.runs.run import describe, foretold
 
 __all__ = ["check"]
 
@@ -15,7 +15,7 @@ __all__ = ["check"]
 def check(
     case: str, only: Sequence[str] = (), settings: Mapping[str, Any] | None = None
 ) -> list[str]:
-    """What warns of a case before it is computed.
+    """What fails and what warns of a case before it is computed, the former first.
 
     Args:
         case: name of a shipped case, a file, or a result.
@@ -26,11 +26,15 @@ def check(
         InputError: what is wrong in any of the variants, each thing once; a `CollectedInputError` of
             several.
     """
+    failing: list[str] = []
     warnings: list[str] = []
     wrong: dict[str, InputError] = {}
     for name in only or [*_variants(case)]:
         try:
-            warnings += describe(case, [name] if name else (), settings=settings)[0]["warnings"]
+            chosen = [name] if name else ()
+            told = describe(case, chosen, settings=settings)[0]
+            failing += told["implausible"] + foretold(case, chosen, settings=settings)
+            warnings += told["warnings"]
         except CollectedInputError as error:
             wrong.update((str(one), one) for one in error.errors)
         except InputError as error:
@@ -38,7 +42,7 @@ def check(
     if wrong:
         every = list(wrong.values())
         raise every[0] if len(every) == 1 else CollectedInputError(every)
-    return list(dict.fromkeys(warnings))
+    return list(dict.fromkeys(failing + warnings))
 
 
 def _variants(case: str) -> Iterator[str]:

@@ -18,6 +18,7 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Unasked
 from pitchpoint.analyses.comparison import compare, demand_parts
 from pitchpoint.analyses.plausibility import unlikely
 from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
@@ -420,6 +421,28 @@ def describe(
         _jobs(variant, studies or {})  # made, not computed: a wrong study shows now
     built = [(variant, variant.built({})) for variant in made]
     return [_manifest(*each, studies or {}) | apart(_of_design(*each)) for each in built]
+
+
+@double_precision()
+def foretold(
+    case: CaseLike, only: Sequence[str] = (), *, settings: Mapping[str, Any] | None = None
+) -> list[str]:
+    """What fails of a case by what costs little, the strength of its teeth; sound gears say nothing."""
+    built = [variant.built({}) for variant in held(case, only, settings)]
+    rated = [
+        (one, STRENGTH.compute(one, {}, _silent)) for one in built if not STRENGTH.why_not(one)
+    ]
+    return [
+        text
+        for one, part in rated
+        for text in apart([*doubts_of(part.attrs), *unlikely(one, {"strength": part})])[
+            "implausible"
+        ]
+    ]
+
+
+def _silent(done: int, doing: str = "") -> None:
+    """Progress of what takes no time."""
 
 
 @double_precision()

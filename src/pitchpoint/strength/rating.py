@@ -82,6 +82,8 @@ class Strengths(eqx.Module):
         plastic: True for a gear that is rated by VDI 2736.
         work_hardening: Z_W.
         mean_stress: factor on sigma_Flim of teeth that are loaded both ways.
+        over_cycles: sigma_Flim of plastics that is not given, s_0 + s_N/N^r and at most s_1: s_0, s_N [Pa],
+            r, s_1 [Pa]; not a number where it is not known.
     """
 
     solids: tuple[Solid, Solid]
@@ -91,6 +93,7 @@ class Strengths(eqx.Module):
     plastic: Bool[Arrays, "2"]
     work_hardening: Both
     mean_stress: Both
+    over_cycles: Float[Arrays, "4 2"]
 
 
 class Finish(eqx.Module):
@@ -370,19 +373,28 @@ def _root(
     stress = nominal * load
     notch = dimensions["notch_parameter"], shape["stress_correction_factor"]
     limiting = _root_limit_factors(pair, notch, strengths, finish, duty)
-    limit = strengths.root * limits.STRESS_CORRECTION * _product(limiting)
+    endurance, counted = _root_endurance(strengths, duty)
+    limit = endurance * limits.STRESS_CORRECTION * _product(limiting)
     return {
         **dimensions,
         **shape,
         **limiting,
         "rim_backup": _backup(pair),
-        "root_endurance": strengths.root,
-        "root_cycles": jnp.where(strengths.plastic, jnp.nan, duty.cycles_root),
+        "root_endurance": endurance,
+        "root_cycles": jnp.where(counted, duty.cycles_root, jnp.nan),
         "nominal_root_stress": nominal,
         "root_stress": stress,
         "root_limit": limit,
         "root_safety": limit / stress,
     }
+
+
+def _root_endurance(strengths: Strengths, duty: Duty) -> tuple[Both, Bool[Arrays, "2"]]:
+    """sigma_Flim, of plastics by their cycles unless it is given; where cycles count."""
+    endless, of_cycles, power, most = strengths.over_cycles
+    curve = jnp.clip(endless + of_cycles / duty.cycles_root**power, 0.0, most)
+    by_cycles = jnp.isnan(strengths.root) & strengths.plastic & ~jnp.isnan(curve)
+    return jnp.where(by_cycles, curve, strengths.root), ~strengths.plastic | by_cycles
 
 
 def _cut(pair: RatedPair, finish: Finish) -> RatedPair:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-__all__ = ["PLASTIC", "TREATMENTS", "Life", "Treatment"]
+__all__ = ["PLASTIC", "PLASTIC_CYCLES", "TREATMENTS", "Life", "Treatment"]
 
 NORMALISED = (5.306, 4.203, 0.01)
 HARDENED = (1.674, 0.529, 0.1)
@@ -142,11 +142,14 @@ programs agree (two or more); IACS UR M56 Rev.4 (2021), 3.11 to 3.13, for notch,
 
 _FLAT = Life(1.0, 1.0, 2.0)
 
+PLASTIC_CYCLES = 1e8
+"""Load cycles of plastic roots where no life is asked; they endure none for ever. The number is assumed."""
+
 PLASTIC = Treatment(
     name="plastic",
     title="plastic",
     flank=_FLAT,
-    root=_FLAT,
+    root=Life(1.0, 1.0, PLASTIC_CYCLES),
     slip_layer=0.0,
     static_notch=0.0,
     surface=(1.0, 0.0, 1.0),
