@@ -236,8 +236,8 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
         )
     if float(ratio) < 1.0:
         yield (
-            f"The transverse contact ratio is {float(ratio):.3g}: ISO 6336 and VDI 2736 rate gears with one from "
-            "1 on, of which a pair always touches in every section; stresses here are extrapolations."
+            f"The transverse contact ratio is {float(ratio):.3g}: ISO 6336 and VDI 2736 rate gears with one "
+            "from 1 on, of which a pair always touches in every section; stresses here are extrapolations."
         )
     if float(ratio) > _DEEPEST:
         yield f"A transverse contact ratio of {float(ratio):.3g} is above the 2.5 that ISO 6336-2 covers."
