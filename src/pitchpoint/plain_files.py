@@ -13,14 +13,14 @@ from typing import BinaryIO
 
 from pitchpoint.errors import InputError
 
-__all__ = ["content", "digest", "opened"]
+__all__ = ["content", "digest", "plain_file"]
 
 _PIECE = 1 << 20
 _WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 
 
 @contextmanager
-def opened(path: Path, most: int, what: str = "file") -> Iterator[BinaryIO]:
+def plain_file(path: Path, most: int, what: str = "file") -> Iterator[BinaryIO]:
     """A regular file, open for reading.
 
     Args:
@@ -47,28 +47,28 @@ def opened(path: Path, most: int, what: str = "file") -> Iterator[BinaryIO]:
 
 
 def content(path: Path, most: int, what: str = "file") -> bytes:
-    """What a regular file holds; InputError as of `opened`.
+    """What a regular file holds; InputError as of `plain_file`.
 
     Args:
         path: of the file.
         most: bytes that it may have.
         what: a word for it.
     """
-    with opened(path, most, what) as file:
+    with plain_file(path, most, what) as file:
         held = file.read(most + 1)
     _demand_small(len(held), most, path, what)  # some tell no size, or grow
     return held
 
 
 def digest(path: Path, most: int) -> str:
-    """SHA-256 of what a regular file holds, read in pieces; InputError as of `opened`.
+    """SHA-256 of what a regular file holds, read in pieces; InputError as of `plain_file`.
 
     Args:
         path: of the file.
         most: bytes that it may have.
     """
     made, length = hashlib.sha256(), 0
-    with opened(path, most) as file:
+    with plain_file(path, most) as file:
         while piece := file.read(_PIECE):
             made.update(piece)
             length += len(piece)

@@ -14,7 +14,7 @@ from pitchpoint.cases.schema import FilmTable, HeightTable
 from pitchpoint.cases.x3p import Heights, read_x3p
 from pitchpoint.errors import LONGEST_PLACE, InputError, shorten, visible
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
-from pitchpoint.plain_files import content, digest, opened
+from pitchpoint.plain_files import content, digest, plain_file
 
 __all__ = ["MEMBERS", "digest_of", "height_maps"]
 
@@ -128,7 +128,7 @@ def _demand_apart(apart: float, step: float, key: str) -> None:
 def _stamp(file: str) -> tuple[int, int]:
     """Size and time of change of a file, by which it is read anew."""
     try:
-        with opened(Path(file), MOST_BYTES, "file of heights") as held:
+        with plain_file(Path(file), MOST_BYTES, "file of heights") as held:
             found = os.fstat(held.fileno())
     except InputError as error:
         folder = os.path.dirname(file)

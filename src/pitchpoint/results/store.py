@@ -19,7 +19,7 @@ import xarray as xr
 
 from pitchpoint.doubts import stored
 from pitchpoint.errors import InputError
-from pitchpoint.plain_files import opened
+from pitchpoint.plain_files import plain_file
 from pitchpoint.results.netcdf import decode, encode
 from pitchpoint.results.variable import End, Variable
 from pitchpoint.results.variables import VARIABLES
@@ -254,7 +254,7 @@ def _seal(image: bytes) -> bytes:
 
 def _unsealed(path: Path) -> bytes:
     """File without its seal; a damaged one never reaches HDF5, which may hang on it or believe it."""
-    with opened(path, MOST_BYTES) as file:
+    with plain_file(path, MOST_BYTES) as file:
         length = max(file.seek(0, os.SEEK_END) - SEAL, 0)
         file.seek(length)
         seal = file.read()
