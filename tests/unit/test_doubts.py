@@ -92,4 +92,4 @@ def test_few_teeth_matter_by_how_far_the_formula_goes() -> None:
     given: dict[str, Any] = {"profile_shift": (0.0, 0.0), "helix_angle": 0.0, "contact_ratio": 1.5}
     (near,) = range_warnings(virtual_teeth=(18.0, 60.0), **given)
     (far,) = range_warnings(virtual_teeth=(6.0, 60.0), **given)
-    assert near.moves < FELT < 0.2 < far.moves
+    assert near.moves < FELT < far.moves < LEFT_OUT  # an estimate beside the answer

@@ -7,7 +7,7 @@ from typing import Any
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.doubts import GUESSED, Doubt
+from pitchpoint.doubts import REMARKED, Doubt
 from pitchpoint.gears.mesh import Mesh, StandardPair
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
@@ -226,13 +226,15 @@ def range_warnings(
     found = [
         Doubt(
             f"a {text.format(value)} for which ISO 6336-1 gives its estimate of the stiffness",
-            moves=GUESSED,
+            moves=REMARKED,
         )
         for (text, low, high), value in zip(_RANGES, values, strict=True)
         if not low <= value <= high
     ]
     if profile_shift[0] < profile_shift[1]:
-        found.append(Doubt("ISO 6336-1 gives its estimate of the stiffness for x1 >= x2"))
+        found.append(
+            Doubt("ISO 6336-1 gives its estimate of the stiffness for x1 >= x2", moves=REMARKED)
+        )
     if min(virtual_teeth) < _FEWEST_TEETH:
         few = _yielding(virtual_teeth, profile_shift)
         fewest = _yielding([max(z, _FEWEST_TEETH) for z in virtual_teeth], profile_shift)
@@ -241,13 +243,13 @@ def range_warnings(
                 f"{min(virtual_teeth):.3g} virtual teeth are fewer than the {_FEWEST_TEETH} down to which "
                 "the estimate of ISO 6336-1 was compared with published results; its compliance differs by "
                 f"{100.0 * abs(few / fewest - 1.0):.2g} % from that at the limit",
-                moves=abs(few / fewest - 1.0),
+                moves=min(abs(few / fewest - 1.0), REMARKED),  # of what stands beside the answer
             )
         )
     if internal:
         found.append(
             Doubt(
-                "the estimate of ISO 6336-1 is written here for external gears only", moves=GUESSED
+                "the estimate of ISO 6336-1 is written here for external gears only", moves=REMARKED
             )
         )
     return tuple(found)
