@@ -18,6 +18,10 @@
     if (shown(one) && one.scrollWidth > one.clientWidth + 1) faults.push("wider than the paper: " + name(one));
   }
 
+  for (const one of document.querySelectorAll(".tiles > div, .card, p, dd, figcaption, h1, h2, h3, h4")) {
+    if (shown(one) && !one.closest(".spoken, .plot") && one.scrollWidth > one.clientWidth + 1 && one.clientWidth) faults.push("wider than its place: " + name(one));
+  }
+
   // Parts of one parent that stand in the way of each other.
   for (const parent of document.querySelectorAll("main, section, .pane, details, .card, .tiles, .facts, .figures, figure, .halves, .halves > div")) {
     const parts = [...parent.children].filter((one) => {

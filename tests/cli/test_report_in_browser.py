@@ -107,6 +107,7 @@ _LOOKS = """[
 
 _SPOILED = {
     "wider than its window": "document.querySelector('#models table').style.width = '2000px'",
+    "wider than its place": "document.querySelector('.tiles dd').style.width = '900px'",
     "overlap": "document.querySelector('#cycle h2').style.marginBottom = '-60px'",
     "empty": "document.querySelectorAll('#cycle_friction .trace').forEach(one => one.remove())",
     "cut": "document.querySelector('#cycle_input_torque .xtitle').setAttribute('x', 9999)",
