@@ -142,8 +142,9 @@ def test_a_longer_inlet_changes_nothing_and_a_short_one_starves():
     short = solve_lines(dataclasses.replace(case, inlet=1.5 * case.half_width))
     np.testing.assert_allclose(long.film.central_film, full.film.central_film, rtol=5e-3)
     assert (short.film.central_film < 0.9 * full.film.central_film).all()
-    assert full.warnings == long.warnings == ()
-    assert "starved" in short.warnings[-1] and "1.5 half-widths" in short.warnings[-1]
+    assert {one.kind for one in (*full.warnings, *long.warnings)} <= {"grid"}
+    (starved,) = (one for one in short.warnings if one.kind == "inlet")
+    assert "starved" in starved and "1.5 half-widths" in starved
 
 
 @pytest.mark.whole
@@ -416,7 +417,8 @@ def test_oils_by_value_draw_as_oils_bear_unless_a_newtonian_one_is_asked_for():
     usual = solve_lines(contact(0.9e9, slide=0.2, fluid=Fluid(**oil)))
     newtonian = solve_lines(contact(0.9e9, slide=0.2))
     assert usual.film.friction < 0.1 < newtonian.film.friction
-    assert usual.warnings == () and "a Newtonian oil is sheared" in newtonian.warnings[0]
+    assert {one.kind for one in usual.warnings} <= {"grid"}
+    assert any("a Newtonian oil is sheared" in one for one in newtonian.warnings)
     np.testing.assert_allclose(usual.film.pressure, newtonian.film.pressure, rtol=1e-10)
 
 

@@ -281,20 +281,18 @@ def test_a_surface_that_stands_still_takes_no_heat_and_is_told(sliding):
     found = solve_lines(contact(slide=np.array([2.0])), nodes=65)
     heat = found.film.heat
     assert abs(heat.power_b[0]) < 1e-3 * heat.power_a[0]
-    assert (
-        "a surface passes a contact 0.354 mm wide at 0 m/s, a Peclet number of 0"
-        in found.warnings[0]
-    )
-    assert sliding[1].warnings == ()
+    (told,) = (one for one in found.warnings if one.kind == "strips")
+    assert "a surface passes a contact 0.354 mm wide at 0 m/s, a Peclet number of 0" in told
+    assert not any(one.kind == "strips" for one in sliding[1].warnings)
 
 
 def test_an_oil_that_does_not_thin_is_told_where_it_is_warm():
     dull = Fluid(**(OIL | {"viscosity_slope": 0.0}), shear_law="ree_eyring_1955")
-    told = solve_lines(contact(slide=np.array([0.1]), fluid=dull), nodes=65).warnings
-    assert told == (
+    found = solve_lines(contact(slide=np.array([0.1]), fluid=dull), nodes=65)
+    assert [one for one in found.warnings if one.kind != "grid"] == [
         "the temperature of the film is solved for with an oil that does not thin as it warms: its "
-        "`viscosity_slope` is 0 1/K",
-    )
+        "`viscosity_slope` is 0 1/K"
+    ]
 
 
 def test_profiles_can_be_left_out():
