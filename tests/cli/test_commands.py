@@ -302,7 +302,7 @@ def test_a_record_is_a_case_to_other_commands(
     assert re.search(r"operation +torque +7 N m +set", shown)
     assert "xu_2007" in pitchpoint("cite", record).out
     assert pitchpoint("compare", record).complaint == (
-        "error: manifest.json: has no targets to compare with"
+        "error: manifest.json: has no targets to compare with; give several designs, or a published case"
     )
 
 

@@ -379,7 +379,7 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
 
 def test_what_rounding_leaves_is_zero_on_the_screen() -> None:
     assert shown("largest_asperity_share", 1e-15) == shown("largest_asperity_share", 0.0) == "0"
-    assert shown("largest_asperity_share", 1e-6) == "0.0001"
+    assert shown("largest_asperity_share", 1e-6) == "1e−4"
 
 
 @pytest.mark.whole

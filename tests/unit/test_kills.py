@@ -49,6 +49,7 @@ Variant.built = lambda self, changes: None
 TOLD = {"title": "A pair", "implausible": [], "warnings": [], "inputs": [], "source": "", "own": ""}
 running._manifest = lambda *_: dict(TOLD)
 running._lacking = lambda built: {}
+running._of_design = lambda variant, built: []
 running._rows = lambda *_: []
 variant = Variant({}, "pair.toml", "default")
 

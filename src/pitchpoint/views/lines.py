@@ -74,6 +74,7 @@ def folded(phase: np.ndarray, values: np.ndarray) -> Points:
     At both ends stands what lies between the last value and the first one of the next period.
 
     Example:
+        >>> import numpy as np
         >>> folded(np.array([0.5, 1.0, 1.25]), np.array([2.0, 4.0, 5.0]))
         (array([0.  , 0.25, 0.5 , 1.  , 1.  ]), array([4., 5., 2., 4., 4.]))
     """
