@@ -34,7 +34,7 @@ title = "A pair & <b>its</b> </script><i>loss</i>"
 friction = ["iso_tr_14179_2", "xu_2007"]
 """
 OVER = (
-    "gears.profile_shift.1=0.4:1.8:3",
+    "gears.profile_shift.1=0.4:1.9:3",
     "operation.torque=30 N m:60 N m:2",
     "operation.speed=900 rpm:1800 rpm:2",
 )
@@ -116,7 +116,7 @@ def figure(held: dict[str, Any], name: str) -> dict[str, Any]:
 def test_at_a_point_of_the_grid_figures_are_those_of_a_run(
     held: dict[str, Any], corner: Outcome
 ) -> None:
-    assert [axis["values"] for axis in held["axes"]] == [[0.4, 1.1, 1.8], [30, 60], [900, 1800]]
+    assert [axis["values"] for axis in held["axes"]] == [[0.4, 1.15, 1.9], [30, 60], [900, 1800]]
     data = corner.parts["operation"]
     for name in MAIN:
         for law in range(2):
@@ -454,15 +454,15 @@ def test_what_is_not_possible_is_a_sentence(driven: Browser) -> None:
     sentence = "document.getElementById('impossible').textContent"
     shown = "document.getElementById('possible').offsetParent !== null"
     assert driven.run(f"[{sentence}, {shown}]") == ["", True]
-    slide(driven, SHIFT, 1.8)
+    slide(driven, SHIFT, 1.9)
     assert driven.run(sentence).startswith("Not possible: ")
     assert driven.run(shown) is False
     slide(driven, SHIFT, 1.3)
-    assert "at profile shift, gear 1 = 1.8" in driven.run(sentence)
+    assert "at profile shift, gear 1 = 1.9" in driven.run(sentence)
     assert driven.run(shown) is False
     values = "[...document.querySelectorAll('[data-value]')].map(v => v.textContent)"
     assert set(driven.run(values)) == {"not possible"}
-    slide(driven, SHIFT, 1.1)
+    slide(driven, SHIFT, 1.15)
     assert driven.run(f"[{sentence}, {shown}]") == ["", True]
     assert driven.console == []
 
