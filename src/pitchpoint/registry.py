@@ -159,8 +159,13 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f"; known are {listed(names)}" if names else "; there are none"
 
 
+_GRADE = re.compile("[a-z]{1,3}[0-9]{2,4}")
+
+
 def alike(name: str, known: Iterable[str]) -> list[str]:
     """At most three known names spelled like another, whatever its case, spaces and hyphens.
+
+    A grade, "VG 220", is a part of up to six names.
 
     Example:
         >>> alike("PAO VG 150", ["pao-vg-150", "pao-vg-100"])
@@ -170,6 +175,9 @@ def alike(name: str, known: Iterable[str]) -> list[str]:
     wanted = letters(name)
     if wanted in plain:
         return [plain[wanted]]
+    grade = wanted.removeprefix("iso")
+    if _GRADE.fullmatch(grade) and (of_it := [plain[one] for one in plain if grade in one]):
+        return of_it[:6]
     return [plain[one] for one in difflib.get_close_matches(wanted, plain, n=3, cutoff=0.6)]
 
 

@@ -385,6 +385,9 @@ _WORD = (
 _OTHERWISE = {
     "degC": ("c", "celsius", "deg c", "° c"),
     "degF": ("f", "fahrenheit", "deg f"),
+    "h": ("hour", "hours", "hr", "hrs", "std"),
+    "min": ("minute", "minutes"),
+    "s": ("second", "seconds", "sec"),
     "rpm": ("min-1", "r/min", "u/min", "tr/min"),
     "um": ("micron", "microns", "u", "mu"),
     "in": ('"', "″", "inch", "inches", "in."),
@@ -618,7 +621,8 @@ def _split(text: str | float, wanted: _Kind) -> tuple[str, str]:
     if not math.isfinite(float(number)):
         raise UnitError(f"{_quoted(text)} is too large", value=text)
     if not unit and "" not in wanted.units:
-        other = f' or "{number} rad"' if "rad" in wanted.units else ""
+        others = [f' or "{number} {unit}"' for unit in ("rad", "h") if unit in wanted.units]
+        other = "".join(others)  # what is usual for the one is not for the other
         raise UnitError(
             f'{_quoted(text)} has no unit where {wanted.noun} is needed; write "{number} '
             f'{wanted.example.split(" ", 1)[1]}"{other} or use one of {_listed(wanted)}',
@@ -657,12 +661,28 @@ def _refuse_number(text: object, plain: str, wanted: _Kind) -> NoReturn:
 
 
 def _meant(plain: str, wanted: _Kind) -> str:
-    """The quantity without quotation marks of its own, with a point before decimals; else an example."""
-    meant = re.sub(r"(?<=\d),(?=\d+(?!\d*,))", ".", plain.strip().strip(_MARKS).strip())
-    match = _NUMBER.fullmatch(meant)
-    if match and meant != plain and _spelling(match.group(2)) in wanted.units:
-        return f'"{meant}"' if match.group(2) else meant
-    return f'{wanted.noun} like "{wanted.example}"'
+    """The quantity without quotation marks of its own, with a point before decimals; else an example.
+
+    A comma before three digits may stand between thousands: both are told.
+    """
+    bare = plain.strip().strip(_MARKS).strip()
+    read = [_BETWEEN_THOUSANDS.sub("", bare), _BEFORE_DECIMALS.sub(".", bare)]
+    whole = [_with_unit(text, wanted) for text in dict.fromkeys(read) if text != plain]
+    meant = [text if text[-1].isdigit() else f'"{text}"' for text in whole if text]
+    return " or ".join(meant) or f'{wanted.noun} like "{wanted.example}"'
+
+
+_BETWEEN_THOUSANDS = re.compile(r"(?<=\d),(?=\d{3}(?!\d))")
+_BEFORE_DECIMALS = re.compile(r"(?<=\d),(?=\d+(?!\d*,))")
+
+
+def _with_unit(text: str, wanted: _Kind) -> str:
+    """A number with a unit of a kind, that of the example where it has none; else empty."""
+    match = _NUMBER.fullmatch(text)
+    unit = _spelling(match.group(2)) if match else "?"
+    if unit in wanted.units:
+        return text
+    return "" if unit else f"{text} {wanted.example.split(' ', 1)[1]}"
 
 
 def _refuse_unit(text: str | float, number: str, unit: str, wanted: _Kind) -> NoReturn:

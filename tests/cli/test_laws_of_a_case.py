@@ -126,6 +126,19 @@ def test_a_hardness_on_a_scale_is_a_pressure_and_says_so() -> None:
 
 
 @pytest.mark.whole
+def test_a_law_of_ones_own_that_cannot_be_is_doubted() -> None:
+    def told(coefficient: float) -> str:
+        own = FrictionLaw("own", "own", lambda *, pressure: coefficient + 0.0 * pressure)
+        data = CYCLE.compute(replace(variant(), own=own).built({}), None, lambda _: None)
+        return " ".join(json.loads(data.attrs["warnings"]))
+
+    assert "own: its friction coefficient falls to -0.05: such friction drives the gears" in told(
+        -0.05
+    )
+    assert "its friction coefficient falls" not in told(0.05)
+
+
+@pytest.mark.whole
 def test_a_law_of_ones_own_has_the_film_that_the_result_shows() -> None:
     """With the heat in the inlet; temperature and place are those of the case and of its contacts."""
 

@@ -312,7 +312,7 @@ def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     assert row in page
     (figure,) = SECTION.answer(outcome)
     assert figure.name == "Wear depth"
-    assert "after 3000000 turns of gear 1" in figure.words
+    assert "after 3e6 turns of gear 1" in figure.words
     (printed,) = SECTION.screen(outcome)
     assert printed.line == "The march ended after as many turns as were asked for."
     severe = outcome.parts["wear"].assign(severe_cycles=((), 1e6))

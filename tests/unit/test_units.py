@@ -362,3 +362,25 @@ def test_a_bound_in_another_unit_is_within_its_range():
             HELIX.read(beyond)
     with pytest.raises(InputError, match="is out of range; allowed is above 1 to 2"):
         Quantity("dimensionless", 1.0, 2.0, open_low=True).read(1.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "advice"),
+    [
+        (
+            "20,000 h",
+            "time",
+            'write "20000 h" or "20.000 h"',
+        ),  # a comma between thousands, or before decimals
+        ("1,75 mm", "length", 'write "1.75 mm"'),
+        ("78,5", "length", 'write "78.5 mm"'),
+        ("1,500,000 mm", "length", 'write "1500000 mm"'),
+        ("20000", "time", '"20000 h"'),
+        ("20000 hours", "time", 'did you mean "20000 h"?'),
+    ],
+)
+def test_commas_and_spelled_units_are_answered_with_what_may_be_meant(
+    text: str, kind: str, advice: str
+) -> None:
+    with pytest.raises(UnitError, match=re.escape(advice)):
+        parse(text, kind)

@@ -78,6 +78,11 @@ WRITTEN = {
     "gears.root_diameter": (["35 mm", "75 mm"], {}, "dedendum = [1.25, 1.25]"),
     "gears.hob_addendum": ("2.4 mm", {}, "dedendum = 1.2"),
     "gears.tip_radius": ("0.5 mm", {}, "fillet_radius = 0.25"),
+    "gears.z": ([20, 40], {}, "teeth = [20, 40]"),
+    "gears.m_n": ("2 mm", {}, 'module = "2 mm"'),
+    "gears.b": (["10 mm", "9 mm"], {}, 'face_width = ["10 mm", "9 mm"]'),
+    "gears.beta": ("15 deg", {}, 'helix_angle = "15 deg"'),
+    "gears.x": ([0.1, 0.2], {}, "profile_shift = [0.1, 0.2]"),
     "gears.lead_angle": ("75 deg", {}, 'helix_angle = "15 deg"'),
     "gears.accuracy": (6, {}, "inspection = { iso_class = 6 }"),
     "roughness.rz": ("3 um", {}, 'ra = "0.5 um"'),
@@ -95,6 +100,31 @@ def test_what_a_wish_is_told_to_write_runs(key):
     del tree[table][name]
     tree[table] |= tomllib.loads(line)
     read(tree)
+
+
+def test_what_stands_under_two_names_makes_one_list():
+    tree = copy.deepcopy(BASE)
+    tree["gears"] |= {"z1": 20, "z2": 40}
+    del tree["gears"]["teeth"]
+    assert refused(tree).count("write teeth = [20, 40]") == 2
+    tree["gears"] = {**BASE["gears"], "x_1": 0.1}
+    assert "the key is profile_shift" in refused(tree)  # that of gear 2 is not known
+
+
+def test_tables_of_other_programs_are_answered():
+    told = refused(copy.deepcopy(BASE) | {"oil": {}, "strength": {"KA": 1.25, "SHmin": 1.2}})
+    assert "oil: is not a known table: the oil has a table [lubricant]" in told
+    assert (
+        "strength.KA: is not a known key: K_A is the application factor; write application_factor = 1.25"
+        in told
+    )
+    assert "strength.SHmin: is not a known key: safeties are results" in told
+
+
+def test_a_grade_is_a_part_of_several_names_of_oils():
+    for name in ("VG 220", "ISO VG 220", "vg220"):
+        told = refused(copy.deepcopy(BASE) | {"lubricant": {"name": name}})
+        assert "mineral-vg-220" in told and "pao-vg-220" in told
 
 
 def test_torque_of_the_driver_is_never_taken_for_that_of_the_driven_gear():

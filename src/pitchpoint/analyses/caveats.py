@@ -17,6 +17,7 @@ from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.applicability import Limited, limits_words
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
 from pitchpoint.lubrication.registry import (
+    BOUNDARY,
     ROLLING_RESISTANCE,
     AsperityLoad,
     FilmThickness,
@@ -397,6 +398,10 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
     loaded = run["load"] > 0.0
     if not loaded.any():
         return reasons
+    lowest = float(run["friction"].min(where=loaded, initial=np.inf))
+    if lowest < 0.0:
+        drives = f"its friction coefficient falls to {lowest:.2g}: such friction drives the gears"
+        reasons.append(Doubt(drives, moves=WITHHELD))
     highest = float(run["friction"].max(where=loaded, initial=0.0))
     thinnest = float(run["lambda_ratio"].min(where=loaded, initial=np.inf))
     if law.full_film and thinnest < 1.0:
@@ -411,7 +416,7 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
         reasons.append(
             Doubt(
                 f"its friction up to {highest:.2g} is an extrapolation; steel in oil has at most about "
-                f"{law.largest:g}",
+                f"{BOUNDARY:g}",
                 moves=highest / law.largest - 1.0,
             )
         )

@@ -20,8 +20,6 @@ _MAIN = (
     "smallest_lambda",
     "largest_film_pressure",
     "largest_asperity_share",
-    "largest_central_film_error",
-    "largest_minimum_film_error",
     "largest_film_rise",
     "largest_flash_rise",
     "mean_film_friction",
@@ -32,6 +30,9 @@ _MAIN = (
     "solved_contacts",
 )
 _BY_LINES = ("mean_line_friction", "mean_line_loss")
+_OF_LINES = (*_MAIN, "largest_central_film_error", "largest_minimum_film_error")
+"""Only grids of lines have an error for every contact."""
+
 _OF_FINITE = ("smallest_central_film", "largest_end_pressure")
 _IN_SERIES = ("film_torsional_stiffness", "stiffness_without_films", "stiffness_with_films")
 _SQUEEZE_MAIN = (
@@ -154,7 +155,7 @@ def _squeeze_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    return {"film": _figures_of(parts.get("film"), _MAIN)}
+    return {"film": _figures_of(parts.get("film"), _OF_LINES)}
 
 
 def _finite_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
@@ -203,7 +204,7 @@ FILM = Analysis(
     compute=_compute,
     pieces=_pieces,
     joined=_joined,
-    main=_MAIN,
+    main=_OF_LINES,
     figures=_figures,
 )
 

@@ -113,7 +113,7 @@ def _said(key: str, quantity: Quantity, *values: float) -> str:
 
 def _renamed(key: str) -> Write:
     """The same value under its key."""
-    return lambda value, table, tree: f"{key} = {_plain(value)}"
+    return lambda value, table, tree: f"{key} = {_each(value)}"
 
 
 def _plain(value: Any) -> str:
@@ -316,10 +316,116 @@ def _by_grade(value: Any, table: Tree, tree: Tree) -> str:
     return f'name = "{names[0]}", say' if names else ""
 
 
+def _of_both(key: str, *names: str) -> Write:
+    """A list under one key of what stands for each gear under a name of its own."""
+
+    def write(value: Any, table: Tree, tree: Tree) -> str:
+        by_letters = {letters(name): number for name, number in table.items()}
+        each = [_plain(by_letters[letters(name)]) for name in names]
+        return f"{key} = [{', '.join(each)}]"
+
+    return write
+
+
+def _each(value: Any) -> str:
+    return f"[{', '.join(map(_plain, value))}]" if isinstance(value, list) else _plain(value)
+
+
 _RACK = "the teeth are those of a basic rack"
 
 WISHES: Mapping[str, tuple[Wish, ...]] = {
+    "": (
+        Wish(
+            ("oil", "lubrication", "grease"),
+            ("lubricant",),
+            "the oil has a table [lubricant]",
+        ),
+        Wish(
+            ("load", "loads", "duty", "operating_point"),
+            ("operation",),
+            "load, speed and temperature have a table [operation]",
+        ),
+        Wish(
+            ("gear", "pair", "geometry"),
+            ("gears",),
+            "both gears have one table [gears]",
+        ),
+        Wish(
+            ("material",),
+            ("materials",),
+            "materials have a table [materials] with gear_1 and gear_2",
+        ),
+    ),
     "gears": (
+        Wish(
+            ("z", "number_of_teeth", "numbers_of_teeth", "tooth_number", "tooth_count", "n_teeth"),
+            ("teeth",),
+            "numbers of teeth of both gears stand in one list",
+            _renamed("teeth"),
+        ),
+        *(
+            Wish(
+                both,
+                ("teeth",),
+                "numbers of teeth of both gears stand in one list",
+                _of_both("teeth", *both),
+            )
+            for both in (("z1", "z2"), ("teeth_1", "teeth_2"))
+        ),
+        *(
+            Wish(
+                both,
+                ("profile_shift",),
+                "profile shifts of both gears stand in one list",
+                _of_both("profile_shift", *both),
+            )
+            for both in (("x1", "x2"), ("profile_shift_1", "profile_shift_2"))
+        ),
+        *(
+            Wish(
+                both,
+                ("face_width",),
+                "face widths of both gears stand in one list",
+                _of_both("face_width", *both),
+            )
+            for both in (("b1", "b2"), ("face_width_1", "face_width_2"))
+        ),
+        Wish(
+            ("m", "m_n", "normal_module"),
+            ("module",),
+            "the module is that of the normal section",
+            _renamed("module"),
+        ),
+        Wish(
+            ("alpha", "alpha_n", "normal_pressure_angle", "phi"),
+            ("pressure_angle",),
+            "the pressure angle is that of the normal section",
+            _renamed("pressure_angle"),
+        ),
+        Wish(
+            ("beta", "helix", "spiral_angle"),
+            ("helix_angle",),
+            "the helix angle is that of the reference cylinders",
+            _renamed("helix_angle"),
+        ),
+        Wish(
+            ("b", "width", "tooth_width"),
+            ("face_width",),
+            "the width of the teeth is the face width",
+            _renamed("face_width"),
+        ),
+        Wish(
+            ("a", "a_w", "axis_distance", "shaft_distance", "centre_to_centre"),
+            ("centre_distance",),
+            "the distance of the axes is the centre distance",
+            _renamed("centre_distance"),
+        ),
+        Wish(
+            ("x", "shift", "addendum_modification", "profile_shift_coefficient", "x_coefficient"),
+            ("profile_shift",),
+            "profile shifts are counted in modules",
+            _renamed("profile_shift"),
+        ),
         Wish(
             ("transverse_module", "module_transverse", "m_t"),
             ("module",),
@@ -532,6 +638,49 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             _share_of_planets,
         ),
     ),
+    "strength": (
+        Wish(
+            ("k_a", "application", "service_factor", "overload_factor"),
+            ("application_factor",),
+            "K_A is the application factor",
+            _renamed("application_factor"),
+        ),
+        Wish(
+            ("k_v",),
+            ("dynamic_factor",),
+            "K_v is the dynamic factor",
+            _renamed("dynamic_factor"),
+        ),
+        Wish(
+            ("k_hbeta", "k_hb"),
+            ("face_load_factor",),
+            "K_Hβ is the face load factor",
+            _renamed("face_load_factor"),
+        ),
+        Wish(
+            ("k_halpha", "k_ha"),
+            ("transverse_load_factor",),
+            "K_Hα is the transverse load factor",
+            _renamed("transverse_load_factor"),
+        ),
+        Wish(
+            ("quality", "accuracy", "accuracy_grade", "iso_quality", "iso_class", "q"),
+            ("accuracy_class",),
+            "the class is that of ISO 1328-1",
+            _renamed("accuracy_class"),
+        ),
+        Wish(
+            ("hours", "life_hours", "lifetime", "service_life", "required_life", "l_h"),
+            ("life",),
+            "the life is a time under load",
+            _renamed("life"),
+        ),
+        Wish(
+            ("s_hmin", "s_fmin", "minimum_safety", "flank_safety", "root_safety", "safety_factor"),
+            (),
+            "safeties are results; a bound on them stands in [targets] or in a study",
+        ),
+    ),
     "roughness": (
         Wish(
             ("rz", "rz_1", "rz_iso"),
@@ -546,6 +695,11 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             ("name",),
             "a grade is part of the name of an oil; pitchpoint models lists them",
             _by_grade,
+        ),
+        Wish(
+            ("temperature", "oil_temperature", "t_oil"),
+            (),
+            "the temperature of the oil is that of the gears, `temperature` in [operation]",
         ),
         Wish(
             ("viscosity", "kinematic_viscosity", "dynamic_viscosity", "nu", "eta"),

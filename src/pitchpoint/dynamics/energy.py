@@ -1,6 +1,7 @@
 """Energy that goes through a mesh: in one steady period, and in a transient."""
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
@@ -44,7 +45,7 @@ class Energies(eqx.Module):
         return relative_closure(self.sum, parts)
 
 
-def relative_closure(left: Array, parts: Array) -> Each:
+def relative_closure(left: Array | np.ndarray, parts: Array | np.ndarray) -> Each:
     """Most that is left of a balance, relative to its largest part; NaN where any of them is none.
 
     Args:

@@ -294,12 +294,18 @@ def _hand_over(variant: Variant, title: str, folder: Path, studies: Mapping[str,
     hand_over(document, folder, title=title, studies=studies)
 
 
+_LARGEST_OF_OWN = 1.0
+"""Friction coefficient beyond which a law of the user's own, for whatever materials, is doubted."""
+
+
 def _own(function: Callable[..., Any]) -> FrictionLaw:
     """A user's function as a law; InputError if it asks for what is no condition, or is not JAX."""
     wanted, _ = arguments(function)
     name = getattr(function, "__name__", "own")
     _demand_traceable(function, wanted, name)
-    return FrictionLaw(name, f"{name}, the user's own", function, (), ({}, 0.0))
+    return FrictionLaw(
+        name, f"{name}, the user's own", function, (), ({}, 0.0), largest=_LARGEST_OF_OWN
+    )
 
 
 def _demand_traceable(function: Callable[..., Any], wanted: Sequence[str], name: str) -> None:

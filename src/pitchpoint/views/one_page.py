@@ -11,7 +11,7 @@ from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
 from pitchpoint.views.section import Page, Paragraph, Table, key_figures
-from pitchpoint.views.sections.answer import operation_words, sharing_words, warned
+from pitchpoint.views.sections.answer import operation_words, sharing_words
 
 __all__ = ["one_page"]
 
@@ -37,7 +37,8 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
     blocks = [] if page.designs else [b for s in page.sections for b in s.sums_up(outcome)]
     tables = [block for block in blocks if isinstance(block, Table)]
     remarks = [str(block.words) for block in blocks if isinstance(block, Paragraph)]
-    doubts = warned(page)
+    every = page.outcomes.values()
+    doubts = list(dict.fromkeys(text for one in every for text in one.manifest["warnings"]))
     return {
         "of": next(iter(page.outcomes)) if page.several else "",
         "gears": [] if page.designs else [_cut(t) for t in tables or [_given_gears(outcome)]],
@@ -45,7 +46,7 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
         "results": _results(page, outcome),
         "more_variants": max(len(page.outcomes) - _COLUMNS, 0),
         "figures": list(_main_figures(page, shown)),
-        "doubts": [show.first_clauses(text, _LINE) for text in [*doubts][:_DOUBTS]],
+        "doubts": [show.first_clauses(text, _LINE) for text in doubts[:_DOUBTS]],
         "more_doubts": max(len(doubts) - _DOUBTS, 0),
         "assumed": "" if page.designs else _assumed(manifest),
         "remarks": remarks,

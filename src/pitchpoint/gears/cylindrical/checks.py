@@ -791,7 +791,8 @@ def _raising(cut: list[_Gear]) -> tuple[Remedy, ...]:
         numbers = [(gear.number - 1,) for gear in cut]
         shifts = [Remedy("profile_shift", 1.0, which) for which in (*numbers, (0, 1))]
         return *shifts[: 1 + len(cut)], Remedy("pressure_angle", 1.0)
-    return Remedy("centre_distance", 0.0), Remedy("addendum", 1.0, (0, 1))
+    follows = Remedy("profile_shift", 0.0), Remedy("centre_distance", 0.0)
+    return *follows, Remedy("addendum", 1.0, (0, 1))
 
 
 def _check_tips(pair: _Pair) -> Faults:

@@ -478,6 +478,8 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         if "back_driving" in outcome.parts:
             words = back_driving(outcome, law)
             value, _, detail = words.partition(", ")
+            if value[:1].isdigit():
+                detail = ", ".join(filter(None, ("of the same power carried back", detail)))
             yield KeyFigure(77.0, "Back-driving", value, detail)
 
 
@@ -504,14 +506,15 @@ def _efficiencies(
 def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
     """What the efficiency is of, and how far the laws that apply disagree."""
     scope = covers(data).partition(":")[0]
-    apart = spread(outcome)
+    apart, certain_first = spread(outcome), False
     if not any(holding(outcome.parts)) and data is outcome.parts["operation"]:
         certain = "no fitted law is in its range here"
     elif apart and apart["points"] and float(apart["points"]) > 0.0:
-        certain = f"{apart['text']} by the laws in their range"
+        certain, certain_first = f"{apart['text']} by the laws in their range", True
     else:
         certain = f"over the cycle {_range(data, 'efficiency', lambda name: float(data[name].values[0, 0]))}"
-    return "; ".join(filter(None, [*_by_other_laws(outcome, data), scope, certain]))
+    ranked = (certain, scope) if certain_first else (scope, certain)
+    return "; ".join(filter(None, [*_by_other_laws(outcome, data), *ranked]))
 
 
 def _by_other_laws(outcome: Outcome, data: xr.Dataset) -> Iterator[str]:

@@ -1,7 +1,7 @@
 """Strength of the teeth: forces, stresses and safeties, with every factor by name."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator, Mapping
 from itertools import chain
 from math import inf
 
@@ -174,21 +174,33 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
     data = outcome.parts.get("strength")
     if data is None:
         return
-    for order, where, safety, stress in (
-        (40.0, "flanks", "flank_safety", "contact_stress"),
-        (41.0, "roots", "root_safety", "root_stress"),
+    for order, where, part, stress in (
+        (40.0, "flanks", "flank", "contact_stress"),
+        (41.0, "roots", "root", "root_stress"),
     ):
-        known = data[safety].where(np.isfinite(data[safety]))
+        known = data[f"{part}_safety"].where(np.isfinite(data[f"{part}_safety"]))
         if not known.isnull().all():
-            least = known.isel(known.argmin([*known.dims]))
-            yield KeyFigure(
-                order, f"Safety of {where}", show.number(float(least)), f"at {_place(least)}"
-            )
+            at = known.argmin([*known.dims])
+            least = known.isel(at)
+            duty = f"{_place(least)}; {_duty(data, at, f'{part}_cycles')}"
+            yield KeyFigure(order, f"Safety of {where}", show.number(float(least)), f"at {duty}")
         elif data[stress].notnull().any():
             most = data[stress].isel(data[stress].argmax([*data[stress].dims]))
             value = show.quantity(stress, float(most), of=data)
             detail = f"at {_place(most)}; no safety: its material has no limits"
             yield KeyFigure(order, f"Stress of {where}", value, detail)
+
+
+def _duty(data: xr.Dataset, place: Mapping[Hashable, xr.DataArray], cycles: str) -> str:
+    """Application factor and load cycles of a gear, on which its safety stands."""
+
+    def there(name: str) -> float:
+        values = data[name]
+        return float(values.isel({dim: at for dim, at in place.items() if dim in values.dims}))
+
+    count = there(cycles)
+    life = f"{show.number(count)} load cycles" if np.isfinite(count) else "to endure"
+    return f"application factor {show.number(there('application_factor'))}, {life}"
 
 
 def _sums_up(outcome: Outcome) -> Iterator[Table | Paragraph]:

@@ -379,9 +379,9 @@ def _lacks(page: Page) -> str | None:
 
 
 def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
-    """Transmission error at each torque."""
+    """Transmission error at each torque, as the gears vibrate."""
     if words := vibration_answer(outcome):
-        yield KeyFigure(35.0, "Transmission error", "; ".join(words))
+        yield KeyFigure(35.0, "Transmission error", "dynamic, " + "; ".join(words))
 
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:
