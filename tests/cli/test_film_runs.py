@@ -131,9 +131,9 @@ def test_energy_is_lost_by_sliding_and_rolling(outcome: Outcome) -> None:
 def test_a_film_that_is_not_found_withholds_the_loss(
     case: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def lost(built: Any, given: Any, done: Any) -> Any:
+    def lost(built: Any, given: Any, *others: Any) -> Any:
         first = np.arange(len(given["line_load"])) == 0
-        return honest(built, {n: np.where(first, np.nan, one) for n, one in given.items()}, done)
+        return honest(built, {n: np.where(first, np.nan, one) for n, one in given.items()}, *others)
 
     honest = solved._films
     monkeypatch.setattr(solved, "_films", lost)

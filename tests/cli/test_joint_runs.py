@@ -131,7 +131,8 @@ def test_the_joint_is_told(deviating: Outcome, outcome: Outcome) -> None:
     assert row["wave of the error"] == "circular spline, order 2"
     critical = float(deviating.parts["joint"]["critical_speed"][0, 0])
     assert float(row[f"{head('critical_speed', deviating.parts['joint'])}, held"]) == pytest.approx(
-        critical * 30.0 / np.pi, rel=5e-4  # four digits are shown
+        critical * 30.0 / np.pi,
+        rel=5e-4,  # four digits are shown
     )
     (printed,) = SECTION.screen(deviating)
     assert "on a motor that holds its speed" in printed.line

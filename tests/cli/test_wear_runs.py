@@ -317,7 +317,7 @@ def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     assert printed.line == "The march ended after as many turns as were asked for."
     severe = outcome.parts["wear"].assign(severe_cycles=((), 1e6))
     (figure,) = SECTION.answer(Outcome(outcome.manifest, {"wear": severe}))
-    assert "; severe wear (1.5 times the least rate) begins at 1000000" in figure.words
+    assert "; severe wear (1.5 times the least rate) begins at 1e6" in figure.words
 
 
 REFUSED = {

@@ -269,7 +269,8 @@ def _rows(
         if value is None:
             continue
         if any(one == path or one.startswith(f"{path}.") for one in asked):
-            mark = _scaled(document.provenance.get(path, Provenance()), path, asked.get(path))
+            mark = document.provenance.get(path, Provenance())
+            mark = _scaled(mark, path, asked.get(path), value)
             yield _row(table, key, value, _kind(path, _plain(value)), mark, given=True)
         else:
             mark = usual.get(key, _mark(found) if left is None else Provenance("default"))
@@ -281,10 +282,11 @@ def _rows(
             yield _row(table, key, value, "", mark, given=True)
 
 
-def _scaled(mark: Provenance, path: str, given: Any) -> Provenance:
+def _scaled(mark: Provenance, path: str, given: Any, value: Any) -> Provenance:
     """The mark of a value, with the scale of a hardness, and that of which two it is the smaller."""
     quantity = quantity_at(path)
-    if isinstance(quantity, SmallerOfTwo) and isinstance(given, list):
+    made_one = isinstance(given, list) and np.ndim(value) == 0  # other families keep both
+    if isinstance(quantity, SmallerOfTwo) and made_one:
         told = f"the smaller of {given[0]} and {given[1]}, as wide as which both bodies count"
         return replace(mark, note="; ".join(filter(None, [mark.note, told])))
     scale = hardness_scale(given) if quantity is not None and quantity.kind == "hardness" else ""
