@@ -263,7 +263,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     if ratio.size and np.isfinite(ratio).any():
         value = show.number(float(np.nanmin(ratio)))
         detail = "thinnest film of the cycle over composite Rq"
-        yield KeyFigure(45.0, "Film ratio", value, detail)
+        yield KeyFigure(76.5, "Film ratio", value, detail)
 
 
 CYCLE = Section(
