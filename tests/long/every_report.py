@@ -3,15 +3,18 @@
 Results are kept in FOLDER, one folder a case; what is there is not computed again, an interrupted run goes
 on. Each report is written anew, opened 1280 px wide, light and dark, and 500 px wide, and printed. What is
 cut, empty, overlapping, too high or too large is told; pictures and the PDF are left in FOLDER/NAME.seen.
+So is what is wrong with the first screen of the terminal.
 """
 
 import sys
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from browser import Browser, browser
+from screens import faults_of_the_screen
 from seen import faults_on_paper, faults_on_screen, pages, whole
 
 from pitchpoint.published.registry import PUBLICATIONS
@@ -61,7 +64,8 @@ def main(folder: Path, names: list[str]) -> int:
         for name in names or known:
             print(name, flush=True)
             path = report(known.get(name, name), folder / name)
-            for fault in faults(page, path, folder / f"{name}.seen"):
+            of_the_screen = faults_of_the_screen(open_result(folder / name))
+            for fault in chain(of_the_screen, faults(page, path, folder / f"{name}.seen")):
                 count += 1
                 print(f"  {fault}", flush=True)
     print(f"{count} faults")

@@ -1,0 +1,29 @@
+"""First screens as they must be: a dozen lines of eighty characters, with every number whole."""
+
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views.first_screen import FEW_LINES, first_screen
+
+NUMBER = re.compile(r"\d[\d.,e−+-]*")
+REPORT = Path("results/pair/report.html")
+
+
+def screen(outcomes: Mapping[str, Outcome], width: int = 80) -> list[str]:
+    """Its lines."""
+    return [line.text.replace("\u00a0", " ") for line in first_screen(outcomes, REPORT, width)]
+
+
+def faults_of_the_screen(outcomes: Mapping[str, Outcome]) -> Iterator[str]:
+    """What is wrong with the screen of a result."""
+    lines = screen(outcomes)
+    whole = {number for line in screen(outcomes, 1000) for number in NUMBER.findall(line)}
+    if len(lines) > FEW_LINES:
+        yield f"{len(lines)} lines"
+    for line in lines:
+        if len(line) > 80:
+            yield f"{len(line)} characters: {line}"
+        if cut := {*NUMBER.findall(line)} - whole:
+            yield f"{', '.join(cut)} is a part of a number: {line}"
