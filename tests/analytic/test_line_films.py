@@ -596,19 +596,22 @@ def test_films_on_other_grids_and_running_the_other_way_are_a_start(given, wante
 @pytest.mark.whole
 def test_doubtful_contacts_are_told_with_numbers():
     told = solve_lines(contact([1.6e9])).warnings
-    assert told == (
+    assert [text for text in told if not text.startswith("the grid is coarse")] == [
         "a pressure of 1.6 GPa is outside the range of 'roelands_1966', up to 1 GPa: films and traction "
-        "there are extrapolated",
-    )
+        "there are extrapolated"
+    ]
     wide = solve_lines(contact(0.3e9, 0.1, 1.0), size=0.5e-3).warnings
-    assert "mm wide, and the size of a tooth is 0.5 mm: the bodies are no half spaces" in wide[0]
+    assert "mm wide, and the size of a tooth is 0.5 mm: the bodies are no half spaces" in " ".join(
+        wide
+    )
     rough = solve_lines(contact(0.3e9, texture=Rough(rq=20e-6, modulus=MODULUS))).warnings
     assert rough[-1].startswith("a roughness Rq of 20 um is large against a contact")
     sheared = solve_lines(contact(0.9e9, slide=0.2)).warnings
-    assert sheared[0].endswith(
+    (stress,) = [text for text in sheared if "`shear_law`" in text]
+    assert stress.endswith(
         "more than oils bear: a `shear_law` that limits it is 'ree_eyring_1955' or 'bair_winer_1979'"
     )
-    assert "MPa in the mean at a mean pressure of 707 MPa" in sheared[0]
+    assert "MPa in the mean at a mean pressure of 707 MPa" in stress
 
 
 def test_films_that_draw_oil_from_further_away_than_their_radius_are_told():

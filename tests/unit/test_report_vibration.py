@@ -272,8 +272,10 @@ def test_page_has_every_section_and_figure(whole: Outcome) -> None:
 
 
 def test_top_tells_stiffness_and_transmission_error(whole: Outcome) -> None:
-    text = words(render({"default": whole}))
-    top, rest = text.split("Inputs as resolved")
+    page = render({"default": whole})
+    on_paper, on_screen = page.split("<header>")
+    assert BESIDE in words(on_paper)
+    top, rest = words(on_screen).split("Inputs as resolved")
     assert "3.977 N/µm in the mean, varies by 16.14 %" in top
     assert "at 5.355 N m: 42 µm in the mean, 5.6 µm peak to peak" in top
     assert "of the design" in top
