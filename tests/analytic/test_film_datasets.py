@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 from sound import OnDemand
 
+from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import LineContact
@@ -97,7 +98,7 @@ def test_statuses_have_their_sentences_and_warnings_are_kept(solved):
     sentences = json.loads(told["ended_code"].attrs["sentences"])
     assert sentences["0"] == "a solution was found"
     assert sentences[str(int(told["ended_code"][0, 2]))] == "no load presses the bodies together"
-    films = dataclasses.replace(solved["warm"], warnings=("one", "two"))
+    films = dataclasses.replace(solved["warm"], warnings=(Doubt("one"), Doubt("two")))
     assert json.loads(film_dataset(films).attrs["warnings"]) == ["one", "two"]
 
 
