@@ -56,6 +56,7 @@ def drive(**gears):
     return tree
 
 
+@pytest.mark.whole
 def test_parts_of_a_strain_wave_gear():
     """A drive of 60 mm by its volumes, worked out beside the code."""
     mass, inertia = bodies(
@@ -92,6 +93,7 @@ def test_parts_of_a_strain_wave_gear():
     assert inertia[0] == pytest.approx(of_plug + balls * (cage * circle / 2.0) ** 2, rel=1e-12)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("diameter", "width", "expected"), [(35.6e-3, 7e-3, 0.033e-4), (63.5e-3, 10e-3, 0.413e-4)]
 )
@@ -101,6 +103,7 @@ def test_wave_generators_are_near_those_of_catalogues(diameter, width, expected)
     assert bodies(drive(**gears))[1][0] == pytest.approx(expected, rel=0.35)
 
 
+@pytest.mark.whole
 def test_which_gears_have_bodies():
     told = {
         table.__name__: ANALYSES["bodies"].why_not(

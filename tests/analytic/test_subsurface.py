@@ -28,6 +28,7 @@ def below_an_ellipse(across, poisson=0.3):
     return jax.tree.map(np.asarray, below_row(bodies, pressure, DEPTH, poisson, 32))
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("across", quick_first([3.0, 1.0]))
 @pytest.mark.parametrize("poisson", quick_first([0.3, 0.4]))
 def test_below_an_ellipse_it_is_that_of_hertz(across, poisson):
@@ -44,6 +45,7 @@ def test_below_an_ellipse_it_is_that_of_hertz(across, poisson):
     assert DEPTH[shear.argmax()] == pytest.approx(float(depth / hertz.along), abs=0.02)
 
 
+@pytest.mark.whole
 def test_below_a_ball_von_mises_is_the_difference_on_the_axis():
     found = below_an_ellipse(1.0)
     middle = np.asarray(compared(found))[:, 32]
@@ -59,6 +61,7 @@ def below_a_line(poisson):
     return jax.tree.map(np.asarray, found)
 
 
+@pytest.mark.whole
 def test_below_a_long_line_it_is_that_of_plane_strain():
     found = below_a_line(0.3)
     stress, depth = line_shear(pressure=1.0, half_width=1.0)
@@ -91,6 +94,7 @@ def boussinesq(x, y, z, poisson):
     }
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("name", ["xx", "yy", "zz", "xy", "yz", "zx"])
 def test_a_cell_far_away_is_a_point_load(name):
     bodies = half_space(X, np.linspace(-1.1, 1.1, 65))
@@ -103,6 +107,7 @@ def test_a_cell_far_away_is_a_point_load(name):
     np.testing.assert_allclose(at, expected, atol=2e-3 * np.abs(expected).max())
 
 
+@pytest.mark.whole
 def test_close_to_the_surface_it_is_the_pressure():
     bodies = half_space(X, np.linspace(-1.1, 1.1, 65))
     pressure = np.random.default_rng(0).uniform(size=(64, 65))
