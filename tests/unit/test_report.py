@@ -38,8 +38,8 @@ from pitchpoint.views.path import path_of
 from pitchpoint.views.picture import Body, Picture, picture_of
 from pitchpoint.views.point import period_of
 from pitchpoint.views.report import render, write_report
-from pitchpoint.views.section import Paragraph, naming
-from pitchpoint.views.sections.answer import summary
+from pitchpoint.views.section import KeyFigure, Paragraph, naming
+from pitchpoint.views.sections.answer import ANSWER, summary
 from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.path import loss_places, loss_sentence
 from pitchpoint.views.sections.sliding import specific_sliding
@@ -531,6 +531,27 @@ def test_efficiency_and_the_spread_of_the_laws_stand_together(
         assert (
             f"{shown} friction laws that apply {show.number(low)} to {show.number(high)} %" in text
         )
+
+
+def test_laws_that_nearly_agree_are_told_in_points_with_a_power_of_ten(
+    published: Outcomes,
+) -> None:
+    """Two ends that read apart stand before what the efficiency is of, be they ever so near."""
+    outcome = published["as_published"]
+    holds = outcome.parts["operation"].copy(deep=True)
+    laws = outcome.parts["laws"].copy(deep=True).assign_attrs(outside="[]")
+
+    def answered(*ends: float) -> KeyFigure:
+        holds["mean_efficiency"].values[:] = ends[0]
+        laws["mean_efficiency"].values[:] = ends[0]
+        laws["mean_efficiency"].values[-1] = ends[-1]
+        parts = {**outcome.parts, "operation": holds, "laws": laws}
+        figures = ANSWER.answer(replace(outcome, parts=parts))
+        return next(figure for figure in figures if figure.name == "Efficiency")
+
+    near = answered(0.9963494, 0.9963512)
+    assert near.detail.endswith("; 99.63 to 99.64 % by the laws in their range; teeth alone")
+    assert "; teeth alone; over the cycle " in answered(0.9963494, 0.9963495).detail
 
 
 def test_misses_come_first_and_kinds_are_counted_apart(page: str) -> None:

@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from pitchpoint.analyses.figures import of_contact
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Figure, Key, Panel
@@ -90,7 +89,6 @@ def _place_of(row: Mapping[str, str]) -> str:
 def _facts(outcome: Outcome) -> list[tuple[str, str]]:
     """Operating point, materials, oil and models that the numbers stand on."""
     manifest = outcome.manifest
-    single = of_contact(outcome.parts.get("operation", ()))
     rows = input_rows(manifest)
     materials = [
         f"{_plain_key(row['key'])} {row['value']}" for row in rows if row["table"] == "materials"
@@ -101,7 +99,7 @@ def _facts(outcome: Outcome) -> list[tuple[str, str]]:
         ("Materials", ", ".join(materials)),
         ("Oil", str(manifest["oil"])),
         ("Friction", laws),
-        ("Load sharing", "" if single else sharing_words(manifest)),
+        ("Load sharing", sharing_words(outcome)),
     ]
     return [(term, words) for term, words in facts if words]
 

@@ -39,7 +39,6 @@ __all__ = [
     "sharing_words",
     "summary",
     "teeth_rows",
-    "warned",
 ]
 
 AVERAGES = {
@@ -53,7 +52,7 @@ def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
     values = {
         "variants": variants,
-        "warnings": (warnings := warned(page)),
+        "warnings": (warnings := _warned(page)),
         "first_doubt": show.first_clauses(next(iter(warnings), ""), _SUMMED_UP),
         "several": page.several,
         "designs": page.designs,
@@ -111,7 +110,7 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         "name": name,
         "oil": manifest["oil"],
         "oil_note": _oil_note(outcome),
-        "sharing": "" if single else sharing_words(manifest),
+        "sharing": sharing_words(outcome),
         "tiles": [_tile(figure) for figure in figures],
         "facts": [
             (figure.name, figure.words) for figure in figures if len(figure.detail) > _IN_A_TILE
@@ -170,9 +169,12 @@ def _instead(outcome: Outcome) -> list[dict[str, str]]:
     ]
 
 
-def sharing_words(manifest: Mapping[str, Any]) -> str:
-    """How the load is shared; in a drive whose stages differ, that of each."""
-    each = ((model["effect"].partition(", "), model["title"]) for model in manifest["models"])
+def sharing_words(outcome: Outcome) -> str:
+    """How the load is shared; in a drive whose stages differ, that of each; empty for one contact alone."""
+    if of_contact(outcome.parts.get("operation", ())):
+        return ""
+    models = outcome.manifest["models"]
+    each = ((model["effect"].partition(", "), model["title"]) for model in models)
     named = [(place, title) for (effect, _, place), title in each if effect == "load sharing"]
     return "; ".join(f"{place}: {title}" if place else title for place, title in named)
 
@@ -252,7 +254,7 @@ def _range(data: xr.Dataset, name: str, value: Callable[[str], float]) -> str:
     return show.span(*ends, [value(end) for end in ends], data)
 
 
-def warned(page: Page) -> dict[str, list[str]]:
+def _warned(page: Page) -> dict[str, list[str]]:
     """Sentences above every number, each with the variants that it is about."""
     found: dict[str, list[str]] = {}
     for name, outcome in page.outcomes.items():
@@ -506,15 +508,15 @@ def _efficiencies(
 def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
     """What the efficiency is of, and how far the laws that apply disagree."""
     scope = covers(data).partition(":")[0]
-    apart, certain_first = spread(outcome), False
+    apart = spread(outcome)
     if not any(holding(outcome.parts)) and data is outcome.parts["operation"]:
-        certain = "no fitted law is in its range here"
-    elif apart and apart["points"] and float(apart["points"]) > 0.0:
-        certain, certain_first = f"{apart['text']} by the laws in their range", True
+        told = [scope, "no fitted law is in its range here"]
+    elif apart and apart["points"]:
+        told = [f"{apart['text']} by the laws in their range", scope]
     else:
-        certain = f"over the cycle {_range(data, 'efficiency', lambda name: float(data[name].values[0, 0]))}"
-    ranked = (certain, scope) if certain_first else (scope, certain)
-    return "; ".join(filter(None, [*_by_other_laws(outcome, data), *ranked]))
+        over = _range(data, "efficiency", lambda name: float(data[name].values[0, 0]))
+        told = [scope, f"over the cycle {over}"]
+    return "; ".join(filter(None, [*_by_other_laws(outcome, data), *told]))
 
 
 def _by_other_laws(outcome: Outcome, data: xr.Dataset) -> Iterator[str]:

@@ -39,14 +39,14 @@ def spread(outcome: Outcome) -> dict[str, Any] | None:
     if not known.size:
         text = "all lock the mesh" if locked.all() else "undefined, no power"
         return {"text": text, "rows": rows, "points": "", "outside": outside}
-    ends = [show.number(100 * end) for end in (known.min(), known.max())]
-    text = f"{' to '.join(dict.fromkeys(ends))} %"
+    ends = [*dict.fromkeys(show.number(100 * end) for end in (known.min(), known.max()))]
+    text = f"{' to '.join(ends)} %"
     if locked.any():
         names = [law_title(outcome, law) for law, so in zip(laws(data), locked, strict=True) if so]
         text += f"; locked by {', '.join(names)}"
     if outcome.manifest.get("plastic"):
         text += ", by laws for steel on steel; none was fitted to plastic teeth"
-    points = show.number(100 * np.ptp(known)) if known.size > 1 else ""
+    points = show.number(100 * np.ptp(known)) if len(ends) > 1 else ""
     return {"text": text, "rows": rows, "points": points, "outside": outside}
 
 
