@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "UnitError",
+    "comma_readings",
     "convert",
     "example",
     "hardness_scale",
@@ -666,14 +667,26 @@ def _meant(plain: str, wanted: _Kind) -> str:
     A comma before three digits may stand between thousands: both are told.
     """
     bare = plain.strip().strip(_MARKS).strip()
-    read = [_BETWEEN_THOUSANDS.sub("", bare), _BEFORE_DECIMALS.sub(".", bare)]
-    whole = [_with_unit(text, wanted) for text in dict.fromkeys(read) if text != plain]
+    read = comma_readings(bare) or [bare]
+    whole = [_with_unit(text, wanted) for text in read if text != plain]
     meant = [text if text[-1].isdigit() else f'"{text}"' for text in whole if text]
     return " or ".join(meant) or f'{wanted.noun} like "{wanted.example}"'
 
 
-_BETWEEN_THOUSANDS = re.compile(r"(?<=\d),(?=\d{3}(?!\d))")
+_THOUSANDS = re.compile(r"(?<![\d,.])[1-9]\d{0,2}(?:,\d{3})+(?![\d,])")
 _BEFORE_DECIMALS = re.compile(r"(?<=\d),(?=\d+(?!\d*,))")
+
+
+def comma_readings(text: str) -> list[str]:
+    """What a number with commas may mean: without those between thousands, or with a point for a decimal one.
+
+    Example:
+        >>> comma_readings("0,125 mm"), comma_readings("20,000 h"), comma_readings("1,234.5 mm")[0]
+        (['0.125 mm'], ['20000 h', '20.000 h'], '1234.5 mm')
+    """
+    thousands = _THOUSANDS.sub(lambda number: number[0].replace(",", ""), text)
+    read = dict.fromkeys([thousands, _BEFORE_DECIMALS.sub(".", text)])
+    return [meant for meant in read if meant != text]
 
 
 def _with_unit(text: str, wanted: _Kind) -> str:

@@ -24,6 +24,10 @@ FILES = {
         b"[gears]\naddendum = 1,25\n",
         "line 2 has a comma before decimals, 1,25; write 1.25",
     ),
+    "thousands": (
+        b"[strength]\nlife = 20,000\n",
+        "line 2 has a comma in a number, 20,000; write 20000 or 20.000",
+    ),
     "a bare unit": (b"module = 2.5 mm  # m", 'unit outside of quotation marks; write "2.5 mm"'),
     "a colon": (b'[gears]\nmodule: "2 mm"', 'line 2 has a colon; write module = "2 mm"'),
     "another": (b"[gears", "is not a TOML file: Expected ']'"),

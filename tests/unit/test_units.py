@@ -373,6 +373,7 @@ def test_a_bound_in_another_unit_is_within_its_range():
             'write "20000 h" or "20.000 h"',
         ),  # a comma between thousands, or before decimals
         ("1,75 mm", "length", 'write "1.75 mm"'),
+        ("0,125 mm", "length", 'write "0.125 mm"'),
         ("78,5", "length", 'write "78.5 mm"'),
         ("1,500,000 mm", "length", 'write "1500000 mm"'),
         ("20000", "time", '"20000 h"'),

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from pitchpoint.errors import shorten
 from pitchpoint.registry import alike
+from pitchpoint.units import comma_readings
 
 __all__ = ["neighbours", "not_toml", "not_utf_8"]
 
@@ -22,7 +23,7 @@ _SHAPES = (
 """Formats, and how a file of each begins."""
 
 _QUOTES = re.compile("[\u201c\u201d\u201e\u201f\u2018\u2019\u201a\u00ab\u00bb\u2033\u00b4]")
-_COMMA = re.compile(r"(?<![\w.\"'])([+-]?\d+),(\d+)(?![\w.,])")
+_COMMA = re.compile(r"(?<![\w.\"'])[+-]?\d+,\d+(?![\w.,])")
 _BARE = re.compile(
     r"[\w.]+\s*=\s*([+-]?[\d.]+(?:e[+-]?\d+)? ?[A-Za-z\u00b5\u03bc\u00b0%/][^\"'#]*?)\s*(?:#.*)?"
 )
@@ -69,7 +70,9 @@ def _mended(line: str, number: int) -> str:
             f'{at} has a value with its unit outside of quotation marks; write "{shorten(bare[1])}"'
         )
     if comma := _COMMA.search(code):
-        return f"{at} has a comma before decimals, {comma[0]}; write {comma[1]}.{comma[2]}"
+        meant = comma_readings(comma[0])
+        which = "before decimals" if len(meant) == 1 else "in a number"
+        return f"{at} has a comma {which}, {comma[0]}; write {' or '.join(meant)}"
     if colon := _COLON.fullmatch(code):
         return f"{at} has a colon; write {shorten(f'{colon[1]} = {colon[2]}')}"
     return ""
