@@ -16,14 +16,14 @@ def screen(outcomes: Mapping[str, Outcome], width: int = 80) -> list[str]:
     return [line.text.replace("\u00a0", " ") for line in first_screen(outcomes, REPORT, width)]
 
 
-def faults_of_the_screen(outcomes: Mapping[str, Outcome]) -> Iterator[str]:
+def faults_of_the_screen(outcomes: Mapping[str, Outcome], width: int = 80) -> Iterator[str]:
     """What is wrong with the screen of a result."""
-    lines = screen(outcomes)
+    lines = screen(outcomes, width)
     whole = {number for line in screen(outcomes, 1000) for number in NUMBER.findall(line)}
     if len(lines) > FEW_LINES:
         yield f"{len(lines)} lines"
     for line in lines:
-        if len(line) > 80:
+        if len(line) > width:
             yield f"{len(line)} characters: {line}"
         if cut := {*NUMBER.findall(line)} - whole:
             yield f"{', '.join(cut)} is a part of a number: {line}"

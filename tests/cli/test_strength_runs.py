@@ -21,6 +21,7 @@ from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.notebook.tables import summary
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, describe, open_result, run_piece, run_variant
+from pitchpoint.views import show
 from pitchpoint.views.report import render
 from pitchpoint.views.sections.strength import STRENGTH, strength_rows
 from pitchpoint.views.sections.studies import swept_rows
@@ -129,6 +130,18 @@ def test_what_is_assumed_stands_beside_the_safeties(outcome: Outcome, folder: Pa
     page = render(open_result(folder))
     assert "Strength of the teeth" in page
     assert "tooth form factor" in page
+
+
+def test_the_first_screen_says_on_what_safeties_stand(outcome: Outcome) -> None:
+    data = outcome.parts["strength"]
+    flanks, roots = STRENGTH.answer(outcome)
+    for figure, part in ((flanks, "flank"), (roots, "root")):
+        at = int(np.argmin(data[f"{part}_safety"].values))
+        safety, cycles = (
+            show.number(float(data[f"{part}_{name}"][at])) for name in ("safety", "cycles")
+        )
+        assert figure.value == safety
+        assert figure.detail == (f"at gear {at + 1}; application factor 1.25, {cycles} load cycles")
 
 
 def test_limits_without_a_material_that_has_them(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quan
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.gears.family import Followed
 from pitchpoint.gears.table import SmallerOfTwo
+from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.units import hardness_scale
@@ -270,7 +271,7 @@ def _rows(
             continue
         if any(one == path or one.startswith(f"{path}.") for one in asked):
             mark = document.provenance.get(path, Provenance())
-            mark = _scaled(mark, path, asked.get(path), value)
+            mark = _scaled(mark, quantity_at(path, document.tree), asked.get(path))
             yield _row(table, key, value, _kind(path, _plain(value)), mark, given=True)
         else:
             mark = usual.get(key, _mark(found) if left is None else Provenance("default"))
@@ -282,11 +283,9 @@ def _rows(
             yield _row(table, key, value, "", mark, given=True)
 
 
-def _scaled(mark: Provenance, path: str, given: Any, value: Any) -> Provenance:
+def _scaled(mark: Provenance, quantity: Quantity | None, given: Any) -> Provenance:
     """The mark of a value, with the scale of a hardness, and that of which two it is the smaller."""
-    quantity = quantity_at(path)
-    made_one = isinstance(given, list) and np.ndim(value) == 0  # other families keep both
-    if isinstance(quantity, SmallerOfTwo) and made_one:
+    if isinstance(quantity, SmallerOfTwo) and isinstance(given, list):
         told = f"the smaller of {given[0]} and {given[1]}, as wide as which both bodies count"
         return replace(mark, note="; ".join(filter(None, [mark.note, told])))
     scale = hardness_scale(given) if quantity is not None and quantity.kind == "hardness" else ""

@@ -12,6 +12,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from pitchpoint import units
+from pitchpoint.gears.cylindrical.inspection import Toothing, backlash
 from pitchpoint.gears.cylindrical.table import TIP, CylindricalGears
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import ANGLE, DISTANCE, FILLET, HELIX, MODULE, RACK, SHIFT, GearsTable
@@ -30,6 +31,9 @@ _TORQUE = Quantity("torque", 0.0, 1e8, "N m")
 _FORCE = Quantity("force", 0.0, 1e7, "N")
 _SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
 _ROUGHNESS = Quantity("length", 0.0, 1e-4, "um")
+_WIDEST = radians(65.0)
+"""Working pressure angle beyond which no gears mesh."""
+
 _TEETH = Pair(Quantity("dimensionless", -10_000, 10_000, whole=True))
 _OF_PAIR: Mapping[str, Quantity | Pair] = {
     "teeth": _TEETH,
@@ -193,51 +197,40 @@ def _by_lead_angle(value: Any, table: Tree, tree: Tree) -> str:
     return _said("helix_angle", HELIX, pi / 2.0 - units.parse(value, "angle"))
 
 
-def _transverse(table: Tree) -> tuple[float, float, float]:
-    """Sum of teeth with its sign, base radius of both together [m], transverse pressure angle."""
-    helix, total = _of_pair(table, "helix_angle"), sum(_of_pair(table, "teeth"))
-    angle = atan(tan(_of_pair(table, "pressure_angle")) / cos(helix))
-    return total, abs(total) * _of_pair(table, "module") / (2.0 * cos(helix)) * cos(angle), angle
+def _toothings(table: Tree) -> tuple[Toothing, Toothing]:
+    """Both gears as their drawing has them."""
+    module, pressure, helix = (
+        _of_pair(table, key) for key in ("module", "pressure_angle", "helix_angle")
+    )
+    teeth, shifts = _of_pair(table, "teeth"), _of_pair(table, "profile_shift")
+    first, second = (
+        Toothing(z, module, pressure, helix, x) for z, x in zip(teeth, shifts, strict=True)
+    )
+    return first, second
+
+
+def _distance_at(gears: Sequence[Toothing], working_angle: float) -> float:
+    """Centre distance of a working pressure angle [m]."""
+    return abs(sum(gear.base_radius for gear in gears)) / cos(working_angle)
 
 
 def _by_working_angle(value: Any, table: Tree, tree: Tree) -> str:
-    return _said(
-        "centre_distance", DISTANCE, _transverse(table)[1] / cos(units.parse(value, "angle"))
-    )
+    distance = _distance_at(_toothings(table), units.parse(value, "angle"))
+    return _said("centre_distance", DISTANCE, distance)
 
 
 def _by_backlash(value: Any, table: Tree, tree: Tree) -> str:
-    """The centre distance whose backlash on the pitch circles is the given one.
+    """The centre distance whose backlash on the pitch circles is the given one."""
+    from scipy.optimize import brentq
 
-    j_wt = 2 a (inv α_wt - inv α_w0) with α_w0 without backlash, a negative for a ring: both by ISO 21771.
-    """
-    total, base, angle = _transverse(table)
-    without: float = tan(angle) - angle
-    without += (
-        2.0 * tan(_of_pair(table, "pressure_angle")) * sum(_of_pair(table, "profile_shift")) / total
-    )
-    sign, wanted = (1.0 if total > 0 else -1.0), _LENGTH.read(value)
-    near, far = _least(lambda a: tan(a) - a - without), (radians(65.0) if sign > 0 else 0.0)
+    gears, wanted = _toothings(table), _LENGTH.read(value)
 
-    def lacking(at: float) -> float:
-        return float(wanted - 2.0 * sign * base / cos(at) * (tan(at) - at - without))
+    def beyond(working_angle: float) -> float:
+        distance = _distance_at(gears, working_angle)
+        return backlash(gears[0], gears[1], distance).circumferential - wanted
 
-    if lacking(far) > 0.0:
-        raise ValueError
-    return _said("centre_distance", DISTANCE, base / cos(_between(lacking, near, far)))
-
-
-def _least(rising: Callable[[float], float]) -> float:
-    """Working pressure angle at which a function that rises with it is zero [rad]."""
-    return _between(lambda at: -rising(at), 0.0, radians(65.0))
-
-
-def _between(falling: Callable[[float], float], one: float, other: float) -> float:
-    """Place between two at which a function that is positive at the first changes its sign, by halves."""
-    for _ in range(60):
-        middle = (one + other) / 2.0
-        one, other = (middle, other) if falling(middle) > 0.0 else (one, middle)
-    return one
+    angle = brentq(beyond, 1e-6, _WIDEST)
+    return _said("centre_distance", DISTANCE, _distance_at(gears, angle))
 
 
 def _in_modules(key: str, quantity: Quantity) -> Write:
@@ -331,6 +324,13 @@ def _each(value: Any) -> str:
     return f"[{', '.join(map(_plain, value))}]" if isinstance(value, list) else _plain(value)
 
 
+_IN_ONE_LIST = {
+    ("teeth", "numbers of teeth"): (("z1", "z2"), ("teeth_1", "teeth_2")),
+    ("profile_shift", "profile shifts"): (("x1", "x2"), ("profile_shift_1", "profile_shift_2")),
+    ("face_width", "face widths"): (("b1", "b2"), ("face_width_1", "face_width_2")),
+}
+"""Keys with a list of both gears' values, and names under which other programs have each."""
+
 _RACK = "the teeth are those of a basic rack"
 
 WISHES: Mapping[str, tuple[Wish, ...]] = {
@@ -366,29 +366,12 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
         *(
             Wish(
                 both,
-                ("teeth",),
-                "numbers of teeth of both gears stand in one list",
-                _of_both("teeth", *both),
+                (key,),
+                f"{what} of both gears stand in one list",
+                _of_both(key, *both),
             )
-            for both in (("z1", "z2"), ("teeth_1", "teeth_2"))
-        ),
-        *(
-            Wish(
-                both,
-                ("profile_shift",),
-                "profile shifts of both gears stand in one list",
-                _of_both("profile_shift", *both),
-            )
-            for both in (("x1", "x2"), ("profile_shift_1", "profile_shift_2"))
-        ),
-        *(
-            Wish(
-                both,
-                ("face_width",),
-                "face widths of both gears stand in one list",
-                _of_both("face_width", *both),
-            )
-            for both in (("b1", "b2"), ("face_width_1", "face_width_2"))
+            for (key, what), pairs in _IN_ONE_LIST.items()
+            for both in pairs
         ),
         Wish(
             ("m", "m_n", "normal_module"),

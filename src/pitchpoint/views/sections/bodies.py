@@ -21,16 +21,18 @@ def bodies_blocks(page: Page) -> Iterator[Block]:
 
 def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts["bodies"]
-    heads = [f"{title} [{show.unit_of(name)}]" for name, title in _TITLES.items()]
-    yield Table(["body", *heads], _rows(data), compact=True)
+    yield Table(_heads(), _rows(data), compact=True)
     yield Paragraph(data.attrs["note"], "note")
 
 
 def bodies_printed(outcome: Outcome) -> Iterator[Printed]:
     """What the screen shows."""
     data = outcome.parts["bodies"]
-    heads = ["body", *(f"{title} [{show.unit_of(name)}]" for name, title in _TITLES.items())]
-    yield Printed(rows=[dict(zip(heads, row, strict=True)) for row in _rows(data)])
+    yield Printed(rows=[dict(zip(_heads(), row, strict=True)) for row in _rows(data)])
+
+
+def _heads() -> list[str]:
+    return ["body", *(f"{title} [{show.unit_of(name)}]" for name, title in _TITLES.items())]
 
 
 def _rows(data: xr.Dataset) -> list[tuple[str, ...]]:
