@@ -401,6 +401,47 @@ def test_a_helical_stage_as_kisssoft_prints_it(base: CylindricalPair) -> None:
     np.testing.assert_allclose(safeties, [1.81, 1.88], atol=5e-3)
 
 
+def test_the_dynamic_factor_by_method_b_as_kisssoft_prints_it(base: CylindricalPair) -> None:
+    """Third stage in class 6: m_red 0.36503 kg/mm, N 0.410, K_v 1.092, and the edition of 2006 throughout."""
+    roots, bores = np.array([319.623, 1334.252]), np.array([179.10, 1193.32])
+    pair = with_circles(
+        base,
+        teeth=(24, 95),
+        module=14e-3,
+        tips=(380.747e-3, 1395.376e-3),
+        profile_shift=(0.48, 0.6691),
+        helix_angle=radians(10.0),
+        centre_distance=0.861,
+        face_width=0.36,
+        rim_ratio=roots / bores,
+    )
+    loads = factors(
+        application=1.25,
+        dynamic=nan,
+        face=1.15,
+        transverse=1.069,
+        correction=1.0,
+        before_2019=1.0,
+        method_b=1.0,
+    )
+    loads = replace(loads, deviations=numbers(15.9e-6, 22e-6))  # f_pb and f_falpha of the wheel
+    steel = Solid(young=206e9, poisson=0.3, density=7830.0)
+    of = replace(kisssoft(), solids=(steel, steel))
+    found = rating(pair, duty(162105.5, 1165.9), loads, of)
+    # C_R is 0.898 there, 1 here: N goes with the root of the stiffness, B_p and B_f with it.
+    assert found["resonance_ratio"] / np.sqrt(0.898) == pytest.approx(0.410, abs=1e-3)
+    deviating = found["dynamic_factor_b"] - 1.0 - found["resonance_ratio"] * 0.096 / (2.884 - 1.56)
+    given = 0.410 / found["resonance_ratio"] * 0.898
+    relief = 0.410 * 0.096 / (2.884 - 1.56)
+    assert 1.0 + deviating * given + relief == pytest.approx(1.092, abs=1e-3)
+    assert (
+        found["rated_dynamic_factor"] == found["dynamic_factor_b"] > found["dynamic_factor_c"] - 0.3
+    )
+    np.testing.assert_allclose(found["form_factor"], [1.18, 1.24], atol=5e-3)
+    np.testing.assert_allclose(found["root_helix_factor"], 0.917, atol=5e-4)
+    np.testing.assert_allclose(found["nominal_root_stress"] / 1e6, [117.92, 127.69], rtol=2.5e-3)
+
+
 def found_base_helix(helix: float) -> float:
     """sin(beta_b) = sin(beta) cos(alpha_n)."""
     return float(np.arcsin(np.sin(helix) * np.cos(radians(20.0))))
@@ -630,6 +671,44 @@ def test_planet_and_ring_as_kisssoft_prints_them(ring: CylindricalPair) -> None:
     assert found["stress_correction_factor"][0] == pytest.approx(2.38, abs=5e-3)
     assert found["nominal_root_stress"][0] / 1e6 == pytest.approx(95.70, abs=0.1)
     assert found["nominal_root_stress"][1] / 1e6 > 95.32
+
+
+def test_a_ring_of_a_pinion_cutter_as_kisssoft_prints_it(ring: CylindricalPair) -> None:
+    """Second stage by the edition of 2006: cutter of 30 teeth, x_0 = 0, corners of 0.3 modules."""
+    pair = replace(
+        ring.bare,
+        teeth=numbers(36, -93),
+        module=numbers(21e-3),
+        profile_shift=numbers(0.5039, 0.1171),
+        addendum=numbers(1.0, 1.0),
+        tip_alteration=numbers(-1.750 / 21.0, 0.0),
+        dedendum=numbers(1.25, 1.25),
+        fillet_radius=numbers(0.38, 0.30),
+        centre_distance=numbers(0.584),
+        face_width=numbers(0.55),
+        cutter_teeth=numbers(30.0),
+        cutter_shift=numbers(0.0),
+    )
+    asked = duty(285900.438 * 1.953 / 2.0, 60.0 * 4.88 / pi / 0.756)
+    found = rating(pair, asked, factors(before_2019=1.0), kisssoft())
+    for name, printed, within in (
+        ("reference_force", 285900.438, 1.0),
+        ("root_chord", [47.70e-3, 56.76e-3], 6e-6),
+        ("bending_arm", [18.48e-3, 30.32e-3], 6e-6),
+        ("load_angle", np.radians([22.21, 18.63]), 1e-4),
+        ("root_fillet_radius", [8.69e-3, 8.78e-3], 6e-6),
+        ("form_factor", [1.01, 1.20], 5e-3),
+        ("stress_correction_factor", [2.48, 2.34], 5e-3),
+        ("nominal_root_stress", [61.98e6, 69.12e6], 1e4),
+    ):
+        np.testing.assert_allclose(found[name], printed, atol=within, err_msg=name)
+    # The fillet that the cutter leaves, by the edition of 2019, and an arc of its corners' radius.
+    newer = rating(pair, asked, factors(), kisssoft())["nominal_root_stress"][1]
+    arc = rating(replace(pair, cutter_teeth=None, cutter_shift=None), asked, factors(), kisssoft())[
+        "nominal_root_stress"
+    ][1]
+    assert newer / 1e6 == pytest.approx(71.59, abs=0.05)
+    assert arc / newer == pytest.approx(1.12, abs=0.02)
 
 
 def test_the_root_of_a_rack_is_a_straight_tooth(base: CylindricalPair) -> None:

@@ -36,19 +36,30 @@ _MAIN = (
     *RATING,
 )
 _OF_GEARS = ("contact_stress", "root_stress", "flank_safety", "root_safety")
+_SUBCRITICAL, _SUPERCRITICAL, _LEAST_OF_METHOD_B = 0.85, 1.5, 1.2
 _SHARED = 2.0
 _LEAST_NOTCH, _MOST_NOTCH = 1.0, 8.0
 _DEEPEST = 2.5
 _HELIX = np.radians(30.0) * (1.0 + 1e-12)  # 30 degrees of a file may be above by a bit
 
-_METHOD = (
-    "ISO 6336-2:2019 and ISO 6336-3:2019, method B; K_v by method C of ISO 6336-1 unless it is given, the "
-    "other load factors as given"
-)
 _PLASTIC = "the root of plastic gears by VDI 2736 Part 2, force at the tip"
 _RING = (
     "The root of the ring is rated on its own fillet, an arc, where tangents make 60 degrees with the middle "
-    "of the tooth; a pinion cutter leaves another one."
+    "of the tooth; a pinion cutter leaves another one: cutter_teeth in [gears]."
+)
+_CUT = {
+    "2019": "The root of the ring is rated on the fillet that its cutter generates, where tangents make 60 "
+    "degrees with the middle of the tooth.",
+    "2006": "The root of the ring is rated by the formulas of the edition of 2006 for a pinion cutter, which "
+    "come near to the fillet that it generates.",
+}
+_METHOD_B = (
+    "K_v by method B counts both gears as discs from their bores to the middle of their teeth, with nothing "
+    "else on their shafts; that by method C stands beside it."
+)
+_SHAFT = (
+    "K_Hβ by method C takes a pinion between two bearings on a steel shaft without modifications of its "
+    "helix and deviations at the limits of the class."
 )
 _THINNED = (
     "Roots are those of the thinnest teeth that [gears.inspection] allows; all else is nominal."
@@ -161,9 +172,16 @@ def ratings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     }
 
 
-def _method(pairs: Iterable[Built]) -> str:
+def _method(pairs: Sequence[Built]) -> str:
+    tables = [one.rated.table for one in pairs]
+    editions = " and ".join(dict.fromkeys(table.edition for table in tables))
+    methods = " and ".join(dict.fromkeys(table.dynamic_method for table in tables))
+    face = "K_Hβ by method C where the shaft is given, " if any(t.shaft for t in tables) else ""
     plastic = any(used.plastic for one in pairs for used in one.solids)
-    return f"{_METHOD}; {_PLASTIC}" if plastic else _METHOD
+    return (
+        f"ISO 6336-2 and ISO 6336-3, edition of {editions}, method B; K_v by method {methods} of ISO 6336-1 "
+        f"unless it is given, {face}the other load factors as given" + f"; {_PLASTIC}" * plastic
+    )
 
 
 def _assumed(built: Built) -> list[str]:
@@ -180,7 +198,12 @@ def _remarks(built: Built) -> Iterator[str]:
     if built.case.gears.thickness_allowances is not None:
         yield _THINNED
     if _ring(built):
-        yield _RING
+        cut = getattr(built.case.gears, "cutter_teeth", None) is not None
+        yield _CUT[built.rated.table.edition] if cut else _RING
+    if built.rated.table.dynamic_method == "B":
+        yield _METHOD_B
+    if built.rated.table.shaft is not None:
+        yield _SHAFT
 
 
 def _failing(built: Built, found: Numbers) -> Iterator[str]:
@@ -209,7 +232,10 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
     )
     given = built.case.strength is not None and built.case.strength.dynamic_factor is not None
     steel = not any(used.plastic for used in built.solids)
-    if resonance > MOST_RESONANCE and steel and not given:
+    by_b = built.rated.table.dynamic_method == "B"
+    if by_b:
+        yield from _doubts_of_method_b(found, ratio)
+    if resonance > MOST_RESONANCE and steel and not given and not by_b:
         yield (
             f"K_v by method C holds well below resonance, up to (v z_1/100) sqrt(u²/(1 + u²)) = "
             f"{MOST_RESONANCE:.2g} m/s, at which it stays; this pair is at {resonance:.3g} m/s: give "
@@ -243,6 +269,22 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
         yield f"A transverse contact ratio of {float(ratio):.3g} is above the 2.5 that ISO 6336-2 covers."
     if getattr(built.case.gears, "helix_angle", 0.0) > _HELIX:
         yield "A helix angle above 30 degrees is beyond what ISO 6336-3 was confirmed for."
+
+
+def _doubts_of_method_b(found: Numbers, contact_ratio: float) -> Iterator[str]:
+    """Where K_v by method B lies outside what it covers."""
+    ratio = float(found["resonance_ratio"])
+    if _SUBCRITICAL < ratio < _SUPERCRITICAL:
+        yield (
+            f"The teeth mesh at {ratio:.3g} of the resonance of the pair: K_v by method B, "
+            f"{float(found['rated_dynamic_factor']):.3g}, is uncertain from {_SUBCRITICAL:g} to "
+            f"{_SUPERCRITICAL:g}, and such speeds are to be avoided."
+        )
+    if float(contact_ratio) < _LEAST_OF_METHOD_B:
+        yield (
+            f"K_v by method B holds from a transverse contact ratio of {_LEAST_OF_METHOD_B:g} on; that of "
+            f"this pair is {float(contact_ratio):.3g}."
+        )
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:

@@ -154,6 +154,7 @@ MOLECULE = Quantity("length", 1e-11, 1e-7, "nm")
 VIBRATION = Quantity("time", 1e-15, 1e-6, "s")
 LOAD_FACTOR = Quantity("dimensionless", 1.0, 10.0)
 ACCURACY = Quantity("dimensionless", 3, 8, whole=True)
+OFFSET = Quantity("length", -100.0, 100.0, "mm")
 LIFE = Quantity("time", 0.0, 4e9, "h", open_low=True)
 ENDURED = Quantity("pressure", 1e6, 2.5e9, "MPa")
 HARDENING = Quantity("dimensionless", 0.5, 2.0)
@@ -1279,25 +1280,44 @@ class WornTable(Table):
 
 
 _TREATMENT = named(TREATMENTS.keys, "heat treatment")
+_MOST_OFFSET = 0.3  # of the span: ISO 6336-1:2006, arrangements a and b
+_SHAFT = ("bearing_span", "pinion_offset", "pinion_shaft_diameter")
+
+
+def _year(value: Any) -> Any:
+    """An edition as text, also of a number."""
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
 class StrengthTable(Table):
     """What the strength of a pair of cylindrical gears depends on beside its dimensions and its load.
 
     Load factors are at least 1: `application_factor` K_A, `dynamic_factor` K_v, `face_load_factor` K_Hbeta,
-    `transverse_load_factor` K_Halpha, and those of the root. Without a K_v it follows by method C for gears
-    of `accuracy_class` of ISO 1328-1. `sigma_hlim` and `sigma_flim` take the place of those of the
-    materials, for plastics at the temperature and life of the case; steels then say their `treatment`.
+    `transverse_load_factor` K_Halpha, and those of the root. Without a K_v it follows for gears of
+    `accuracy_class` of ISO 1328-1, by method C or by the `dynamic_method` that is named; K_Hbeta follows by
+    method C where `bearing_span`, `pinion_offset` and `pinion_shaft_diameter` are given, for a pinion between
+    two bearings without modifications of its helix. `sigma_hlim` and `sigma_flim` take the place of those of
+    the materials, for plastics at the temperature and life of the case; steels then say their `treatment`.
     Without a `life` the teeth are to endure. `mean_stress_factor` is below 1 for teeth that are loaded both
     ways, 0.7 for the same load. Roughness is Rz.
     """
 
+    edition: Annotated[Literal["2006", "2019"], BeforeValidator(_year)] = "2019"
+    """Edition of ISO 6336-2 and ISO 6336-3 by which the pair is rated."""
     application_factor: Annotated[float, LOAD_FACTOR] | None = None
     """Application factor K_A; 1 unless given."""
     dynamic_factor: Annotated[float, LOAD_FACTOR] | None = None
-    """Dynamic factor K_v; by ISO 6336-1 method C, of plastics 1, unless given."""
+    """Dynamic factor K_v; by ISO 6336-1, of plastics 1, unless given."""
+    dynamic_method: Literal["B", "C"] = "C"
+    """Method of ISO 6336-1 by which K_v follows."""
     face_load_factor: Annotated[float, LOAD_FACTOR] | None = None
-    """Face load factor K_Hβ; 1 unless given."""
+    """Face load factor K_Hβ; by method C where the shaft is given, else 1, unless given."""
+    bearing_span: Annotated[float, BORE] | None = None
+    """Distance l between the bearings of the pinion; unknown unless given."""
+    pinion_offset: Annotated[float, OFFSET] | None = None
+    """Offset s of the pinion from mid-span, positive towards the torque's end; unknown unless given."""
+    pinion_shaft_diameter: Annotated[float, BORE] | None = None
+    """Diameter d_sh of the pinion's shaft; unknown unless given."""
     transverse_load_factor: Annotated[float, LOAD_FACTOR] | None = None
     """Transverse load factor K_Hα; 1 unless given."""
     root_face_load_factor: Annotated[float, LOAD_FACTOR] | None = None
@@ -1324,6 +1344,54 @@ class StrengthTable(Table):
     """Mean peak-to-valley roughness Rz of the flanks; 6 Ra unless given."""
     root_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None
     """Mean peak-to-valley roughness Rz of the roots; 10 um unless given."""
+
+    @property
+    def shaft(self) -> tuple[float, float, float] | None:
+        """Span, offset and diameter of the pinion's shaft [m]; None where they are not known."""
+        span, offset, diameter = self.bearing_span, self.pinion_offset, self.pinion_shaft_diameter
+        return (
+            None if span is None or offset is None or diameter is None else (span, offset, diameter)
+        )
+
+    @model_validator(mode="after")
+    def _by_one_way(self) -> "StrengthTable":
+        given = self.model_fields_set
+        if self.dynamic_factor is not None and "dynamic_method" in given:
+            raise InputError(
+                "was given beside dynamic_factor, which is K_v itself; give one",
+                key="dynamic_method",
+            )
+        if self.edition == "2006" and self.profile_correction is not None:
+            raise InputError(
+                "was given with edition = 2006, which has no f_ZCa; leave it out, or rate by 2019",
+                key="profile_correction",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _whole_shaft(self) -> "StrengthTable":
+        given = [key for key in _SHAFT if getattr(self, key) is not None]
+        missing = [key for key in _SHAFT if getattr(self, key) is None]
+        if given and missing:
+            raise InputError(
+                f"was given without {' and '.join(missing)}; K_Hβ by method C takes all three",
+                key=given[0],
+            )
+        if given and self.face_load_factor is not None:
+            raise InputError(
+                f"was given beside face_load_factor, which is K_Hβ itself; give it or {', '.join(_SHAFT)}",
+                key="bearing_span",
+            )
+        if self.shaft is not None:
+            span, offset, _ = self.shaft
+            if abs(offset) > _MOST_OFFSET * span:
+                raise InputError(
+                    f"{OFFSET.show(offset)} is outside {_MOST_OFFSET:g} of the bearing_span, "
+                    f"{BORE.show(span)}, up to which K_Hβ by method C is known for a pinion between "
+                    f"bearings; allowed is at most {OFFSET.show(_MOST_OFFSET * span)} to either side",
+                    key="pinion_offset",
+                )
+        return self
 
 
 Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]

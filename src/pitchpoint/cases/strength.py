@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import inf, nan
+from math import atan, cos, inf, nan, tan
+from typing import Any, Self
 
 import numpy as np
 from jaxtyping import Array
@@ -13,17 +14,21 @@ from pitchpoint.cases.schema import Case, StrengthTable
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.iso_1328 import FlankTolerances, flank_tolerances
 from pitchpoint.materials.lubricants import LubricantRecord
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.strength.flank import NO_MODIFICATION
 from pitchpoint.strength.limits import Constants
-from pitchpoint.strength.load_factors import CLASSES
+from pitchpoint.strength.load_factors import CLASSES, running_in_relief
 from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths
 from pitchpoint.strength.treatments import PLASTIC, PLASTIC_CYCLES, TREATMENTS, Treatment
 
 __all__ = ["UNRATED", "Rated", "check_strength", "rated_case"]
 
-_SOURCES = ("iso_6336_2_2019", "iso_6336_3_2019", "iacs_m56_2021")
+_EDITIONS = {
+    "2006": ("iso_6336_2_2006", "iso_6336_3_2006"),
+    "2019": ("iso_6336_2_2019", "iso_6336_3_2019"),
+}
 UNRATED = "was given; ISO 6336 rates pairs of cylindrical gears, not these; leave it out"
 _ASSUMED_CLASS = 7
 _ROOT_ROUGHNESS = 10e-6  # Rz of the test gears [m]
@@ -71,7 +76,14 @@ class Rated:
         plastic = any(_plastic(self.used))
         curves = (one.record.root_strength for one in self.used)
         printed = [one.origin.source for one in curves if one is not None]
-        return (*_SOURCES, *("vdi_2736_2_2014",) * plastic, *dict.fromkeys(printed))
+        by_part_1 = self.table.dynamic_method == "B" or self.table.shaft is not None
+        return (
+            *_EDITIONS[self.table.edition],
+            "iacs_m56_2021",
+            *("iso_6336_1_2006",) * by_part_1,
+            *("vdi_2736_2_2014",) * plastic,
+            *dict.fromkeys(printed),
+        )
 
     def duty(self, point: Operation, life: float | None) -> Duty:
         """What the pair has to bear.
@@ -109,10 +121,11 @@ def rated_case(case: Case, used: Used, oil: LubricantRecord, roughness: Roughnes
     """
     table = case.strength or _USUAL
     plastic = _plastic(used)
+    _check_method(table, plastic)
     grade, of_grade = _class(table, case)
     mean_ra = (float(roughness.ra_1) + float(roughness.ra_2)) / 2.0
     return Rated(
-        _factors(table, grade, plastic),
+        _factors(table, _Toothing.of(case, table, grade), used),
         *_strengths(table, used, plastic),
         _finish(table, oil.nu_1.value, mean_ra, _thinning(case)),
         table,
@@ -152,22 +165,132 @@ def _class(table: StrengthTable, case: Case) -> tuple[int, str]:
     )
 
 
+@dataclass(frozen=True)
+class _Toothing:
+    """What load factors ask of gears beside the rated pair.
+
+    Attributes:
+        grade: class for K_v by method C.
+        classes: of both gears by ISO 1328-1.
+        diameters: of both reference circles [m].
+        module, face_width, tip_relief: [m]; the smaller relief, NaN without one.
+        pressure_angle: in the transverse section [rad].
+    """
+
+    grade: int
+    classes: tuple[float, float]
+    diameters: tuple[float, float]
+    module: float
+    face_width: float
+    tip_relief: float
+    pressure_angle: float
+
+    @classmethod
+    def of(cls, case: Case, table: StrengthTable, grade: int) -> Self:
+        """The toothing of a case.
+
+        Args:
+            case: of a rated pair.
+            table: on its strength.
+            grade: class for K_v by method C.
+        """
+        gears: Any = case.gears
+        cosine = cos(gears.helix_angle)
+        first, second = (abs(teeth) * gears.module / cosine for teeth in gears.teeth)
+        relief = None if gears.modifications is None else gears.modifications.tip_relief
+        drawn = None if gears.deviations is None else gears.deviations.iso_class
+        return cls(
+            grade,
+            drawn if drawn is not None and table.accuracy_class is None else (grade, grade),
+            (first, second),
+            gears.module,
+            gears.face_width,
+            nan if relief is None else min(relief),
+            atan(tan(gears.pressure_angle) / cosine),
+        )
+
+    @property
+    def tolerances(self) -> list[FlankTolerances]:
+        """Of both gears."""
+        return [
+            flank_tolerances(
+                tolerance_class=int(grade),
+                diameter=diameter,
+                module=self.module,
+                face_width=self.face_width,
+            )
+            for grade, diameter in zip(self.classes, self.diameters, strict=True)
+        ]
+
+
+_FINEST_WITHOUT_RELIEF = 6
+"""Class from which on relief moves K_v by method B no more."""
+
+
+def _check_method(table: StrengthTable, plastic: tuple[bool, bool]) -> None:
+    if table.dynamic_method == "B" and any(plastic):
+        raise InputError(
+            "B was given for gears of plastic; it holds for steel, and K_v of plastics is 1 unless a "
+            "dynamic_factor is given; leave it out",
+            key="strength.dynamic_method",
+        )
+
+
+def _by_method_b(table: StrengthTable, toothing: _Toothing, used: Used) -> dict[str, Array]:
+    """Deviations and relief for K_v by method B; nothing for other methods."""
+    if table.dynamic_method != "B":
+        return {}
+    first, second = toothing.tolerances
+    pitch = max(first.single_pitch, second.single_pitch) * cos(toothing.pressure_angle)
+    profile = max(first.profile_form, second.profile_form)
+    relief = nan
+    if max(toothing.classes) < _FINEST_WITHOUT_RELIEF:
+        run_in = running_in_relief(_limits(table.sigma_hlim, "sigma_hlim", used))
+        relief = run_in if np.isnan(toothing.tip_relief) else toothing.tip_relief
+    return {
+        "method_b": array(1.0),
+        "deviations": array((pitch, profile)),
+        "relief": array(relief),
+    }
+
+
+def _of_shaft(table: StrengthTable, toothing: _Toothing) -> dict[str, Array]:
+    """What K_Hbeta by method C takes; nothing where it is not asked."""
+    if table.shaft is None:
+        return {}
+    slopes = [one.helix_slope for one in toothing.tolerances]
+    return {"shaft": array(table.shaft), "helix_slopes": array(slopes)}
+
+
 @remembering
-def _factors(table: StrengthTable, grade: int, plastic: tuple[bool, bool]) -> Factors:
-    spur, helical = CLASSES[grade]
-    dynamic = 1.0 if any(plastic) else nan
+def _factors(table: StrengthTable, toothing: _Toothing, used: Used) -> Factors:
+    spur, helical = CLASSES[toothing.grade]
+    dynamic = 1.0 if any(_plastic(used)) else nan
+    earlier = table.edition == "2006"
     return Factors(
         application=_given(table.application_factor, 1.0),
         dynamic=_given(table.dynamic_factor, dynamic),
-        face=_given(table.face_load_factor, 1.0),
+        face=_given(table.face_load_factor, 1.0 if table.shaft is None else nan),
         transverse=_given(table.transverse_load_factor, 1.0),
         root_face=_given(table.root_face_load_factor, nan),
         root_transverse=_given(table.root_transverse_load_factor, nan),
         spur=array(spur),
         helical=array(helical),
-        accurate=array(float(grade <= 4)),
-        correction=_given(table.profile_correction, NO_MODIFICATION),
+        accurate=array(float(toothing.grade <= 4)),
+        correction=_given(table.profile_correction, 1.0 if earlier else NO_MODIFICATION),
+        before_2019=array(float(earlier)),
+        soft=array([float(one in _SOFT) for one in _treatment_names(table, used)]),
+        **_by_method_b(table, toothing, used),
+        **_of_shaft(table, toothing),
     )
+
+
+_SOFT = ("normalised", "through_hardened")
+
+
+def _treatment_names(table: StrengthTable, used: Used) -> tuple[str, str]:
+    first, second = _treatments(table, used)
+    return first.name, second.name
 
 
 def _given(value: float | None, usual: float) -> Array:
@@ -268,11 +391,11 @@ def _assumed(
         yield "K_v = 1"
     elif table.dynamic_factor is None and of_grade:
         yield of_grade
-    if table.face_load_factor is None:
+    if table.face_load_factor is None and table.shaft is None:
         yield "K_Hβ = 1"
     if table.transverse_load_factor is None:
         yield "K_Hα = 1"
-    if helical and table.profile_correction is None:
+    if helical and table.profile_correction is None and table.edition != "2006":
         yield "f_ZCa = 1.2 (no profile modification that suits the load)"
     if table.mean_stress_factor is None:
         yield "teeth loaded in one direction"

@@ -524,15 +524,17 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             f"{_RACK} without protuberance or stock; dedendum and fillet_radius say the finished root",
         ),
         Wish(
-            (
-                "cutter_teeth",
-                "shaper_teeth",
-                "cutter_shift",
-                "pinion_cutter",
-                "cutter",
-                "hob",
-                "tool",
-            ),
+            ("shaper_teeth", "pinion_cutter", "cutter"),
+            ("cutter_teeth",),
+            "the root of a ring is that of its pinion cutter",
+        ),
+        Wish(
+            ("cutter_shift", "shaper_shift"),
+            ("cutter_profile_shift",),
+            "the root of a ring is that of its pinion cutter",
+        ),
+        Wish(
+            ("hob", "tool"),
             (),
             f"{_RACK}, of a ring those of its counterpart; dedendum and fillet_radius say the root",
         ),

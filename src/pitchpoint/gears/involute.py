@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.gears.pinion_cutter import PinionCutting
 from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes
 from pitchpoint.roots import hypot, root
 
@@ -55,16 +56,20 @@ def usual_ring_fillet(
     dedendum: float,
     pressure_angle: float,
     helix_angle: float,
+    cutter: tuple[float, float] | None = None,
 ) -> float:
     """Fillet radius of a ring where none is given, in modules: 0.2, or all that its root has room for.
+
+    With a pinion cutter it is the radius of the corners of its tip.
 
     Args:
         teeth: number of teeth, with or without the sign of a ring.
         profile_shift, dedendum: of the ring, in modules.
         pressure_angle, helix_angle: normal one, and that of the reference cylinder [rad].
+        cutter: its teeth z_0 and profile shift x_0; None without one.
 
-    Source: ISO 21771:2007, half angle of a space; an arc that touches involute and root circle has its
-        centre on a parallel involute.
+    Source: ISO 21771:2007, half angle of a space; an arc that touches involute and root circle, or involute
+        and tip circle of a cutter, has its centre on a parallel involute.
 
     Example:
         >>> from math import radians
@@ -72,11 +77,22 @@ def usual_ring_fillet(
         >>> round(usual_ring_fillet(**ring, pressure_angle=radians(25.0)), 4)
         0.1049
     """
+    from scipy.optimize import brentq
+
     reference = abs(teeth) / (2.0 * math.cos(helix_angle))
     transverse = math.atan(math.tan(pressure_angle) / math.cos(helix_angle))
     base, tip = reference * math.cos(transverse), reference + dedendum - profile_shift
-    shift = 2.0 * profile_shift * math.tan(pressure_angle)
-    space = (math.pi / 2.0 - shift) / abs(teeth) + math.tan(transverse) - transverse
+    slope, unwound = 2.0 * math.tan(pressure_angle), math.tan(transverse) - transverse
+    space = (math.pi / 2.0 - slope * profile_shift) / abs(teeth) + unwound
+    if cutter is not None:
+        own, shift = cutter
+        value = unwound - slope * (profile_shift + shift) / (abs(teeth) - own)
+        if value <= 0.0:
+            return _RING_FILLET  # refused: it fits at no distance between the axes
+        working = brentq(lambda angle: math.tan(angle) - angle - value, 0.0, 1.57)
+        tip -= base * (1.0 - own / abs(teeth)) / math.cos(working)
+        base *= own / abs(teeth)
+        space = (math.pi / 2.0 + slope * shift) / own + unwound
 
     def land(rounding: float) -> float:
         """Angle from the middle of the space to the centre of the arc."""
@@ -88,8 +104,6 @@ def usual_ring_fillet(
         return 0.0
     if land(most) >= 0.0:
         return most
-    from scipy.optimize import brentq
-
     return float(brentq(land, 0.0, most, xtol=1e-12))
 
 
@@ -168,8 +182,8 @@ class InvoluteGear(eqx.Module):
     """One cylindrical gear: an external one cut by a basic rack, or a ring with internal teeth.
 
     Circles and outline are those of the transverse section. A ring has a negative number of teeth
-    and negative radii (ISO 21771); its fillet is a circular arc that touches flank and root circle,
-    since no rack cuts it.
+    and negative radii (ISO 21771); its fillet is that of a pinion cutter, or without one a circular arc that
+    touches flank and root circle, since no rack cuts it.
 
     Attributes:
         teeth: number of teeth z, negative for a ring.
@@ -178,11 +192,13 @@ class InvoluteGear(eqx.Module):
         helix_angle: beta on the reference cylinder, without its hand [rad].
         profile_shift: coefficient x.
         tip_alteration: coefficient k; negative shortens the tip (ISO 21771).
-        addendum, dedendum, fillet_radius: of the basic rack, in normal modules (h_aP*, h_fP*, rho_fP*).
+        addendum, dedendum, fillet_radius: of the basic rack, in normal modules (h_aP*, h_fP*, rho_fP*); the
+            radius is that of the arc of a ring, or of the tip corners of its cutter rho_a0*.
         undercut: True if the rack undercuts the flank; static, so that sound gears compile to little.
         crossing: normal angle of the fillet point where an undercut crosses the involute [rad], as
             `crossing_angle` finds it; any value without undercut.
         internal: True for a ring; static.
+        cutter_teeth, cutter_shift: z_0 and x_0 of the pinion cutter of a ring; None without one.
     """
 
     teeth: Float[Array, ""]
@@ -197,6 +213,8 @@ class InvoluteGear(eqx.Module):
     undercut: bool = eqx.field(static=True)
     crossing: Float[Array, ""]
     internal: bool = eqx.field(static=True)
+    cutter_teeth: Float[Array, ""] | None = None
+    cutter_shift: Float[Array, ""] | None = None
 
     @property
     def side(self) -> float:
@@ -247,8 +265,10 @@ class InvoluteGear(eqx.Module):
         """Involute length at the form circle, where fillet and involute meet [m].
 
         Without undercut the rack's straight flank ends there; with undercut fillet and involute cross;
-        in a ring the arc of the fillet touches the involute there.
+        in a ring the arc of the fillet touches the involute there, or the cutter's flank ends.
         """
+        if self.cutting is not None:
+            return self.cutting.form_roll_length
         if self.internal:
             rounding = self.fillet_radius * self.module
             centre = jnp.abs(self.root_radius) - rounding
@@ -298,8 +318,11 @@ class InvoluteGear(eqx.Module):
 
         Source: ISO 21771:2007, virtual number of teeth.
         """
-        number = self.teeth / (jnp.cos(self.base_helix_angle) ** 2 * jnp.cos(self.helix_angle))
+        scale = 1.0 / (jnp.cos(self.base_helix_angle) ** 2 * jnp.cos(self.helix_angle))
+        number = self.teeth * scale
         gear = dataclasses.replace(self, teeth=number, helix_angle=jnp.zeros_like(number))
+        if self.cutter_teeth is not None:
+            gear = dataclasses.replace(gear, cutter_teeth=self.cutter_teeth * scale)
         if self.undercut:
             gear = dataclasses.replace(gear, crossing=gear.crossing_angle())
         return gear
@@ -382,7 +405,9 @@ class InvoluteGear(eqx.Module):
         return jnp.stack([radius, self.pitch_half_angle - from_space])
 
     def _ring_fillet(self, unit: Float[Array, " point"]) -> Float[Array, "2 point"]:
-        """Arc between root circle and involute of a ring, see `_fillet`."""
+        """Arc between root circle and involute of a ring, or what its cutter leaves, see `_fillet`."""
+        if self.cutting is not None:
+            return self.cutting.fillet(unit)
         rounding = self.fillet_radius * self.module
         tangent, centre = self._ring_fillet_angles
         distance = jnp.abs(self.root_radius) - rounding
@@ -410,6 +435,8 @@ class InvoluteGear(eqx.Module):
         Returns:
             Distance from the middle of the tooth, along it from the axis of the ring, and radius [m].
         """
+        if self.cutting is not None:
+            return self.cutting.tangent(angle)
         rounding = self.fillet_radius * self.module
         distance = jnp.abs(self.root_radius) - rounding
         centre = self.pitch_half_angle - self._ring_fillet_angles[1]
@@ -418,8 +445,38 @@ class InvoluteGear(eqx.Module):
         return jnp.stack([across, along, rounding])
 
     @property
+    def cutting(self) -> PinionCutting | None:
+        """The pinion cutter of a ring where it has cut to the root circle; None without one.
+
+        Not a number where the flanks of both fit at no distance between their axes.
+
+        Source: ISO 21771:2007, inv(alpha_w0) = inv(alpha_t) + 2 tan(alpha_n) (x + x_0)/(z + z_0).
+        """
+        if self.cutter_teeth is None or self.cutter_shift is None:
+            return None
+        transverse, slope = self.transverse_pressure_angle, 2.0 * jnp.tan(self.pressure_angle)
+        together = slope * (self.profile_shift + self.cutter_shift)
+        value = involute(transverse) + together / (self.teeth + self.cutter_teeth)
+        working = inverse_involute(jnp.where(value > 0.0, value, jnp.nan))
+        base = self.cutter_teeth / jnp.abs(self.teeth) * jnp.abs(self.base_radius)
+        distance = (jnp.abs(self.base_radius) - base) / jnp.cos(working)
+        thickness = (jnp.pi / 2.0 + slope * self.cutter_shift) / self.cutter_teeth
+        return PinionCutting(
+            base_radius=base,
+            tip_radius=jnp.abs(self.root_radius) - distance,
+            rounding=self.fillet_radius * self.module,
+            base_half_angle=thickness + involute(transverse),
+            working_pressure_angle=working,
+            distance=distance,
+            ratio=self.cutter_teeth / jnp.abs(self.teeth),
+            half_pitch=self.pitch_half_angle,
+        )
+
+    @property
     def root_land_angle(self) -> Float[Array, ""]:
         """Half the angle of the root circle between two fillets [rad]; negative if they do not fit."""
+        if self.cutting is not None:
+            return self.cutting.root_land_angle
         return self.pitch_half_angle - self._fillet(jnp.zeros(1))[1, 0]
 
     def _point(self, angle: Float[Array, "*b"]) -> tuple[Float[Array, "*b"], Float[Array, "*b"]]:

@@ -27,6 +27,7 @@ class RatedPair(eqx.Module):
         rim_thickness: from the root circle to the bore, or to the outside of a ring [m].
         ring_section: half chord, distance from the axis and radius of the fillet of a ring where tangents to
             it make 60 degrees with the middle of a tooth, in the normal section [m]; zeros without a ring.
+        cutter: teeth z_0 and profile shift x_0 of the pinion cutter of a ring; not numbers without one.
     """
 
     teeth: Float[Array, "2"]
@@ -49,6 +50,7 @@ class RatedPair(eqx.Module):
     face_width: Float[Array, ""]
     rim_thickness: Float[Array, "2"]
     ring_section: Float[Array, "3"]
+    cutter: Float[Array, "2"]
 
     @property
     def transverse_contact_ratio(self) -> Float[Array, ""]:

@@ -20,8 +20,12 @@ STRENGTH: Final = {
     "resonance_number": Variable(
         "speed against resonance, (v z_1/100) sqrt(u^2/(1 + u^2))", "N*", "m/s", "m/s", "velocity"
     ),
+    "resonance_ratio": _factor("tooth frequency over that of the mesh, by method B", "N"),
+    "dynamic_factor_b": _factor("dynamic factor by method B", "K_v-B"),
+    "dynamic_factor_c": _factor("dynamic factor by method C", "K_v-C"),
     "application_factor": _factor("application factor", "K_A"),
     "rated_dynamic_factor": _factor("dynamic factor", "K_v"),
+    "face_misalignment": length("misalignment over the face after running in", "F_βy"),
     "face_load_factor": _factor("face load factor of the flank", "K_Hβ"),
     "transverse_load_factor": _factor("transverse load factor of the flank", "K_Hα"),
     "root_face_load_factor": _factor("face load factor of the root", "K_Fβ"),

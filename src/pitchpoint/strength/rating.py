@@ -8,10 +8,11 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import RatedPair
+from pitchpoint.loading import iso_6336_stiffness
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
 from pitchpoint.strength import flank, limits, load_factors, root, vdi_2736
@@ -24,6 +25,16 @@ ROWS = 64
 
 _SHARPEST = 1e-3
 """Radius in modules of a ring's fillet without one: its notch lies beyond the standard, and is told."""
+
+_SOUND = {
+    "virtual_teeth": 90.0,
+    "module": 1e-3,
+    "pressure_angle": 0.35,
+    "dedendum": 1.25,
+    "tip_radius": 0.2,
+    "generating_shift": 0.0,
+}
+"""A ring whose formulas have values and derivatives, in the place of gears for which they do not count."""
 
 Both = Float[Arrays, "2"]
 One = Float[Arrays, ""]
@@ -52,12 +63,19 @@ class Factors(eqx.Module):
 
     Attributes:
         application: K_A.
-        dynamic: K_v; follows by method C.
-        face, transverse: K_Hbeta, K_Halpha.
+        dynamic: K_v; follows by method B or C.
+        face, transverse: K_Hbeta, which follows by method C; K_Halpha.
         root_face, root_transverse: K_Fbeta, follows from K_Hbeta; K_Falpha, follows as K_Halpha.
         spur, helical: K_1 of the class of the gears, for method C.
         accurate: 1 for class 4 or better, else 0.
         correction: f_ZCa of helical gears.
+        before_2019: 1 for the edition of 2006, else 0.
+        method_b: 1 for K_v by method B, else 0.
+        deviations: f_pb and f_falpha, the larger of both gears, for method B; not numbers without it [m].
+        relief: C_a for method B; not a number for classes from 6 on [m].
+        shaft: l, s and d_sh of the pinion, see `pinion_misalignment`; not numbers without it [m].
+        helix_slopes: f_Hbeta of both gears; not numbers without a shaft [m].
+        soft: 1 for through-hardened and normalised gears, which run in further.
     """
 
     application: One
@@ -70,6 +88,13 @@ class Factors(eqx.Module):
     helical: One
     accurate: One
     correction: One
+    before_2019: One = eqx.field(default_factory=lambda: np.zeros(()))
+    method_b: One = eqx.field(default_factory=lambda: np.zeros(()))
+    deviations: Both = eqx.field(default_factory=lambda: np.full(2, nan))
+    relief: One = eqx.field(default_factory=lambda: np.array(nan))
+    shaft: Float[Arrays, "3"] = eqx.field(default_factory=lambda: np.full(3, nan))
+    helix_slopes: Both = eqx.field(default_factory=lambda: np.full(2, nan))
+    soft: Both = eqx.field(default_factory=lambda: np.zeros(2))
 
 
 class Strengths(eqx.Module):
@@ -179,11 +204,11 @@ def rate(
     Returns:
         Values by the names of `results.strength.STRENGTH`, for the pair or for both gears [SI].
 
-    Source: ISO 6336-2:2019 and ISO 6336-3:2019, methods B, dynamic factor by method C; VDI 2736 Part 2 for
-    the roots of plastic gears.
+    Source: ISO 6336-2 and ISO 6336-3, editions of 2019 or 2006, methods B; ISO 6336-1:2006, dynamic factor by
+    method B or C and face load factor by method C; VDI 2736 Part 2 for the roots of plastic gears.
     """
     forces = _forces(pair, force)
-    k = _load_factors(pair, forces, speed, factors)
+    k = _load_factors(pair, forces, speed, factors, strengths)
     found = {**_told(forces), **k}
     found |= _flank(pair, forces, speed, k, factors, strengths, finish, duty)
     return found | _root(pair, forces, k, factors, strengths, finish, duty)
@@ -210,30 +235,143 @@ def _told(forces: ToothForces) -> Rating:
     }
 
 
-def _load_factors(pair: RatedPair, forces: ToothForces, speed: One, factors: Factors) -> Rating:
-    teeth = jnp.sort(jnp.abs(pair.teeth))
-    resonance = load_factors.resonance_number(
-        speed=speed, teeth=teeth[0], ratio=teeth[1] / teeth[0]
-    )
-    dynamic = load_factors.dynamic_factor(
-        resonance=resonance,
-        line_load=factors.application * forces.reference / pair.face_width,
-        overlap_ratio=pair.overlap_ratio,
-        spur=factors.spur,
-        helical=factors.helical,
-    )
+def _load_factors(
+    pair: RatedPair, forces: ToothForces, speed: One, factors: Factors, strengths: Strengths
+) -> Rating:
+    dynamic, by_method = _dynamic(pair, forces, speed, factors, strengths)
+    used = _or(factors.dynamic, by_method)
+    misalignment, face = _across_the_face(pair, forces, speed, used, factors, strengths)
+    face = _or(factors.face, face)
     root_face = load_factors.root_face_load_factor(
-        flank=factors.face, face_width=pair.face_width, height=jnp.max(_heights(pair))
+        flank=face, face_width=pair.face_width, height=jnp.max(_heights(pair))
     )
     return {
-        "resonance_number": resonance,
+        **dynamic,
         "application_factor": factors.application,
-        "rated_dynamic_factor": _or(factors.dynamic, dynamic),
-        "face_load_factor": factors.face,
+        "rated_dynamic_factor": used,
+        "face_misalignment": misalignment,
+        "face_load_factor": face,
         "transverse_load_factor": factors.transverse,
         "root_face_load_factor": _or(factors.root_face, root_face),
         "root_transverse_load_factor": _or(factors.root_transverse, factors.transverse),
     }
+
+
+def _dynamic(
+    pair: RatedPair, forces: ToothForces, speed: One, factors: Factors, strengths: Strengths
+) -> tuple[Rating, One]:
+    """K_v by both methods where B is asked for, the speeds against resonance of each, and K_v that counts."""
+    teeth = jnp.sort(jnp.abs(pair.teeth))
+    resonance = load_factors.resonance_number(
+        speed=speed, teeth=teeth[0], ratio=teeth[1] / teeth[0]
+    )
+    line_load = factors.application * forces.reference / pair.face_width
+    by_c = load_factors.dynamic_factor(
+        resonance=resonance,
+        line_load=line_load,
+        overlap_ratio=pair.overlap_ratio,
+        spur=factors.spur,
+        helical=factors.helical,
+    )
+    single, total = _stiffness(pair, line_load, strengths)
+    frequency = speed / jnp.abs(pair.reference_radii[0]) * jnp.abs(pair.teeth[0])
+    ratio = frequency / jnp.sqrt(total / _reduced_mass(pair, strengths))
+    pitch, profile = (
+        one - _running_in(one, speed, factors, strengths) for one in _known(factors.deviations, 0.0)
+    )
+    by_b = load_factors.dynamic_factor_by_resonance(
+        resonance_ratio=ratio,
+        line_load=line_load,
+        contact_ratio=pair.transverse_contact_ratio + pair.overlap_ratio,
+        stiffness=single,
+        pitch=pitch,
+        profile=profile,
+        relief=factors.relief,
+    )
+    asked = factors.method_b > 0.0
+    both = {"resonance_ratio": ratio, "dynamic_factor_b": by_b, "dynamic_factor_c": by_c}
+    shown = {name: jnp.where(asked, value, jnp.nan) for name, value in both.items()}
+    return {"resonance_number": resonance, **shown}, jnp.where(asked, by_b, by_c)
+
+
+def _stiffness(pair: RatedPair, line_load: One, strengths: Strengths) -> tuple[One, One]:
+    """Stiffnesses c' and c_gamma_alpha of solid gears per width [N/m2]; a ring counts as a rack."""
+    teeth = jnp.where(pair.teeth < 0.0, jnp.inf, _virtual(pair)[0])
+    pinion_first = jnp.argsort(teeth)
+    single = iso_6336_stiffness.single_stiffness(
+        virtual_teeth=teeth[pinion_first],
+        profile_shift=pair.profile_shift[pinion_first],
+        helix_angle=pair.helix_angle,
+        young=jnp.stack([one.young for one in strengths.solids]),
+        rack=iso_6336_stiffness.rack_factor(
+            dedendum=jnp.mean(pair.dedendum), pressure_angle=pair.pressure_angle
+        ),
+        blank=jnp.ones(()),
+        specific_load=line_load,
+    )
+    total = iso_6336_stiffness.mesh_stiffness_alpha(
+        single=single, contact_ratio=pair.transverse_contact_ratio
+    )
+    return single, total
+
+
+def _reduced_mass(pair: RatedPair, strengths: Strengths) -> One:
+    """Of both gears, as solid as they are; per width [kg/m]."""
+    roots = jnp.abs(pair.root_radii)
+    return load_factors.reduced_mass(
+        mean_radii=(jnp.abs(pair.tip_radii) + roots) / 2.0,
+        inner_radii=roots + jnp.where(pair.teeth < 0.0, 1.0, -1.0) * pair.rim_thickness,
+        base_radii=pair.base_radii,
+        density=jnp.stack([one.density for one in strengths.solids]),
+    )
+
+
+def _running_in(deviation: One, speed: One, factors: Factors, strengths: Strengths) -> One:
+    """Mean of the allowances of both gears for one deviation."""
+    both = load_factors.running_in(
+        deviation=deviation, limit=strengths.flank, soft=factors.soft, speed=speed
+    )
+    return jnp.mean(both)
+
+
+def _across_the_face(
+    pair: RatedPair,
+    forces: ToothForces,
+    speed: One,
+    dynamic: One,
+    factors: Factors,
+    strengths: Strengths,
+) -> tuple[One, One]:
+    """Misalignment F_betay and K_Hbeta by method C; not numbers where the shaft is not known."""
+    outer = factors.application * forces.reference / pair.face_width
+    line_load = outer * dynamic
+    span, offset, diameter = _known(factors.shaft, 1.0)
+    slopes = _known(factors.helix_slopes, 1e-6)
+    bent = load_factors.pinion_misalignment(
+        line_load=line_load,
+        face_width=pair.face_width,
+        diameter=2.0 * jnp.min(jnp.abs(pair.reference_radii)),
+        span=span,
+        offset=offset,
+        shaft_diameter=diameter,
+    )
+    made = jnp.sqrt(jnp.sum(slopes**2))  # f_ma
+    least = jnp.maximum(5e-12 * line_load, 0.5 * jnp.max(slopes))
+    whole = jnp.maximum(1.33 * bent + made, least)
+    left = whole - jnp.minimum(2.0 * _running_in(whole, speed, factors, strengths), whole)
+    _, total = _stiffness(pair, outer, strengths)
+    face = load_factors.face_load_factor(
+        misalignment=left,
+        stiffness=iso_6336_stiffness.mesh_stiffness_beta(alpha=total),
+        line_load=line_load,
+    )
+    asked = ~jnp.isnan(factors.shaft[0])
+    return jnp.where(asked, left, jnp.nan), face
+
+
+def _known(values: Arrays, instead: float) -> Array:
+    """Values with a number in the place of none: what nobody asks for has derivatives too."""
+    return jnp.where(jnp.isnan(values), instead, jnp.asarray(values))
 
 
 def _or(given: Arrays, following: Arrays) -> Arrays:
@@ -360,7 +498,7 @@ def _root(
     finish: Finish,
     duty: Duty,
 ) -> Rating:
-    shape, dimensions = _tooth_form(_cut(pair, finish), strengths)
+    shape, dimensions = _tooth_form(_cut(pair, finish), factors, strengths)
     shape |= _root_factors(pair, factors, strengths)
     nominal = root.nominal_root_stress(
         force=forces.reference,
@@ -418,10 +556,10 @@ def _virtual(pair: RatedPair) -> tuple[Both, One]:
     return teeth, pair.transverse_contact_ratio / slope
 
 
-def _tooth_form(pair: RatedPair, strengths: Strengths) -> tuple[Rating, Rating]:
+def _tooth_form(pair: RatedPair, factors: Factors, strengths: Strengths) -> tuple[Rating, Rating]:
     """Y_F with f_eps and Y_S, or Y_Fa and Y_Sa of plastic gears, and the dimensions behind them."""
     teeth, ratio = _virtual(pair)
-    section = _sections(pair, teeth)
+    section = _sections(pair, teeth, factors.before_2019)
     end = jnp.where(strengths.plastic, pair.tip_radii, pair.end_radii)
     load = root.load_point(
         virtual_teeth=teeth,
@@ -444,22 +582,35 @@ def _tooth_form(pair: RatedPair, strengths: Strengths) -> tuple[Rating, Rating]:
         "root_fillet_radius": section.fillet_radius,
         "notch_parameter": root.notch_parameter(section),
     }
-    factors = {
-        "form_factor": form * jnp.where(strengths.plastic, 1.0, several),
+    shape = {
+        "form_factor": form
+        * jnp.where(strengths.plastic | (factors.before_2019 > 0.0), 1.0, several),
         "stress_correction_factor": root.stress_correction_factor(section=section, load=load),
     }
-    return factors, dimensions
+    return shape, dimensions
 
 
-def _sections(pair: RatedPair, teeth: Both) -> root.RootSection:
-    """Sections of both gears: as a rack cuts them, as measured where gear 2 is a ring."""
-    cut = root.rack_section(
-        virtual_teeth=jnp.abs(teeth),
-        module=pair.module,
-        pressure_angle=pair.pressure_angle,
-        dedendum=pair.dedendum,
-        tip_radius=pair.fillet_radius,
-        generating_shift=pair.profile_shift,
+def _sections(pair: RatedPair, teeth: Both, before_2019: One) -> root.RootSection:
+    """Sections of both gears: as a rack cuts them, as measured where gear 2 is a ring.
+
+    The edition of 2006 has formulas for a ring and its cutter.
+    """
+    tool = {
+        "virtual_teeth": jnp.abs(teeth),
+        "module": pair.module,
+        "pressure_angle": pair.pressure_angle,
+        "dedendum": pair.dedendum,
+        "tip_radius": pair.fillet_radius,
+        "generating_shift": pair.profile_shift,
+    }
+    cut = root.rack_section(**tool)
+    is_ring = pair.teeth < 0.0
+    earlier = is_ring & (before_2019 > 0.0) & ~jnp.isnan(pair.cutter[0])
+    cutter_teeth, cutter_shift = _known(pair.cutter, 1.0)
+    by_cutter = root.pinion_cut_section(
+        **{name: jnp.where(earlier, value, _SOUND[name]) for name, value in tool.items()},
+        cutter_teeth=cutter_teeth,
+        cutter_shift=cutter_shift,
     )
     half, distance, radius = pair.ring_section
     ring = root.ring_section(
@@ -467,12 +618,13 @@ def _sections(pair: RatedPair, teeth: Both) -> root.RootSection:
         distance=distance,
         fillet_radius=jnp.maximum(radius, _SHARPEST * pair.module),
     )
-    is_ring = pair.teeth < 0.0
-    return root.RootSection(
-        jnp.where(is_ring, ring.chord, cut.chord),
-        jnp.where(is_ring, ring.distance, cut.distance),
-        jnp.where(is_ring, ring.fillet_radius, cut.fillet_radius),
+    chosen: root.RootSection = jax.tree.map(
+        lambda old, new, rack: jnp.where(earlier, old, jnp.where(is_ring, new, rack)),
+        by_cutter,
+        ring,
+        cut,
     )
+    return chosen
 
 
 def _root_factors(pair: RatedPair, factors: Factors, strengths: Strengths) -> Rating:
@@ -488,7 +640,9 @@ def _root_factors(pair: RatedPair, factors: Factors, strengths: Strengths) -> Ra
     plastic = strengths.plastic
     return {
         "root_helix_factor": jnp.where(
-            plastic, vdi_2736.helix_factor(**skew), root.helix_factor(**skew)
+            plastic,
+            vdi_2736.helix_factor(**skew),
+            root.helix_factor(**skew, before_2019=factors.before_2019),
         ),
         "rim_factor": jnp.where(plastic, 1.0, rim),
         "root_contact_ratio_factor": jnp.where(plastic, several, deep),

@@ -52,6 +52,8 @@ _TOLD_IN_FILLET = 1e-4
 class _Gear:
     """Numbers of one gear, plain or traced: positive diameters and lengths [m], those of the rack in modules.
 
+    A shaped one is a ring with a pinion cutter.
+
     Lengths on the line of action are counted from the gear's own base circle.
     """
 
@@ -59,6 +61,7 @@ class _Gear:
     undercut: bool
     internal: bool
     helical: bool
+    shaped: bool
     tip_diameter: Number
     root_diameter: Number
     base_diameter: Number
@@ -97,7 +100,8 @@ class _Pair:
 
     The base sum is that of signed radii, without its sign; the needed sum of profile shifts that of the
     centre distance; the gaps are those of a ring [modules]; the least backlash is that by allowances of the
-    tooth thickness, NaN without any.
+    tooth thickness, NaN without any. The cutter of a ring reaches from the end of its involute to the tip of
+    the ring, along the line of action; its gaps are those between its tips and the ring's [modules].
     """
 
     internal: bool
@@ -117,6 +121,12 @@ class _Pair:
     tip_gap: Number = 0.0
     radial_gap: Number = 0.0
     least_backlash: Number = nan
+    cutter_teeth: Number = 0.0
+    cutter_shift_sum: Number = 0.0
+    cutter_limit_sum: Number = 1.0
+    cutter_reach: Number = 0.0
+    cutter_tip_gap: Number = 0.0
+    cutter_radial_gap: Number = 0.0
 
     @property
     def modules(self) -> str:
@@ -256,7 +266,7 @@ def _stages(whole: _Pair, gears: list[_Gear]) -> Iterator[list[Faults]]:
     yield [chain(_check_teeth(whole), _check_distance(whole))]
     yield [_check_gear(gear) for gear in gears]
     yield [chain.from_iterable(_check_meeting(whole, gear) for gear in gears)]
-    yield [chain(_check_contact_ratio(whole, gears), _check_tips(whole))]
+    yield [chain(_check_contact_ratio(whole, gears), _check_tips(whole), _check_cutter(whole))]
     yield [_check_finite(whole, gears)]  # whatever the checks above did not think of
 
 
@@ -297,6 +307,7 @@ def _records(
             undercut=pair.undercut[i],
             internal=pair.internal and i == 1,
             helical=pair.helical,
+            shaped=pair.internal and i == 1 and pair.cutter_teeth is not None,
             **gear,
         )
         for i, gear in enumerate(gears)
@@ -308,7 +319,9 @@ def _measures(pair: CylindricalPair) -> list[dict[str, Float[Array, ""]]]:
     """Measures of the pair and of each gear, under the names of their plain classes."""
     first, second = pair.gears
     return [
-        _pair_measures(pair) | (_ring_gaps(pair) if pair.internal else {}),
+        _pair_measures(pair)
+        | (_ring_gaps(pair) if pair.internal else {})
+        | _cutter_measures(pair, second),
         _gear_measures(first) | _meeting_measures(pair, first, second),
         _gear_measures(second) | _meeting_measures(pair, second, first),
     ]
@@ -376,11 +389,19 @@ def _room_at_ring_root(gear: InvoluteGear) -> tuple[Float[Array, ""], Float[Arra
     crossing = base / jnp.cos(inverse_involute(jnp.where(value > 0.0, value, 1.0)))
     deepest = (crossing - reference) / gear.module + gear.profile_shift
 
+    cutting = gear.cutting
+
     def filled(rounding: Float[Array, ""]) -> Float[Array, ""]:
-        rounded = dataclasses.replace(gear, fillet_radius=rounding)
+        rounded = (
+            dataclasses.replace(gear, fillet_radius=rounding)
+            if cutting is None
+            else dataclasses.replace(cutting, rounding=rounding * gear.module)
+        )
         return -rounded.root_land_angle / gear.pitch_half_angle
 
     most = (jnp.abs(gear.root_radius) - base) / gear.module
+    if cutting is not None:
+        most = (cutting.tip_radius - cutting.base_radius) / gear.module
     largest = root(filled, jnp.minimum(0.1, most / 2.0), most)[0]
     return deepest, largest
 
@@ -437,6 +458,34 @@ def _ring_gaps(pair: CylindricalPair) -> dict[str, Float[Array, ""]]:
     }
 
 
+def _cutter_measures(pair: CylindricalPair, ring: InvoluteGear) -> dict[str, Float[Array, ""]]:
+    """What a ring and its cutter have to do with each other; nothing without one."""
+    cutting = ring.cutting
+    if cutting is None or pair.cutter_teeth is None or pair.cutter_shift is None:
+        return {}
+    teeth, shift = jnp.asarray(pair.cutter_teeth), jnp.asarray(pair.cutter_shift)
+    per_angle = (jnp.abs(ring.teeth) - teeth) / (2.0 * jnp.tan(ring.pressure_angle))
+    reference = teeth / jnp.abs(ring.teeth) * jnp.abs(ring.reference_radius)
+    high = (cutting.tip_radius - reference) / ring.module - shift
+    beyond = cutting.distance * jnp.sin(cutting.working_pressure_angle)
+    in_place = dataclasses.replace(
+        pair,
+        teeth=jnp.stack([teeth, ring.teeth]),
+        profile_shift=jnp.stack([shift, ring.profile_shift]),
+        addendum=jnp.stack([high, ring.addendum]),
+        tip_alteration=jnp.stack([jnp.zeros(()), ring.tip_alteration]),
+        centre_distance=cutting.distance,
+    )
+    gaps = _ring_gaps(in_place)
+    return {
+        "cutter_teeth": teeth,
+        "cutter_shift_sum": ring.profile_shift + shift,
+        "cutter_limit_sum": involute(ring.transverse_pressure_angle) * per_angle,
+        "cutter_reach": (ring.tip_roll_length - beyond) / ring.module,
+        **{f"cutter_{name}": gap for name, gap in gaps.items()},
+    }
+
+
 def _ring_corner(pair: CylindricalPair, pinion_corner: Float[Array, "*b"]) -> Float[Array, "*b"]:
     """Angle of a ring's tip corner for the angle of the pinion's tip corner, flanks touching [rad].
 
@@ -484,6 +533,16 @@ def _check_teeth(pair: _Pair) -> Faults:
 
 def _check_distance(pair: _Pair) -> Faults:
     yield from _check_shift_sum(pair)
+    yield (
+        pair.cutter_shift_sum >= pair.cutter_limit_sum,
+        lambda: _refuse(
+            "cutter_teeth",
+            pair.cutter_teeth,
+            f"the profile shifts of gear 2 and its cutter sum to {pair.cutter_shift_sum:.4g}; with "
+            f"{pair.cutter_teeth:g} teeth of the cutter the sum must be below {pair.cutter_limit_sum:.4g}: "
+            "above it their flanks fit at no distance between their axes",
+        ),
+    )
     yield (
         pair.centre_distance <= pair.base_sum,
         lambda: _refuse(
@@ -595,7 +654,8 @@ def _check_ring_root(gear: _Gear) -> Faults:
             f"{gear.modules} at most",
         ),
     )
-    yield from _check_fillet_radius(gear, "the root of its spaces has")
+    where = "the tip of its cutter has" if gear.shaped else "the root of its spaces has"
+    yield from _check_fillet_radius(gear, where)
 
 
 def _check_fillet_radius(gear: _Gear, where: str) -> Faults:
@@ -810,6 +870,31 @@ def _check_tips(pair: _Pair) -> Faults:
     )
 
 
+def _check_cutter(pair: _Pair) -> Faults:
+    yield (
+        pair.cutter_reach < 0.0,
+        lambda: _refuse(
+            "cutter_teeth",
+            pair.cutter_teeth,
+            f"the tips of gear 2 reach {-pair.cutter_reach:.3g} {pair.modules} beyond the end of the "
+            f"involute of its cutter with {pair.cutter_teeth:g} teeth, which takes them off; a cutter with "
+            "more teeth or a shorter addendum of gear 2 leaves them",
+            Remedy("addendum", -1.0, (1,)),
+        ),
+    )
+    yield (
+        pair.cutter_tip_gap < 0.0,
+        lambda: _refuse(
+            "cutter_teeth",
+            pair.cutter_teeth,
+            f"the cutter of gear 2 with {pair.cutter_teeth:g} teeth takes off the tips of gear 2 where their "
+            f"tip circles cross: they overlap by {-pair.cutter_tip_gap:.3g} {pair.modules}; a cutter with "
+            "fewer teeth or a shorter addendum of gear 2 leaves them",
+            Remedy("addendum", -1.0, (1,)),
+        ),
+    )
+
+
 def _check_finite(pair: _Pair, gears: list[_Gear], only: tuple[str, ...] = ()) -> Faults:
     named = [*((gear.name, vars(gear)) for gear in gears), ("the pair", vars(pair))]
     for name, numbers in named:
@@ -886,6 +971,15 @@ def _pair_warnings(pair: _Pair) -> list[Doubt]:
             Doubt(
                 "Gear 1 must be put into gear 2 along its axis: moved in radially, the tips overlap by "
                 f"up to {-pair.radial_gap:.3g} {pair.modules}.",
+                moves=REMARKED,
+            )
+        )
+    if pair.cutter_radial_gap < 0.0:
+        found.append(
+            Doubt(
+                f"The cutter of gear 2 with {pair.cutter_teeth:g} teeth takes off its tips while it is fed "
+                f"in radially: they overlap by up to {-pair.cutter_radial_gap:.3g} {pair.modules}, which "
+                "these figures leave out; a cutter with fewer teeth leaves them.",
                 moves=REMARKED,
             )
         )

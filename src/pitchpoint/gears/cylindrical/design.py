@@ -61,6 +61,8 @@ def build_cylindrical_pair(
     least_tip: float = 0.0,
     centre_distance: float | None = None,
     rim_ratio: tuple[float, float] | None = None,
+    cutter_teeth: float | None = None,
+    cutter_shift: float | None = None,
     driver: int = 1,
     right_flank: bool = False,
     slices: int = SLICES,
@@ -79,6 +81,7 @@ def build_cylindrical_pair(
         least_tip: thickness in the normal section, in modules, to which tips that would be thinner
             are shortened; for tip alterations that are not given.
         rim_ratio: root radius over bore radius of each gear; outer over root radius of a ring.
+        cutter_teeth, cutter_shift: z_0 and x_0 of the pinion cutter of a ring; both or none.
         driver: 1 or 2, the gear that drives.
         right_flank: True if the right flanks of both gears touch.
         slices: of each contact line, for helical gears; even, or one for its middle alone.

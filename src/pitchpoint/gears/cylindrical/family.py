@@ -240,6 +240,8 @@ def _given(gears: CylindricalGears, driver: str) -> dict[str, Any]:
         "tip_alteration": gears.tip_alteration,
         "least_tip": _least_tip(gears),
         "centre_distance": gears.centre_distance,
+        "cutter_teeth": gears.cutter_teeth,
+        "cutter_shift": None if gears.cutter_teeth is None else gears.cutter_profile_shift,
         "driver": 2 if driver == "gear 2" else 1,
         "right_flank": gears.flank == "right",
     }
@@ -252,6 +254,9 @@ def _ring_fillet(gears: CylindricalGears, dedendum: float) -> float:
         dedendum=dedendum,
         pressure_angle=gears.pressure_angle,
         helix_angle=gears.helix_angle,
+        cutter=None
+        if gears.cutter_teeth is None
+        else (gears.cutter_teeth, gears.cutter_profile_shift),
     )
 
 

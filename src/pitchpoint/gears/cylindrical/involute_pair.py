@@ -182,6 +182,8 @@ class InvolutePair(Mesh):
         lanes: static count of pairs held, at least the contact ratio rounded up.
         slices: static count of slices of each contact line; even, or one.
         surfaces: how all flanks of both gears differ from involutes.
+        cutter_teeth, cutter_shift: z_0 and x_0 of the pinion cutter of a ring, whose tip corners have the
+            fillet radius of gear 2; None without one.
     """
 
     pitch_point: ClassVar[bool] = True
@@ -226,6 +228,8 @@ class InvolutePair(Mesh):
     lanes: int = eqx.field(static=True)
     slices: int = eqx.field(static=True)
     surfaces: Surfaces = ((), ())
+    cutter_teeth: Float[Arrays, ""] | None = None
+    cutter_shift: Float[Arrays, ""] | None = None
 
     def completed(self) -> Self:
         """The pair with centre distance and tip alterations as they follow from the rest."""
@@ -717,6 +721,7 @@ class InvolutePair(Mesh):
         return root(missing, 0.2 * most, most)[0]
 
     def _gear(self, index: int) -> InvoluteGear:
+        is_ring = self.internal and index == 1
         return InvoluteGear(
             teeth=self.teeth[index],
             module=self.module,
@@ -729,5 +734,7 @@ class InvolutePair(Mesh):
             fillet_radius=self.fillet_radius[index],
             undercut=self.undercut[index],
             crossing=self.crossing[index],
-            internal=self.internal and index == 1,
+            internal=is_ring,
+            cutter_teeth=self.cutter_teeth if is_ring else None,
+            cutter_shift=self.cutter_shift if is_ring else None,
         )

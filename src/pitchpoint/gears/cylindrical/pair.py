@@ -72,7 +72,14 @@ class CylindricalPair(InvolutePair):
             face_width=self.face_width,
             rim_thickness=jnp.abs(roots) * rim,
             ring_section=ring.ring_tangent(_RING_TANGENT) if self.internal else jnp.zeros(3),
+            cutter=self._cutter,
         )
+
+    @property
+    def _cutter(self) -> Float[Array, "2"]:
+        if self.cutter_teeth is None or self.cutter_shift is None:
+            return jnp.full(2, jnp.nan)
+        return jnp.stack([jnp.asarray(self.cutter_teeth), jnp.asarray(self.cutter_shift)])
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""

@@ -47,6 +47,8 @@ SEED = Quantity("dimensionless", 0, 1_000_000, whole=True)
 ALLOWANCE = Quantity("length", -1e-2, 1e-2, "um")
 SPAN = Quantity("dimensionless", 1, 1_000, whole=True)
 
+CUTTER_TEETH = Quantity("dimensionless", 5, 1_000, whole=True)
+
 FEWEST_TEETH = 2
 FEWEST_RING_TEETH = 10
 
@@ -266,8 +268,9 @@ def _allowed(gears: "CylindricalGears") -> dict[str, float]:
 class CylindricalGears(GearsTable):
     """A pair of involute gears on parallel axes, spur or helical; gear 2 may be a ring.
 
-    A misalignment counts over the face, positive where the flanks part at the end that a contact line
-    reaches last.
+    The root of a ring is what a pinion cutter leaves whose tip corners have the fillet radius of gear 2,
+    ρ_a0, and whose tip reaches the root circle; without `cutter_teeth` its fillets are arcs. A misalignment
+    counts over the face, positive where the flanks part at the end that a contact line reaches last.
     """
 
     members: ClassVar[tuple[str, ...]] = MEMBERS
@@ -295,6 +298,10 @@ class CylindricalGears(GearsTable):
     """Dedendum of both basic racks, in modules; addendum of the mate + 0.25 unless given."""
     fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
     """Fillet radius ρ_fP of both racks in modules; 0.38, of a ring 0.2, or what fits, unless given."""
+    cutter_teeth: Annotated[float, CUTTER_TEETH] | None = None
+    """Teeth z_0 of the pinion cutter of a ring; unless given the ring has arcs as fillets."""
+    cutter_profile_shift: Annotated[float, SHIFT] = 0.0
+    """Profile shift x_0 of that cutter, as it is ground."""
     tip_alteration: Annotated[tuple[float, float], Pair(TIP)] | None = None
     """Tip alteration coefficients k1, k2; those that keep the tip clearance unless given."""
     least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
@@ -426,6 +433,28 @@ class CylindricalGears(GearsTable):
         if any(map(isnan, self.profile_shift)):
             # The table is fixed once it is read, and it is not yet.
             self.__dict__["profile_shift"] = self.shifts_from_distance(self.profile_shift)
+        return self
+
+    @model_validator(mode="after")
+    def _of_cutter(self) -> "CylindricalGears":
+        if self.cutter_teeth is None:
+            if "cutter_profile_shift" in self.model_fields_set:
+                raise InputError(
+                    "was given without cutter_teeth; give both, or leave it out",
+                    key="cutter_profile_shift",
+                )
+        elif self.teeth[1] > 0:
+            raise InputError(
+                "was given for two external gears, whose roots are those of their basic racks; only a ring, "
+                "gear 2 with a negative number of teeth, has a pinion cutter; leave it out",
+                key="cutter_teeth",
+            )
+        elif self.cutter_teeth >= -self.teeth[1]:
+            raise InputError(
+                f"the cutter was given {self.cutter_teeth:g} teeth; it cuts inside the ring and has fewer "
+                f"than its {-self.teeth[1]:g}",
+                key="cutter_teeth",
+            )
         return self
 
     @model_validator(mode="after")

@@ -32,6 +32,10 @@ _STRESSES = ("contact_stress", "flank_safety", "root_stress", "root_safety")
 _LOAD = (
     "application_factor",
     "rated_dynamic_factor",
+    "dynamic_factor_b",
+    "dynamic_factor_c",
+    "resonance_ratio",
+    "face_misalignment",
     "face_load_factor",
     "transverse_load_factor",
     "root_face_load_factor",
@@ -81,6 +85,9 @@ _ROOT = (
     "root_safety",
 )
 
+
+_WHERE_ASKED = ("dynamic_factor_b", "dynamic_factor_c", "resonance_ratio", "face_misalignment")
+"""Rows that a rating has by methods that few cases ask for."""
 
 _COUNTED = ("flank_cycles", "root_cycles")
 
@@ -134,7 +141,12 @@ def _caveats(data: xr.Dataset) -> list[str]:
 
 
 def _table(title: str, names: tuple[str, ...], data: xr.Dataset) -> Table:
-    rows = [(_words(name, data), *_values(name, data)) for name in names]
+    known = [
+        name
+        for name in names
+        if name not in _WHERE_ASKED or (name in data and data[name].notnull().any())
+    ]
+    rows = [(_words(name, data), *_values(name, data)) for name in known]
     return Table([title, *(str(gear) for gear in data["gear"].values)], rows, compact=True)
 
 
