@@ -236,6 +236,112 @@ def test_teeth_that_do_not_bear_their_stress_stand_first(pair_file: Path) -> Non
     assert all(text.endswith("sooner or later.") for text in both)
 
 
+def test_the_edition_is_chosen_by_name(pair_file: Path) -> None:
+    """By hand: f_eps and the cube of the cosine in the root, the root of 1.2 by overlap in Z_B and Z_D."""
+    newer = strength_of(pair_file)
+    older = strength_of(pair_file, {"strength.edition": 2006})
+    helix = np.radians(15.0)
+    overlap = 20.0 * np.sin(helix) / (np.pi * 2.0)
+    cosine = np.cos(np.arcsin(np.sin(helix) * np.cos(np.radians(20.0))))
+    ratio = (newer["contact_ratio_factor"].values ** 2 - (1.0 - overlap) * 4.0 / 3.0) / 1.0
+    # Z_eps^2 = (4 - e)/3 (1 - o) + o/e
+    contact = np.roots([-(1.0 - overlap) / 3.0, -float(ratio), overlap]).max()
+    share = np.sqrt(1.0 - overlap + overlap / (contact / cosine**2))
+    np.testing.assert_allclose(newer["form_factor"] / older["form_factor"], share, rtol=1e-9)
+    np.testing.assert_allclose(
+        newer["root_helix_factor"] / older["root_helix_factor"], np.cos(helix) ** -3, rtol=1e-9
+    )
+    moved = newer["single_contact_factor"] - older["single_contact_factor"]
+    np.testing.assert_allclose(moved, overlap * (np.sqrt(1.2) - 1.0), rtol=1e-9)
+    assert "edition of 2006, method B" in older.attrs["method"]
+    assert "f_ZCa" in newer.attrs["assumed"] and "f_ZCa" not in older.attrs["assumed"]
+
+
+def test_the_pair_by_its_resonance_and_its_shaft(pair_file: Path) -> None:
+    """K_v by method B and K_Hbeta by method C, all from the tolerances of class 6 by hand [um, N/mm]."""
+    shaft = {"span": "120 mm", "offset": "20 mm", "diameter": "40 mm"}
+    settings = {
+        "strength.dynamic_method": "B",
+        "strength.bearing_span": shaft["span"],
+        "strength.pinion_offset": shaft["offset"],
+        "strength.pinion_shaft_diameter": shaft["diameter"],
+    }
+    tree = tomllib.loads(pair_file.read_text("utf-8"))
+    del tree["strength"]["face_load_factor"]
+    variant = Variant(tree, "x.toml", "default", settings)
+    (job,) = [job for job in jobs(variant, {}) if job.name == "strength"]
+    data = job.compute(job.pieces[0])
+    helix = np.radians(15.0)
+    transverse = np.arctan(np.tan(np.radians(20.0)) / np.cos(helix))
+    z_1, z_2 = (z / np.cos(helix) / np.cos(helix) ** 2 for z in (23.0, 61.0))
+    base = np.cos(np.arcsin(np.sin(helix) * np.cos(np.radians(20.0)))) ** 2 / np.cos(helix) ** 2
+    yielding = 0.04723 + 0.15551 / z_1 * base + 0.25791 / z_2 * base
+    load = 1.25 * float(data["reference_force"]) / 20.0
+    single = 0.8 * 0.975 * np.cos(helix) / yielding * (min(load, 100.0) / 100.0) ** 0.25
+    pitch, profile = 8.5 * np.cos(transverse) * 0.925, 8.5 * 0.925  # run in by 0.075
+    zone = np.cos(helix)  # beside it the contact ratios that the result has
+    overlap = 20.0 * np.sin(helix) / (np.pi * 2.0)
+    e = np.roots(
+        [
+            -(1.0 - overlap) / 3.0,
+            (1.0 - overlap) * 4.0 / 3.0 - float(data["contact_ratio_factor"]) ** 2,
+            overlap,
+        ]
+    ).max()
+    total = e + overlap
+    k = 0.32 * single * pitch / load + 0.57 / (total - 0.3) * single * profile / load
+    k += 0.096 / (total - 1.56)
+    by_b = 1.0 + float(data["resonance_ratio"]) * k
+    assert float(data["dynamic_factor_b"]) == pytest.approx(by_b, rel=1e-6)
+    assert float(data["rated_dynamic_factor"]) == float(data["dynamic_factor_b"])
+    # Discs from the bore, 0.3 of the root circle, to halfway up the teeth; steel of 7,850 kg/m3.
+    stiffness = single * (0.75 * e + 0.25) * 1e9
+    roots = np.array([(z / np.cos(helix) - 2.5) * 1e-3 for z in (23.0, 61.0)])
+    bases = np.array([23.0, 61.0]) / zone * 1e-3 * np.cos(transverse)
+    masses = np.pi / 2.0 * 7850.0 * ((roots + 2.25e-3) ** 4 - (0.3 * roots) ** 4) / bases**2
+    speed = SPEED * 23.0 / np.sqrt(stiffness / (masses.prod() / masses.sum()))
+    assert float(data["resonance_ratio"]) == pytest.approx(speed, rel=1e-2)
+    mean = load * by_b
+    diameter = 46.0 / np.cos(helix)
+    bent = 0.8 * 120.0 * 20.0 / diameter**2 * (diameter / 40.0) ** 4
+    if diameter / 40.0 >= 1.15:
+        bent *= 0.48 / 0.8
+    shaft_part = 0.023 * mean * (abs(0.7 + bent) + 0.3) * (20.0 / diameter) ** 2
+    whole = 1.33 * shaft_part + 8.5 * np.sqrt(2.0)
+    assert float(data["face_misalignment"]) * 1e6 == pytest.approx(0.85 * whole, rel=1e-6)
+    half = 0.85 * whole * 0.85 * stiffness * 1e-9 / (2.0 * mean)
+    expected = 2.0 * np.sqrt(half) if half >= 1.0 else 1.0 + half
+    assert float(data["face_load_factor"]) == pytest.approx(expected, rel=1e-6)
+    assert "K_Hβ" not in data.attrs["assumed"]
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"strength.dynamic_factor": 1.2, "strength.dynamic_method": "B"}, "beside dynamic_factor"),
+        ({"strength.edition": 2006, "strength.profile_correction": 1.1}, "has no f_ZCa"),
+        ({"strength.edition": 1997}, "strength.edition"),
+        ({"strength.bearing_span": "1 m"}, "without pinion_offset and pinion_shaft_diameter"),
+        (
+            {
+                "strength.bearing_span": "100 mm",
+                "strength.pinion_offset": "40 mm",
+                "strength.pinion_shaft_diameter": "30 mm",
+            },
+            "face_load_factor",
+        ),
+        ({"strength.dynamic_method": "B", "materials.gear_2": "POM-H"}, "holds for steel"),
+        ({"gears.cutter_teeth": 20}, "two external gears"),
+        ({"gears.cutter_profile_shift": 0.1}, "without cutter_teeth"),
+    ],
+)
+def test_what_cannot_be_rated_so_is_refused(
+    pair_file: Path, settings: dict[str, Any], words: str
+) -> None:
+    with pytest.raises(InputError, match=words):
+        describe(str(pair_file), settings=settings)
+
+
 def test_without_load_safeties_have_no_end() -> None:
     idle = computed(PAIR + RATED, None, "strength", **{"operation.torque": "0 N m"})
     rows = strength_rows(idle)

@@ -448,6 +448,33 @@ def test_a_tip_as_large_as_the_pointed_one_is_accepted():
     assert 0.0 <= thickness < 1e-5
 
 
+CUT = {"teeth": (20, -60), "profile_shift": (0.0, 0.0), "addendum": (1.0, 0.8), "cutter_shift": 0.0}
+CUT |= {"fillet_radius": (0.38, 0.2)}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"cutter_teeth": 55.0}, "takes off the tips of gear 2 where their tip circles cross"),
+        ({"cutter_teeth": 12.0}, "beyond the end of the involute of its cutter with 12 teeth"),
+        ({"cutter_teeth": 20.0, "cutter_shift": 1.0}, "sum to 1; with 20 teeth of the cutter"),
+        (
+            {"cutter_teeth": 20.0, "fillet_radius": (0.38, 0.5)},
+            "the tip of its cutter has room for",
+        ),
+    ],
+)
+def test_cutters_that_spoil_their_ring_are_refused(changes, words):
+    error = refusal(**(CUT | changes))
+    assert words in str(error)
+
+
+def test_a_cutter_that_leaves_the_ring_whole_is_accepted():
+    assert check_cylindrical(build(**(CUT | {"cutter_teeth": 20.0}))) == []
+    (told,) = check_cylindrical(build(**(CUT | {"cutter_teeth": 48.0})))
+    assert "takes off its tips while it is fed in radially" in told
+
+
 def test_the_allowed_fillet_radius_is_accepted():
     largest = (math.pi / 4 - 1.25 * math.tan(math.radians(20))) / math.tan(math.radians(35))
     assert check_cylindrical(build(fillet_radius=(largest, 0.38))) == []
