@@ -194,6 +194,9 @@ _KINDS: dict[str, _Kind] = {
             "g/ml": "gram/milliliter",
         },
     ),
+    "temperature coefficient": _Kind(
+        "a relative change with temperature", "0.001 1/K", {"1/K": "1/kelvin"}
+    ),
     "density slope": _Kind(
         "a fall of density with temperature",
         "0.5 kg/m3/K",

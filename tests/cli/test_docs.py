@@ -39,7 +39,7 @@ _, MODIFIED = blocks("guide/pairs.md", "toml")
 STRENGTH, INSPECTION, LIMITS = blocks("guide/sizing.md", "toml")
 (PLASTIC,) = blocks("guide/stiffness.md", "toml")
 (MOTION,) = blocks("guide/motion.md", "toml")
-FILM, FINITE, HEIGHTS = blocks("guide/films.md", "toml")
+FILM, OIL, FINITE, HEIGHTS = blocks("guide/films.md", "toml")
 WEAR, WORN = blocks("guide/wear.md", "toml")
 (STAGES,) = blocks("guide/stages.md", "toml")
 (TARGETS,) = blocks("guide/targets.md", "toml")
@@ -61,6 +61,7 @@ CASES = {
     "plastic": (PAIR, PLASTIC),
     "motion": (PAIR, MOTION),
     "film": (PAIR, FILM),
+    "oil": (PAIR, OIL),
     "wear": (PAIR, WEAR),
     "finite": (PAIR, FINITE),
     "rack": (PAIR, RACK),
@@ -114,7 +115,7 @@ def test_every_block_is_known() -> None:
     assert set(kinds) <= {"sh", "toml", "python", *OF_THE_SITE}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 22
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 23
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 

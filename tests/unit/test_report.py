@@ -43,6 +43,7 @@ from pitchpoint.views.sections.answer import ANSWER, summary
 from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.path import loss_places, loss_sentence
 from pitchpoint.views.sections.sliding import specific_sliding
+from pitchpoint.views.sections.spread import spread_sentence
 from pitchpoint.views.sections.studies import study_panels
 from pitchpoint.views.sections.teeth import dimensions
 
@@ -552,6 +553,18 @@ def test_laws_that_nearly_agree_are_told_in_points_with_a_power_of_ten(
     near = answered(0.9963494, 0.9963512)
     assert near.detail.endswith("; 99.63 to 99.64 % by the laws in their range; teeth alone")
     assert "; teeth alone; over the cycle " in answered(0.9963494, 0.9963495).detail
+
+
+def test_laws_whose_friction_differs_are_told_with_both_coefficients(published: Outcomes) -> None:
+    outcome = published["as_published"]
+    ends = json.dumps([["ehl_line", 0.0214], ["xu_2007", 0.0642]])
+    laws = outcome.parts["laws"].assign_attrs(friction_apart=ends)
+    told = spread_sentence(replace(outcome, parts={**outcome.parts, "laws": laws}))
+    sentence = "Mean friction is 0.0214 (ehl_line) to 0.0642 (xu_2007), 3 times as much."
+    assert sentence in told
+    known = outcome.parts["laws"]["mean_friction"].values[:, 0]
+    apart = known.max() > 1.5 * known.min()
+    assert ("Mean friction is" in spread_sentence(outcome)) == apart
 
 
 def test_misses_come_first_and_kinds_are_counted_apart(page: str) -> None:

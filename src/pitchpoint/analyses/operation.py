@@ -22,7 +22,7 @@ from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
-from pitchpoint.doubts import doubts_of, in_stage, stored
+from pitchpoint.doubts import GUESSED, Doubt, doubts_of, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.results.store import without_nan
 
@@ -31,6 +31,9 @@ __all__ = [
     "LAWS_THERE",
     "OPERATION",
 ]
+
+DIFFERS = 1.5
+"""Mean friction by two laws in their range, over one another, from which on it is told."""
 
 
 def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
@@ -60,7 +63,8 @@ def _laws(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """Every law of the library in its range at the operating point: how far they themselves disagree.
 
     The attribute `outside` lists the others and the laws of the case that are out of theirs, each with
-    its efficiency there and the reasons.
+    its efficiency there and the reasons; `friction_apart` has the least and the largest mean friction by
+    these laws and by solved films, where they differ by more than `DIFFERS`.
     """
     every = built.applicable
     others = built.under([law for law in every if law not in built.laws])
@@ -78,8 +82,48 @@ def _laws(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         for k, told in enumerate(reasons)
         if told
     ]
-    kept = [k for k, models in enumerate(considered) if models.law in every and not reasons[k]]
-    return data.isel(law=kept).assign_attrs(outside=json.dumps(without_nan(outside)))
+    within = [k for k, told in enumerate(reasons) if not told]
+    kept = [k for k in within if considered[k].law in every]
+    solved = [k for k in within if considered[k].law.films is not None]
+    drawn = data["mean_friction"].isel(law=[*kept, *solved], point=0)
+    names = map(str, drawn["law"].values)
+    ends = friction_apart(dict(zip(names, drawn.values.tolist(), strict=True)))
+    doubts = [*doubts_of(data.attrs), *(_of_solved(ends) if solved and ends else [])]
+    attributes = {"outside": json.dumps(without_nan(outside)), "friction_apart": json.dumps(ends)}
+    return data.isel(law=kept).assign_attrs(**attributes, **stored(doubts))
+
+
+def friction_apart(friction: Mapping[str, float]) -> list[tuple[str, float]]:
+    """Names and coefficients of the laws with the least and the largest friction; none where they agree.
+
+    Args:
+        friction: mean coefficient by law; laws without friction or without a number do not count.
+
+    Example:
+        >>> friction_apart({"xu_2007": 0.06, "ehl_line": 0.02, "frictionless": 0.0, "constant": 0.05})
+        [('ehl_line', 0.02), ('xu_2007', 0.06)]
+        >>> friction_apart({"xu_2007": 0.06, "iso_tr_14179_2": 0.05})
+        []
+    """
+    known = sorted((value, name) for name, value in friction.items() if value > 0.0)
+    if not known or known[-1][0] <= DIFFERS * known[0][0]:
+        return []
+    return [(name, value) for value, name in (known[0], known[-1])]
+
+
+def _of_solved(ends: Sequence[tuple[str, float]]) -> list[Doubt]:
+    """That solved films and formulas differ, with both numbers."""
+    (low, least), (high, most) = ends
+    return [
+        Doubt(
+            f"Friction laws in their range differ by a factor of {most / least:.2g}: the mean coefficient is "
+            f"{least:.3g} by {low} and {most:.3g} by {high}. That of solved films hangs on the viscosity of "
+            "the oil under pressure, which was measured of few oils.",
+            "friction laws",
+            most / least,
+            moves=GUESSED,
+        )
+    ]
 
 
 def _untried(built: Ready) -> str | None:

@@ -1060,16 +1060,17 @@ def _of_values(oil: Oil, given: Mapping[str, Datum]) -> lubricants.LubricantReco
     """An oil by value, or one of the catalogue with some values of the case file."""
     cold = lubricants.known_cold(given["nu_0"]) if "nu_0" in given else {}
     if oil.name is not None:
-        return _with_own(lubricants.find(oil.name), given, cold)
+        following = {**cold, **lubricants.without_free_volume(given)}
+        return _with_own(lubricants.find(oil.name), given, following)
     assert oil.base is not None
-    data = {**lubricants.base_oils()[oil.base], **cold, **given}
+    data: dict[str, Any] = {**lubricants.base_oils()[oil.base], **cold, **given}
     return lubricants.LubricantRecord(
         name="oil by value", title=f"{oil.base} oil by value", base=oil.base, **data
     )
 
 
 def _with_own(
-    oil: lubricants.LubricantRecord, given: Mapping[str, Datum], following: Mapping[str, Datum]
+    oil: lubricants.LubricantRecord, given: Mapping[str, Datum], following: Mapping[str, Any]
 ) -> lubricants.LubricantRecord:
     """An oil of the catalogue with values of the case file, which say so, and what follows from them."""
     if not given:

@@ -82,6 +82,14 @@ _OIL = {
     "conductivity": "thermal conductivity",
     "T_min": "temperature",
     "T_max": "temperature",
+    "free_volume_factor": "dimensionless",
+    "occupied_volume": "dimensionless",
+    "occupied_expansion": "temperature coefficient",
+    "volume_temperature": "temperature",
+    "modulus_rise": "dimensionless",
+    "modulus_cold": "pressure",
+    "modulus_slope": "temperature coefficient",
+    "expansion": "temperature coefficient",
 }
 
 Row = dict[str, Any]

@@ -94,6 +94,7 @@ SPECIFIC_HEAT = Quantity("specific heat", 50.0, 5000.0, "J/kg/K")
 POISSON = Quantity("dimensionless", 0.0, 0.5)
 DENSITY = Quantity("density", 100.0, 30_000.0, "kg/m3")
 SLOPE = Quantity("density slope", 0.0, 5.0, "kg/m3/K")
+FALL = Quantity("temperature coefficient", 0.0, 0.05, "1/K")
 VISCOSITY = Quantity("kinematic viscosity", 2e-6, 0.1, "mm2/s")
 COLD_VISCOSITY = Quantity("kinematic viscosity", 2e-6, 10.0, "mm2/s")
 ALPHA = Quantity("pressure-viscosity coefficient", 1e-10, 1e-6, "1/GPa")
@@ -859,10 +860,16 @@ class FilmTable(Table):
     """Law of the shear stress; ree_eyring_1955 unless given."""
     eyring_stress: Annotated[float, STRESS] | None = None
     """Eyring stress of ree_eyring_1955; 5 MPa unless given, assumed."""
+    critical_stress: Annotated[float, STRESS] | None = None
+    """Shear stress from which on carreau_1972 thins; 7 MPa unless given, recalled of thin hydrocarbons."""
+    shear_exponent: Annotated[float, RATIO] | None = None
+    """Exponent n of carreau_1972; 0.45 unless given, assumed."""
     limiting_coefficient: Annotated[float, COEFFICIENT] | None = None
-    """Rise of bair_winer_1979's limiting shear stress with pressure; 0.08 unless given, assumed."""
+    """Rise of the limiting shear stress with pressure, where the law has one; 0.08 unless given, assumed."""
     limiting_stress: Annotated[float, STRESS] | None = None
-    """Limiting shear stress of bair_winer_1979 without pressure; 2 MPa unless given, assumed."""
+    """Limiting shear stress without pressure, where the law has one; 2 MPa unless given, assumed."""
+    limiting_fall: Annotated[float, FALL] | None = None
+    """Relative fall of the limiting shear stress per kelvin; none unless given, no figure was found."""
     asperities: (
         Annotated[str, BeforeValidator(named(_asperities, "law of asperity contact"))] | None
     ) = None
@@ -965,7 +972,14 @@ class FilmTable(Table):
         return self
 
 
-_OF_SHEAR = ("eyring_stress", "limiting_coefficient", "limiting_stress")
+_OF_SHEAR = (
+    "eyring_stress",
+    "critical_stress",
+    "shear_exponent",
+    "limiting_coefficient",
+    "limiting_stress",
+    "limiting_fall",
+)
 _OF_ROUGH = ("summits", "eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction")
 _OF_ENDS = ("end_length", "end_radius", "end_angle", "end_line_load", "end_drop")
 

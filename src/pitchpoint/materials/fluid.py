@@ -43,6 +43,8 @@ class Fluid(eqx.Module):
         density_law: name in `DENSITY`; static.
         shear_law: name in `SHEAR_STRESS`; static.
         shear_parameters: those of the shear law that differ from its defaults, by name [SI].
+        volume_parameters: likewise of the laws of viscosity and density, where they rest on the volume of
+            the oil.
 
     Raises:
         InputError: there is no law of a name, or no parameter of one; the message has the nearest ones.
@@ -59,6 +61,7 @@ class Fluid(eqx.Module):
     temperature: Float[Array, "..."]
     density: Float[Array, "..."]
     shear_parameters: dict[str, Float[Array, "..."]]
+    volume_parameters: dict[str, Float[Array, "..."]]
     viscosity_law: str = eqx.field(static=True)
     density_law: str = eqx.field(static=True)
     shear_law: str = eqx.field(static=True)
@@ -75,6 +78,7 @@ class Fluid(eqx.Module):
         density_law: str = USUAL_DENSITY,
         shear_law: str = USUAL_SHEAR_STRESS,
         shear_parameters: Mapping[str, ArrayLike] | None = None,
+        volume_parameters: Mapping[str, ArrayLike] | None = None,
     ) -> None:
         self.viscosity, self.density = as_array(viscosity), as_array(density)
         self.pressure_viscosity = as_array(pressure_viscosity)
@@ -83,7 +87,8 @@ class Fluid(eqx.Module):
         self.viscosity_law = VISCOSITY[viscosity_law].name
         self.density_law = DENSITY[density_law].name
         self.shear_law = SHEAR_STRESS[shear_law].name
-        self.shear_parameters = _own(SHEAR_STRESS[shear_law], shear_parameters or {})
+        self.shear_parameters = _own(shear_parameters or {}, SHEAR_STRESS[shear_law])
+        self.volume_parameters = _own(volume_parameters or {}, *self._of_volume)
 
     @classmethod
     def of(
@@ -116,7 +121,13 @@ class Fluid(eqx.Module):
             density_law=density_law,
             shear_law=shear_law,
             shear_parameters=shear_parameters,
+            volume_parameters=_volume(oil, temperature, viscosity_law, density_law),
         )
+
+    @property
+    def _of_volume(self) -> tuple[RheologyLaw, RheologyLaw]:
+        """Laws of viscosity and density."""
+        return VISCOSITY[self.viscosity_law], DENSITY[self.density_law]
 
     def viscosity_at(self, pressure: Each, temperature_rise: Each | float = 0.0) -> Each:
         """Viscosity under pressure [Pa s].
@@ -125,13 +136,15 @@ class Fluid(eqx.Module):
             pressure: above ambient [Pa].
             temperature_rise: above `temperature` [K].
         """
-        return VISCOSITY[self.viscosity_law].function(
+        law, _ = self._of_volume
+        return law.function(
             pressure=pressure,
             temperature_rise=temperature_rise,
             viscosity=self.viscosity,
             pressure_viscosity=self.pressure_viscosity,
             temperature=self.temperature,
             viscosity_slope=self.viscosity_slope,
+            **_known_to(law, self.volume_parameters),
         )
 
     def density_ratio(self, pressure: Each, temperature_rise: Each | float = 0.0) -> Each:
@@ -141,8 +154,12 @@ class Fluid(eqx.Module):
             pressure: above ambient [Pa].
             temperature_rise: above `temperature` [K].
         """
-        law = DENSITY[self.density_law]
-        return law.function(pressure=pressure, temperature_rise=temperature_rise)
+        _, law = self._of_volume
+        return law.function(
+            pressure=pressure,
+            temperature_rise=temperature_rise,
+            **_known_to(law, self.volume_parameters),
+        )
 
     def shear_stress(
         self, shear_rate: Each, pressure: Each, temperature_rise: Each | float = 0.0
@@ -158,6 +175,7 @@ class Fluid(eqx.Module):
             viscosity=self.viscosity_at(pressure, temperature_rise),
             shear_rate=shear_rate,
             pressure=pressure,
+            temperature_rise=temperature_rise,
             **self.shear_parameters,
         )
 
@@ -177,15 +195,30 @@ class Fluid(eqx.Module):
             "a pressure of 1.6 GPa is outside the range of 'roelands_1966', up to 1 GPa"
         """
         values = {"pressure": pressure, "index": np.asarray(self.index)}
-        laws = VISCOSITY[self.viscosity_law], DENSITY[self.density_law]
-        told = (law.outside(**values) for law in laws)
+        told = (law.outside(**values) for law in self._of_volume)
         return next((one for one in told if one is not None), None)
 
 
-def _own(law: RheologyLaw, given: Mapping[str, ArrayLike]) -> dict[str, Float[Array, "..."]]:
-    """Parameters of a law as arrays."""
-    for name in given.keys() - law.parameters.keys():
-        raise InputError(
-            f"'{shorten(name)}' is no parameter of '{law.name}'{nearest(name, law.parameters)}"
-        )
+def _own(given: Mapping[str, ArrayLike], *laws: RheologyLaw) -> dict[str, Float[Array, "..."]]:
+    """Parameters of laws as arrays."""
+    known = [*dict.fromkeys(name for law in laws for name in law.parameters)]
+    for name in given.keys() - {*known}:
+        what = " or ".join(f"'{law.name}'" for law in laws)
+        raise InputError(f"'{shorten(name)}' is no parameter of {what}{nearest(name, known)}")
     return {name: as_array(value) for name, value in given.items()}
+
+
+def _known_to(law: RheologyLaw, values: Mapping[str, Array]) -> dict[str, Array]:
+    """Those of some parameters that a law has."""
+    return {name: values[name] for name in law.parameters if name in values}
+
+
+def _volume(
+    oil: Lubricant, temperature: ArrayLike, viscosity_law: str, density_law: str
+) -> dict[str, Array]:
+    """Free volume and equation of state of an oil at a temperature, as far as laws ask for them."""
+    if oil.free_volume is None:
+        return {}
+    known = oil.free_volume.parameters(temperature)
+    laws = VISCOSITY[viscosity_law], DENSITY[density_law]
+    return {name: one for law in laws for name, one in _known_to(law, known).items()}

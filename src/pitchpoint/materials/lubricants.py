@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
 from typing import Any
 
@@ -21,6 +22,7 @@ from pitchpoint.programs import program
 from pitchpoint.registry import known_as, unknown_name
 
 __all__ = [
+    "FreeVolume",
     "GreaseRecord",
     "Lubricant",
     "LubricantRecord",
@@ -31,6 +33,7 @@ __all__ = [
     "find",
     "known_cold",
     "of_base",
+    "without_free_volume",
 ]
 
 ZERO_CELSIUS = 273.15
@@ -46,6 +49,52 @@ ASTRAY = 5.0
 Thin polyalphaolefins lie at half of it, oils thickened with polymers at twice it (both recalled), and 5 % in
 the viscosity at 100 degC move the line there by 1.5.
 """
+
+
+class FreeVolume(eqx.Module):
+    """What the viscosity of an oil under pressure follows from: volume that is occupied, and volume.
+
+    Args:
+        free_volume_factor: Doolittle's B, shape (...) [1].
+        occupied_volume: R0, part of the volume at ambient pressure and `volume_temperature`, shape (...) [1].
+        occupied_expansion: of the occupied volume with temperature, below zero, shape (...) [1/K].
+        volume_temperature: to which the constants belong, shape (...) [K].
+        modulus_rise: of the bulk modulus with pressure, K' of Tait's equation, shape (...) [1].
+        modulus_cold: bulk modulus at ambient pressure, extrapolated to absolute zero, shape (...) [Pa].
+        modulus_slope: relative fall of the bulk modulus per kelvin, shape (...) [1/K].
+        expansion: of the volume with temperature, shape (...) [1/K].
+
+    Source: Bair (2019).
+    """
+
+    free_volume_factor: Float[Array, "..."] = eqx.field(converter=as_array)
+    occupied_volume: Float[Array, "..."] = eqx.field(converter=as_array)
+    occupied_expansion: Float[Array, "..."] = eqx.field(converter=as_array)
+    volume_temperature: Float[Array, "..."] = eqx.field(converter=as_array)
+    modulus_rise: Float[Array, "..."] = eqx.field(converter=as_array)
+    modulus_cold: Float[Array, "..."] = eqx.field(converter=as_array)
+    modulus_slope: Float[Array, "..."] = eqx.field(converter=as_array)
+    expansion: Float[Array, "..."] = eqx.field(converter=as_array)
+
+    def parameters(self, T: ArrayLike) -> dict[str, Float[Array, "..."]]:
+        """Those of `doolittle_1951` and `tait_1888` for an oil whose inlet is at T [K], shapes (...) [SI]."""
+        rise = jnp.asarray(T) - self.volume_temperature
+        grown = 1.0 + self.expansion * rise
+        return {
+            "occupied_volume": self.occupied_volume
+            * (1.0 + self.occupied_expansion * rise)
+            / grown,
+            "bulk_modulus": self.modulus_cold * jnp.exp(-self.modulus_slope * jnp.asarray(T)),
+            "modulus_rise": self.modulus_rise,
+            "modulus_slope": self.modulus_slope,
+            "expansion": self.expansion / grown,
+        }
+
+    def pressure_viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
+        """Slope of ln eta over the pressure at ambient pressure and T [K], shape (...) [1/Pa]."""
+        at = self.parameters(T)
+        occupied = at["occupied_volume"]
+        return self.free_volume_factor * occupied / (1.0 - occupied) ** 2 / at["bulk_modulus"]
 
 
 class Lubricant(eqx.Module):
@@ -67,6 +116,7 @@ class Lubricant(eqx.Module):
         T_min: lowest temperature the values are meant for, shape (...) [K].
         T_max: highest temperature the values are meant for, shape (...) [K].
         nu_0: kinematic viscosity at -40 degC, shape (...) [m2/s]; None for an oil of which it is not known.
+        free_volume: takes the place of Gold's law; None for an oil of which it is not known.
     """
 
     nu_1: Float[Array, "..."]
@@ -82,6 +132,7 @@ class Lubricant(eqx.Module):
     T_min: Float[Array, "..."]
     T_max: Float[Array, "..."]
     nu_0: Float[Array, "..."] | None
+    free_volume: FreeVolume | None
 
     def __init__(
         self,
@@ -99,6 +150,7 @@ class Lubricant(eqx.Module):
         T_min: ArrayLike,
         T_max: ArrayLike,
         nu_0: ArrayLike | None = None,
+        free_volume: FreeVolume | None = None,
     ) -> None:
         self.nu_1, self.nu_2 = as_array(nu_1), as_array(nu_2)
         self.T_1, self.T_2 = as_array(T_1), as_array(T_2)
@@ -108,6 +160,7 @@ class Lubricant(eqx.Module):
         self.conductivity = as_array(conductivity)
         self.T_min, self.T_max = as_array(T_min), as_array(T_max)
         self.nu_0 = None if nu_0 is None else as_array(nu_0)
+        self.free_volume = free_volume
 
     def kinematic_viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
         """Kinematic viscosity at T [K] by ASTM D341, shape (...) [m2/s].
@@ -142,8 +195,10 @@ class Lubricant(eqx.Module):
     def pressure_viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
         """Pressure-viscosity coefficient at T [K], shape (...) [1/Pa].
 
-        Source: Gold et al. (2001).
+        Source: Gold et al. (2001), where the free volume is not known.
         """
+        if self.free_volume is not None:
+            return self.free_volume.pressure_viscosity(T)
         return gold_2001(nu=self.kinematic_viscosity(T), s=self.gold_s, t=self.gold_t)
 
     def in_range(self, T: ArrayLike) -> Bool[Array, "..."]:
@@ -197,6 +252,7 @@ class LubricantRecord:
             below and 20 K above them.
         nu_0: kinematic viscosity at -40 degC [m2/s], above nu_1, where it is known; extrapolated from nu_1
             and nu_2 alone it comes out twice too high for thin polyalphaolefins.
+        free_volume: values of a `FreeVolume` by name, where they are known; none otherwise.
 
     Raises:
         InputError: a value is out of its physical range.
@@ -224,9 +280,10 @@ class LubricantRecord:
     T_max: Datum = _T_HIGHEST
     conductivity: Datum = _CONDUCTIVITY
     nu_0: Datum | None = None
+    free_volume: Mapping[str, Datum] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
-        free = {"density_slope", "gold_t"}  # these two may be zero or negative
+        free = {"density_slope", "gold_t", "occupied_expansion"}  # these may be zero or negative
         check_positive(self.name, [item for item in self.data().items() if item[0] not in free])
         _check_order(self)
 
@@ -249,12 +306,17 @@ class LubricantRecord:
 
     def data(self) -> dict[str, Datum]:
         """Return the values by name, each with its status and source."""
-        every = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {**self._plain(), **self.free_volume}
+
+    def _plain(self) -> dict[str, Datum]:
+        every = {one.name: getattr(self, one.name) for one in fields(self)}
         return {key: value for key, value in every.items() if isinstance(value, Datum)}
 
     def build(self) -> Lubricant:
         """Return the numbers alone, for a computation."""
-        return Lubricant(**{key: datum.value for key, datum in self.data().items()})
+        values = {key: datum.value for key, datum in self._plain().items()}
+        volume = {key: as_array(datum.value) for key, datum in self.free_volume.items()}
+        return Lubricant(**values, free_volume=FreeVolume(**volume) if volume else None)
 
     def with_values(self, **values: float) -> LubricantRecord:
         """Return a copy with some values [SI] replaced by the user's own.
@@ -262,10 +324,10 @@ class LubricantRecord:
         Raises:
             InputError: there is no value of that name.
         """
-        for key in values.keys() - {*self.data(), "nu_0"}:
-            raise InputError(f'"{key}" is not a property of an oil', allowed=self.data())
+        for key in values.keys() - {*self._plain(), "nu_0"}:
+            raise InputError(f'"{key}" is not a property of an oil', allowed=self._plain())
         given: dict[str, Any] = {key: Datum(value=value) for key, value in values.items()}
-        return replace(self, **given)
+        return replace(self, **without_free_volume(given), **given)
 
     def thickened(self, *, thickener: str = "", consistency: str = "") -> GreaseRecord:
         """Return the grease that has this oil as its base oil.
@@ -280,7 +342,8 @@ class LubricantRecord:
             base=self.base,
             thickener=thickener,
             consistency=consistency,
-            **self.data(),
+            free_volume=self.free_volume,
+            **self._plain(),
         )
 
 
@@ -394,7 +457,9 @@ def _record(name: str, entry: dict[str, Any], bases: dict[str, Any]) -> Lubrican
     plain = {key: read_datum(entry.get(col, base[col])) for key, col in _PLAIN.items()}
     if "nu_minus_40_mm2_s" in entry:
         plain |= known_cold(read_datum(entry["nu_minus_40_mm2_s"], scale=1e-6))
-    oil = LubricantRecord(name=name, title=entry["title"], base=entry["base"], **values, **plain)
+    volume = {key: read_datum(value) for key, value in entry.get("free_volume", {}).items()}
+    known = {"base": entry["base"], "free_volume": volume, **values, **plain}
+    oil = LubricantRecord(name=name, title=entry["title"], **known)
     words = {key: str(entry[key]) for key in ("thickener", "consistency") if key in entry}
     return oil.thickened(**words) if words else oil
 
@@ -407,6 +472,11 @@ def known_cold(viscosity: Datum) -> dict[str, Datum]:
     """
     lowest = Datum(value=COLD, status="assumed", note="down to where its viscosity is known")
     return {"nu_0": viscosity, "T_min": lowest}
+
+
+def without_free_volume(given: Mapping[str, Datum]) -> dict[str, Any]:
+    """What a pressure-viscosity coefficient by value does away with: the volume it would follow from."""
+    return {"free_volume": {}} if "gold_s" in given else {}
 
 
 def of_base(name: str, base: str, *, nu_1: float, nu_2: float, title: str = "") -> LubricantRecord:
@@ -430,9 +500,8 @@ def of_base(name: str, base: str, *, nu_1: float, nu_2: float, title: str = "") 
     if base not in base_oils():
         raise unknown_name(base, base_oils(), what="a base oil")
     viscosities = {"nu_1": Datum(value=nu_1), "nu_2": Datum(value=nu_2)}
-    return LubricantRecord(
-        name=name, title=title or name, base=base, **viscosities, **base_oils()[base]
-    )
+    data: dict[str, Any] = {**viscosities, **base_oils()[base]}
+    return LubricantRecord(name=name, title=title or name, base=base, **data)
 
 
 def base_oils() -> dict[str, dict[str, Datum]]:

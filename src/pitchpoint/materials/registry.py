@@ -109,6 +109,16 @@ _OIL: Final[dict[str, Any]] = {
 }
 
 
+_SHEARED: Final[dict[str, Any]] = {
+    "viscosity": 100.0,
+    "shear_rate": 1e6,
+    "pressure": 1e9,
+    "temperature_rise": 10.0,
+}
+
+_NO_CURVE: Final = "No measured traction curve was found in numbers to hold it against."
+
+
 VISCOSITY = Registry(
     "law of viscosity under pressure",
     RheologyLaw(
@@ -129,6 +139,17 @@ VISCOSITY = Registry(
         ({**_OIL, "pressure": 0.1e9, "temperature_rise": 5.0}, 0.295562243957226),
         "Low pressures; beyond 0.5 GPa the viscosity is much too high.",
         {"pressure": (LEAST_PRESSURE, 0.5e9)},
+    ),
+    RheologyLaw(
+        "doolittle_1951",
+        "Doolittle, free volume with Tait's equation of state",
+        "pitchpoint.materials.rheology:doolittle_1951",
+        ("doolittle_1951", "bair_2019"),
+        ({**_OIL, "pressure": 0.5e9, "temperature_rise": 20.0}, 19.450903310783378),
+        "Oils whose free volume is in the catalogue, up to about 1 GPa; of every other oil occupied volume "
+        "and equation of state are assumed, and so is its viscosity in the middle of a contact.",
+        {"pressure": (LEAST_PRESSURE, 1e9)},
+        note=_NO_CURVE,
     ),
 )
 """Laws f(*, pressure, temperature_rise, viscosity, pressure_viscosity, temperature, viscosity_slope)."""
@@ -153,8 +174,16 @@ DENSITY = Registry(
         ({"pressure": 1e9, "temperature_rise": 10.0}, 1.0),
         "Films come out too thick at high pressure.",
     ),
+    RheologyLaw(
+        "tait_1888",
+        "Tait",
+        "pitchpoint.materials.rheology:tait_1888",
+        ("tait_1888", "bair_2019"),
+        ({"pressure": 1e9, "temperature_rise": 10.0}, 1.2405533994211617),
+        "Oils whose free volume is in the catalogue; of every other oil its four constants are assumed.",
+    ),
 )
-"""Laws f(*, pressure, temperature_rise), density over that at ambient pressure."""
+"""Laws f(*, pressure, temperature_rise) with own parameters, density over that at ambient pressure."""
 
 
 SHEAR_STRESS = Registry(
@@ -164,7 +193,7 @@ SHEAR_STRESS = Registry(
         "Newtonian",
         "pitchpoint.materials.rheology:newtonian",
         (),
-        ({"viscosity": 10.0, "shear_rate": -1e5, "pressure": 1e9}, -1e6),
+        ({"viscosity": 10.0, "shear_rate": -1e5, "pressure": 1e9, "temperature_rise": 0.0}, -1e6),
         "Small shear stresses; in a sliding contact under pressure far too high.",
     ),
     RheologyLaw(
@@ -172,7 +201,7 @@ SHEAR_STRESS = Registry(
         "Ree-Eyring",
         "pitchpoint.materials.rheology:ree_eyring_1955",
         ("ree_eyring_1955", "johnson_tevaarwerk_1977"),
-        ({"viscosity": 100.0, "shear_rate": 1e6, "pressure": 1e9}, 18447519.34494453),
+        (_SHEARED, 18447519.34494453),
         "Thinning up to the stress at which an oil yields; its parameter belongs to one oil at one mean "
         "pressure and temperature.",
     ),
@@ -181,8 +210,19 @@ SHEAR_STRESS = Registry(
         "Bair-Winer, limiting shear stress",
         "pitchpoint.materials.rheology:bair_winer_1979",
         ("bair_winer_1979",),
-        ({"viscosity": 100.0, "shear_rate": 1e6, "pressure": 1e9}, 57779314.22479116),
+        (_SHEARED, 57779314.22479116),
         "Oils near their limiting shear stress, which belongs to one oil and temperature.",
     ),
+    RheologyLaw(
+        "carreau_1972",
+        "Carreau, cut at the limiting shear stress",
+        "pitchpoint.materials.rheology:carreau_1972",
+        ("carreau_1972", "bair_2019", "habchi_2018"),
+        (_SHEARED, 23132370.485288832),
+        "Oils from their first thinning up to the limiting shear stress; its parameters belong to one oil "
+        "and are assumed unless given.",
+        note=_NO_CURVE,
+    ),
 )
-"""Laws f(*, viscosity, shear_rate, pressure) with own parameters, stress with the sign of the shear rate."""
+"""Laws f(*, viscosity, shear_rate, pressure, temperature_rise) with own parameters; stress with the sign of
+the shear rate."""

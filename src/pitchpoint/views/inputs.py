@@ -52,6 +52,14 @@ _LABELS = {
     "conductivity": "thermal conductivity",
     "T_min": "lowest temperature",
     "T_max": "highest temperature",
+    "free_volume_factor": "Doolittle's B",
+    "occupied_volume": "part of the volume that molecules occupy",
+    "occupied_expansion": "expansion of the occupied volume",
+    "volume_temperature": "temperature of the constants of volume",
+    "modulus_rise": "rise of the bulk modulus with pressure",
+    "modulus_cold": "bulk modulus, extrapolated to absolute zero",
+    "modulus_slope": "fall of the bulk modulus with temperature",
+    "expansion": "thermal expansion",
     "tip_thickness": "tip thickness in the normal section",
 }
 

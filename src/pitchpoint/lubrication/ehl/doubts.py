@@ -50,6 +50,9 @@ WEAK: Final = 1e4
 THICK: Final = 20e-6
 """Film [m] above which a value may be in another unit: bodies with a radius of 5 m have 4 to 12 um."""
 
+FREE: Final = ("limiting_fall", "expansion", "modulus_slope")
+"""Parameters of an oil that may be zero."""
+
 NEWTONIAN: Final = "newtonian"
 """Name of the shear law without a limit."""
 
@@ -79,8 +82,9 @@ def check(contact: LineContact) -> None:
         ),
         "inlet": (contact.inlet, "a distance at which oil begins", 1e3, "mm"),
     }
-    for name, value in fluid.shear_parameters.items():
-        positive[name] = (value, f"a shear parameter {name}", 1.0, "in SI units")
+    for name, value in {**fluid.shear_parameters, **fluid.volume_parameters}.items():
+        if name not in FREE:
+            positive[name] = (value, f"a parameter {name} of the oil", 1.0, "in SI units")
     if texture is not None:
         positive["rq"] = (texture.rq, "a composite roughness Rq", 1e6, "um")
     if isinstance(texture, Rough):

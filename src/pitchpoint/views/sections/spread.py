@@ -76,7 +76,18 @@ def spread_sentence(outcome: Outcome) -> str:
     """How far the friction laws that apply disagree about the mean efficiency, and which do not apply."""
     if why := outcome.manifest["lacks"].get("laws"):
         return f"{why[0].upper()}{why[1:]}."
-    return " ".join([_within(outcome), *_apart(outcome)])
+    return " ".join([_within(outcome), *_frictions(outcome), *_apart(outcome)])
+
+
+def _frictions(outcome: Outcome) -> Iterator[str]:
+    """Mean friction by the laws that differ most, where they do by much."""
+    ends = json.loads(outcome.parts["laws"].attrs.get("friction_apart", "[]"))
+    if ends:
+        (low, least), (high, most) = ends
+        yield (
+            f"Mean friction is {show.quantity('mean_friction', least)} ({low}) to "
+            f"{show.quantity('mean_friction', most)} ({high}), {show.number(most / least)} times as much."
+        )
 
 
 def _within(outcome: Outcome) -> str:
