@@ -3,9 +3,11 @@
 import json
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping
+from functools import partial
 from typing import Any, Final
 
 __all__ = [
+    "BRIEF",
     "FELT",
     "GUESSED",
     "LEFT_OUT",
@@ -23,6 +25,9 @@ __all__ = [
     "stored",
     "worst_of_kinds",
 ]
+
+BRIEF: Final = 70
+"""Characters that "Doubtful: " leaves of a line of eighty."""
 
 FELT: Final = 0.01
 """Part of the answer that a doubt has to move to be told."""
@@ -54,6 +59,8 @@ class Doubt(str):
         extent: larger is worse; comparable within a kind.
         moves: part of the answer that it moves; where nobody knows, a rank from `WITHHELD` to `REMARKED`.
         about: variables that it is about; empty where it is about all of a result.
+        brief: number and consequence in at most `BRIEF` characters, for a screen; the sentence itself where
+            that is as short.
 
     Example:
         >>> from pitchpoint.doubts import Doubt
@@ -66,6 +73,7 @@ class Doubt(str):
     extent: float
     moves: float
     about: tuple[str, ...]
+    brief: str
 
     def __new__(
         cls,
@@ -75,16 +83,18 @@ class Doubt(str):
         *,
         moves: float = LEFT_OUT,
         about: tuple[str, ...] = (),
+        brief: str = "",
     ) -> "Doubt":
         """See the class."""
         doubt = super().__new__(cls, sentence)
         doubt.kind, doubt.extent, doubt.moves = kind or str(sentence), float(extent), float(moves)
-        doubt.about = about
+        doubt.about, doubt.brief = about, brief or str(sentence)
         return doubt
 
     def __getnewargs_ex__(self) -> tuple[tuple[str, str, float], dict[str, Any]]:
         """What copies are made of."""
-        return (str(self), self.kind, self.extent), {"moves": self.moves, "about": self.about}
+        named = {"moves": self.moves, "about": self.about, "brief": self.brief}
+        return (str(self), self.kind, self.extent), named
 
 
 def as_doubt(sentence: str) -> Doubt:
@@ -97,10 +107,28 @@ def moves(sentence: str) -> float:
     return as_doubt(sentence).moves
 
 
-def reworded(sentence: str, words: str) -> Doubt:
-    """Other words for the same doubt."""
+def reworded(
+    sentence: str,
+    change: Callable[[str], str],
+    change_brief: Callable[[str], str] | None = None,
+) -> Doubt:
+    """The same doubt with its sentence changed, and its brief alike where nothing else is said.
+
+    Example:
+        >>> from pitchpoint.doubts import Doubt
+        >>> tips = Doubt("the tips of its teeth are thin", brief="thin tips")
+        >>> reworded(tips, "Gear 2: {}.".format).brief
+        'Gear 2: thin tips.'
+    """
     doubt = as_doubt(sentence)
-    return Doubt(words, doubt.kind, doubt.extent, moves=doubt.moves, about=doubt.about)
+    return _alike(doubt, change(doubt), (change_brief or change)(doubt.brief))
+
+
+def _alike(doubt: Doubt, sentence: str, brief: str) -> Doubt:
+    """Other words for the same doubt."""
+    return Doubt(
+        sentence, doubt.kind, doubt.extent, moves=doubt.moves, about=doubt.about, brief=brief
+    )
 
 
 def concerns(sentence: str, there: Collection[str]) -> bool:
@@ -109,17 +137,22 @@ def concerns(sentence: str, there: Collection[str]) -> bool:
     return not about or any(name in there for name in about)
 
 
-def fails(sentence: str) -> str:
+def fails(sentence: str, brief: str = "") -> Doubt:
     """Sentence marked as one on what cannot be; whoever warns of a result may tell such ones.
+
+    Args:
+        sentence: with its stop.
+        brief: see `Doubt`; that of the sentence where it has one.
 
     Example:
         >>> fails("the teeth of gear 2 melt.")
         'Fails: the teeth of gear 2 melt.'
     """
-    return f"{_FAILS}{sentence}"
+    doubt = as_doubt(sentence)
+    return _alike(doubt, f"{_FAILS}{doubt}", f"{_FAILS}{brief or doubt.brief}")
 
 
-def in_stage(number: int, sentence: str) -> str:
+def in_stage(number: int, sentence: str) -> Doubt:
     """Sentence on one stage of a drive.
 
     Example:
@@ -129,9 +162,14 @@ def in_stage(number: int, sentence: str) -> str:
         >>> in_stage(1, "Tips are pointed.")
         'Stage 1: tips are pointed.'
     """
+    return reworded(sentence, partial(_stage_words, number))
+
+
+def _stage_words(number: int, sentence: str) -> str:
+    """Words on a stage."""
     if sentence.startswith(_FAILS):
-        return fails(f"stage {number}: {sentence.removeprefix(_FAILS)}")
-    return reworded(sentence, f"Stage {number}: {sentence[:1].lower()}{sentence[1:]}")
+        return f"{_FAILS}stage {number}: {sentence.removeprefix(_FAILS)}"
+    return f"Stage {number}: {sentence[:1].lower()}{sentence[1:]}"
 
 
 def apart(sentences: Iterable[str]) -> dict[str, list[str]]:
@@ -163,7 +201,7 @@ def apart(sentences: Iterable[str]) -> dict[str, list[str]]:
 def stored(sentences: Iterable[str]) -> dict[str, str]:
     """Attributes of a dataset that hold sentences and what they move."""
     every = [as_doubt(text) for text in sentences]
-    rest = [[one.kind, one.extent, one.moves, one.about] for one in every]
+    rest = [[one.kind, one.extent, one.moves, one.about, one.brief] for one in every]
     return {"warnings": json.dumps(every), "doubts": json.dumps(rest)}
 
 
@@ -173,8 +211,8 @@ def doubts_of(attributes: Mapping[str, Any]) -> list[Doubt]:
     if "doubts" not in attributes:
         return [*map(Doubt, texts)]
     return [
-        Doubt(text, kind, extent, moves=part, about=tuple(about))
-        for text, (kind, extent, part, about) in zip(
+        Doubt(text, kind, extent, moves=part, about=tuple(about), brief="".join(brief))
+        for text, (kind, extent, part, about, *brief) in zip(
             texts, json.loads(attributes["doubts"]), strict=True
         )
     ]
@@ -200,8 +238,9 @@ def _merged(
         group = alike.setdefault(numbered.sub("#", doubt) if number else doubt, {})
         group[number] = max(group.get(number, doubt), doubt, key=moves)
     return [
-        reworded(max(group.values(), key=moves), named(next(iter(group.values())), [*group]))
+        _alike(max(group.values(), key=moves), named(doubt, [*group]), named(doubt.brief, [*group]))
         for group in alike.values()
+        for doubt in [next(iter(group.values()))]
     ]
 
 

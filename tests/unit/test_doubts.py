@@ -71,7 +71,7 @@ def test_datasets_hold_what_doubts_are_worth() -> None:
         for name in ("kind", "extent", "moves", "about"):
             assert getattr(again, name) == getattr(one, name) == getattr(copy(one), name)
     assert doubts_of({"warnings": '["of an old file."]'}) == ["of an old file."]
-    assert reworded(doubts[0], "Films: off.").moves == doubts[0].moves
+    assert reworded(doubts[0], "Films: {}".format).moves == doubts[0].moves
 
 
 def test_of_a_kind_the_worst_one_stays() -> None:

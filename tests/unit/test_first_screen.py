@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from screens import REPORT, faults_of_the_screen, screen
 
 from pitchpoint.cases.build import ALONE, LACKING
+from pitchpoint.doubts import Doubt
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.columns import fitted
@@ -101,6 +102,19 @@ def test_what_fails_stands_before_what_is_doubtful_and_both_are_counted(
     assert lines[3].startswith("Doubtful: doubt a") and "b," not in lines[3]
     assert lines[4] == "2 more of this kind are in the report."
     assert lines[5].startswith("Efficiency")
+
+
+@pytest.mark.parametrize("width", [40, 80])
+def test_what_is_doubtful_is_never_cut(pair: dict[str, Outcome], width: int) -> None:
+    """A doubt shows its brief; what has none goes on lines of its own, or is counted where it is too long."""
+    words = "off by 40 %, of which much more could be said on a screen that had more room for it"
+    long = " ".join(f"word{k}" for k in range(90))
+    warnings = [Doubt("off by 20 %, at length.", brief="off by 20 %."), Doubt(words), Doubt(long)]
+    lines = shown({"default": doubting(pair["default"], warnings=warnings)}, width)
+    text = " ".join(lines)
+    assert "Doubtful: off by 20 %. Doubtful: " in text and words in text
+    assert "word1" not in text
+    assert "1 more of this kind is in the report." in lines
 
 
 def test_variants_stand_side_by_side(pair: dict[str, Outcome]) -> None:

@@ -39,6 +39,7 @@ __all__ = [
     "film_warning",
     "films_lost",
     "jamming_words",
+    "leaves",
     "proportions_counted",
     "proportions_words",
     "rolling_share",
@@ -173,6 +174,7 @@ def conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
             f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
             f"radius is cut at {float(mesh.largest_radius):.3g} m, and pressure and film there say little.",
             moves=flat.sum() / loaded.sum(),
+            brief=f"{flat.sum()} of {loaded.sum()} contacts conformal: film says little.",
         )
     ]
 
@@ -202,6 +204,7 @@ def face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
             f"Of the contact lines that carry, {100.0 * idle:.2g} % get no load at {load}; flanks do not "
             "touch there.",
             moves=idle,
+            brief=f"{100.0 * idle:.2g} % of the contact lines carry nothing at {load}.",
         )
     ]
 
@@ -229,6 +232,7 @@ def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndar
                 "Less crowning, end relief or misalignment, a higher load or more slices leave a line of "
                 "contact.",
                 moves=WITHHELD,
+                brief=f"At {nearly.sum()} of {len(points)} points a line is nearly a point.",
             )
         )
     if partly.any():
@@ -238,6 +242,7 @@ def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndar
                 f"At {partly.sum()} of {len(points)} points a part of the contact lines that carry, up to "
                 f"{100.0 * most:.2g} %, gets no load; flanks do not touch there.",
                 moves=most,
+                brief=f"Up to {100.0 * most:.2g} % of the contact lines carry nothing at some points.",
             )
         )
     return told
@@ -261,7 +266,8 @@ def room_warning(run: Mapping[str, Any]) -> list[str]:
         fails(
             f"the contact reaches {_length(longest)} to each side across the face, and the nearest end of a "
             f"face is {_length(room)} away: its pressure, approach and film are those of an ellipse that has "
-            "room."
+            "room.",
+            f"the contact needs {_length(longest)} of a face that leaves {_length(room)}.",
         )
     ]
 
@@ -306,7 +312,7 @@ def _proportions(points: Sequence[Built]) -> list[str]:
 
 def film_warning(film: FilmThickness, run: Mapping[str, np.ndarray]) -> list[str]:
     """Conditions that leave the range of the film law, which answers there too."""
-    return told_of_law(film, _leaves(film, run, "film"))
+    return told_of_law(film, leaves(film, run, "film"))
 
 
 def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
@@ -318,17 +324,20 @@ def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
     """
     warmest = float(np.nanmax(_rise(built, run), initial=0.0))
     if warmest == 0.0:
-        return f"{COLD}; {INLET}."
+        return Doubt(f"{COLD}; {INLET}.", brief=f"{COLD}: as warm as the oil in their inlet.")
     felt = 1.0 - exp(-THINS * warmest)
+    brief = f"{COLD}; friction would warm them by some {warmest:.2g} K."
     told = f"{COLD}, and friction would warm them by up to about {warmest:.2g} K; {INLET}"
     if warmest < WARM:
-        return Doubt(f"{told}.", moves=felt)
+        return Doubt(f"{told}.", moves=felt, brief=brief)
     squeezes = built.case.film is not None and built.case.film.squeezes
     advice = 'thermal = "mean_film" in [film] takes the heat along' + (
         ", of steady films alone: leave time out for that" if squeezes else ""
     )
     return Doubt(
-        f"{told}, so that friction comes out too high and the film too thick; {advice}.", moves=felt
+        f"{told}, so that friction comes out too high and the film too thick; {advice}.",
+        moves=felt,
+        brief=brief,
     )
 
 
@@ -372,13 +381,14 @@ def asperity_warning(law: AsperityLoad | None, run: Mapping[str, np.ndarray]) ->
     """Conditions that leave the range of the law of the load on asperities, and where it is cut."""
     if law is None:
         return []
-    reasons: list[str] = [*_leaves(law, run, "asperity load")]
+    reasons: list[str] = [*leaves(law, run, "asperity load")]
     cut = np.any(run["asperity_load_ratio"] >= 1.0, axis=(1, 2))
     if cut.any():
         reasons.append(
             Doubt(
                 f"its asperity load is cut at 100 % {_how_long(cut, run['weight'])}; the law gives more",
                 moves=GUESSED * float(np.sum(cut * run["weight"])),
+                brief=f"all load on asperities {_part_of(cut, run['weight'])}",
             )
         )
     return told_of_law(law, reasons)
@@ -386,22 +396,24 @@ def asperity_warning(law: AsperityLoad | None, run: Mapping[str, np.ndarray]) ->
 
 def told_of_law(law: Limited, reasons: Sequence[str]) -> list[str]:
     """Sentences on a law."""
-    return [reworded(reason, f"{law.name}: {reason}.") for reason in reasons]
+    return [reworded(reason, lambda text: f"{law.name}: {text}.") for reason in reasons]
 
 
 def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
     """Why a law does not hold at an operating point, in words; empty where it does."""
-    reasons: list[str] = [*_leaves(law, run, "friction"), *map(str, run.get("outside films", ()))]
+    reasons: list[str] = [*leaves(law, run, "friction"), *map(str, run.get("outside films", ()))]
     if run["locked"].any():
-        locks = f"its friction coefficient, {run['friction'].max():.2g}, locks the mesh"
-        reasons.append(Doubt(locks, moves=WITHHELD))
+        largest = f"{run['friction'].max():.2g}"
+        locks = f"its friction coefficient, {largest}, locks the mesh"
+        reasons.append(Doubt(locks, moves=WITHHELD, brief=f"friction of {largest} locks the mesh"))
     loaded = run["load"] > 0.0
     if not loaded.any():
         return reasons
     lowest = float(run["friction"].min(where=loaded, initial=np.inf))
     if lowest < 0.0:
         drives = f"its friction coefficient falls to {lowest:.2g}: such friction drives the gears"
-        reasons.append(Doubt(drives, moves=WITHHELD))
+        brief = f"friction falls to {lowest:.2g} and drives the gears"
+        reasons.append(Doubt(drives, moves=WITHHELD, brief=brief))
     highest = float(run["friction"].max(where=loaded, initial=0.0))
     thinnest = float(run["lambda_ratio"].min(where=loaded, initial=np.inf))
     if law.full_film and thinnest < 1.0:
@@ -410,6 +422,7 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
                 f"its friction up to {highest:.2g} is an extrapolation; the film is down to {thinnest:.2g} "
                 "of the composite roughness Rq, and the law describes contacts with a full film",
                 moves=GUESSED,
+                brief=f"film down to {thinnest:.2g} Rq, friction extrapolated",
             )
         )
     elif highest > law.largest:
@@ -418,6 +431,7 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
                 f"its friction up to {highest:.2g} is an extrapolation; steel in oil has at most about "
                 f"{BOUNDARY:g}",
                 moves=highest / law.largest - 1.0,
+                brief=f"friction {highest:.2g}, steel in oil has {BOUNDARY:g}",
             )
         )
     rolling = ROLLING_RESISTANCE[built.case.models.rolling_resistance]
@@ -428,12 +442,13 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
                 "its coefficient was fitted to whole losses of gears, those of rolling among them; with "
                 f"'{rolling.name}' beside it rolling counts twice, here with {share:.2g} % of the loss",
                 moves=share / 100.0,
+                brief=f"rolling counts twice, {share:.2g} % of the loss",
             )
         )
     return reasons
 
 
-def _leaves(law: Limited, run: Mapping[str, np.ndarray], gives: str) -> list[Doubt]:
+def leaves(law: Limited, run: Mapping[str, np.ndarray], gives: str) -> list[Doubt]:
     """Which conditions leave the range of a law that `gives` a film, say, in words."""
     outside = {name: run[f"outside {law.name} {name}"] for name in law.ranges}
     return [
@@ -441,6 +456,8 @@ def _leaves(law: Limited, run: Mapping[str, np.ndarray], gives: str) -> list[Dou
             f"its {gives} is an extrapolation {_how_long(where, run['weight'])}; the "
             f"{name.replace('_', ' ')} leaves the range of the law, {limits_words(name, law.ranges[name])}",
             moves=GUESSED * float(np.sum(where * run["weight"])),
+            brief=f"{name.removesuffix('_parameter').replace('_', ' ')} out of range "
+            f"{_part_of(where, run['weight'])}",
         )
         for name, where in outside.items()
         if np.any(where)
@@ -448,8 +465,13 @@ def _leaves(law: Limited, run: Mapping[str, np.ndarray], gives: str) -> list[Dou
 
 
 def _how_long(outside: np.ndarray, weight: np.ndarray) -> str:
+    share = _part_of(outside, weight)
+    return share if share == "throughout" else f"in {share.replace('a cycle', 'the mesh cycle')}"
+
+
+def _part_of(outside: np.ndarray, weight: np.ndarray) -> str:
     share = float(np.sum(outside * weight))
-    return "throughout" if share > 1.0 - 1e-9 else f"in {100.0 * share:.2g} % of the mesh cycle"
+    return "throughout" if share > 1.0 - 1e-9 else f"{100.0 * share:.2g} % of a cycle"
 
 
 def rolling_share(run: Mapping[str, np.ndarray]) -> float:

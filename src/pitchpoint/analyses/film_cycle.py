@@ -260,6 +260,7 @@ def _lost(codes: np.ndarray) -> Iterator[str]:
             f"Films: {int(np.sum(codes == code))} of {codes.size} loaded contacts have no film "
             f"({Code(code).sentence}); the loss and efficiency by films are withheld.",
             moves=WITHHELD,
+            brief=f"No film in {int(np.sum(codes == code))} of {codes.size} contacts: loss withheld.",
         )
 
 
@@ -278,14 +279,17 @@ def _worst(told: Sequence[tuple[Doubt, str]]) -> Doubt:
     """The worst one of warnings of one kind, with their places."""
     doubt, where = max(told, key=lambda one: one[0].extent)
     others = ", and less at others" if len(told) > 1 else ""
-    return reworded(doubt, f"Films{where}{others}: {doubt}.")
+    return reworded(doubt, f"Films{where}{others}: {{}}.".format, "Films: {}.".format)
 
 
 def _about(built: Built, states: States, found: xr.Dataset) -> list[str]:
     """What the films leave out."""
     run = {"load": np.where(states["loaded"], states["load"], 0.0), "radius": states["radius"]}
     cold = [cold_warning(built, _moving(states, found))] if _is_cold(built) else []
-    return [*cold, *(f"Films: {text}" for text in conformal_warning(built.design.mesh, run))]
+    return [
+        *cold,
+        *(reworded(text, "Films: {}".format) for text in conformal_warning(built.design.mesh, run)),
+    ]
 
 
 def _is_cold(built: Built) -> bool:
@@ -370,6 +374,7 @@ def _of_summits(spread: Mapping[str, np.ndarray]) -> Iterator[Doubt]:
         f"Films: where asperities carry most, they carry {', and '.join(each)}; both sets are assumed, and "
         "friction and wear lie between them unless `eta_beta_sigma` is that of the measured surfaces.",
         moves=max(REMARKED, 1.0 - np.min(frictions) / np.max(frictions)),
+        brief=f"Films: friction is {np.min(frictions):.2g} to {np.max(frictions):.2g} by assumed summits.",
     )
 
 

@@ -172,6 +172,7 @@ def _why_lost(code: Code) -> Doubt:
     return Doubt(
         f"the film of the engagement was lost ({code.sentence}), and nothing is told of what follows",
         moves=WITHHELD,
+        brief="the film was lost, and what follows is withheld",
     )
 
 
@@ -182,6 +183,7 @@ def _doubts(moments: Sequence[PatchMoment]) -> list[Doubt]:
     lost = Doubt(
         "some of the steady films beside were not found: there is no difference to tell there",
         moves=WITHHELD,
+        brief="some of the steady films beside were not found",
     )
     return [*(one for one in every if one.kind != ENDS), *[lost] * (len(solved) < len(moments))]
 
@@ -364,4 +366,4 @@ def _least(values: np.ndarray) -> np.ndarray:
 def _told(parts: Sequence[xr.Dataset]) -> list[Doubt]:
     """Warnings of all pieces: of a kind the worst one."""
     every = (doubt for part in parts for doubt in doubts_of(part.attrs))
-    return [reworded(doubt, f"Squeeze: {doubt}.") for doubt in worst_of_kinds(every)]
+    return [reworded(doubt, "Squeeze: {}.".format) for doubt in worst_of_kinds(every)]

@@ -134,7 +134,8 @@ def _told(films: Sequence[PatchFilms | Refused]) -> list[Doubt]:
     texts: dict[Doubt, None] = {}
     for one in films:
         if isinstance(one, Refused):
-            texts[Doubt(f"a contact was not taken: {one.why}", moves=WITHHELD)] = None
+            sentence = f"a contact was not taken: {one.why}"
+            texts[Doubt(sentence, moves=WITHHELD, brief="a contact was not taken")] = None
         elif one.solved:
             texts |= dict.fromkeys(doubt for doubt in one.warnings if doubt.kind != ENDS)
     return [*texts]
@@ -521,7 +522,8 @@ def _of_grid(
         "Films: the grid is coarse for the contact that carries most or that with the thinnest film: in the "
         f"middle it may be off by {central:.2g} %, at its thinnest by {minimum:.2g} %; take more `nodes`."
     )
-    return [Doubt(sentence, "grid of kept", worst, moves=worst)]
+    brief = f"Films: coarse grid, off by up to {100.0 * worst:.2g} %; take more nodes."
+    return [Doubt(sentence, "grid of kept", worst, moves=worst, brief=brief)]
 
 
 def _interferometry(built: Built, values: Mapping[str, np.ndarray]) -> str:

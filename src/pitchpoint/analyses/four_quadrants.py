@@ -15,7 +15,7 @@ from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
 from pitchpoint.cases.schema import LossMap
 from pitchpoint.cases.stages import Ready
-from pitchpoint.doubts import doubts_of
+from pitchpoint.doubts import Doubt, doubts_of
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
@@ -369,7 +369,10 @@ def _told(built: Ready, stuck: Values, lost: Values, parts: Sequence[xr.Dataset]
         "load along, and its torque is not known"
     )
     found = [
-        f"{law.title}: {words.format(where[k].sum(), where[k].size)}."
+        Doubt(
+            f"{law.title}: {words.format(where[k].sum(), where[k].size)}.",
+            brief=f"{law.name}: no torque at {where[k].sum()} of {where[k].size} points.",
+        )
         for words, where in ((locks, stuck), ("no balance was found at {} of {} points", lost))
         for k, law in enumerate(built.laws)
         if where[k].any()

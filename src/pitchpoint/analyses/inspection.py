@@ -10,6 +10,7 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.teeth import drawing_of
 from pitchpoint.cases.build import Built
+from pitchpoint.doubts import Doubt
 from pitchpoint.gears.bodies import disc
 from pitchpoint.gears.cylindrical.inspection import (
     Backlash,
@@ -127,7 +128,10 @@ def inspection_part(built: Built) -> xr.Dataset:
     plays = _plays(pair, table, asked, float(built.dimensions["centre_distance"]))
     over = {0: ("gear",), 1: ("gear", "limit")}
     told = [
-        f"The least backlash by tolerances is {1e6 * one.normal:.3g} um: the teeth can jam."
+        Doubt(
+            f"The least backlash by tolerances is {1e6 * one.normal:.3g} um: the teeth can jam.",
+            brief=f"Least backlash by tolerances {1e6 * one.normal:.3g} um: teeth can jam.",
+        )
         for one in plays[1:2]
         if one.normal < 0.0
     ]

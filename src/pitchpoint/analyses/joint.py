@@ -348,6 +348,7 @@ def _unloaded(
             f"Torsional vibration: flanks change sides at {beyond.size} of {speeds.size} speeds; the torque "
             "swings by more than the load there, which amplitudes by the tangent of the wind-up leave out.",
             moves=beyond.size / speeds.size,
+            brief=f"Flanks change sides at {beyond.size} of {speeds.size} speeds, left out.",
         )
     ]
 
@@ -355,7 +356,11 @@ def _unloaded(
 def _unsettled(names: Sequence[str], courses: Mapping[str, np.ndarray]) -> list[str]:
     """Why the whole curve gives no steady vibration, where it does not."""
     return [
-        f"Torsional vibration with the whole curve of the wind-up, at the {name}: {Code(int(code)).sentence}."
+        Doubt(
+            f"Torsional vibration with the whole curve of the wind-up, at the {name}: "
+            f"{Code(int(code)).sentence}.",
+            brief=f"Torsional vibration by the whole curve: none at the {name}.",
+        )
         for name, code in zip(names, courses["course_status"], strict=True)
         if not Code(int(code)).ok
     ]

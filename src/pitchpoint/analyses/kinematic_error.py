@@ -15,6 +15,7 @@ from pitchpoint.analyses.figures import error_ranges, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Surfaces
+from pitchpoint.doubts import Doubt
 from pitchpoint.gears.family import Turning
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.compliance import Compliance, compliance
@@ -86,7 +87,12 @@ def kinematic_error_part(
     order = np.arange(int(teeth.min()) + 1)
     under_load = np.concatenate([one[-1] for one in solved])
     lost = int(np.isnan(under_load).sum())
-    told = [f"Kinematic error: no equilibrium was found in {lost} of {under_load.size} states."]
+    told = [
+        Doubt(
+            f"Kinematic error: no equilibrium was found in {lost} of {under_load.size} states.",
+            brief=f"Kinematic error: none found in {lost} of {under_load.size} states.",
+        )
+    ]
     members = [one.body for one in built.bodies if one.member is not None]
     whole = dataset(
         {

@@ -160,7 +160,8 @@ def _failing(stresses: dict[str, np.ndarray], against: dict[str, np.ndarray]) ->
     if safety is not None and safety.min() < 1.0:
         yield fails(
             f"the flexspline breaks sooner or later by the estimate of its stress: at the "
-            f"{PLACES[int(safety.argmin())]} its safety for endless life is {safety.min():.2f}."
+            f"{PLACES[int(safety.argmin())]} its safety for endless life is {safety.min():.2f}.",
+            f"the flexspline breaks sooner or later, safety {safety.min():.2f}.",
         )
     for name, margin in zip(AGAINST, against.get("limit_margin", ()), strict=False):
         if margin < 1.0:

@@ -13,7 +13,7 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.lacking import untransmitted, without_films
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
-from pitchpoint.doubts import doubts_of
+from pitchpoint.doubts import Doubt, doubts_of
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.film_map import FilmMap, film_map
 from pitchpoint.efficiency.in_turns import in_turns
@@ -205,12 +205,14 @@ def _solved_films(built: Built, law: FrictionLaw) -> tuple[FilmMap | None, str]:
         films = film_map(built.design, models, *axes, known)
         errors = [_off(built, models, films, point) for point in films.between]
     except ConvergenceError as error:
-        return None, f"{law.title}: {error}; its part of the map is withheld."
+        sentence = f"{law.title}: {error}; its part of the map is withheld."
+        return None, Doubt(sentence, brief=f"{law.name}: its part of the map is withheld.")
     points, solved = int(np.prod([one.size for one in axes])), films.friction[..., 0, 0, 0].size
-    return films, (
+    return films, Doubt(
         f"{law.title}: films were solved at {solved} operating points for the {points} of the map, and "
         f"their friction follows a polynomial in between; at {len(errors)} points half way between these the "
-        f"mean loss in the teeth is off by up to {100.0 * max(errors):.2g} % of that of films solved there."
+        f"mean loss in the teeth is off by up to {100.0 * max(errors):.2g} % of that of films solved there.",
+        brief=f"Loss map between solved films is off by up to {100.0 * max(errors):.2g} %.",
     )
 
 

@@ -16,6 +16,7 @@ from pitchpoint.analyses.vibration import MOST_RATIO, ORDERS, status_sentences, 
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import MotionTable
 from pitchpoint.contact.contacts import along
+from pitchpoint.doubts import Doubt
 from pitchpoint.dynamics.bodies import Body, Support, across, bearing_forces, motor
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
@@ -49,7 +50,10 @@ CREEP = 1e-3
 """Sliding at which friction is three quarters of itself, over the fastest one: its share of the loss is
 the square."""
 
-BESIDE = "Motion with friction is that of the teeth alone: it leaves out the losses of [losses]."
+BESIDE = Doubt(
+    "Motion with friction is that of the teeth alone: it leaves out the losses of [losses].",
+    brief="Motion with friction is that of the teeth alone, without [losses].",
+)
 
 SLOWEST = 0.01
 """Speed over that of the operating point below which a start asks the friction law at this one."""
@@ -403,8 +407,11 @@ def _motor_words(built: Built, needed: float) -> list[str]:
     assert asked.no_load_speed is not None
     given = asked.stall_torque * (1.0 - speed / asked.no_load_speed)
     return [
-        f"Motion with friction: the motor gives {given:.4g} N m at the operating speed and the mesh asks for "
-        f"{needed:.4g} N m; a constant torque beside it holds the mean speed."
+        Doubt(
+            f"Motion with friction: the motor gives {given:.4g} N m at the operating speed and the mesh asks "
+            f"for {needed:.4g} N m; a constant torque beside it holds the mean speed.",
+            brief=f"Motion: the motor gives {given:.4g} N m, the mesh asks for {needed:.4g} N m.",
+        )
     ]
 
 
@@ -566,9 +573,12 @@ def _coarse(
     )
     mode = own["mode"].values[int(critical["critical_mode"][one])]
     return [
-        f"Motion with friction against speed: the speeds are {step:.4g} rpm apart, and the peak at "
-        f"{at:.4g} rpm (order {critical['critical_order'][one]:g}, {mode}) is {wide:.3g} rpm wide at half "
-        "power, so that it may lie between them."
+        Doubt(
+            f"Motion with friction against speed: the speeds are {step:.4g} rpm apart, and the peak at "
+            f"{at:.4g} rpm (order {critical['critical_order'][one]:g}, {mode}) is {wide:.3g} rpm wide at "
+            "half power, so that it may lie between them.",
+            brief=f"Speeds {step:.4g} rpm apart may miss the peak at {at:.4g} rpm.",
+        )
     ]
 
 
@@ -636,9 +646,13 @@ def _backwards(built: Built, rates: np.ndarray) -> list[str]:
     if not np.any(rates[driver] * motion[driver] < -RETREAT * built.case.operation.speed):
         return []
     needed = built.case.operation.load * abs(motion[loaded])
+    unit = "N" if "driver" in built.travels else "N m"
     return [
-        f"Start: the load turns the driver, {built.driver}, backwards; it asks for {needed:.4g} "
-        f"{'N' if 'driver' in built.travels else 'N m'} there without friction, and at rest nothing sticks."
+        Doubt(
+            f"Start: the load turns the driver, {built.driver}, backwards; it asks for {needed:.4g} {unit} "
+            "there without friction, and at rest nothing sticks.",
+            brief=f"The load turns the driver back: {needed:.4g} {unit} hold it.",
+        )
     ]
 
 

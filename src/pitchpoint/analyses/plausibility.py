@@ -19,7 +19,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.cases.stages import Ready
 from pitchpoint.contact.contacts import Shape
-from pitchpoint.doubts import fails
+from pitchpoint.doubts import Doubt, fails, reworded
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.registry import BOUNDARY, ROLLING_RESISTANCE, FrictionLaw
 from pitchpoint.materials import solids
@@ -133,7 +133,7 @@ def unlikely(built: Ready, parts: Mapping[str, xr.Dataset]) -> list[str]:
 
 
 def _told(checks: Iterable[Check[Seen]], seen: Seen) -> list[str]:
-    return [fails(f"{text}.") for check in checks if (text := check.told(seen))]
+    return [fails(reworded(text, "{}.".format)) for check in checks if (text := check.told(seen))]
 
 
 # ---- of the contacts of a mesh
@@ -147,7 +147,8 @@ def hertz_pressure(at: AtWork) -> str | None:
     )
     if weakest is None or largest <= weakest[0]:
         return None
-    return f"the Hertz pressure reaches {_pressure(largest)}; {weakest[1]}"
+    brief = f"the Hertz pressure reaches {_pressure(largest)}, allowed {_pressure(weakest[0])}"
+    return Doubt(f"the Hertz pressure reaches {_pressure(largest)}; {weakest[1]}", brief=brief)
 
 
 def _bears(used: SolidInUse, shape: Shape) -> Iterator[tuple[float, str]]:
@@ -167,10 +168,11 @@ def contact_strain(at: AtWork) -> str | None:
     largest, modulus = at.largest("pressure"), at.built.modulus
     if largest <= SMALL_STRAIN * modulus or hertz_pressure(at):
         return None
-    return (
+    return Doubt(
         f"the Hertz pressure reaches {_pressure(largest)}, {100.0 * largest / modulus:.2g} % of "
         "the reduced modulus; elastic contacts with strains as small as the formulas ask for end at "
-        f"{100.0 * SMALL_STRAIN:g} %"
+        f"{100.0 * SMALL_STRAIN:g} %",
+        brief=f"Hertz pressure {100.0 * largest / modulus:.2g} % of the modulus: strains are large",
     )
 
 
@@ -180,9 +182,10 @@ def heat(at: AtWork) -> str | None:
     for gear, used in enumerate(at.built.solids, 1):
         unknown = used.plastic and used.record.service_limit is None
         if unknown and used.hottest > limit:
-            return (
+            return Doubt(
                 f"the teeth of gear {gear} are at {celsius(used.hottest)}; no plastic of the catalogue bears "
-                f"more than {celsius(limit)} for long, which {name} does"
+                f"more than {celsius(limit)} for long, which {name} does",
+                brief=f"gear {gear} is at {celsius(used.hottest)}; plastics end at {celsius(limit)}",
             )
     return None
 
@@ -200,10 +203,11 @@ def film_of_atoms(at: AtWork) -> str | None:
     if max(thin) <= MOST:
         return None
     thinnest = min(float(run["film_thickness"][run["load"] > 0.0].min()) for run in at.runs)
-    return (
+    return Doubt(
         f"the film is down to {1e9 * thinnest:.2g} nm, under {100.0 * max(thin):.3g} % of the load "
         f"thinner than an atom, {1e9 * ATOM:g} nm: flanks touch, and film, Λ and what follows "
-        "from them say nothing"
+        "from them say nothing",
+        brief=f"film down to {1e9 * thinnest:.2g} nm, less than an atom: flanks touch",
     )
 
 
@@ -213,9 +217,10 @@ def thick_film(at: AtWork) -> str | None:
     if ratio <= THICKEST:
         return None
     thickest = max(float(np.nanmax(run["film_thickness"])) for run in at.runs)
-    return (
+    return Doubt(
         f"the film reaches {_shown(LENGTH, thickest)}, {100.0 * ratio:.2g} % of the relative radius of the "
-        f"flanks; laws of thin films end before {100.0 * THICKEST:g} %"
+        f"flanks; laws of thin films end before {100.0 * THICKEST:g} %",
+        brief=f"film of {_shown(LENGTH, thickest)}, {100.0 * ratio:.2g} % of the radius: not thin",
     )
 
 
@@ -225,16 +230,18 @@ def roughness(at: AtWork) -> str | None:
     ra = 0.5 * (float(flanks.ra_1) + float(flanks.ra_2))
     rq = float(np.hypot(flanks.rq_1, flanks.rq_2))
     if ra > ROUGHEST:
-        return (
+        return Doubt(
             f"the mean Ra of the flanks is {_shown(LENGTH, ra)}; roughly cut flanks have at most about "
-            f"{LENGTH.show(ROUGHEST)}"
+            f"{LENGTH.show(ROUGHEST)}",
+            brief=f"Ra is {_shown(LENGTH, ra)}, rough flanks have {LENGTH.show(ROUGHEST)}",
         )
     coarse = rq > COARSEST * run["radius"]
     if _part(_carried(run), coarse) <= MOST:
         return None
-    return (
+    return Doubt(
         f"the composite Rq of the flanks, {_shown(LENGTH, rq)}, is more than {100.0 * COARSEST:g} % of their "
-        "relative radius under most of the load: that is their shape, no roughness"
+        "relative radius under most of the load: that is their shape, no roughness",
+        brief=f"Rq {_shown(LENGTH, rq)} is over {100.0 * COARSEST:g} % of the radius: no roughness",
     )
 
 
@@ -250,7 +257,8 @@ def friction(at: AtWork) -> str | None:
     if largest <= most * (1.0 + 1e-9):
         return None
     told = "plastics have at most about {:g} even without oil" if at.plastic else _STEEL
-    return f"{title}: the mean friction coefficient is {largest:.3g}; {told.format(most)}"
+    sentence = f"{title}: the mean friction coefficient is {largest:.3g}; {told.format(most)}"
+    return Doubt(sentence, brief=f"mean friction {largest:.3g}; allowed about {most:g}")
 
 
 _STEEL = "steel in oil has at most about {:g}"
@@ -266,7 +274,10 @@ def flank_speed(at: AtWork) -> str | None:
     if max(pitch, surfaces) <= FASTEST:
         return None
     what = "pitch circles" if pitch >= surfaces else "flanks"
-    return f"the {what} run at {max(pitch, surfaces):.3g} m/s; the fastest gears reach about {FASTEST:g} m/s"
+    return Doubt(
+        f"the {what} run at {max(pitch, surfaces):.3g} m/s; the fastest gears reach about {FASTEST:g} m/s",
+        brief=f"{what} at {max(pitch, surfaces):.3g} m/s, fastest gears {FASTEST:g} m/s",
+    )
 
 
 def conformal_loss(at: AtWork) -> str | None:
@@ -274,9 +285,10 @@ def conformal_loss(at: AtWork) -> str | None:
     parts = [_part(_lost(run), conformal(at.built.design.mesh, run)) for run in at.runs]
     if max(parts) <= MOST:
         return None
-    return (
+    return Doubt(
         f"contacts whose flanks are conformal make {100.0 * max(parts):.3g} % of the loss in the teeth, and "
-        "the formulas of pressure and film do not hold there"
+        "the formulas of pressure and film do not hold there",
+        brief=f"{100.0 * max(parts):.3g} % of the loss is in conformal contacts, without formulas",
     )
 
 
@@ -287,9 +299,10 @@ def rolling_twice(at: AtWork) -> str | None:
     if not whole or not rolling.sources:
         return None
     law, run = whole[0]
-    return (
+    return Doubt(
         f"rolling is counted twice: {law.title} was fitted to whole losses of gears, those of rolling among "
-        f"them, and '{rolling.name}' adds {rolling_share(run):.2g} % of the loss once more"
+        f"them, and '{rolling.name}' adds {rolling_share(run):.2g} % of the loss once more",
+        brief=f"rolling is counted twice, {rolling_share(run):.2g} % of the loss",
     )
 
 
@@ -319,7 +332,10 @@ def friction_laws(result: Result) -> str | None:
     names = result.parts["operation"]["law"].values
     reasons = {str(law): why_not(result.parts)[str(law)] for law in names}
     told = "; ".join(f"{law}: {' and '.join(each)}" for law, each in reasons.items())
-    return f"no friction law holds at the operating point, efficiency and loss are extrapolations: {told}"
+    return Doubt(
+        f"no friction law holds at the operating point, efficiency and loss are extrapolations: {told}",
+        brief="no friction law holds here: efficiency and loss are guesses",
+    )
 
 
 def edge_load(result: Result) -> str | None:
@@ -331,9 +347,10 @@ def edge_load(result: Result) -> str | None:
     share = float(np.interp(at, torsion["torque"], torsion["edge_share"]))
     if not share > MOST:
         return None
-    return (
+    return Doubt(
         f"edges of the teeth (ends of flanks and roundings of tips) carry {100.0 * share:.3g} % of the "
-        "load, and the formulas of contact do not hold there"
+        "load, and the formulas of contact do not hold there",
+        brief=f"edges of the teeth carry {100.0 * share:.3g} % of the load",
     )
 
 
@@ -345,15 +362,18 @@ def root_stress(result: Result) -> str | None:
     rated = [used for one in result.built.meshes if one.case.gears.rated for used in one.solids]
     stresses = np.ravel(strength["root_stress"].values)
     over = [
-        (float(stress) / limit, float(stress), why, place % 2 + 1)
+        (float(stress) / limit, float(stress), limit, why, place % 2 + 1)
         for place, (stress, used) in enumerate(zip(stresses, rated, strict=True))
         for limit, why in [_root_bears(used)]
         if stress > limit
     ]
     if not over:
         return None
-    _, stress, why, gear = max(over)
-    return f"the root stress of gear {gear} reaches {_pressure(stress)}; {why}"
+    _, stress, limit, why, gear = max(over)
+    return Doubt(
+        f"the root stress of gear {gear} reaches {_pressure(stress)}; {why}",
+        brief=f"root stress of gear {gear} is {_pressure(stress)}, borne {_pressure(limit)}",
+    )
 
 
 def _root_bears(used: SolidInUse) -> tuple[float, str]:

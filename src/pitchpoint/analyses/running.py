@@ -14,6 +14,7 @@ from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import TEMPERATURE
 from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.doubts import Doubt
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.quasi_static import Operation
@@ -149,8 +150,11 @@ def _unloaded(built: Ready) -> list[str]:
     if any(float(drag.preload) or drag.holds for drag in drags):
         return []
     return [
-        "Torques to start are too low without what holds bearings at rest; measured drives take many times "
-        "as much, either way, and no preload, breakaway model or breakaway_torque is given."
+        Doubt(
+            "Torques to start are too low without what holds bearings at rest; measured drives take many "
+            "times as much, either way, and no preload, breakaway model or breakaway_torque is given.",
+            brief="Torques to start are too low: nothing holds bearings at rest.",
+        )
     ]
 
 

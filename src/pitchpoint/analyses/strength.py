@@ -14,7 +14,7 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
-from pitchpoint.doubts import fails, in_stage
+from pitchpoint.doubts import Doubt, fails, in_stage
 from pitchpoint.efficiency.summary import in_chunks, in_groups
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.programs import program
@@ -220,7 +220,8 @@ def _failing(built: Built, found: Numbers) -> Iterator[str]:
                 bears, has = (found[name][at] / 1e6 for name in (limit, stress))
                 yield fails(
                     f"the {part} of {gear} bear {bears:.4g} MPa and have {has:.4g} MPa (safety "
-                    f"{reached:.3g}): they {how} {when}."
+                    f"{reached:.3g}): they {how} {when}.",
+                    f"{part} of {gear} {how} {when}, safety {reached:.3g}.",
                 )
 
 
@@ -236,54 +237,67 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
     if by_b:
         yield from _doubts_of_method_b(found, ratio)
     if resonance > MOST_RESONANCE and steel and not given and not by_b:
-        yield (
+        yield Doubt(
             f"K_v by method C holds well below resonance, up to (v z_1/100) sqrt(u²/(1 + u²)) = "
             f"{MOST_RESONANCE:.2g} m/s, at which it stays; this pair is at {resonance:.3g} m/s: give "
-            "dynamic_factor in [strength]."
+            "dynamic_factor in [strength].",
+            brief=f"K_v ends at {MOST_RESONANCE:.2g} m/s, here {resonance:.3g} m/s: give dynamic_factor.",
         )
     for gear, notch in enumerate(found["notch_parameter"], 1):
         if not _LEAST_NOTCH <= notch < _MOST_NOTCH:
-            yield (
+            yield Doubt(
                 f"The notch parameter of gear {gear}, {notch:.3g}, is outside 1 to 8, for which Y_S was "
-                "derived."
+                "derived.",
+                brief=f"Y_S of gear {gear}: notch parameter {notch:.3g} is outside 1 to 8.",
             )
     for gear, backup in enumerate(found["rim_backup"], 1):
         ring = _ring(built) and gear == 2
         least, of = (THINNEST_RING, "modules") if ring else (THINNEST_RIM, "tooth heights")
         if backup < least:
-            yield (
+            yield Doubt(
                 f"The rim of gear {gear} is {backup:.3g} {of} thick and Y_B is known down to {least:g}: its "
-                "root stress is higher, and the rim itself may break."
+                "root stress is higher, and the rim itself may break.",
+                brief=f"The rim of gear {gear} may break: {backup:.3g} {of} thick.",
             )
     if _SHARED < float(ratio) <= _DEEPEST and not getattr(built.case.gears, "helix_angle", 0.0):
-        yield (
+        yield Doubt(
             "The flank stress leaves out the inner point of double contact; above a transverse contact ratio "
-            "of 2 Z_B and Z_D are 1 here, and ISO 6336-2 has that point."
+            "of 2 Z_B and Z_D are 1 here, and ISO 6336-2 has that point.",
+            brief=f"Flank stress at contact ratio {float(ratio):.3g} leaves out the inner point.",
         )
     if float(ratio) < 1.0:
-        yield (
+        yield Doubt(
             f"The transverse contact ratio is {float(ratio):.3g}: ISO 6336 and VDI 2736 rate gears with one "
-            "from 1 on, of which a pair always touches in every section; stresses here are extrapolations."
+            "from 1 on, of which a pair always touches in every section; stresses here are extrapolations.",
+            brief=f"Transverse contact ratio {float(ratio):.3g} < 1: stresses are extrapolations.",
         )
     if float(ratio) > _DEEPEST:
-        yield f"A transverse contact ratio of {float(ratio):.3g} is above the 2.5 that ISO 6336-2 covers."
+        yield Doubt(
+            f"A transverse contact ratio of {float(ratio):.3g} is above the 2.5 that ISO 6336-2 covers.",
+            brief=f"Contact ratio {float(ratio):.3g} is above the 2.5 of ISO 6336-2.",
+        )
     if getattr(built.case.gears, "helix_angle", 0.0) > _HELIX:
-        yield "A helix angle above 30 degrees is beyond what ISO 6336-3 was confirmed for."
+        yield Doubt(
+            "A helix angle above 30 degrees is beyond what ISO 6336-3 was confirmed for.",
+            brief="Helix angle above the 30 degrees of ISO 6336-3.",
+        )
 
 
-def _doubts_of_method_b(found: Numbers, contact_ratio: float) -> Iterator[str]:
+def _doubts_of_method_b(found: Numbers, contact_ratio: float) -> Iterator[Doubt]:
     """Where K_v by method B lies outside what it covers."""
     ratio = float(found["resonance_ratio"])
     if _SUBCRITICAL < ratio < _SUPERCRITICAL:
-        yield (
+        yield Doubt(
             f"The teeth mesh at {ratio:.3g} of the resonance of the pair: K_v by method B, "
             f"{float(found['rated_dynamic_factor']):.3g}, is uncertain from {_SUBCRITICAL:g} to "
-            f"{_SUPERCRITICAL:g}, and such speeds are to be avoided."
+            f"{_SUPERCRITICAL:g}, and such speeds are to be avoided.",
+            brief=f"K_v is uncertain: teeth mesh at {ratio:.3g} of the resonance.",
         )
     if float(contact_ratio) < _LEAST_OF_METHOD_B:
-        yield (
+        yield Doubt(
             f"K_v by method B holds from a transverse contact ratio of {_LEAST_OF_METHOD_B:g} on; that of "
-            f"this pair is {float(contact_ratio):.3g}."
+            f"this pair is {float(contact_ratio):.3g}.",
+            brief=f"K_v by method B at a transverse contact ratio of {float(contact_ratio):.3g}.",
         )
 
 

@@ -199,7 +199,8 @@ def _lock_warning(law: FrictionLaw, locked: np.ndarray) -> list[str]:
     if not locked.any():
         return []
     told = f"{law.title}: friction locks the mesh at {locked.sum()} of {locked.size} points."
-    return [Doubt(told, moves=WITHHELD)]
+    brief = f"{law.name}: locks at {locked.sum()} of {locked.size} points."
+    return [Doubt(told, moves=WITHHELD, brief=brief)]
 
 
 def _lost_warning(law: FrictionLaw, code: np.ndarray) -> list[str]:
@@ -208,6 +209,7 @@ def _lost_warning(law: FrictionLaw, code: np.ndarray) -> list[str]:
             f"{law.title}: at {np.sum(code == one)} of {code.size} points {Code(int(one)).sentence}; their "
             "figures are withheld.",
             moves=WITHHELD,
+            brief=f"{law.name}: no result at {np.sum(code == one)} of {code.size} points.",
         )
         for one in np.unique(code[films_lost(code)])
     ]

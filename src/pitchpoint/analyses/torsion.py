@@ -16,7 +16,7 @@ from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.contact.contacts import Contacts, along
-from pitchpoint.doubts import in_stage
+from pitchpoint.doubts import Doubt, in_stage
 from pitchpoint.efficiency.drag import at_rest, bearing_loads
 from pitchpoint.efficiency.quasi_static import Design, Engagement, coupling, engagement
 from pitchpoint.efficiency.summary import summarise
@@ -226,8 +226,11 @@ def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
         dict.fromkeys(built.carried.show(torque) for torque in (lost[0], lost[-1]))
     )
     return [
-        f"Wind-up: no equilibrium was found at {lost.size} of {torques.size} torques ({between}); they are "
-        "left out."
+        Doubt(
+            f"Wind-up: no equilibrium was found at {lost.size} of {torques.size} torques ({between}); they "
+            "are left out.",
+            brief=f"Wind-up: none found at {lost.size} of {torques.size} torques.",
+        )
     ]
 
 
@@ -238,10 +241,13 @@ def _on_edges(built: Ready, torques: np.ndarray, share: np.ndarray) -> list[str]
         return []
     most = int(np.nanargmax(share))
     return [
-        f"Edges of the teeth (ends of flanks and roundings of tips) carry up to {100.0 * share[most]:.2g} % "
-        f"of the load, that part at {built.carried.show(torques[most])}: more than {100.0 * MUCH:g} % from "
-        f"{built.carried.show(torques[much][0])} on. Loss, stiffness and pressure then hang on how those "
-        "edges are made."
+        Doubt(
+            f"Edges of the teeth (ends of flanks and roundings of tips) carry up to "
+            f"{100.0 * share[most]:.2g} % of the load, that part at {built.carried.show(torques[most])}: "
+            f"more than {100.0 * MUCH:g} % from {built.carried.show(torques[much][0])} on. Loss, stiffness "
+            "and pressure then hang on how those edges are made.",
+            brief=f"Edges of the teeth carry up to {100.0 * share[most]:.2g} % of the load.",
+        )
     ]
 
 
@@ -255,8 +261,11 @@ def _pressed(play: float) -> list[str]:
     if not play < 0.0:
         return []
     return [
-        "Without load the balls of the wave generator press the teeth onto both flanks of their spaces, by "
-        f"{60.0 * np.degrees(-play):.2g} arcmin at the loaded member: the wind-up counts one flank."
+        Doubt(
+            "Without load the balls of the wave generator press the teeth onto both flanks of their spaces, "
+            f"by {60.0 * np.degrees(-play):.2g} arcmin at the loaded member: the wind-up counts one flank.",
+            brief=f"Balls press teeth onto both flanks by {60.0 * np.degrees(-play):.2g} arcmin.",
+        )
     ]
 
 
@@ -275,12 +284,18 @@ def _loopless(built: Built, friction: np.ndarray) -> list[str]:
     """Why a loop of torque over wind-up has no width, or is not there."""
     if built.case.operation.load == 0.0:
         return [
-            "Wind-up: nothing is carried at the operating point, so the coefficient of friction is taken "
-            "as zero and the loop has no width."
+            Doubt(
+                "Wind-up: nothing is carried at the operating point, so the coefficient of friction is taken "
+                "as zero and the loop has no width.",
+                brief="Wind-up: without load friction counts as zero, no loop.",
+            )
         ]
     return [
-        f"Wind-up: {models.law.title}: friction locks the drive at the operating point; there is "
-        "no torque loop."
+        Doubt(
+            f"Wind-up: {models.law.title}: friction locks the drive at the operating point; there is "
+            "no torque loop.",
+            brief=f"Wind-up: {models.law.name} locks the drive: no torque loop.",
+        )
         for models, value in zip(built.models, friction, strict=True)
         if np.isnan(value)
     ]

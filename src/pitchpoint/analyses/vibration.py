@@ -319,8 +319,11 @@ def _moduli(built: Built) -> list[str]:
     if asked.speeds is None and set(_torques(built)) <= {built.case.operation.load}:
         return []
     return [
-        "The moduli are those at the operating point, for all torques and speeds of the vibration; a "
-        "study or sweep warms the teeth at each of its points."
+        Doubt(
+            "The moduli are those at the operating point, for all torques and speeds of the vibration; a "
+            "study or sweep warms the teeth at each of its points.",
+            brief="The vibration has the moduli of the operating point at all torques.",
+        )
     ]
 
 
@@ -328,12 +331,14 @@ def status_sentences(
     codes: np.ndarray, told: str = "Vibration at {points}: {sentence}."
 ) -> list[str]:
     """What the points of a study say whose vibration is not a steady one that is reached."""
+    title = told.partition(":")[0].removesuffix(" at {points}")
     return [
         Doubt(
             told.format(
                 points=f"{np.sum(codes == code)} of {codes.size} points", sentence=code.sentence
             ),
             moves=float(np.mean(codes == code)),
+            brief=f"{title}: no sound result at {np.sum(codes == code)} of {codes.size} points.",
         )
         for code in Code
         if not code.ok and np.any(codes == code)
@@ -345,6 +350,7 @@ def _warnings(built: Built, statuses: Sequence[Code]) -> list[str]:
         Doubt(
             f"Vibration at {built.carried.show(float(f'{torque:.4g}'))}: {status.sentence}.",
             moves=WITHHELD,
+            brief=f"Vibration: no sound result at {built.carried.show(float(f'{torque:.4g}'))}.",
         )
         for torque, status in zip(_torques(built), statuses, strict=True)
         if not status.ok

@@ -17,6 +17,7 @@ from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.worn import BRIDGED, WIDEST
+from pitchpoint.doubts import Doubt
 from pitchpoint.efficiency.quasi_static import contacts_at
 from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
@@ -320,58 +321,89 @@ def _warnings(
     told = told_of_wear(built.case, _course(built).model)
     if end == "lost":
         told.append(
-            f"Wear: {_lost(built)} of flanks that are worn so far were not found, and the march ends there."
+            Doubt(
+                f"Wear: {_lost(built)} of flanks that are worn so far were not found, and the march ends "
+                "there.",
+                brief=f"Wear: the march ends where {_lost(built)} were not found.",
+            )
         )
     if end == "no wear":
         told.append(
-            "Wear: nothing slides under load, or the law wears nothing off: depths stay zero."
+            Doubt(
+                "Wear: nothing slides under load, or the law wears nothing off: depths stay zero.",
+                brief="Wear: nothing slides under load, or nothing wears off: depths are 0.",
+            )
         )
     if asked(built).sensitivities is None and not _sensitive(built) and not _films(built):
         told.append(
-            "Wear: what the life depends on is not told; its derivatives take minutes for teeth that a ring "
-            "couples. Ask for them by wear.sensitivities = true."
+            Doubt(
+                "Wear: what the life depends on is not told; its derivatives take minutes for teeth that a "
+                "ring couples. Ask for them by wear.sensitivities = true.",
+                brief="Wear: what the life depends on is not told: wear.sensitivities.",
+            )
         )
     line = built.design.mesh.shape == "line"
     if np.any(values["conforming"]) and not line:
         first = float(values["cycles"][int(np.argmax(values["conforming"]))])
         told.append(
-            f"Wear: from {first:.3g} turns on worn flanks conform; their contacts are taken to keep a tenth "
-            "of the relative curvature they had, and pressures there are a guess."
+            Doubt(
+                f"Wear: from {first:.3g} turns on worn flanks conform; their contacts are taken to keep a "
+                "tenth of the relative curvature they had, and pressures there are a guess.",
+                brief=f"Wear: from {first:.3g} turns on flanks conform: pressures are a guess.",
+            )
         )
     if end == "module":
         told.append(
-            f"Wear: the march ends at {HOLDS:g} modules, beyond which flanks no longer touch where they did "
-            "as new."
+            Doubt(
+                f"Wear: the march ends at {HOLDS:g} modules, beyond which flanks no longer touch where they "
+                "did as new.",
+                brief=f"Wear: the march ends at a depth of {HOLDS:g} modules.",
+            )
         )
     if np.isinf(_hardness(built)):
         told.append(
-            "Wear: the hardness of neither flank is known, so that nothing ends the march where a surface "
-            "would yield; give wear.hardness, or that of the materials."
+            Doubt(
+                "Wear: the hardness of neither flank is known, so that nothing ends the march where a "
+                "surface would yield; give wear.hardness, or that of the materials.",
+                brief="Wear: hardness is not known: nothing ends the march at yield.",
+            )
         )
     if end == "hardness":
         told.append(
-            f"Wear: the march ends where the largest pressure on worn flanks reaches the hardness of the "
-            f"softer one, {HARDNESS.show(_hardness(built))}: beyond it the surface yields, which no law of "
-            "wear here knows of."
+            Doubt(
+                f"Wear: the march ends where the largest pressure on worn flanks reaches the hardness of the "
+                f"softer one, {HARDNESS.show(_hardness(built))}: beyond it the surface yields, which no law "
+                "of wear here knows of.",
+                brief=f"Wear: ends where pressure reaches the hardness, {HARDNESS.show(_hardness(built))}.",
+            )
         )
     cells = _course(built).cells
     longest, span = float(np.max(np.asarray(cells.lengths))), float(cells.span[0])
     if line and span < BRIDGED * longest:
         told.append(
-            f"Wear: pressures on worn flanks depend on wear.cells; contacts reach {1e6 * span:.2g} um to "
-            f"each side on average, less than {BRIDGED:g} cells of {1e6 * longest:.2g} um, over which "
-            "curvatures are averaged."
+            Doubt(
+                f"Wear: pressures on worn flanks depend on wear.cells; contacts reach {1e6 * span:.2g} um to "
+                f"each side on average, less than {BRIDGED:g} cells of {1e6 * longest:.2g} um, over which "
+                "curvatures are averaged.",
+                brief=f"Wear: contacts span {span / longest:.2g} cells, {BRIDGED:g} are asked: wear.cells.",
+            )
         )
     if end == "outgrown" and line:
         told.append(
-            f"Wear: the march ends where a contact would grow wider to each side than {WIDEST:g} of the "
-            "radius of the sharper flank as new, or than a flank is long: worn flanks conform there, and "
-            "pressures of half spaces end."
+            Doubt(
+                f"Wear: the march ends where a contact would grow wider to each side than {WIDEST:g} of the "
+                "radius of the sharper flank as new, or than a flank is long: worn flanks conform there, and "
+                "pressures of half spaces end.",
+                brief="Wear: the march ends where worn flanks conform.",
+            )
         )
     elif end == "outgrown":
         told.append(
-            f"Wear: the march ends where contacts have grown to {ROOM:g} times the width that they had: they "
-            "conform, and Hertz's theory ends."
+            Doubt(
+                f"Wear: the march ends where contacts have grown to {ROOM:g} times the width that they had: "
+                "they conform, and Hertz's theory ends.",
+                brief=f"Wear: the march ends at {ROOM:g} times the width of contacts as new.",
+            )
         )
     return told
 

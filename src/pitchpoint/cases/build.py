@@ -111,19 +111,22 @@ TEETH_ALONE = Doubt(
     'churning take their part; losses = { set = "strain_wave_component" } has those of such a drive.',
     moves=GUESSED,
     about=("mean_efficiency",),
+    brief="The efficiency is that of the teeth alone: the case has no [losses].",
 )
 BEARING_FREE = Doubt(
     "The efficiency leaves out the bearing on which the teeth press inside the drive: no place of [losses] "
     "is between its two bodies.",
     moves=GUESSED,
     about=("mean_efficiency",),
+    brief="The efficiency leaves out the bearing on which the teeth press.",
 )
 OF_STIFFNESS = ("mesh_stiffness", "mean_stiffness", "transmission_error")
 """Variables of parts for which the compliance of teeth is asked even where it shares no load."""
 
-UNSETTLED = (
+UNSETTLED = Doubt(
     "Heat, modulus and friction of the teeth found no balance: their temperatures are those of the last "
-    "pass."
+    "pass.",
+    brief="The temperature of the teeth found no balance.",
 )
 NO_PLASTIC = "No gear is of plastic: the tooth temperature changes nothing."
 
@@ -442,7 +445,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         drag=drags(case.losses, case.bodies, {mesh.inner_bearing}),
         elliptic=ELLIPTIC_CONTACT[case.models.elliptic_contact],
     )
-    told = [*warnings, *_yielding(case, mesh), *filter(None, [oil.note])]
+    told = [*warnings, *_yielding(case, mesh), *_of_oil(oil)]
     told += _half_of_a_line(case.lubricant)
     models = _models(case, own, used, mesh)
     name = named_set(document.tree.get("losses"))
@@ -572,6 +575,7 @@ def _extrapolated(built: Built) -> list[str]:
             f"{' and '.join(told)} they are an extrapolation.",
             moves=GUESSED,
             about=("mean_efficiency",),
+            brief=f"Losses of the set end at {TEMPERATURE.show(low)} and {TEMPERATURE.show(high)}.",
         )
     ]
 
@@ -985,7 +989,7 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     sections, model = _sections(mesh), TOOTH_COMPLIANCE[case.models.tooth_compliance]
     doubts = map(as_doubt, uncovered(model, sections, case.gears.members))
     about = () if sharing.by_stiffness else OF_STIFFNESS
-    return tuple(Doubt(one, moves=one.moves, about=about) for one in doubts)
+    return tuple(Doubt(one, moves=one.moves, about=about, brief=one.brief) for one in doubts)
 
 
 @program
@@ -1085,6 +1089,11 @@ def _with_own(
     return replace(oil, title=title, **{**following, **values})
 
 
+def _of_oil(oil: lubricants.LubricantRecord) -> list[str]:
+    """What is assumed of it."""
+    return [Doubt(oil.note, brief=f"{oil.name} is taken as its base oil.")] if oil.note else []
+
+
 def _half_of_a_line(oil: Oil) -> list[str]:
     """One of two viscosities given beside the other one of the catalogue."""
     given = [oil.viscosity_40 is not None, oil.viscosity_100 is not None]
@@ -1094,8 +1103,11 @@ def _half_of_a_line(oil: Oil) -> list[str]:
         ("viscosity_40", "viscosity_100") if given[0] else ("viscosity_100", "viscosity_40")
     )
     return [
-        f"The oil has the {own} of the case file and the {other} of {oil.name}: together they make the line "
-        "of viscosity over temperature; give both."
+        Doubt(
+            f"The oil has the {own} of the case file and the {other} of {oil.name}: together they make the "
+            "line of viscosity over temperature; give both.",
+            brief=f"The oil has the {other} of {oil.name}; give it too.",
+        )
     ]
 
 

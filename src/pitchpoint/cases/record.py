@@ -25,6 +25,7 @@ from pydantic import (
 from pitchpoint import units
 from pitchpoint.cases.document import Tree, demand_shallow, put
 from pitchpoint.cases.library import as_text, names, path_of
+from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.plain_files import content
 from pitchpoint.programs import surroundings
@@ -299,7 +300,12 @@ class Manifest(_Kept):
         if not others:
             return []
         then, now = (_listed(one, others) for one in (self.surroundings, here))
-        return [f"The record was made with {then} and is computed with {now}: numbers may differ."]
+        return [
+            Doubt(
+                f"The record was made with {then} and is computed with {now}: numbers may differ.",
+                brief=f"The record was made with other {' and '.join(others)}: numbers may differ.",
+            )
+        ]
 
 
 def _listed(surroundings: Mapping[str, str], names: list[str]) -> str:

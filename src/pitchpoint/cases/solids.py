@@ -71,7 +71,10 @@ def failures(used: Used) -> list[str]:
     """Gears that are hotter than their material bears."""
     told = (heat_failure(one.record, one.hottest) for one in used)
     return [
-        fails(f"the teeth of gear {gear} are at {celsius(one.hottest)}; {text}.")
+        fails(
+            f"the teeth of gear {gear} are at {celsius(one.hottest)}; {text}.",
+            f"gear {gear} is at {celsius(one.hottest)}; {text.removesuffix(' for long')}.",
+        )
         for gear, (one, text) in enumerate(zip(used, told, strict=True), 1)
         if text
     ]

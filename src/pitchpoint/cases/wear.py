@@ -11,6 +11,7 @@ from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import Case, WearTable
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.contact.contacts import KINDS, TOUCH
+from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.lubrication.ehl.model import FilmModel
@@ -240,27 +241,41 @@ def told_of_wear(case: Case, model: WearModel) -> list[str]:
     """
     table = case.wear
     assert table is not None
-    found = [f"Wear: {WEAR_LAWS[table.law].note}"]
+    law = WEAR_LAWS[table.law]
+    brief = f"Wear by '{law.name}': depths are as good as its constants."
+    found: list[str] = [Doubt(f"Wear: {law.note}", brief=brief)]
     if table.coefficient is None and "coefficient" in model.own[0]:
         found.append(
-            f"wear.coefficient was left out and is taken as {ASSUMED_COEFFICIENT:g}; those of dry metals are "
-            "1e-6 to 1e-4, and depths are in proportion to it."
+            Doubt(
+                f"wear.coefficient was left out and is taken as {ASSUMED_COEFFICIENT:g}; those of dry metals "
+                "are 1e-6 to 1e-4, and depths are in proportion to it.",
+                brief=f"wear.coefficient is taken as {ASSUMED_COEFFICIENT:g}, dry metals 1e-6 to 1e-4.",
+            )
         )
     if model.films is not None:
         found.append(
-            "Wear: the load on asperities is that of steady films, each contact by itself, solved anew in "
-            "every state that a step looks at. What the depth depends on is not told: no derivatives are "
-            "taken through solved films."
+            Doubt(
+                "Wear: the load on asperities is that of steady films, each contact by itself, solved anew "
+                "in every state that a step looks at. What the depth depends on is not told: no derivatives "
+                "are taken through solved films.",
+                brief="Wear: asperities carry what steady films leave; no derivatives.",
+            )
         )
     if model.defect is not None:
         if "adsorption_heat" not in model.defect:
             found.append(
-                "wear.adsorption_heat was left out and is taken as 49 kJ/mol: 12 kJ/mol less make a hundred "
-                "times the wear."
+                Doubt(
+                    "wear.adsorption_heat was left out and is taken as 49 kJ/mol: 12 kJ/mol less make a "
+                    "hundred times the wear.",
+                    brief="Adsorption heat taken as 49 kJ/mol; 12 less: 100 times the wear.",
+                )
             )
         if model.bodies is None:
             found.append(
-                "Wear: contacts are taken to be as warm as the oil: the conductivity or specific heat of a "
-                "material is not known, or the first friction law solves films."
+                Doubt(
+                    "Wear: contacts are taken to be as warm as the oil: the conductivity or specific heat of "
+                    "a material is not known, or the first friction law solves films.",
+                    brief="Wear: contacts are taken to be as warm as the oil.",
+                )
             )
     return found

@@ -113,6 +113,7 @@ def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
             Doubt(
                 f"{section.stiff} under the teeth counts as rigid; its compliance has no formula here",
                 moves=GUESSED,
+                brief=f"{section.stiff} counts as rigid under the teeth",
             ),
         )
     named = (
@@ -132,6 +133,7 @@ def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
             f"the {name} is {value:.3g}{unit}, beyond the {low:g} to {high:g} of the formula for the "
             f"compliance under the tooth, which differs by {100.0 * beyond:.2g} % from that at the limit",
             moves=beyond,
+            brief=f"stiffness under the tooth beyond its fit, {100.0 * beyond:.2g} %",
         )
         for name, unit, value, (low, high) in outside
     )

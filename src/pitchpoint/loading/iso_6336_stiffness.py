@@ -32,9 +32,9 @@ _FULL_LOAD = 1e5
 _LEAST_LOAD = 1.0
 _FEWEST_TEETH = 18.9
 _RANGES = (
-    ("contact ratio of {:.4g} is below the 1.2", 1.2, float("inf")),
-    ("helix angle of {:.4g} deg is above the 30 deg", 0.0, 30.0),
-    ("sum of profile shifts of {:.4g} is outside the -0.5 to 2", -0.5, 2.0),
+    ("contact ratio of {:.4g} is below the 1.2", 1.2, float("inf"), "contact ratio"),
+    ("helix angle of {:.4g} deg is above the 30 deg", 0.0, 30.0, "helix angle"),
+    ("sum of profile shifts of {:.4g} is outside the -0.5 to 2", -0.5, 2.0, "sum of shifts"),
 )
 
 
@@ -227,8 +227,9 @@ def range_warnings(
         Doubt(
             f"a {text.format(value)} for which ISO 6336-1 gives its estimate of the stiffness",
             moves=REMARKED,
+            brief=f"ISO 6336-1 has no stiffness for a {name} of {value:.4g}",
         )
-        for (text, low, high), value in zip(_RANGES, values, strict=True)
+        for (text, low, high, name), value in zip(_RANGES, values, strict=True)
         if not low <= value <= high
     ]
     if profile_shift[0] < profile_shift[1]:
@@ -244,6 +245,7 @@ def range_warnings(
                 "the estimate of ISO 6336-1 was compared with published results; its compliance differs by "
                 f"{100.0 * abs(few / fewest - 1.0):.2g} % from that at the limit",
                 moves=min(abs(few / fewest - 1.0), REMARKED),  # of what stands beside the answer
+                brief=f"{min(virtual_teeth):.3g} virtual teeth: ISO 6336-1 ends at {_FEWEST_TEETH}",
             )
         )
     if internal:

@@ -89,7 +89,7 @@ def uncovered(
     if not model.foundation:
         return ()
     return tuple(
-        reworded(sentence, f"{name}: {sentence}.")
+        reworded(sentence, f"{name}: {{}}.".format)
         for name, section in zip(names, sections, strict=True)
         for sentence in foundation_warnings(section)
     )

@@ -3,11 +3,12 @@
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import zip_longest
+from itertools import chain, zip_longest
 from pathlib import Path
 from typing import Literal
 
 from pitchpoint.analyses.figures import headline
+from pitchpoint.doubts import as_doubt
 from pitchpoint.results.target_rows import in_words
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -20,8 +21,8 @@ __all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen"]
 FEW_LINES = 12
 """Lines of a first screen."""
 
-_DOUBTS = 3
-"""Of them at most for what fails or is doubtful."""
+_DOUBTS, _OF_DOUBTS = 3, 5
+"""Sentences on what fails or is doubtful, and lines that they may take: a narrow screen folds them."""
 
 Style = Literal["title", "fails", "doubt", "figure", "note"]
 
@@ -55,7 +56,7 @@ def first_screen(outcomes: Mapping[str, Outcome], report: Path, width: int) -> l
     titles = titles if len(titles) <= min(room, 2) else [show.first_clauses(title, width)]
     head = [Line(text, "title") for text in titles]
     head += [Line(show.first_clauses(at, width))] if at else []
-    room -= len(titles)
+    room = max(room - len(titles), 0)
     figures = _aligned(key_figures(in_order(), outcome)[:room], width) if len(outcomes) == 1 else []
     fails, doubtful = (
         [line for line in doubts if line.style == style] for style in ("fails", "doubt")
@@ -103,24 +104,26 @@ def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
     """What fails, then what is doubtful, a line each; how many more there are."""
     fails = _of_variants(outcomes, "implausible")
     doubts = _of_variants(outcomes, "warnings")
-    lines = [
-        *(Line(show.first_clauses(text, width), "fails") for text in fails),
-        *(Line(show.first_clauses(f"Doubtful: {text}", width), "doubt") for text in doubts),
+    every: list[list[Line]] = [
+        *([Line(line, "fails") for line in _folded(text, width)] for text in fails),
+        *([Line(line, "doubt") for line in _folded(f"Doubtful: {text}", width)] for text in doubts),
     ]
-    if len(lines) <= _DOUBTS:
-        return lines
-    rest = len(lines) - _DOUBTS + 1
-    return [*lines[: _DOUBTS - 1], Line(f"{rest} more of this kind are in the report.", "doubt")]
+    shown = every if len(every) <= _DOUBTS else every[: _DOUBTS - 1]
+    while sum(map(len, shown)) > _OF_DOUBTS:
+        shown = shown[:-1]
+    rest = len(every) - len(shown)
+    more = "1 more of this kind is" if rest == 1 else f"{rest} more of this kind are"
+    return [*chain(*shown), *[Line(f"{more} in the report.", "doubt")] * (rest > 0)]
 
 
 def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
-    """Sentences of all variants, each once and the worst of each first, those of some with their variants."""
+    """Briefs of all variants, each once and the worst of each first, those of some with their variants."""
     told: dict[str, list[str]] = {}
     ranked = zip_longest(*(outcome.manifest[kind] for outcome in outcomes.values()))
     for row in ranked:
         for variant, text in zip(outcomes, row, strict=True):
             if text is not None:
-                told.setdefault(text, []).append(variant)
+                told.setdefault(as_doubt(text).brief, []).append(variant)
     return [
         text if len(names) == len(outcomes) else f"{_few(names, len(outcomes))}: {text}"
         for text, names in told.items()

@@ -922,6 +922,7 @@ def _warnings(pair: _Pair, gear: _Gear) -> list[Doubt]:
                 f"The teeth of {gear.name} are {gear.tip_thickness:.3g} {gear.modules} thick at the "
                 f"tip; at least {_THIN_TIP:g} {gear.modules} are usual.",
                 moves=REMARKED,
+                brief=f"Thin tips of {gear.name}: {gear.tip_thickness:.3g} {gear.modules}.",
             )
         )
     if gear.undercut:
@@ -932,6 +933,7 @@ def _warnings(pair: _Pair, gear: _Gear) -> list[Doubt]:
                 f"The tip of {gear.name} clears the root of {gear.mate} by {gear.clearance:.3g} "
                 f"{gear.modules}; at least {_SMALL_CLEARANCE:g} {gear.modules} are usual.",
                 moves=REMARKED,
+                brief=f"Small clearance under the tip of {gear.name}: {gear.clearance:.3g} {gear.modules}.",
             )
         )
     if gear.fillet_overlap > _TOLD_IN_FILLET:
@@ -946,6 +948,7 @@ def _fillet_warning(pair: _Pair, gear: _Gear) -> Doubt:
         f"{gear.fillet_overlap:.2g} {gear.modules}, which these figures leave out; a smaller fillet "
         f"radius of {gear.name} or a shorter addendum of {gear.mate} keeps it out.",
         moves=max(beyond, REMARKED),
+        brief=f"Tip in the fillet of {gear.name}: {gear.fillet_overlap:.2g} {gear.modules}, left out.",
     )
 
 
@@ -962,6 +965,7 @@ def _pair_warnings(pair: _Pair) -> list[Doubt]:
                 f"The transverse contact ratio of gear 1 and gear 2 is {pair.transverse_ratio:.3g}; "
                 f"it is the overlap ratio, {overlap:.3g}, that keeps the teeth in contact.",
                 moves=REMARKED,
+                brief=f"Transverse contact ratio {pair.transverse_ratio:.3g}: the overlap keeps contact.",
             )
         )
     if _flank_overlap(pair) > _TOLD_DISTANCE * pair.module:
@@ -972,6 +976,8 @@ def _pair_warnings(pair: _Pair) -> list[Doubt]:
                 "Gear 1 must be put into gear 2 along its axis: moved in radially, the tips overlap by "
                 f"up to {-pair.radial_gap:.3g} {pair.modules}.",
                 moves=REMARKED,
+                brief=f"Gear 1 goes in axially; radially tips overlap {-pair.radial_gap:.3g} "
+                f"{pair.modules}.",
             )
         )
     if pair.cutter_radial_gap < 0.0:
@@ -999,6 +1005,7 @@ def _overlap_warning(pair: _Pair) -> Doubt:
         f"{_mm(pair.zero_backlash)}, {1e6 * overlap:.3g} um away, {taken}; figures are those of nominal "
         "teeth, whose backlash is negative.",
         moves=REMARKED if rounded else LEFT_OUT,
+        brief=f"Nominal flanks overlap: the distance lacks {1e6 * overlap:.3g} um for no backlash.",
     )
 
 
@@ -1014,6 +1021,7 @@ def _undercut_warning(pair: _Pair, gear: _Gear) -> Doubt:
         f"The undercut of {gear.name} {loses}; its profile shift {gear.profile_shift:.4g} is below the limit "
         f"{gear.undercut_limit:.4g}, and {ends}.",
         moves=max(lost / float(pair.contact_ratio), REMARKED),
+        brief=f"The undercut of {gear.name} {loses}.",
     )
 
 

@@ -215,7 +215,11 @@ def class_warnings(pair: CylindricalPair) -> tuple[str, ...]:
         for size, teeth in _sizes(pair)
     ]
     return tuple(
-        Doubt(f"ISO 1328-1 does not hold for gear {number}: {outside}.", moves=GUESSED)
+        Doubt(
+            f"ISO 1328-1 does not hold for gear {number}: {outside}.",
+            moves=GUESSED,
+            brief=f"Deviations of gear {number} lie outside ISO 1328-1.",
+        )
         for number, outside in enumerate(told, 1)
         if outside
     )

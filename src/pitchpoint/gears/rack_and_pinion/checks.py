@@ -6,6 +6,7 @@ from types import SimpleNamespace
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO
 from pitchpoint.gears.rack_and_pinion.mesh import RackAndPinion
@@ -180,23 +181,27 @@ def _meeting(at: SimpleNamespace) -> Iterator[Refusal]:
 
 def _warnings(at: SimpleNamespace) -> Iterator[str]:
     if at.tip_thickness < _THIN_TIP:
-        yield (
+        yield Doubt(
             f"The teeth of the pinion are {at.tip_thickness:.3g} modules thick at the tip; at least "
-            f"{_THIN_TIP:g} modules are usual."
+            f"{_THIN_TIP:g} modules are usual.",
+            brief=f"Thin tips of the pinion: {at.tip_thickness:.3g} modules.",
         )
     if at.shift < at.limit:
-        yield (
+        yield Doubt(
             f"The flanks of the pinion are undercut; its profile shift {at.shift:.4g} is below the limit "
-            f"{at.limit:.4g}."
+            f"{at.limit:.4g}.",
+            brief=f"Undercut pinion: profile shift {at.shift:.4g}, limit {at.limit:.4g}.",
         )
     for name, clearance in (("pinion", at.clearance_1), ("rack", at.clearance_2)):
         if clearance < _SMALL_CLEARANCE * (1.0 - 1e-9):
-            yield (
+            yield Doubt(
                 f"The tip of the {name} clears the other's root by {clearance:.3g} modules; at least "
-                f"{_SMALL_CLEARANCE:g} modules are usual."
+                f"{_SMALL_CLEARANCE:g} modules are usual.",
+                brief=f"Small clearance under the tip of the {name}: {clearance:.3g} modules.",
             )
     if at.transverse_ratio < 1.0:
-        yield (
+        yield Doubt(
             f"The transverse contact ratio of pinion and rack is {at.transverse_ratio:.3g}; it is the "
-            "overlap ratio that keeps the teeth in contact."
+            "overlap ratio that keeps the teeth in contact.",
+            brief=f"Transverse contact ratio {at.transverse_ratio:.3g}: the overlap keeps contact.",
         )

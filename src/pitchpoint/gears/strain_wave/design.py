@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.gears.designs import Designs, Faults, Group, Number, check_counts
 from pitchpoint.gears.strain_wave import MEMBERS
@@ -551,8 +552,11 @@ def check_rim(mesh: StrainWave, young: float) -> tuple[str, ...]:
         if 1.0 / FAR_FROM_USUAL < thickness / usual < FAR_FROM_USUAL:
             return ()
         return (
-            f"The rim of the flexspline is {1e3 * thickness:.3g} mm thick; usual for its "
-            f'size and its wave are {1e3 * usual:.3g} mm, which walls = "bending strain" takes.',
+            Doubt(
+                f"The rim of the flexspline is {1e3 * thickness:.3g} mm thick; usual for its "
+                f'size and its wave are {1e3 * usual:.3g} mm, which walls = "bending strain" takes.',
+                brief=f"The flexspline's rim is {1e3 * thickness:.3g} mm, usual are {1e3 * usual:.3g} mm.",
+            ),
         )
     per_thickness = (
         1.5 * deflection / float(mesh.rim.radius) ** 2
@@ -561,8 +565,11 @@ def check_rim(mesh: StrainWave, young: float) -> tuple[str, ...]:
         return ()
     percent, within = 100.0 * per_thickness * thickness, 1e3 * BORNE / per_thickness
     return (
-        f"The wave strains the rim of the flexspline by {percent:.2g} %; plastics bear {100 * BORNE:g} to "
-        f"1 % for short lives, {100 * BORNE:g} % at {within:.3g} mm of rim.",
+        Doubt(
+            f"The wave strains the rim of the flexspline by {percent:.2g} %; plastics bear {100 * BORNE:g} "
+            f"to 1 % for short lives, {100 * BORNE:g} % at {within:.3g} mm of rim.",
+            brief=f"The rim is strained by {percent:.2g} %; plastics bear {100 * BORNE:g} to 1 %.",
+        ),
     )
 
 

@@ -159,7 +159,8 @@ def _of_unsolved(code: NDArray[np.int_], every: int) -> Iterator[Doubt]:
     why = (one if len(kinds) == 1 else f"{one} ({count})" for one, count in kinds)
     if code.size:
         sentence = f"{code.size} of {every} contacts were not solved: {'; '.join(why)}"
-        yield Doubt(sentence, UNSOLVED, code.size, moves=WITHHELD)
+        brief = f"{code.size} of {every} contacts were not solved"
+        yield Doubt(sentence, UNSOLVED, code.size, moves=WITHHELD, brief=brief)
 
 
 def _of_units(contact: LineContact) -> Iterator[Doubt]:
@@ -172,18 +173,21 @@ def _of_units(contact: LineContact) -> Iterator[Doubt]:
             f"a relative radius of {radius.max():.4g} m: nearly flat, if it was not meant in millimetres",
             "radius",
             radius.max(),
+            brief=f"radius of {radius.max():.4g} m, nearly flat: meant in mm?",
         )
     if modulus.min() < SOFT:
         yield Doubt(
             f"a modulus E' of {modulus.min():.4g} Pa: softer than rubber, if it was not meant in MPa or GPa",
             "modulus",
             -modulus.min(),
+            brief=f"modulus E' of {modulus.min():.4g} Pa: meant in MPa or GPa?",
         )
     if viscosity.max() > STIFF:
         yield Doubt(
             f"a viscosity of {viscosity.max():.4g} Pa s: no oil is so thick, if it was not meant in mPa s",
             "viscosity",
             viscosity.max(),
+            brief=f"viscosity of {viscosity.max():.4g} Pa s: meant in mPa s?",
         )
     yield from _of_units_of_oil(contact.fluid)
 
@@ -197,6 +201,7 @@ def _of_units_of_oil(oil: Fluid) -> Iterator[Doubt]:
             "meant in 1/GPa",
             "pressure_viscosity",
             alpha,
+            brief=f"pressure-viscosity {alpha:.4g} 1/Pa: meant in 1/GPa?",
         )
     stress = np.min(np.asarray(oil.shear_parameters.get("eyring_stress", WEAK)))
     if stress < WEAK:
@@ -204,6 +209,7 @@ def _of_units_of_oil(oil: Fluid) -> Iterator[Doubt]:
             f"an Eyring stress of {stress:.4g} Pa: no oil is so weak, if it was not meant in MPa",
             "eyring_stress",
             -stress,
+            brief=f"Eyring stress of {stress:.4g} Pa: meant in MPa?",
         )
 
 
@@ -215,6 +221,7 @@ def _of_thick(film: NDArray[np.float64]) -> Iterator[Doubt]:
             "the units of radius [m], viscosity [Pa s] and line load [N/m]",
             "thick",
             film.max(),
+            brief=f"a film of {1e6 * film.max():.3g} um is too thick for gears: check units",
         )
 
 
@@ -222,7 +229,13 @@ def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterato
     told = contact.fluid.outside(pressure)
     if told is not None:
         sentence = f"{told}: films and traction there are extrapolated"
-        yield Doubt(sentence, "pressure", pressure.max(), moves=GUESSED)
+        brief = extrapolated_pressure(float(pressure.max()))
+        yield Doubt(sentence, "pressure", pressure.max(), moves=GUESSED, brief=brief)
+
+
+def extrapolated_pressure(pressure: float) -> str:
+    """In few words that the laws of an oil end below a pressure [Pa]."""
+    return f"laws of the oil extrapolated to {1e-9 * pressure:.3g} GPa"
 
 
 def _of_half_space(
@@ -240,6 +253,8 @@ def _of_half_space(
                 f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them",
                 f"wide against {name}",
                 half_width[worst] / length[worst],
+                brief=f"contact {2e3 * half_width[worst]:.3g} mm wide, {name} "
+                f"{1e3 * length[worst]:.3g} mm",
             )
 
 
@@ -251,6 +266,7 @@ def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -
             f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little",
             "roughness",
             rough[worst] / half_width[worst],
+            brief=f"Rq {1e6 * rough[worst]:.3g} um in a contact {2e6 * half_width[worst]:.3g} um wide",
         )
 
 
@@ -284,6 +300,7 @@ def _of_strips(
             "stands still is taken to take none",
             "strips",
             -peclet[member, worst],
+            brief=f"Peclet number {peclet[member, worst]:.3g}: a surface comes out too warm",
         )
 
 
@@ -298,6 +315,7 @@ def _of_long_inlet(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
             f"its relative radius of {1e3 * radius[worst]:.3g} mm: give the `inlet` at which oil begins",
             "long inlet",
             flooded[worst] / radius[worst],
+            brief=f"a flooded film draws oil from {1e3 * flooded[worst]:.3g} mm on: give its inlet",
         )
 
 
@@ -314,6 +332,7 @@ def _of_shear(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
             f"{' or '.join(limited)}",
             "shear",
             stress / pressure,
+            brief=f"a Newtonian oil sheared by {stress:.3g} MPa: more than oils bear",
         )
 
 
@@ -324,6 +343,7 @@ def _of_thinning(fluid: Fluid) -> Iterator[Doubt]:
             "`viscosity_slope` is 0 1/K",
             "thinning",
             1.0,
+            brief="the oil does not thin as it warms: viscosity_slope is 0",
         )
 
 
@@ -338,6 +358,7 @@ def _of_grid(central: NDArray[np.float64], minimum: NDArray[np.float64]) -> Iter
             "grid",
             np.nanmax(worst),
             moves=np.nanmax(worst),
+            brief=f"coarse grid: films off by up to {100.0 * np.nanmax(worst):.2g} %, take more nodes",
         )
 
 
@@ -360,6 +381,7 @@ def starved(given: float, needed: float) -> Doubt:
         f"it from {needed:.3g} on: the contact is starved",
         "inlet",
         needed / given,
+        brief=f"starved: oil begins at {given:.3g} half-widths, flooded at {needed:.3g}",
     )
 
 

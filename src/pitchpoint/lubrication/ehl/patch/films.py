@@ -13,7 +13,13 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.subsurface import Stresses, below_row
 from pitchpoint.doubts import GUESSED, WITHHELD, Doubt
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import WIDE, of_conduction, of_heat, starved
+from pitchpoint.lubrication.ehl.doubts import (
+    WIDE,
+    extrapolated_pressure,
+    of_conduction,
+    of_heat,
+    starved,
+)
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import (
     FIELDS,
@@ -471,6 +477,7 @@ def _of_room(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
             "thick",
             longer,
             moves=0.2,
+            brief=f"the film lengthens the contact {longer:.3g} times: up to 20 % too thin",
         )
     if asked < begins * (1.0 - 1e-9):
         yield Doubt(
@@ -478,6 +485,7 @@ def _of_room(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
             f"{1e3 * begins:.3g} mm on at the nearest: the film comes out too thick",
             "inlet of a patch",
             begins / asked,
+            brief=f"oil begins at {1e3 * begins:.3g}, not {1e3 * asked:.3g} mm: film too thick",
         )
 
 
@@ -491,22 +499,26 @@ def _warnings(
             "mm: the bodies are no half spaces, as the deformation takes them",
             "wide",
             half_width / radius,
+            brief=f"contact {2e3 * half_width:.3g} mm wide, relative radius {1e3 * radius:.3g} mm",
         )
     if ended.code != Code.SOLVED:
-        yield Doubt(f"the film was not found: {ended.code.sentence}", moves=WITHHELD)
+        sentence = f"the film was not found: {ended.code.sentence}"
+        yield Doubt(sentence, moves=WITHHELD, brief="the film of a contact was not found")
         return
     yield from _of_room(contact, layout)
     told = contact.fluid.outside(film.hertz_pressure)
     if told is not None:
         pressure = float(film.hertz_pressure)
         sentence = f"{told}: films and traction there are extrapolated"
-        yield Doubt(sentence, "pressure", pressure, moves=GUESSED)
+        brief = extrapolated_pressure(pressure)
+        yield Doubt(sentence, "pressure", pressure, moves=GUESSED, brief=brief)
     if 0.0 < film.mean_film < least:
         yield Doubt(
             f"the grid is coarse for a film of {1e9 * film.mean_film:.3g} nm: beside the contact the gap "
             f"opens by {1e9 * least:.3g} nm within a cell; take more nodes",
             "grid",
             least / float(film.mean_film),
+            brief=f"coarse grid for a film of {1e9 * film.mean_film:.3g} nm: take more nodes",
         )
     if film.heat is not None:
         peclet = np.array([[film.heat.peclet_a], [film.heat.peclet_b]])
@@ -519,4 +531,5 @@ def _warnings(
             "grid; `near_ends` has it at distances from the ends",
             ENDS,
             1.0,
+            brief="the contact line ends sharply: see near_ends for its pressure",
         )

@@ -164,6 +164,7 @@ def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Ite
                 "unseen",
                 1.0 - seen / whole,
                 moves=1.0 - seen / whole,
+                brief=f"the grid shows Rq {1e9 * seen:.3g} nm of {1e9 * whole:.3g} nm: take more nodes",
             )
     if contact.heights:
         high, flat = _range(contact, layout, cells), layout.half_width**2 / (2.0 * layout.radius)
@@ -173,6 +174,7 @@ def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Ite
                 "flattens the bodies: the contact is one of single summits, on a grid made for all of it",
                 "summits",
                 high / flat,
+                brief=f"heights over {1e6 * high:.3g} um: a contact of single summits",
             )
 
 

@@ -420,4 +420,5 @@ def _few(layout: Layout, nodes: int) -> Iterator[Doubt]:
             "one: take more nodes",
             "few nodes",
             1.0 / shown,
+            brief=f"{shown:.1f} nodes over a half-width: take more nodes",
         )
