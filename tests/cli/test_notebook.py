@@ -15,6 +15,7 @@ import xarray as xr
 
 import pitchpoint as pp
 from pitchpoint._jax import jax, jnp
+from pitchpoint.analyses.figures import out_of_range
 from pitchpoint.results.labelled import in_units
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Progress
@@ -259,6 +260,23 @@ def test_a_study_agrees_with_the_run(result: pp.Result) -> None:
     assert found.mean_efficiency.units == "%"
     summary = result.summary().loc["mean_efficiency"]
     assert float(found.mean_efficiency.sel(law="xu_2007")[0]) == pytest.approx(summary.xu_2007)
+
+
+def test_a_study_has_the_film_ratio_and_says_which_laws_hold(result: pp.Result) -> None:
+    """At the point of the run they are those of its cycle and of its laws in range."""
+    found = pp.study(PAIR, {TORQUE: [60.0, 600.0]})
+    cycle, laws = result.cycle, result.laws
+    thinnest = cycle.lambda_ratio.where(cycle["load"] > 0.0).min(("phase", "pair", "slice")).values
+    np.testing.assert_allclose(found.min_lambda_ratio[:, 0], thinnest, rtol=1e-4)
+    outside = {one["law"] for one in out_of_range(laws)}
+    assert [why != "" for why in found.out_of_range.values[:, 0]] == [
+        law in outside for law in found.law.values
+    ]
+    held = found.mean_efficiency.where(found.out_of_range == "")
+    np.testing.assert_array_equal(found.lowest_efficiency_in_range[0], held.min("law"))
+    np.testing.assert_array_equal(found.highest_efficiency_in_range[1], held.max("law"))
+    counted = (found.out_of_range.sel(law="xu_2007") != "").values.sum()
+    assert counted and f"xu_2007: out of its range at {counted} of 2 points" in found.warnings
 
 
 def test_a_design_that_cannot_be_says_why_and_stops_no_other() -> None:

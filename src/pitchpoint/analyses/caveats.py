@@ -38,6 +38,7 @@ __all__ = [
     "faces_warning",
     "film_warning",
     "films_lost",
+    "friction_beyond",
     "jamming_words",
     "leaves",
     "proportions_counted",
@@ -45,6 +46,7 @@ __all__ = [
     "rolling_share",
     "room_warning",
     "told_of_law",
+    "why_not_at",
     "why_outside",
 ]
 
@@ -410,12 +412,38 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
     if not loaded.any():
         return reasons
     lowest = float(run["friction"].min(where=loaded, initial=np.inf))
+    highest = float(run["friction"].max(where=loaded, initial=0.0))
+    thinnest = float(run["lambda_ratio"].min(where=loaded, initial=np.inf))
+    reasons += friction_beyond(law, lowest, highest, thinnest)
+    rolling = ROLLING_RESISTANCE[built.case.models.rolling_resistance]
+    if law.whole and rolling.sources:
+        share = rolling_share(run)
+        reasons.append(
+            Doubt(
+                "its coefficient was fitted to whole losses of gears, those of rolling among them; with "
+                f"'{rolling.name}' beside it rolling counts twice, here with {share:.2g} % of the loss",
+                moves=share / 100.0,
+                brief=f"rolling counts twice, {share:.2g} % of the loss",
+            )
+        )
+    return reasons
+
+
+def friction_beyond(
+    law: FrictionLaw, lowest: float, highest: float, thinnest: float
+) -> list[Doubt]:
+    """Why the friction of a law is none that it describes, in words; empty where it is.
+
+    Args:
+        law: of friction.
+        lowest, highest: coefficients over the contacts that carry.
+        thinnest: film of these over the composite roughness Rq.
+    """
+    reasons: list[Doubt] = []
     if lowest < 0.0:
         drives = f"its friction coefficient falls to {lowest:.2g}: such friction drives the gears"
         brief = f"friction falls to {lowest:.2g} and drives the gears"
         reasons.append(Doubt(drives, moves=WITHHELD, brief=brief))
-    highest = float(run["friction"].max(where=loaded, initial=0.0))
-    thinnest = float(run["lambda_ratio"].min(where=loaded, initial=np.inf))
     if law.full_film and thinnest < 1.0:
         reasons.append(
             Doubt(
@@ -432,17 +460,6 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
                 f"{BOUNDARY:g}",
                 moves=highest / law.largest - 1.0,
                 brief=f"friction {highest:.2g}, steel in oil has {BOUNDARY:g}",
-            )
-        )
-    rolling = ROLLING_RESISTANCE[built.case.models.rolling_resistance]
-    if law.whole and rolling.sources:
-        share = rolling_share(run)
-        reasons.append(
-            Doubt(
-                "its coefficient was fitted to whole losses of gears, those of rolling among them; with "
-                f"'{rolling.name}' beside it rolling counts twice, here with {share:.2g} % of the loss",
-                moves=share / 100.0,
-                brief=f"rolling counts twice, {share:.2g} % of the loss",
             )
         )
     return reasons
@@ -462,6 +479,29 @@ def leaves(law: Limited, run: Mapping[str, np.ndarray], gives: str) -> list[Doub
         for name, where in outside.items()
         if np.any(where)
     ]
+
+
+def why_not_at(built: Built, law: FrictionLaw, extremes: Mapping[str, float]) -> list[str]:
+    """Why a law does not hold at one of many points, in words; empty where it does, see `why_outside`.
+
+    Args:
+        built: the point.
+        law: of friction.
+        extremes: "lowest_" and "highest_" of friction, film ratio and conditions by which laws are limited,
+            over the contacts that carry.
+    """
+    reasons: list[str] = [
+        f"{name.replace('_', ' ')} leaves the range of the law, {limits_words(name, limits)}"
+        for name, limits in law.ranges.items()
+        if extremes[f"lowest_{name}"] < limits[0] or extremes[f"highest_{name}"] > limits[1]
+    ]
+    ends = (
+        extremes[name] for name in ("lowest_friction", "highest_friction", "lowest_lambda_ratio")
+    )
+    reasons += [doubt.brief for doubt in friction_beyond(law, *ends)]
+    if law.whole and ROLLING_RESISTANCE[built.case.models.rolling_resistance].sources:
+        reasons.append("rolling counts twice")
+    return reasons
 
 
 def _how_long(outside: np.ndarray, weight: np.ndarray) -> str:

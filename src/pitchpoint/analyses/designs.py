@@ -23,6 +23,7 @@ PIECE = 256
 LOCKED = "friction locks the mesh"
 UNKNOWN = "no solution was found"
 REASON = "why there are no figures"
+OUTSIDE = "why the friction law does not hold"
 
 
 @dataclass(frozen=True)
@@ -88,9 +89,11 @@ class Designs:
             told = f"none of {len(self.changes)} designs can be computed; the first one: {first}"
             raise InputError(told, file=self.variant.name)
         every = joined(found).reindex(
-            point=np.arange(len(self.changes)), fill_value={"locked": False}
+            point=np.arange(len(self.changes)), fill_value={"locked": False, "out_of_range": ""}
         )
         every["reason"] = (("law", "point"), _reasons(every, reasons), {"long_name": REASON})
+        if "out_of_range" in every:
+            every["out_of_range"].attrs["long_name"] = OUTSIDE
         return every.drop_vars("point")
 
 
@@ -109,7 +112,7 @@ def _together(points: Mapping[int, Ready]) -> xr.Dataset:
     every = [*points.values()]
     under = every[0].models
     extra = more_of(every, len(under))
-    data = summaries(every, under, extra, title="designs", may_lock=True)
+    data = summaries(every, under, extra, title="designs", may_lock=True, several=True)
     return data.assign_coords(point=[*points])
 
 

@@ -14,6 +14,7 @@ __all__ = [
     "CONTACT",
     "MAIN",
     "OF_CROSSING",
+    "OF_LAWS",
     "OF_MOTION",
     "OF_START",
     "RATING",
@@ -66,8 +67,8 @@ def main_figures(data: Any) -> tuple[str, ...]:
 
 
 def json_figures(data: Any) -> tuple[str, ...]:
-    """The same, and those of each stage of a drive."""
-    return (*main_figures(data), *(name for name in STAGES if name in data))
+    """The same, film ratio and range of the laws, and those of each stage of a drive."""
+    return (*main_figures(data), *(name for name in (*OF_LAWS, *STAGES) if name in data))
 
 
 OF_MOTION = (
@@ -122,6 +123,9 @@ RATING = (
 """Largest stresses and least safeties of all gears that are rated."""
 
 REACTIONS = tuple(f"{way}_reaction_{gear}" for gear in (1, 2) for way in ("radial", "axial"))
+
+OF_LAWS = ("min_lambda_ratio", "lowest_efficiency_in_range", "highest_efficiency_in_range")
+"""Smallest film ratio of a cycle, and what friction laws that hold make of its efficiency."""
 
 STAGES = (
     "stage_loss",

@@ -104,7 +104,8 @@ class _Planned:
         points = self.points(changes)
         under = points[0].models
         extra = {**self._axis(changes), **more_of(points, len(under))}
-        data = summaries(points, under, extra, progress, title=self.title)
+        data = summaries(points, under, extra, progress, title=self.title, several=True)
+        data = data.drop_vars("out_of_range", errors="ignore")  # a warning counts them
         data.attrs.update(self.told)
         if self.told.get("axis_kind"):
             units = si_unit(self.told["axis_kind"])

@@ -1,7 +1,7 @@
 """Figures of operating points, under each of some friction laws."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,10 +14,11 @@ from pitchpoint.analyses.caveats import (
     demand_motion,
     faces_warning,
     films_lost,
+    why_not_at,
 )
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import Acting, BuiltDrive, Ready
-from pitchpoint.doubts import WITHHELD, Doubt, doubts_of, stored
+from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, doubts_of, stored
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
@@ -50,7 +51,10 @@ OF_STAGE_DRIVERS = ("stage_input_torque", "stage_speed")
 
 _SHOWN = 3
 
-_WITH_FRICTION = {"largest_contact_force_ratio"} | {
+_ENDS = ("lowest_", "highest_")
+"""What names begin with of values that decide whether laws hold."""
+
+_WITH_FRICTION = {"largest_contact_force_ratio", "min_lambda_ratio"} | {
     f"{kind}_{name}{ending}"
     for kind in ("mean", "min", "max")
     for name in ("loss", "efficiency", "input_torque", "friction")
@@ -83,8 +87,13 @@ def summaries(
     *,
     title: str,
     may_lock: bool = False,
+    several: bool = False,
 ) -> xr.Dataset:
-    """Figures of points under several laws; among several, or with `may_lock`, locked ones are NaN."""
+    """Figures of points under several laws; among several, or with `may_lock`, locked ones are NaN.
+
+    With `several`, which points of a study have even if there is one alone, they tell the range of the laws
+    that hold at each of them, and why others do not.
+    """
     names = [models.law.name for models in under]
     travels = points[0].travels
     runs = [_grouped(points, models, progress) for models in under]
@@ -92,6 +101,9 @@ def summaries(
     lost = films_lost(turns["turns_code"])
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
     carrying, slices = (out.pop(name, None) for name in ("carrying_slices", "slices"))
+    extremes = {name: out.pop(name) for name in [*out] if name.startswith(_ENDS)}
+    if points[0].transmits and "lowest_lambda_ratio" in extremes:
+        out["min_lambda_ratio"] = extremes["lowest_lambda_ratio"]
     if not may_lock and len(points) == 1:
         demand_films(turns["turns_code"], points, names)
         ends = (out["nearest_friction"], out["nearest_jamming_coefficient"])
@@ -109,6 +121,9 @@ def summaries(
         out = {name: values for name, values in out.items() if name not in OF_STAGE_DRIVERS}
     out["efficiency_fluctuation"] = difference(out["max_efficiency"], out["min_efficiency"])
     out["torque_ripple"] = difference(out["max_input_torque"], out["min_input_torque"])
+    reasons = _why_not([models.law for models in under], points, extremes) if extremes else None
+    if reasons is not None and several and len(under) > 1:
+        out |= _of_laws_in_range(out["mean_efficiency"], reasons == "")
     if not _touching(points[0]):
         out.pop("loss_factor", None)  # of the shares of one load: no figure of the gears alone
     else:
@@ -124,13 +139,23 @@ def summaries(
         warnings += faces_warning(_meshes(points), carried, slices[0])
     for models, code in zip(under, turns["turns_code"], strict=True):
         warnings += _lost_warning(models.law, code)
+    if reasons is not None and len(points) > 1:
+        warnings += _range_warnings(names, reasons)
     if not may_lock:
         for models, locked in zip(under, out["locked"], strict=True):
             warnings += _lock_warning(models.law, locked)
     if any(models.law.films is not None for models in under):
         out |= {name: turns[name] for name in ("turns", "turns_change")}
     data = dataset(
-        {**{name: (_dims(name, values), values) for name, values in out.items()}, **extra},
+        {
+            **{name: (_dims(name, values), values) for name, values in out.items()},
+            **(
+                {}
+                if reasons is None or not several
+                else {"out_of_range": (("law", "point"), reasons)}
+            ),
+            **extra,
+        },
         {"law": names, **_labels(points[0])},
         title=title,
         warnings=warnings,
@@ -142,6 +167,42 @@ def summaries(
     if not points[0].transmits:
         data["mean_efficiency"].attrs["note"] = "undefined (NaN): no power goes through a test rig"
     return data
+
+
+def _why_not(
+    laws: Sequence[FrictionLaw], points: Sequence[Ready], extremes: Mapping[str, np.ndarray]
+) -> np.ndarray:
+    """Why a law does not hold [law, point], in words; empty where it does."""
+    told = [
+        [
+            "; ".join(
+                why_not_at(point, law, {name: values[k, at] for name, values in extremes.items()})
+            )
+            for at, point in enumerate(_meshes(points))
+        ]
+        for k, law in enumerate(laws)
+    ]
+    return np.array(told, dtype=str)
+
+
+def _of_laws_in_range(efficiency: np.ndarray, holds: np.ndarray) -> dict[str, np.ndarray]:
+    """Ends of the mean efficiency [law, point] by the laws that hold, the same under each; NaN by none."""
+    known = np.where(holds & ~np.isnan(efficiency), efficiency, np.nan)
+    lowest, highest = (np.broadcast_to(end(known, axis=0), known.shape) for end in (_fmin, _fmax))
+    return {"lowest_efficiency_in_range": lowest, "highest_efficiency_in_range": highest}
+
+
+_fmin, _fmax = np.fmin.reduce, np.fmax.reduce
+
+
+def _range_warnings(laws: Sequence[str], reasons: np.ndarray) -> Iterator[Doubt]:
+    """How many points are out of the range of a law, and why the first one is."""
+    for law, why in zip(laws, reasons, strict=True):
+        outside = why[why != ""]
+        if outside.size:
+            beyond = f"{law}: out of its range at {outside.size} of {why.size} points"
+            part = outside.size / why.size
+            yield Doubt(f"{beyond}; {outside[0]}.", moves=GUESSED * part, brief=f"{beyond}.")
 
 
 def _turns(runs: Sequence[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:

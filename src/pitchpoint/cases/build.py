@@ -662,6 +662,7 @@ def _common(choices: Choices) -> Models:
         sharing=LOAD_SHARING[choices.load_sharing],
         rolling=_inlet(ROLLING_RESISTANCE[choices.rolling_resistance], choices),
         compliance=terms_of(choices.tooth_compliance, choices.line_stiffness),
+        film=_inlet(FILM_THICKNESS[choices.film_thickness], choices),
     )
 
 

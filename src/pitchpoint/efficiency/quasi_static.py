@@ -26,7 +26,7 @@ from pitchpoint.loading.sharing import from_stiffness
 from pitchpoint.loading.tooth_compliance import TeethAt, Terms, terms_of
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.lubrication.conditions import Conditions, evaluate
-from pitchpoint.lubrication.registry import FrictionLaw, RollingResistance
+from pitchpoint.lubrication.registry import FilmThickness, FrictionLaw, RollingResistance
 from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.materials.solids import Solid, reduced_modulus
 from pitchpoint.materials.surfaces import Roughness
@@ -166,6 +166,7 @@ class Models(eqx.Module):
             other values need no other program.
         held_rolling: rolling resistance on each surface of each slice, found likewise, in the place of
             `rolling` and in its unit.
+        film: law of the film thickness, for figures of a cycle; they have no film ratio without one.
     """
 
     friction: tuple[FrictionLaw, ...] = eqx.field(static=True)
@@ -176,6 +177,7 @@ class Models(eqx.Module):
     compliance: Terms = eqx.field(default_factory=lambda: terms_of("beam_foundation_weber"))
     held: Lanes | None = None
     held_rolling: Lanes | None = None
+    film: FilmThickness | None = eqx.field(static=True, default=None)
 
     def __repr__(self) -> str:
         return brief(self)
@@ -194,7 +196,7 @@ class Models(eqx.Module):
     def without_friction(self) -> "Models":
         """The same without friction laws, for what does not ask for them: its programs serve every law."""
         laws = replace(self, friction=(), choice=array(0), parameters={})
-        return replace(laws, held=None, held_rolling=None)
+        return replace(laws, held=None, held_rolling=None, film=None)
 
     def holding(self, friction: Lanes, rolling: Lanes | None = None) -> "Models":
         """The same with friction that was found elsewhere in the place of laws.

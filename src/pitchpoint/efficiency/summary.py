@@ -38,6 +38,8 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.reactions import radial_and_axial
 from pitchpoint.loading.sharing import equal
+from pitchpoint.lubrication.conditions import evaluate
+from pitchpoint.lubrication.registry import LAWS, FilmThickness
 from pitchpoint.programs import program
 
 __all__ = [
@@ -144,6 +146,26 @@ def _at_pitch_point(result: Cycle) -> dict[str, Array]:
     }
 
 
+LIMITING = tuple(sorted({name for law in LAWS for name in law.ranges}))
+"""Conditions by which friction laws are limited."""
+
+
+def _extremes(result: Cycle, film: FilmThickness | None) -> dict[str, Array]:
+    """Smallest and largest values over all contacts that carry: what decides whether a law holds."""
+    state = result.state
+    at, carries = state.conditions, state.balance.load > 0.0
+    values = {"friction": state.balance.friction} | {name: getattr(at, name) for name in LIMITING}
+    if film is not None:
+        rough = at.roughness_rq > 0.0
+        ratio = evaluate(film, at) / jnp.where(rough, at.roughness_rq, 1.0)
+        values["lambda_ratio"] = jnp.where(rough, ratio, jnp.inf)
+    return {
+        f"{end}_{name}": extreme(jnp.where(carries, value, -worst))
+        for name, value in values.items()
+        for end, extreme, worst in (("lowest", jnp.min, -jnp.inf), ("highest", jnp.max, jnp.inf))
+    }
+
+
 def _carrying_slices(result: Cycle) -> Array:
     """Mean number of slices that carry of the contact lines that carry; NaN where none does."""
     carries = jnp.where(result.state.balance.load > 0.0, 1.0, 0.0)
@@ -228,7 +250,7 @@ def at_points(design: Design, operation: Operation, models: Models) -> dict[str,
         taken = np.minimum(np.arange(start, start + CHUNK), count - 1)
         rows = designs, jax.tree.map(lambda values: np.asarray(values)[taken], operation), known
         found: dict[str, np.ndarray] = jax.device_get(
-            _summaries(rows, balances(rows, models), alone)
+            _summaries(rows, balances(rows, replace(models, film=None)), alone, models.film)
         )
         return found
 
@@ -243,7 +265,7 @@ def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
     if known is None:
         known = known_engagements(design, operation.load, alone)
     rows = design, operation, known
-    return _summaries(rows, balances(rows, models), alone)
+    return _summaries(rows, balances(rows, replace(models, film=None)), alone, models.film)
 
 
 def _by_films(
@@ -258,7 +280,7 @@ def _by_films(
         ends.append(found.status)
         if progress is not None:
             progress(done)
-    told = in_chunks(lambda chunk: _summaries(chunk[0], chunk[1], alone), rows)
+    told = in_chunks(lambda chunk: _summaries(chunk[0], chunk[1], alone, models.film), rows)
     each = {
         "turns_code": [one.code for one in ends],
         "turns_change": [one.residual for one in ends],
@@ -391,12 +413,15 @@ def in_groups(
 
 
 @program
-def _summaries(rows: Row, found: Balance, models: Models) -> dict[str, Array]:
+def _summaries(
+    rows: Row, found: Balance, models: Models, film: FilmThickness | None
+) -> dict[str, Array]:
     def one(
         design: Design, operation: Operation, known: Engagement, found: Balance
     ) -> dict[str, Array]:
         factor = loss_factor(design, models, None if design.mesh.touching else known)
-        return summary(design, cycle_of(design, operation, known, found), factor)
+        result = cycle_of(design, operation, known, found)
+        return summary(design, result, factor) | _extremes(result, film)
 
     result: dict[str, Array] = eqx.filter_vmap(one)(*rows, found)
     return result

@@ -109,6 +109,7 @@ VARIABLES: dict[str, Variable] = {
     "semi_axis_across": length("semi-axis of the contact across the rolling direction", "a"),
     "film_thickness": Variable("film thickness", "h", "m", "um", "length"),
     "lambda_ratio": Variable("film thickness over composite Rq", "Λ", "1"),
+    "min_lambda_ratio": Variable("smallest film over composite Rq", "Λ min", "1"),
     "asperity_load_ratio": percent("part of the load on asperities", "L_a"),
     "central_film": Variable(
         "film in the middle of the contact, solved", "h_c", "m", "um", "length"
@@ -506,6 +507,8 @@ VARIABLES: dict[str, Variable] = {
     "mean_efficiency": percent("mean efficiency", "η mean"),
     "min_efficiency": percent("smallest efficiency", "η min"),
     "max_efficiency": percent("largest efficiency", "η max"),
+    "lowest_efficiency_in_range": percent("lowest efficiency by laws in their range", "η low"),
+    "highest_efficiency_in_range": percent("highest efficiency by laws in their range", "η high"),
     "efficiency_fluctuation": percent("fluctuation of the efficiency", "Δη"),
     "mean_input_torque": torque("mean input torque", "T_in mean"),
     "min_input_torque": torque("smallest input torque", "T_in min"),

@@ -41,7 +41,7 @@ __all__ = ["STUDIES", "study_panels", "swept_rows"]
 _SHOWN = ("mean_efficiency", "efficiency_fluctuation", "mean_input_torque", "torque_ripple")
 _MOVING = ("mean_stiffness", "transmission_error_range", "largest_dynamic_factor")
 """Shown where a case has vibration, the same under every friction law."""
-_TABLE = ("contact_ratio", *MAIN)
+_TABLE = ("contact_ratio", *MAIN, "min_lambda_ratio")
 _OF_LOSS = (
     *("mean_efficiency", "min_efficiency", "max_efficiency"),
     *("mean_loss", "torque_ripple", "mean_friction"),
@@ -366,7 +366,10 @@ def _warns(outcome: Outcome) -> list[str]:
     ]
 
 
-SWEPT = ("mean_efficiency", "torque_ripple", "mean_stiffness", "transmission_error_range")
+SWEPT = (
+    *("mean_efficiency", "torque_ripple", "min_lambda_ratio"),
+    *("mean_stiffness", "transmission_error_range"),
+)
 
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:
