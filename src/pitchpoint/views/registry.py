@@ -130,6 +130,7 @@ BODIES = Section(
     order=107.0,
     parts=("bodies",),
     blocks="pitchpoint.views.sections.bodies:bodies_blocks",
+    answer=of_part("bodies", "pitchpoint.views.sections.bodies:bodies_facts"),
     screen=of_part("bodies", "pitchpoint.views.sections.bodies:bodies_printed"),
 )
 MOTION = Section(

@@ -248,6 +248,10 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield from [Paragraph(show.pretty(told), "note")] if told else []
 
 
+_FROM_REST = 71.5
+"""Place of what starts a drive, for which a joint is chosen: before its kinematic error."""
+
+
 def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     """Torque without load and torques from rest, under the first law."""
     data = outcome.parts.get("running")
@@ -255,7 +259,8 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         for place, (name, value) in enumerate(starting_answer(outcome, laws(data)[0])):
             brief, _, speed = name.partition(" at ")
             detail = f"at {speed}" if speed else ""
-            yield KeyFigure(76.0 + 0.1 * place, brief.capitalize(), value, detail)
+            order = _FROM_REST if brief.startswith("starting") else 76.0 + 0.1 * place
+            yield KeyFigure(order, brief.capitalize(), value, detail)
 
 
 BESIDE = Section(

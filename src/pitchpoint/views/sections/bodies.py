@@ -7,9 +7,9 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.section import Block, Page, Paragraph, Printed, Table, by_variant
+from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Table, by_variant
 
-__all__ = ["bodies_blocks", "bodies_printed"]
+__all__ = ["bodies_blocks", "bodies_facts", "bodies_printed"]
 
 _TITLES = {"body_mass": "mass m", "body_inertia": "moment of inertia J"}
 
@@ -23,6 +23,19 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts["bodies"]
     yield Table(_heads(), _rows(data), compact=True)
     yield Paragraph(data.attrs["note"], "note")
+
+
+def bodies_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Moments of inertia, which a joint is driven with."""
+    data = outcome.parts["bodies"]
+    inertias = [
+        (str(member), show.quantity("body_inertia", float(value)))
+        for member, value in zip(data["member"].values, data["body_inertia"].values, strict=True)
+        if np.isfinite(value)
+    ]
+    for (member, value), *others in [inertias] if inertias else []:
+        more = "; ".join(f"{name} {inertia}" for name, inertia in others)
+        yield KeyFigure(79.0, "Inertia", value, f"{member}{'; ' if more else ''}{more}")
 
 
 def bodies_printed(outcome: Outcome) -> Iterator[Printed]:

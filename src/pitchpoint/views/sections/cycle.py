@@ -21,6 +21,7 @@ from pitchpoint.views.figures import (
     merged,
     short_axis,
 )
+from pitchpoint.views.inputs import words as input_words
 from pitchpoint.views.lines import Points, folded, gapped, titled
 from pitchpoint.views.path import path_of
 from pitchpoint.views.point import Period, period_of
@@ -255,7 +256,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
 
 
 def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
-    """The thinnest film over roughness, under the first law."""
+    """The thinnest film over roughness and what asperities carry at most, under the first law."""
     data = outcome.parts.get("cycle")
     if data is None or "lambda_ratio" not in data:
         return
@@ -264,6 +265,11 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         value = show.number(float(np.nanmin(ratio)))
         detail = "thinnest film of the cycle over composite Rq"
         yield KeyFigure(76.5, "Film ratio", value, detail)
+    if "asperity_load_ratio" in data:
+        share = data["asperity_load_ratio"].values[0]
+        value = show.quantity("asperity_load_ratio", float(np.max(share)))
+        law = show.pretty(input_words(outcome, "models", "asperity_load"))
+        yield KeyFigure(38.0, "Load on asperities", value, f"largest part over the cycle, by {law}")
 
 
 CYCLE = Section(

@@ -1,7 +1,7 @@
 """Wind-up of a drive under torque: load on every tooth, torque loop, stiffness, load on the bearing."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -462,13 +462,27 @@ def _of_variant(it: Panel, outcome: Outcome) -> Iterator[Block]:
 
 
 def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
-    """Stiffness at the operating point, and lost motion where a maker would state it."""
+    """Stiffness at the operating point; three slopes and lost motion where a maker would state them."""
     words, data = torsion_answer(outcome), outcome.parts["torsion"]
-    yield key_figure(70.0, _words(data).stiffness, words, " at the operating point")
+    figure = key_figure(70.0, _words(data).stiffness, words, " at the operating point")
+    slopes = _slopes(data)
+    yield replace(figure, detail="; ".join(filter(None, (slopes, figure.detail))))
     if "catalogue_lost_motion" in data:
         values = data["catalogue_lost_motion"].values
         shown = dict.fromkeys(show.quantity("catalogue_lost_motion", float(v)) for v in values)
         yield KeyFigure(71.0, "Lost motion", " and ".join(shown), "at ±4 % of the torque")
+
+
+def _slopes(data: xr.Dataset) -> str:
+    """Stiffness in three slopes in few words; empty where catalogues have none."""
+    if "slope_stiffness" not in data:
+        return ""
+    each = zip(data["slope"].values, data["slope_stiffness"].values, strict=True)
+    named = (
+        f"{name} {show.quantity('slope_stiffness', float(value), with_unit=False, of=data)}"
+        for name, value in each
+    )
+    return f"{', '.join(named)} {show.unit_of('slope_stiffness', data)}"
 
 
 def torsion_printed(outcome: Outcome) -> list[Printed]:
