@@ -18,6 +18,7 @@ __all__ = [
     "differing",
     "input_tables",
     "law_words",
+    "named_inputs",
     "of_several",
     "result_table",
 ]
@@ -67,6 +68,11 @@ def differing(outcomes: Mapping[str, Outcome]) -> dict[str, Compared]:
     given, following = input_tables(outcomes)
     also = {"Gears, materials and oils that differ by them": following} if following.rows else {}
     return {"Inputs that differ": given, **also}
+
+
+def named_inputs(table: Compared) -> list[tuple[str, ...]]:
+    """Rows of a table of inputs with table and key as one name."""
+    return [(f"{where}, {key}", *told) for where, key, *told in table.rows]
 
 
 def law_words(outcomes: Mapping[str, Outcome]) -> str:

@@ -343,7 +343,7 @@ def verticals(marks: Sequence[tuple[str, float]]) -> dict[str, Any]:
             for _, x in marks
         ],
         "annotations": [
-            {"text": label, "x": x, "yref": "paper", "y": 1, "yanchor": "bottom"}
+            {"text": show.subscripts(label), "x": x, "yref": "paper", "y": 1, "yanchor": "bottom"}
             | {"showarrow": False, "font": {"size": 12}}
             for label, x in marks
         ],

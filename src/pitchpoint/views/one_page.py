@@ -6,6 +6,7 @@ from typing import Any
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
+from pitchpoint.views.designs import input_tables, named_inputs
 from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
@@ -14,10 +15,11 @@ from pitchpoint.views.sections.answer import operation_words, sharing_words
 
 __all__ = ["one_page"]
 
-_RESULTS, _GEARS, _COLUMNS, _DOUBTS, _ASSUMED = 15, 17, 4, 4, 10
-"""How much one page has room for: key figures, rows of the gears, variants, doubts, assumed inputs."""
+_RESULTS, _GEARS, _INPUTS, _COLUMNS, _DOUBTS, _ASSUMED = 15, 17, 10, 4, 4, 10
+"""How much one page has room for: key figures, rows of the gears, inputs that differ, variants, doubts,
+assumed inputs."""
 
-_LINE, _BESIDE = 140, 64
+_LINE, _BESIDE = 280, 90
 """Characters of a doubt, and of what stands beside a key figure."""
 
 _CHOSEN = ("assumed", "fitted", "corrected")
@@ -35,13 +37,16 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
     manifest = outcome.manifest
     blocks = [] if page.designs else [b for s in page.sections for b in s.sums_up(outcome)]
     tables = [block for block in blocks if isinstance(block, Table)]
+    if not any(table.caption == "Gears" for table in tables):
+        tables = [_given_gears(outcome), *tables]
     remarks = [str(block.words) for block in blocks if isinstance(block, Paragraph)]
     every = page.outcomes.values()
     doubts = list(dict.fromkeys(text for one in every for text in one.manifest["warnings"]))
     return {
         "of": next(iter(page.outcomes)) if page.several else "",
-        "gears": [] if page.designs else [_cut(t) for t in tables or [_given_gears(outcome)]],
+        "gears": [] if page.designs else [_cut(table, _GEARS) for table in tables],
         "facts": [] if page.designs else _facts(outcome),
+        "differing": _differing(page),
         "results": _results(page, outcome),
         "more_variants": max(len(page.outcomes) - _COLUMNS, 0),
         "figures": list(_main_figures(page, shown)),
@@ -54,13 +59,13 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
     }
 
 
-def _cut(table: Table) -> Table:
+def _cut(table: Table, room: int) -> Table:
     """A table of as many rows as there is room for."""
     rows = list(table.rows)
-    rest = len(rows) - _GEARS
+    rest = len(rows) - room
     if rest <= 0:
         return replace(table, rows=rows)
-    return replace(table, rows=rows[:_GEARS], caption=f"{table.caption}, {rest} more below")
+    return replace(table, rows=rows[:room], caption=f"{table.caption}, {rest} more below")
 
 
 def _given_gears(outcome: Outcome) -> Table:
@@ -102,6 +107,16 @@ def _facts(outcome: Outcome) -> list[tuple[str, str]]:
         ("Load sharing", sharing_words(outcome)),
     ]
     return [(term, words) for term, words in facts if words]
+
+
+def _differing(page: Page) -> Table | None:
+    """Inputs that differ between designs or variants; None of one alone, or where none differ."""
+    few = dict([*page.outcomes.items()][:_COLUMNS])
+    table, _ = input_tables(few)
+    if len(few) < 2 or not table.rows:
+        return None
+    title, rows = "Inputs that differ", named_inputs(table)
+    return _cut(Table(["", *few], rows, caption=title), _INPUTS)
 
 
 def _results(page: Page, outcome: Outcome) -> Table:

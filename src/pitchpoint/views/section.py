@@ -159,7 +159,9 @@ class KeyFigure:
     @property
     def words(self) -> str:
         """Value and what goes with it."""
-        return f"{self.value}{'' if self.detail[:1] in ('', ',', ';') else ' '}{self.detail}"
+        begins = self.detail[:1]
+        between = "" if begins in ("", ",", ";") else ", " if begins.isdigit() else " "
+        return f"{self.value}{between}{self.detail}"
 
 
 def key_figure(order: float, name: str, words: str, until: str) -> KeyFigure:

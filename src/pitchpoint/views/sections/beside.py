@@ -151,8 +151,8 @@ def _shares(split: list[tuple[Curve, float, float]]) -> Figure:
         for part, key in ((1, _TEETH), (2, _BESIDE))
     ]
     names = [
-        {"text": text(curve.label), "x": 0, "xanchor": "left", "showarrow": False}
-        | {"y": place - 0.22, "yanchor": "bottom"}
+        {"text": text(curve.label).replace(" + ", "<br>+ "), "x": 0, "xanchor": "left"}
+        | {"y": place - 0.22, "yanchor": "bottom", "showarrow": False, "align": "left"}
         for place, (curve, *_) in zip(places, split, strict=True)
     ]
     return Figure(

@@ -1,14 +1,24 @@
-"""Designs beside each other: main results, inputs that differ, and what follows from them."""
+"""Designs beside each other: inputs that differ, main results, and what follows from the inputs."""
 
 from collections.abc import Iterator
 
-from pitchpoint.views.designs import Compared, differing, law_words, of_several, result_table
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
+from pitchpoint.views.designs import (
+    Compared,
+    differing,
+    law_words,
+    named_inputs,
+    of_several,
+    result_table,
+)
+from pitchpoint.views.section import Block, Folded, Heading, Page, Paragraph, Section, Table
 
 __all__ = ["DESIGNS"]
 
 
 def _blocks(page: Page) -> Iterator[Block]:
+    given, *following = (_inputs(*table) for table in differing(page.outcomes).items())
+    yield from given
+    yield Heading("Results")
     yield Paragraph(law_words(page.outcomes))
     results = result_table(page.outcomes)
     shared, _ = of_several(results, len(page.outcomes))
@@ -18,8 +28,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         columns = slice(results.names + len(page.outcomes))
         yield Heading("Results that one design alone has")
         yield Table(results.head[columns], [row[columns] for row in alone])
-    for title, table in differing(page.outcomes).items():
-        yield from _inputs(title, table)
+    for blocks in following:
+        yield from blocks
 
 
 def _inputs(title: str, table: Compared) -> Iterator[Block]:
@@ -27,8 +37,14 @@ def _inputs(title: str, table: Compared) -> Iterator[Block]:
     if not table.rows:
         yield Paragraph("None.")
         return
-    rows = [(f"{where}, {key}", *told) for where, key, *told in table.rows]
-    yield Table(["input", *table.head[2:]], rows)
+    head, rows = ["input", *table.head[2:]], named_inputs(table)
+    yield Table(head, rows[:_OPEN])
+    if rest := rows[_OPEN:]:
+        yield Folded(f"{len(rest)} more inputs that differ", [Table(head, rest)])
+
+
+_OPEN = 10
+"""Inputs that differ which stand open: results follow below them on the first screen."""
 
 
 DESIGNS = Section(

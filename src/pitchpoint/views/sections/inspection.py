@@ -124,18 +124,18 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     gears = [str(name) for name in data["gear"].values]
     yield Paragraph(data.attrs["note"])
     yield Table(["backlash", *map(str, data["case"].values)], backlash_rows(data), compact=True)
+    yield Table(["dimension", *gears], measured_rows(data), compact=True)
+    if "flank_tolerance" in data:
+        classes = [f"{value:.0f}" for value in json.loads(data.attrs["iso_class"])]
+        titles = [f"{gear}, class {of}" for gear, of in zip(gears, classes, strict=True)]
+        yield Table(["tolerance by ISO 1328-1", *titles], _tolerance_rows(data), compact=True)
     if data.sizes["case"] == 1:
         yield Paragraph(
             "Without tolerances: a table [gears.inspection] with thickness allowances and a deviation of the "
             "centre distance gives the least, mean and largest backlash.",
             "note",
         )
-    yield Table(["dimension", *gears], measured_rows(data), compact=True)
     yield Paragraph(" ".join([_USUAL, *json.loads(data.attrs["unmeasured"])]), "note")
-    if "flank_tolerance" in data:
-        classes = [f"{value:.0f}" for value in json.loads(data.attrs["iso_class"])]
-        titles = [f"{gear}, class {of}" for gear, of in zip(gears, classes, strict=True)]
-        yield Table(["tolerance by ISO 1328-1", *titles], _tolerance_rows(data), compact=True)
 
 
 def _answer(outcome: Outcome) -> Iterator[KeyFigure]:

@@ -76,22 +76,22 @@ def vibration_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
     ]
 
 
-def vibration_answer(outcome: Outcome) -> list[str]:
-    """Transmission error for each torque in words; empty without vibration."""
+def vibration_answer(outcome: Outcome) -> list[tuple[str, str]]:
+    """Transmission error for each torque, peak to peak, and what goes with it; empty without vibration."""
     data = outcome.parts.get("vibration")
     if data is None:
         return []
     return [
-        f"at {torque}: {_error(data, k) if ok else told}"
+        _error(data, k, torque) if ok else (told, f"at {torque}")
         for k, (torque, ok, told) in enumerate(
             zip(_torques(data), _found(data), sentences(data), strict=True)
         )
     ]
 
 
-def _error(data: xr.Dataset, torque: int) -> str:
-    mean, spread = (_cell(data, name, torque) for name in _DYNAMIC[:2])
-    return f"{mean} in the mean, {spread} peak to peak"
+def _error(data: xr.Dataset, index: int, torque: str) -> tuple[str, str]:
+    mean, spread = (_cell(data, name, index) for name in _DYNAMIC[:2])
+    return spread, f"dynamic, peak to peak at {torque}, {mean} in the mean"
 
 
 def sentences(data: xr.Dataset) -> list[str]:
@@ -380,8 +380,10 @@ def _lacks(page: Page) -> str | None:
 
 def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
     """Transmission error at each torque, as the gears vibrate."""
-    if words := vibration_answer(outcome):
-        yield KeyFigure(35.0, "Transmission error", "dynamic, " + "; ".join(words))
+    if told := vibration_answer(outcome):
+        (value, detail), *others = told
+        details = [detail, *(" ".join(other) for other in others)]
+        yield KeyFigure(35.0, "Transmission error", value, "; ".join(details))
 
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:
