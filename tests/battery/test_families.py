@@ -388,6 +388,13 @@ def test_driver_moves_by_one_radian_and_load_is_on_another_coordinate(family):
     assert np.sum(told.driver) == np.sum(told.loaded) == 1.0
 
 
+def test_the_nominal_motion_keeps_the_relation_of_the_rates(family):
+    factors, motion = np.asarray(family.mesh.relation), np.asarray(family.mesh.motion)
+    assert factors.shape == motion.shape
+    assert np.any(factors)
+    assert abs(factors @ motion) <= 1e-15 * np.abs(factors) @ np.abs(motion)
+
+
 def test_arms_follow_from_places_and_directions_in_one_frame(family):
     at = family.at
     frames = np.stack([at.direction, at.tangent], axis=1)

@@ -34,6 +34,7 @@ FLOW = (
     {"materials"},
     {"contact"},
     {"gears"},
+    {"drive"},
     {"loading"},
     {"lubrication"},
     {"efficiency"},

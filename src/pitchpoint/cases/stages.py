@@ -27,6 +27,7 @@ from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, StageTable, validated
 from pitchpoint.cases.strength import UNRATED
 from pitchpoint.doubts import in_stage
+from pitchpoint.drive.kinematics import Ends, Link, body_rates
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.errors import Complaints, InputError
@@ -217,11 +218,18 @@ class BuiltDrive:
     @property
     def motion(self) -> list[float]:
         """Rates of the shafts for a radian of the input."""
-        rates = [_ends(self.stages[0].design.mesh)[0]]
-        for one in self.stages:
-            first, last = _ends(one.design.mesh)
-            rates.append(rates[-1] * last / first)
-        return rates
+        shafts = [
+            f"shaft {number + 1}" for first, last in self.design.links for number in (first, last)
+        ]
+        links = [
+            Link(stage.design.mesh, tuple(f"shaft {number + 1}" for number in stage.shafts))
+            for stage in self.design.stages
+        ]
+        held = {body for link in links for body in link.bodies} - {*shafts}
+        rates = body_rates(
+            links, Ends({shafts[0]: _ends(self.stages[0].design.mesh)[0]}, tuple(held))
+        )
+        return [rates[shaft] for shaft in dict.fromkeys(shafts)]
 
     @cached_property
     def backwards(self) -> "BuiltDrive":

@@ -429,6 +429,11 @@ class Mesh(eqx.Module):
 
     @property
     @abc.abstractmethod
+    def relation(self) -> Float[Array, " dof"]:
+        """Factors of the rates of the coordinates, whose sum is zero in every motion that flanks allow."""
+
+    @property
+    @abc.abstractmethod
     def motion(self) -> Float[Array, " dof"]:
         """Nominal rate of each coordinate for a unit rate of the driver."""
 

@@ -397,6 +397,11 @@ class InvolutePair(Mesh):
         return jnp.asarray(1.0 - rolling[..., ::-1] / rolling)
 
     @property
+    def relation(self) -> Float[Array, "2"]:
+        """Teeth pass the pitch point together: z1 q1 + z2 q2 = 0, the teeth of a ring counted negative."""
+        return self.teeth
+
+    @property
     def motion(self) -> Float[Array, "2"]:
         """Rates of both gears for one radian of the driver."""
         ratio = self.teeth[0] / self.teeth[1]

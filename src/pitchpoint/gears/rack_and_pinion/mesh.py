@@ -159,6 +159,11 @@ class RackAndPinion(Mesh):
         return self.backlash * jnp.cos(self.line.angle) * self.line.slope
 
     @property
+    def relation(self) -> Float[Array, "2"]:
+        """The rack travels as far as the reference circle of the pinion turns."""
+        return jnp.stack([self.pinion.reference_radius, -jnp.ones(())])
+
+    @property
     def motion(self) -> Float[Array, "2"]:
         """Rates of both for one radian of the pinion, or one metre of the rack where that drives."""
         radius = self.pinion.reference_radius

@@ -29,6 +29,11 @@ class Rig(Mesh):
         return jnp.asarray(1.0)
 
     @property
+    def relation(self) -> Float[Array, "3"]:
+        """Discs slide on each other at any speeds; only the load keeps them together."""
+        return jnp.array([0.0, 0.0, 1.0])
+
+    @property
     def driver(self) -> Float[Array, "3"]:
         """Body 0 sets the speed."""
         return jnp.array([1.0, 0.0, 0.0])

@@ -230,6 +230,12 @@ class StrainWave(Mesh):
         return jnp.asarray((self.driver @ self.motion) / (self.loaded @ self.motion))
 
     @property
+    def relation(self) -> Float[Array, "3"]:
+        """Teeth that are left behind in a turn of the wave, see `rates`."""
+        z1, z2 = self.teeth
+        return jnp.stack([z2 - z1, z1, -z2])
+
+    @property
     def motion(self) -> Float[Array, "3"]:
         """Rates of the members for one radian of the driver."""
         return self.motion_of

@@ -1,0 +1,1 @@
+"""Drives: bodies, the meshes that link them, and how they move."""
