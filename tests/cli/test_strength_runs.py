@@ -342,6 +342,20 @@ def test_what_cannot_be_rated_so_is_refused(
         describe(str(pair_file), settings=settings)
 
 
+def test_the_tensile_strength_bounds_plastics_without_a_source() -> None:
+    """PBT: 60 MPa, of which twice breaks at once; POM-H has its own strength and no bound."""
+    plain = PAIR.replace('gear_2 = "case-hardened-mq"', 'gear_2 = "PBT"')
+    data = computed(plain, None, "strength").parts["strength"]
+    withheld = json.loads(data.attrs["withheld"])
+    most = 120e6 / float(data["root_stress"][1])
+    assert withheld[-1].startswith(
+        f"The root safety of gear 2 is below {most:.3g}: twice the tensile"
+    )
+    known = computed(plain.replace("PBT", "POM-H"), None, "strength").parts["strength"]
+    assert "tensile" not in known.attrs["withheld"]
+    assert float(known["root_safety"][1]) < 2.0 * 70e6 / float(known["root_stress"][1])
+
+
 def test_without_load_safeties_have_no_end() -> None:
     idle = computed(PAIR + RATED, None, "strength", **{"operation.torque": "0 N m"})
     rows = strength_rows(idle)

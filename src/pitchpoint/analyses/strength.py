@@ -19,6 +19,7 @@ from pitchpoint.efficiency.summary import in_chunks, in_groups
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
+from pitchpoint.strength.limits import STRESS_CORRECTION
 from pitchpoint.strength.load_factors import MOST_RESONANCE
 from pitchpoint.strength.rating import ROWS, ratings
 from pitchpoint.strength.root import THINNEST_RIM, THINNEST_RING
@@ -103,7 +104,7 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         title="strength",
         method=_method([one for _, one in stages]),
         assumed=told(lambda one, _: _assumed(one)),
-        withheld=told(lambda one, _: one.rated.withheld),
+        withheld=told(lambda one, found: [*one.rated.withheld, *_bounds(one, found)]),
         remarks=told(lambda one, _: [*_remarks(one)]) + [_SINGLE] * several,
         warnings=told(lambda one, found: [*_failing(one, found), *_doubts(one, found)]),
     )
@@ -281,6 +282,21 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
             "A helix angle above 30 degrees is beyond what ISO 6336-3 was confirmed for.",
             brief="Helix angle above the 30 degrees of ISO 6336-3.",
         )
+
+
+def _bounds(built: Built, found: Numbers) -> Iterator[Doubt]:
+    """What the tensile strength says of plastic roots whose endurance is not known."""
+    rated = zip(built.solids, found["root_safety"], found["root_stress"], strict=True)
+    for gear, (used, safety, stress) in enumerate(rated, 1):
+        tensile = used.record.tensile_strength
+        if used.plastic and tensile is not None and np.isnan(safety) and stress > 0.0:
+            most = STRESS_CORRECTION * tensile.value
+            yield Doubt(
+                f"The root safety of gear {gear} is below {most / stress:.3g}: twice the tensile strength of "
+                f"{used.record.name}, {most / 1e6:.4g} MPa, breaks it at once, and what it endures when "
+                "it is warm and for many cycles is less.",
+                brief=f"The root safety of gear {gear} is below {most / stress:.3g}, by its strength once.",
+            )
 
 
 def _doubts_of_method_b(found: Numbers, contact_ratio: float) -> Iterator[Doubt]:
