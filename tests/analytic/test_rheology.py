@@ -9,6 +9,7 @@ import pytest
 from pitchpoint import citations
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.doubts import of_volume
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.fluid import Fluid
 from pitchpoint.materials.registry import DENSITY, LEAST_PRESSURE, SHEAR_STRESS, VISCOSITY
@@ -224,6 +225,13 @@ def test_a_coefficient_of_ones_own_does_away_with_the_free_volume():
     assert float(plain.build().pressure_viscosity(353.15)) == pytest.approx(18e-9, rel=1e-14)
     assert "occupied_volume" in record.data() and "occupied_volume" not in plain.data()
     assert record.thickened(consistency="2").free_volume == record.free_volume
+    laws = {"viscosity_law": "doolittle_1951", "density_law": "tait_1888"}
+    assert Fluid.of(record.build(), 333.15, **laws).assumed is None
+    assert Fluid.of(plain.build(), 333.15).assumed is None
+    (told,) = of_volume(Fluid.of(plain.build(), 333.15, **laws))
+    assert told.startswith(
+        "the volume of this oil is not known: 'doolittle_1951' and 'tait_1888' t"
+    )
 
 
 def test_slope_of_the_viscosity_against_differences():

@@ -184,6 +184,21 @@ class Fluid(eqx.Module):
         """Pressure-viscosity index Z of Roelands, shape (...) [1]."""
         return roelands_index(viscosity=self.viscosity, pressure_viscosity=self.pressure_viscosity)
 
+    @property
+    def assumed(self) -> str | None:
+        """None unless a law rests on a volume that is not known of this oil, else that, without its stop.
+
+        Example:
+            >>> Fluid(viscosity=0.04, pressure_viscosity=2.2e-8, density_law="tait_1888").assumed
+            "the volume of this oil is not known: 'tait_1888' takes constants between those of a few others"
+        """
+        laws = [law for law in self._of_volume if law.parameters]
+        if self.volume_parameters or not laws:
+            return None
+        names = " and ".join(f"'{law.name}'" for law in laws)
+        take = "takes" if len(laws) == 1 else "take"
+        return f"the volume of this oil is not known: {names} {take} constants between those of a few others"
+
     def outside(self, pressure: ArrayLike) -> str | None:
         """None if the laws hold up to a pressure, else why not, in one sentence without its stop.
 

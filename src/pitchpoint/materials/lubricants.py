@@ -306,7 +306,11 @@ class LubricantRecord:
 
     def data(self) -> dict[str, Datum]:
         """Return the values by name, each with its status and source."""
-        return {**self._plain(), **self.free_volume}
+        gold = (
+            {"gold_s", "gold_t"} if self.free_volume else set()
+        )  # whose law the volume takes the place of
+        plain = {key: datum for key, datum in self._plain().items() if key not in gold}
+        return {**plain, **self.free_volume}
 
     def _plain(self) -> dict[str, Datum]:
         every = {one.name: getattr(self, one.name) for one in fields(self)}

@@ -28,6 +28,7 @@ __all__ = [
     "flooded_inlet",
     "of_conduction",
     "of_heat",
+    "of_volume",
     "starved",
     "warnings",
 ]
@@ -134,6 +135,7 @@ def warnings(
     solved = code == Code.SOLVED
     yield from _of_unsolved(code[~solved], code.size)
     yield from _of_units(contact)
+    yield from of_volume(contact.fluid)
     if not solved.any():
         return
     each = lambda leaf: leaf[solved]  # noqa: E731
@@ -236,6 +238,12 @@ def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterato
 def extrapolated_pressure(pressure: float) -> str:
     """In few words that the laws of an oil end below a pressure [Pa]."""
     return f"laws of the oil extrapolated to {1e-9 * pressure:.3g} GPa"
+
+
+def of_volume(fluid: Fluid) -> Iterator[Doubt]:
+    """That viscosity or density under pressure rest on assumed constants."""
+    if fluid.assumed is not None:
+        yield Doubt(fluid.assumed, "volume of the oil", moves=GUESSED)
 
 
 def _of_half_space(

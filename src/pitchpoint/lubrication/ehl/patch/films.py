@@ -18,6 +18,7 @@ from pitchpoint.lubrication.ehl.doubts import (
     extrapolated_pressure,
     of_conduction,
     of_heat,
+    of_volume,
     starved,
 )
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
@@ -506,6 +507,7 @@ def _warnings(
         yield Doubt(sentence, moves=WITHHELD, brief="the film of a contact was not found")
         return
     yield from _of_room(contact, layout)
+    yield from of_volume(contact.fluid)
     told = contact.fluid.outside(film.hertz_pressure)
     if told is not None:
         pressure = float(film.hertz_pressure)
