@@ -25,6 +25,7 @@ import sound
 import xarray as xr
 
 from pitchpoint import Case, cli, double_precision, run, study
+from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.films import (
     _BY_FILM_LAW,
     _BY_LAW,
@@ -143,8 +144,12 @@ def loss_map(text: str) -> xr.Dataset:
         {
             "mean_loss": (dims, losses),
             "locked": (dims, np.zeros(losses.shape, bool)),
-            "interpolation_error": ("law", [0.1]),
-            "mean_interpolation_error": ("law", [0.1]),
+            "largest_holding_torque": ((dims[0], dims[1], dims[3]), np.ones((1, 2, 1))),
+            "self_locking": ((dims[0], dims[1], dims[3]), np.zeros((1, 2, 1), bool)),
+            **{
+                name: ("law", [0.1])
+                for name in (*four_quadrants.ERRORS, "mean_interpolation_error")
+            },
             "mean_input_torque": ((), 1.0, told),
         },
         {
@@ -188,7 +193,7 @@ def test_nothing_from_a_result_runs_in_a_generated_source(tmp_path: Path, text: 
 
 
 def test_a_map_that_lacks_a_part_is_refused(tmp_path: Path) -> None:
-    for name in ("mean_loss", "locked", "interpolation_error"):
+    for name in ("mean_loss", "locked", "interpolation_error", "self_locking"):
         lacking = loss_map("x").drop_vars(name)
         with pytest.raises(InputError, match="run the case again"):
             evaluator(Outcome(manifest(), {"four_quadrants": lacking}), tmp_path)

@@ -206,6 +206,14 @@ def test_torques_that_start_a_drive_either_way(size, ratio):
     assert forth == pytest.approx(printed[0], rel=0.4)
     assert back == pytest.approx(printed[1], rel=0.4)
     assert 0.9 < back / (ratio * forth) < 1.3
+    for one, torque in zip((built, built.backwards), printed, strict=True):
+        spread = one.case.losses["wave_generator_bearing"].breakaway_spread
+        ends = [
+            from_rest(replace(one, design=replace(one.design, drag=(drag.held_times(factor),))))
+            for drag in one.design.drag
+            for factor in (1.0 / spread, spread)
+        ]
+        assert ends[0] < torque < ends[1]
 
 
 @pytest.mark.whole

@@ -13,24 +13,54 @@ from scipy.interpolate import PchipInterpolator
 from pitchpoint import units
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
+from pitchpoint.analyses.running import creeping_speed, from_rest
 from pitchpoint.cases.schema import LossMap
 from pitchpoint.cases.stages import Ready
 from pitchpoint.doubts import Doubt, doubts_of
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
-from pitchpoint.results.store import dataset
+from pitchpoint.results.rounding import ROUNDING
+from pitchpoint.results.store import dataset, without_nan
 from pitchpoint.status import locked_or_lost, told
 
 __all__ = [
+    "HOLDING",
     "both",
+    "error_words",
+    "held_at_operation",
     "loss_of_output",
     "mirrored",
     "pieces",
+    "quadrant_axes",
     "speed_ratio",
+    "standstill_figures",
     "table_of",
 ]
 
 FORWARDS, BACKWARDS = "forwards", "backwards"
 """Way of the power: from the driver of the case to its output, and from the output to the driver."""
+
+CREEPING = 0.1
+"""Part of the lowest speed at which the error is measured that comes of friction held below it."""
+
+CREEPS = 1
+"""Place of that speed among those half way, behind rest."""
+
+ERRORS = ("interpolation_error", "light_load_error", "creeping_error")
+"""Largest errors: between loads and speeds of the map, below its least load, below its lowest speed."""
+
+FINER = 4
+"""Parts of each ratio of speeds in the table, between which it is linear in their logarithm."""
+
+HOLDING = (
+    "least_holding_torque",
+    "largest_holding_torque",
+    "moving_back_torque",
+    "moving_on_torque",
+)
+"""Torques of the driver that hold a load, and those beyond which it moves at every phase."""
+
+SLOWEST = 0.01
+"""Most that the lowest speed is of the largest one, where a drive is slow itself."""
 
 FALLS_SHORT = 1e-9
 """Part of a torque by which rounding may leave the largest that was computed behind that of the map."""
@@ -46,6 +76,8 @@ BETWEEN = (
 )
 
 _EACH = ("law", "speed", "temperature")
+_AT_REST = ("law", "temperature")
+_HELD = ("law", "output_torque", "temperature")
 _DIMS = ("law", "output_torque", "output_speed", "temperature")
 
 Values = np.ndarray
@@ -62,13 +94,32 @@ def pieces(built: Ready) -> list[Piece]:
     ]
 
 
+def quadrant_axes(built: Ready) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Torques and temperatures of the loss map, and speeds of the driver: standstill, then in equal ratios.
+
+    Args:
+        built: the case.
+    """
+    loads, speeds, degrees = map_axes(built)
+    asked, top = built.case.loss_map, float(speeds[-1])
+    lowest = (asked and asked.lowest_speed) or min(creeping_speed(built), SLOWEST * top)
+    if any(law.films is not None for law in built.laws):
+        lowest = max(lowest, float(speeds[1]))
+    moving = np.geomspace(lowest, top, speeds.size - 1) if speeds.size > 2 else speeds[1:]
+    return loads, np.append(0.0, moving), degrees
+
+
 def _axes(built: Ready, way: str, *, between: bool) -> tuple[np.ndarray, ...]:
-    """Loads, speeds of the driver and temperatures; half way the last is there twice, for the programs."""
-    axes = map_axes(_driven(built, way))
+    """Loads, speeds of the driver and temperatures; half way the last is there twice, for the programs.
+
+    The first speed between is one below the lowest.
+    """
+    loads, speeds, degrees = quadrant_axes(_driven(built, way))
     if not between:
-        return axes
-    loads, *others = map(_half_way, axes)
-    return loads, *(np.append(one, one[-1]) if one.size > 1 else one for one in others)
+        return loads, speeds, degrees
+    slow, fast = speeds[1:-1], speeds[2:]
+    others = np.append(CREEPING * speeds[1], np.sqrt(slow * fast)), _half_way(degrees)
+    return _half_way(loads), *(np.append(one, one[-1]) if one.size > 1 else one for one in others)
 
 
 def _half_way(values: np.ndarray) -> np.ndarray:
@@ -82,9 +133,10 @@ def _driven(built: Ready, way: str) -> Ready:
 @lru_cache(maxsize=2)
 def _driven_back(built: Ready) -> Ready:
     """The drive with its output driving, over the speeds of the map and the torques that it takes there."""
-    loads, speeds, degrees = map_axes(built)
+    loads, speeds, degrees = quadrant_axes(built)
     step, back = speed_ratio(built), built.backwards
-    ends = {"torque": float(loads[-1] * step), "speed": float(speeds[-1] * step), "force": None}
+    ends = {"torque": float(loads[-1] * step), "force": None}
+    ends |= {"speed": float(speeds[-1] * step), "lowest_speed": float(speeds[1] * step)}
     asked = (back.case.loss_map or LossMap()).model_copy(
         update={**ends, "temperatures": tuple(map(float, degrees))}
     )
@@ -98,18 +150,26 @@ def speed_ratio(built: Ready) -> float:
 
 
 def quadrants_of(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
-    """Loss under one load."""
-    driven = _driven(built, str(piece["way"]))
-    _, speeds, degrees = _axes(built, str(piece["way"]), between=bool(piece["between"]))
+    """Loss under one load, and torque of the end that drives which starts the drive under it."""
+    way, load = str(piece["way"]), float(piece["torque"])
+    driven = _driven(built, way)
+    _, speeds, degrees = _axes(built, way, between=bool(piece["between"]))
     each = []
-    for count, (loss, _, locked) in enumerate(
-        maps(driven, float(piece["torque"]), speeds, degrees), 1
-    ):
+    for count, (loss, _, locked) in enumerate(maps(driven, load, speeds, degrees), 1):
         each.append((loss, locked))
         progress(count * loss.size)
     losses, locked = (np.stack(one) for one in zip(*each, strict=True))
+    # Laws of friction know no rest; a map of few speeds may have none that is slow.
+    creeping = creeping_speed(built) * (1.0 if way == FORWARDS else speed_ratio(built))
+    slowest = min(float(quadrant_axes(driven)[1][1]), creeping)
+    mean, largest = from_rest(driven, load, slowest, degrees)
     return dataset(
-        {"mean_loss": (_EACH, losses), "locked": (_EACH, locked)},
+        {
+            "mean_loss": (_EACH, losses),
+            "locked": (_EACH, locked),
+            "largest_holding_torque": (_AT_REST, mean),
+            "moving_on_torque": (_AT_REST, largest),
+        },
         {"law": built.law_names},
         warnings=told_of_films(driven),
     )
@@ -128,7 +188,7 @@ def loss_of_output(
         torque: that turns the output, positive [torque] [N m or N].
         no_load: loss of the drive turned by its driver without load [W].
         driving: torque of the output that carries each load at the driver, the first one none [load].
-        losses: in the drive then [load] [W]; NaN where there is no balance.
+        losses: in the drive then [load] [W], or torques that are lost; NaN where there is no balance.
         locked: True where friction locks it then [load].
 
     Returns:
@@ -173,40 +233,56 @@ def _between_loads(
 
 def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """The whole map, with how near values between its nodes are, and what there is to say about it."""
-    (loads, _, degrees), (_, speeds, _) = map_axes(built), map_axes(_driven_back(built))
-    ratio = speed_ratio(built)
-    forwards, back = (_stacked(built, way, parts, between=False) for way in (FORWARDS, BACKWARDS))
-    turned, held = _turned(built, forwards[0][:, 0], *back)
-    loss = np.concatenate([turned[:, ::-1], forwards[0]], axis=1)
-    stuck = np.concatenate([held[:, ::-1], forwards[1] & (loads > 0.0)[:, None, None]], axis=1)
-    torques = both(loads)
+    (loads, _, degrees), (_, speeds, _) = quadrant_axes(built), quadrant_axes(_driven_back(built))
+    ratio, torques = speed_ratio(built), both(loads)
+    lost, stuck = _over_output(built, parts, "largest_holding_torque")
+    surely, _ = _over_output(built, parts, "moving_on_torque")
     axes = {
         "law": built.law_names,
         "output_torque": torques,
         "output_speed": both(speeds),
         "temperature": degrees,
     }
-    errors = _errors(built, parts, _table(axes, np.where(stuck, LOCKED, loss), ratio))
-    loss, stuck = mirrored(loss), mirrored(stuck & (speeds > 0.0)[:, None])
+    errors = _errors(built, parts, _table(axes, np.where(stuck, LOCKED, lost), ratio))
+    moves = (speeds > 0.0)[:, None]
+    loss = mirrored(np.where(moves, lost * speeds[:, None], 0.0))
     figures = _figures(loss, torques[:, None, None], both(speeds)[:, None], ratio)
-    lost = np.isnan(loss) & ~stuck
+    held, stuck = stuck[:, :, 0], mirrored(stuck & moves)
+    unknown = np.isnan(loss) & ~stuck
     found = dataset(
         {
             "mean_loss": (_DIMS, loss),
             **{name: (_DIMS, values) for name, values in figures.items()},
             "locked": (_DIMS, stuck),
+            **_at_rest(lost[:, :, 0], surely[:, :, 0], torques, ratio),
+            "self_locking": (_HELD, held[:, ::-1]),
             **{name: (("law",), values) for name, values in errors.items()},
         },
         axes,
         title="loss map of the output",
         travels=built.travels,
-        warnings=_told(built, stuck, lost, parts),
-        solve=told(locked_or_lost(stuck, lost)),
+        warnings=_told(built, stuck, unknown, parts),
+        solve=told(locked_or_lost(stuck, unknown)),
         note=f"{BOTH_FLANKS} {BETWEEN}",
         speed_ratio=ratio,
+        load=float(built.operation.load),
+        degree=float(built.operation.temperature),
     )
     found["mean_efficiency"].attrs.update(built.covers)
     return found
+
+
+def _at_rest(
+    lost: np.ndarray, surely: np.ndarray, torques: np.ndarray, ratio: float
+) -> dict[str, Any]:
+    """Torques of the driver that hold each load, from the torque that is lost where the output starts."""
+
+    def ends(torque: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        highest = (torques[:, None] + torque) * ratio
+        return -highest[:, ::-1], highest
+
+    each = (*ends(lost), *ends(surely))
+    return {name: (_HELD, values) for name, values in zip(HOLDING, each, strict=True)}
 
 
 def both(values: np.ndarray) -> np.ndarray:
@@ -233,40 +309,83 @@ def mirrored(values: Values) -> Values:
     return np.concatenate([values[:, ::-1, :0:-1], values], axis=2)
 
 
-def _stacked(
+def _over_output(built: Ready, parts: Sequence[xr.Dataset], start: str) -> tuple[Values, Values]:
+    """Torque that is lost over torques of either sign and speeds from rest on, and where friction locks."""
+    lost, locked, driving = {}, {}, {}
+    for way in (FORWARDS, BACKWARDS):
+        moving, stuck = _lost(built, way, parts, between=False)
+        rest = _lost_at_rest(built, way, parts, start, between=False)
+        formulas = np.array([law.films is None for law in built.laws])[:, None, None]
+        lost[way] = np.concatenate([rest[:, :, None], moving[:, :, 1:]], axis=2)
+        held = np.isnan(rest) & formulas
+        locked[way] = np.concatenate([held[:, :, None], stuck[:, :, 1:]], axis=2)
+        driving[way] = _ideal(built, way, between=False) + lost[way]
+    turned, held = _turned(
+        map_axes(built)[0][1:],
+        lost[FORWARDS][:, 0],
+        driving[BACKWARDS],
+        lost[BACKWARDS],
+        locked[BACKWARDS],
+    )
+    loaded = (map_axes(built)[0] > 0.0)[:, None, None]
+    return (
+        np.concatenate([turned[:, ::-1], lost[FORWARDS]], axis=1),
+        np.concatenate([held[:, ::-1], locked[FORWARDS] & loaded], axis=1),
+    )
+
+
+def _own(
+    built: Ready, way: str, parts: Sequence[xr.Dataset], name: str, *, between: bool
+) -> Values:
+    """Values of a variable under every load one way [law, load, ...]."""
+    pairs = zip(pieces(built), parts, strict=True)
+    return np.stack(
+        [
+            part[name].values
+            for one, part in pairs
+            if (one["way"], one["between"]) == (way, between)
+        ],
+        axis=1,
+    )
+
+
+def _ideal(built: Ready, way: str, *, between: bool) -> np.ndarray:
+    """Torque of the output without losses under each load of a way [load, 1, 1]."""
+    loads = _axes(built, way, between=between)[0]
+    return (loads if way == FORWARDS else loads / speed_ratio(built))[:, None, None]
+
+
+def _lost(
     built: Ready, way: str, parts: Sequence[xr.Dataset], *, between: bool
 ) -> tuple[Values, Values]:
-    """Loss, and where friction locks the drive, under every load one way."""
-    own = [
-        part
-        for piece, part in zip(pieces(built), parts, strict=True)
-        if (piece["way"], piece["between"]) == (way, between)
-    ]
-    loss, locked = (np.stack([one[n].values for one in own], 1) for n in ("mean_loss", "locked"))
-    return loss, locked
+    """Torque of the output that is lost under every load, NaN at rest, and where friction locks the drive."""
+    speeds = _axes(built, way, between=between)[1]
+    at_output = speeds * (speed_ratio(built) if way == FORWARDS else 1.0)
+    moving = np.where(at_output > 0.0, at_output, np.nan)[:, None]
+    loss, locked = (_own(built, way, parts, n, between=between) for n in ("mean_loss", "locked"))
+    return loss / moving, locked
 
 
-def _turning(built: Ready, losses: Values, *, between: bool) -> Values:
-    """Torque of the output that turns the driver under each load; NaN at rest."""
-    loads, speeds, _ = _axes(built, BACKWARDS, between=between)
-    ratio = speed_ratio(built)
-    speed = np.where(speeds > 0.0, speeds, np.nan)[:, None]
-    torque: Values = (loads[:, None, None] * (speed / ratio) + losses) / speed
-    return torque
+def _lost_at_rest(
+    built: Ready, way: str, parts: Sequence[xr.Dataset], name: str, *, between: bool
+) -> Values:
+    """Torque of the output that is lost where the drive starts under every load [law, load, temperature]."""
+    torque = _own(built, way, parts, name, between=between)
+    at_output = torque / speed_ratio(built) if way == FORWARDS else torque
+    return np.asarray(at_output - _ideal(built, way, between=between)[:, 0])
 
 
-def _turned(built: Ready, no_load: Values, losses: Values, locked: Values) -> tuple[Values, Values]:
-    """Loss over torques that turn the output, and where friction locks the drive; nothing is lost at rest."""
-    torques = map_axes(built)[0][1:]
-    driving = _turning(built, losses, between=False)
-    shape = (losses.shape[0], torques.size, *losses.shape[2:])
-    loss, held = np.zeros(shape), np.zeros(shape, bool)
+def _turned(
+    torques: np.ndarray, no_load: Values, driving: Values, lost: Values, locked: Values
+) -> tuple[Values, Values]:
+    """Torque that is lost over torques that turn the output, and where friction locks the drive."""
+    shape = (lost.shape[0], torques.size, *lost.shape[2:])
+    found, held = np.zeros(shape), np.zeros(shape, bool)
     for law, speed, degree in np.ndindex(no_load.shape):
-        if speed > 0:
-            at = (law, slice(None), speed, degree)
-            start = float(no_load[law, speed, degree])
-            loss[at], held[at] = loss_of_output(torques, start, driving[at], losses[at], locked[at])
-    return loss, held
+        at = (law, slice(None), speed, degree)
+        start = float(no_load[law, speed, degree])
+        found[at], held[at] = loss_of_output(torques, start, driving[at], lost[at], locked[at])
+    return found, held
 
 
 def _figures(
@@ -284,70 +403,179 @@ def _figures(
 
 
 def _errors(built: Ready, parts: Sequence[xr.Dataset], table: LossTable) -> dict[str, np.ndarray]:
-    """How far the loss of the table is off half way between its nodes, largest and mean [law]."""
-    off = []
+    """How far what the table loses is off between its nodes, and below the lowest ones [law]."""
+    lightest = min(one for one in table.torques if one > 0.0)
+    kinds: dict[str, list[np.ndarray]] = {name: [] for name in ERRORS}
     for way in (FORWARDS, BACKWARDS):
-        found, _ = _stacked(built, way, parts, between=True)
-        loads, speeds, degrees = _axes(built, way, between=True)
-        if way == BACKWARDS:
-            torque = -_turning(built, found, between=True)
-        else:
-            torque, speeds = loads[:, None, None], speeds * speed_ratio(built)
-        places = torque, speeds[:, None], celsius(degrees)
-        each = (np.broadcast_to(one, found.shape)[:, :, : len(table.speeds) - 1] for one in places)
-        off.append(_off(table, found[:, :, : len(table.speeds) - 1], *each))
-    errors = [one[np.isfinite(one)] for one in np.concatenate(off, axis=1)]
+        off, torque = _off_half_way(built, way, parts, table)
+        creeping, between = np.arange(off.shape[2]) == CREEPS, np.abs(torque) >= lightest
+        for name, where in zip(
+            ERRORS,
+            (between & ~creeping[:, None], ~between & ~creeping[:, None], creeping[:, None]),
+            strict=True,
+        ):
+            kinds[name].append(np.where(where, off, np.nan).reshape(len(off), -1))
+    errors = {
+        name: [one[np.isfinite(one)] for one in np.concatenate(each, axis=1)]
+        for name, each in kinds.items()
+    }
     return {
-        "interpolation_error": np.array([one.max(initial=0.0) for one in errors]),
-        "mean_interpolation_error": np.array([one.sum() / max(one.size, 1) for one in errors]),
+        **{name: np.array([e.max(initial=0.0) for e in each]) for name, each in errors.items()},
+        "mean_interpolation_error": np.array(
+            [e.sum() / max(e.size, 1) for e in errors["interpolation_error"]]
+        ),
     }
 
 
+def _off_half_way(
+    built: Ready, way: str, parts: Sequence[xr.Dataset], table: LossTable
+) -> tuple[Values, Values]:
+    """Errors half way between nodes one way, at rest and below the lowest speed first, and torques there."""
+    speeds, degrees = _axes(built, way, between=True)[1:]
+    speeds = np.append(0.0, speeds[: max(speeds.size - 1, 1)])
+    moving, _ = _lost(built, way, parts, between=True)
+    rest = _lost_at_rest(built, way, parts, "largest_holding_torque", between=True)
+    lost = np.concatenate([rest[:, :, None], moving[:, :, : speeds.size - 1]], axis=2)
+    torque = _ideal(built, way, between=True)
+    if way == FORWARDS:
+        speeds = speeds * speed_ratio(built)
+    else:
+        torque = -(torque + lost)
+    places = (
+        np.broadcast_to(one, lost.shape) for one in (torque, speeds[:, None], celsius(degrees))
+    )
+    torque, speed, degree = places
+    return _off(table, lost, torque, speed, degree), torque
+
+
 def _off(
-    table: LossTable, loss: Values, torque: Values, speed: Values, degree: Values
+    table: LossTable, lost: Values, torque: Values, speed: Values, degree: Values
 ) -> np.ndarray:
-    """Errors of the table over the loss, NaN beyond it and where there is none [law, place]."""
-    errors = np.full(loss.shape, np.nan)
-    for at in zip(*np.nonzero(loss > 0.0), strict=True):
-        law = [*table.losses][at[0]]
-        found = table.at(float(torque[at]), float(speed[at]), float(degree[at]), law)
-        errors[at] = np.nan if found.outside else abs(found.loss / loss[at] - 1.0)
-    return errors.reshape(loss.shape[0], -1)
+    """Errors of the table over what is lost, NaN beyond it and where nothing is known."""
+    errors = np.full(lost.shape, np.nan)
+    torques = table.torques
+    for at in zip(*np.nonzero(lost > ROUNDING * torques[-1]), strict=True):
+        if torques[0] <= torque[at] <= torques[-1]:
+            place = float(torque[at]), float(speed[at]), float(degree[at])
+            found = table.lost(*place, [*table.loss_torques][at[0]])
+            errors[at] = np.nan if found < 0.0 else abs(found / lost[at] - 1.0)
+    return errors
 
 
-def table_of(data: xr.Dataset, running: xr.Dataset | None = None) -> LossTable:
+def error_words(data: xr.Dataset, law: int) -> str:
+    """How near the map comes to direct computation under one law, in words.
+
+    Args:
+        data: the map.
+        law: place of the law.
+    """
+    names = (*ERRORS, "mean_interpolation_error")
+    most, light, creeping, mean = (f"{100.0 * float(data[name][law]):.2g} %" for name in names)
+    torque, speed = (
+        f"{float(values[values > 0.0].min()):.4g} {data[name].attrs['units']}"
+        for name in ("output_torque", "output_speed")
+        for values in [data[name].values]
+    )
+    return (
+        f"{data['law'].values[law]} {most} at most and {mean} in the mean half way between nodes, {light} at "
+        f"torques below {torque}, {creeping} at a tenth of {speed}, the lowest speed"
+    )
+
+
+def held_at_operation(data: xr.Dataset) -> dict[str, dict[str, Any]]:
+    """Torques of the driver that hold the load of the operating point at rest, by law; None where not known.
+
+    Args:
+        data: the map, between whose nodes of load and temperature they are linear.
+    """
+    load, degree = data.attrs["load"], data.attrs["degree"]
+    there = data[[*HOLDING]].interp(output_torque=load)
+    if data.sizes["temperature"] > 1:
+        ends = data["temperature"].values[[0, -1]]
+        there = there.interp(temperature=np.clip(degree, *ends))
+    else:
+        there = there.isel(temperature=0)
+    table = table_of(data)
+    return {
+        law: {
+            **{n: without_nan(float(there[n].sel(law=law))) for n in HOLDING},
+            "self_locking": table.lost(-load, 0.0, float(celsius(np.array(degree))), law) < 0.0,
+        }
+        for law in table.loss_torques
+    }
+
+
+def standstill_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Torques that hold the load of the operating point at rest, and how near the map is, by law.
+
+    Args:
+        parts: of a result.
+    """
+    data = parts.get("four_quadrants")
+    if data is None:
+        return {}
+    errors = (*ERRORS, "mean_interpolation_error")
+    return {
+        "four_quadrants": {
+            law: held | {name: float(data[name][k]) for name in errors}
+            for k, (law, held) in enumerate(held_at_operation(data).items())
+        }
+    }
+
+
+def table_of(data: xr.Dataset) -> LossTable:
     """The map as a table that needs no library.
 
     Args:
         data: the map.
-        running: torques of the same case that start the drive from rest.
     """
-    speeds = data["output_speed"].values
-    held = data.transpose(*_DIMS, ...).isel(output_speed=speeds >= 0.0)
-    losses = np.where(held["locked"].values, LOCKED, held["mean_loss"].values)
+    ratio, speeds = float(data.attrs["speed_ratio"]), data["output_speed"].values
+    moves = data.transpose(*_DIMS, ...).isel(output_speed=speeds > 0.0)
+    lost = moves["mean_loss"].values / speeds[speeds > 0.0][:, None]
+    lost = np.where(moves["locked"].values, LOCKED, lost)
+    held = data.transpose(*_HELD, ...)
+    rest = held["largest_holding_torque"].values / ratio - data["output_torque"].values[:, None]
+    rest = np.where(held["self_locking"].values[:, ::-1], LOCKED, np.maximum(rest, 0.0))
     units = [
         data[name].attrs["units"] for name in ("output_torque", "output_speed", "mean_input_torque")
     ]
-    made = _table(data, losses, float(data.attrs["speed_ratio"]))._replace(units=units)
-    if running is None:
-        return made
-    names = running["law"].values.tolist()
-    starting, back = (
-        dict(zip(names, running[name].values.tolist(), strict=True))
-        for name in ("starting_torque", "back_driving_torque")
-    )
-    rest = celsius(running["temperature"].values).tolist()
-    return made._replace(rest=rest, starting=starting, back_driving=back)
+    made = _table(data, np.concatenate([rest[:, :, None], lost], axis=2), ratio)
+    return made._replace(units=units)
 
 
-def _table(axes: Mapping[Any, Any], losses: Values, ratio: float) -> LossTable:
+def _table(axes: Mapping[Any, Any], lost: Values, ratio: float) -> LossTable:
     torques, speeds, degrees = (np.asarray(axes[name]) for name in _DIMS[1:])
+    speeds, lost = _finer(speeds[speeds >= 0.0], lost)
     return LossTable(
         torques=torques.tolist(),
-        speeds=speeds[speeds >= 0.0].tolist(),
+        speeds=speeds.tolist(),
         temperatures=celsius(degrees).tolist(),
-        losses=dict(zip(map(str, np.asarray(axes["law"])), losses.tolist(), strict=True)),
+        loss_torques=dict(zip(map(str, np.asarray(axes["law"])), lost.tolist(), strict=True)),
         speed_ratio=ratio,
+    )
+
+
+def _finer(speeds: np.ndarray, lost: Values) -> tuple[np.ndarray, Values]:
+    """Speeds with others between, and what is lost there by a monotone cubic of their logarithms.
+
+    Where something is not known under one of two neighbours, it is not known between them.
+    """
+    if speeds.size < 4:
+        return speeds, lost
+    nodes = np.log(speeds[1:])
+    places = np.linspace(nodes[:-1], nodes[1:], FINER, endpoint=False, axis=1).ravel()
+    known = np.where(lost[:, :, 1:] >= 0.0, lost[:, :, 1:], 0.0)
+    between = np.maximum(PchipInterpolator(nodes, known, axis=2)(places), 0.0)
+    before, after = lost[:, :, 1:-1], lost[:, :, 2:]
+    beside = np.where((before < 0.0) | (after < 0.0), LOCKED, before + after)
+    beside = np.repeat(np.where(beside >= 0.0, 0.0, beside), FINER, axis=2)
+    between = np.where(beside == 0.0, between, beside)
+    between[:, :, ::FINER] = before
+    finer = np.exp(places)
+    finer[::FINER] = speeds[1:-1]
+    return (
+        np.concatenate([[0.0], finer, speeds[-1:]]),
+        np.concatenate([lost[:, :, :1], between, lost[:, :, -1:]], axis=2),
     )
 
 

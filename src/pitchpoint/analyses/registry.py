@@ -81,6 +81,7 @@ FOUR_QUADRANTS = Analysis(
     compute="pitchpoint.analyses.four_quadrants:quadrants_of",
     pieces="pitchpoint.analyses.four_quadrants:pieces",
     joined="pitchpoint.analyses.four_quadrants:joined_quadrants",
+    figures="pitchpoint.analyses.four_quadrants:standstill_figures",
 )
 
 ANALYSES: Registry[Analysis | Several] = Registry(

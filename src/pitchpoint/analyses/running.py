@@ -1,6 +1,6 @@
 """Torque that runs and starts a drive with losses beside its teeth, as a dataset of a case."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,25 +12,39 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.lacking import untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.schema import TEMPERATURE
+from pitchpoint.cases.schema import TEMPERATURE, Loss
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.doubts import Doubt
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive_summary import drive_figures
-from pitchpoint.efficiency.quasi_static import Operation
+from pitchpoint.efficiency.quasi_static import Engagement, Operation
 from pitchpoint.efficiency.running_torque import (
     no_load_torque,
-    starting_torque,
-    starting_torque_of_drive,
+    torques_at_rest,
+    torques_at_rest_of_drive,
 )
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.results.store import dataset, without_nan
 from pitchpoint.status import locked_or_lost, told
 
-__all__ = ["RUNNING", "TORQUES", "running_axes", "running_part"]
+__all__ = [
+    "BANDS",
+    "RUNNING",
+    "TORQUES",
+    "creeping_speed",
+    "from_rest",
+    "running_axes",
+    "running_part",
+]
 
 TORQUES = ("no_load_torque", "starting_torque", "back_driving_torque")
 """Torques without load: running, and from rest either way."""
+
+BANDS = (
+    ("least_starting_torque", "largest_starting_torque"),
+    ("least_back_driving_torque", "largest_back_driving_torque"),
+)
+"""Ends of the band of each torque from rest, where a loss says how uncertain it is there."""
 
 SPEEDS = 9
 TEMPERATURES = 7
@@ -54,16 +68,18 @@ def running_part(built: Ready) -> xr.Dataset:
         built: the case.
     """
     speeds, degrees = running_axes(built)
-    back = built.backwards
-
-    def at_rest(one: Ready) -> np.ndarray:
-        return _over(one, _creeping(one), degrees, resting=True)[:, 0]
-
+    back, creeping = built.backwards, creeping_speed(built)
+    turned = creeping * float(back.operation.speed) / float(built.operation.speed)
     data = {
-        "no_load_torque": (_DIMS, _over(built, speeds, degrees, resting=False)),
-        "starting_torque": (_AT_REST, at_rest(built)),
-        "back_driving_torque": (_AT_REST, at_rest(back)),
+        "no_load_torque": (_DIMS, _running(built, speeds, degrees)),
+        "starting_torque": (_AT_REST, from_rest(built, 0.0, creeping, degrees)[1]),
+        "back_driving_torque": (_AT_REST, from_rest(back, 0.0, turned, degrees)[1]),
     }
+    if _spread(built):
+        for (low, high), one, speed in zip(BANDS, (built, back), (creeping, turned), strict=True):
+            for name, way in ((low, -1.0), (high, 1.0)):
+                held = _held_otherwise(one, way)
+                data[name] = (_AT_REST, from_rest(held, 0.0, speed, degrees)[1])
     return dataset(
         data,
         {
@@ -80,37 +96,85 @@ def running_part(built: Ready) -> xr.Dataset:
     )
 
 
-def _over(built: Ready, speeds: np.ndarray, degrees: np.ndarray, *, resting: bool) -> np.ndarray:
-    """Torque of the driver without load [law, speed, temperature]: running, or at which it starts."""
-    every = np.meshgrid(speeds, degrees, indexing="ij")
+def _running(built: Ready, speeds: np.ndarray, degrees: np.ndarray) -> np.ndarray:
+    """Torque of the driver that runs without load [law, speed, temperature]."""
+    speed, degree = np.meshgrid(speeds, degrees, indexing="ij")
     if isinstance(built, BuiltDrive):
-        return _of_drive(built, *every, resting=resting)
-    return _of_mesh(built, *every, resting=resting)
-
-
-def _of_mesh(built: Built, speeds: np.ndarray, degrees: np.ndarray, *, resting: bool) -> np.ndarray:
-    idle = replace(built.operation, load=array(0.0))
-    points = Operation(*map(array, (0.0 * speeds, speeds, degrees)))
-    known = engaged(built.design, idle, built.models[0])
-    torque = starting_torque if resting else no_load_torque
-    each = [torque(built.design, points, own, known) for own in built.models]
+        return _running_drive(built, speed, degree)
+    known = _engaged(built, 0.0)
+    points = Operation(*map(array, (0.0 * speed, speed, degree)))
+    each = [no_load_torque(built.design, points, own, known) for own in built.models]
     return np.stack([np.asarray(one) for one in each])
 
 
-def _of_drive(
-    built: BuiltDrive, speeds: np.ndarray, degrees: np.ndarray, *, resting: bool
-) -> np.ndarray:
-    """The same of stages: what one of them takes is the load of the one before."""
-    drive, idle = built.design, 0.0 * speeds
-    if resting:
-        points = Operation(*map(array, (idle, speeds, degrees)))
-        each = [starting_torque_of_drive(drive, points, own.stages) for own in built.models]
-        return np.stack([np.asarray(one) for one in each])
-    every = zip(idle.ravel(), speeds.ravel(), degrees.ravel(), strict=True)
-    running = [(drive, Operation(*map(array, one))) for one in every]
+def _running_drive(built: BuiltDrive, speeds: np.ndarray, degrees: np.ndarray) -> np.ndarray:
+    every = zip(speeds.ravel(), degrees.ravel(), strict=True)
+    running = [(built.design, Operation(*map(array, (0.0, *one)))) for one in every]
     found = [drive_figures(running, own.stages) for own in built.models]
     torques = [np.where(one["locked"], np.nan, one["mean_input_torque"]) for one in found]
     return np.stack(torques).reshape(-1, *speeds.shape)
+
+
+def _engaged(built: Built, load: float) -> Engagement | None:
+    return engaged(built.design, replace(built.operation, load=array(load)), built.models[0])
+
+
+def from_rest(
+    built: Ready, load: float, speed: float, degrees: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Torque of the driver that starts the drive from rest under a load: mean over the phases, and largest.
+
+    Args:
+        built: the case, or the same with its output driving.
+        load: that it carries [N m or N].
+        speed: of the driver, a creeping one, at which laws of tooth friction are taken [rad/s or m/s].
+        degrees: temperatures of the oil [K].
+
+    Returns:
+        Both [law, temperature] [N m or N]; of a drive of stages what one of them takes is the load of the one
+        before. NaN where friction holds the drive whatever the torque, and under laws that solve films.
+    """
+    points = Operation(
+        *(array(np.broadcast_to(one, degrees.shape)) for one in (load, speed, degrees))
+    )
+    nothing: Any = (np.full(degrees.shape, np.nan),) * 2
+    if isinstance(built, BuiltDrive):
+        each = [torques_at_rest_of_drive(built.design, points, own.stages) for own in built.models]
+    else:
+        known = _engaged(built, load)
+        each = [
+            nothing if own.law.films else torques_at_rest(built.design, points, own, known)
+            for own in built.models
+        ]
+    mean, largest = (np.stack([*map(np.asarray, one)]) for one in zip(*each, strict=True))
+    return mean, largest
+
+
+def _spread(built: Ready) -> bool:
+    """True if a place says by how much what holds it at rest may be more or less."""
+    stages = built.stages if isinstance(built, BuiltDrive) else ()
+    every: tuple[Ready, ...] = built, *stages
+    return any(loss.breakaway_spread > 1.0 for one in every for loss in one.case.losses.values())
+
+
+def _held_otherwise(built: Ready, way: float) -> Ready:
+    """The drive with what holds it at rest at the upper end (1) or the lower one (-1) of its spread."""
+
+    def scaled(drags: Sequence[Drag], losses: Mapping[str, Loss]) -> tuple[Drag, ...]:
+        pairs = zip(drags, losses.values(), strict=True)
+        return tuple(drag.held_times(loss.breakaway_spread**way) for drag, loss in pairs)
+
+    drive = built.design
+    changed: Any = replace(drive, drag=scaled(drive.drag, built.case.losses))
+    if isinstance(built, BuiltDrive):
+        pairs = zip(built.design.stages, built.stages, strict=True)
+        stages = [
+            replace(one, design=replace(one.design, drag=scaled(one.design.drag, own.case.losses)))
+            for one, own in pairs
+        ]
+        changed = replace(changed, stages=tuple(stages))
+    other: Ready = replace(built, design=changed)
+    return other
 
 
 def _fitted(built: Ready) -> str:
@@ -125,13 +189,17 @@ def _fitted(built: Ready) -> str:
     )
 
 
-def _creeping(built: Ready) -> np.ndarray:
-    """Speed of a driver that begins to move; of one that travels that at which the other turns so."""
+def creeping_speed(built: Ready) -> float:
+    """Speed of a driver that begins to move; of one that travels that at which the other turns so.
+
+    Args:
+        built: the case.
+    """
     if isinstance(built, BuiltDrive):
         turned = abs(built.motion[-1] / built.motion[0])
     else:
         turned = abs(float(built.nominal["loaded"] @ built.nominal["motion"]))
-    return np.array([CREEPING / turned if "driver" in built.travels else CREEPING])
+    return CREEPING / turned if "driver" in built.travels else CREEPING
 
 
 def _held(torques: np.ndarray) -> np.ndarray:
@@ -198,8 +266,9 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
         return {}
     axes = {name: data[name].values.tolist() for name in ("speed", "temperature")}
     laws = enumerate(data["law"].values)
+    names = [*TORQUES, *(name for ends in BANDS for name in ends if name in data)]
     each = {
-        str(law): {n: without_nan(data[n].values[k].tolist()) for n in TORQUES} for k, law in laws
+        str(law): {n: without_nan(data[n].values[k].tolist()) for n in names} for k, law in laws
     }
     return {"running": {**axes, **each}}
 

@@ -107,6 +107,7 @@ SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
 MAP_SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm")
 TEMPERATURE = Quantity("temperature", 150.0, 600.0, "degC")
 COEFFICIENT = Quantity("dimensionless", 0.0, 2.0)
+SPREAD = Quantity("dimensionless", 1.0, 10.0)
 COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
 MAP_COUNT = Quantity("dimensionless", 2, 200, whole=True)
 BEARING_FACTOR = Quantity("dimensionless", 0.0, 100.0)
@@ -525,6 +526,8 @@ class Loss(Table):
     """Viscous part of that model at 100 mm2/s, over the square of mean_diameter."""
     breakaway_preload: Annotated[float, PRELOAD_RATIO] | None = None
     """Preload over that to which breakaway_dry belongs; 1 unless given."""
+    breakaway_spread: Annotated[float, SPREAD] = 1.0
+    """Factor by which what holds at rest may be more or less; makes a band of the torques from rest."""
 
     @property
     def factors(self) -> dict[str, float]:
@@ -558,6 +561,8 @@ class Loss(Table):
         alone = of_bearing if self.bearing == "none" else {}
         if not _given(self, "churning_torque"):
             alone |= dict.fromkeys(("churning_speed", "churning_exponent"), "churning_torque")
+        if not (held or _given(self, "breakaway_torque")):
+            alone |= {"breakaway_spread": "a breakaway model or breakaway_torque"}
         for name in (key for key in alone if _given(self, key)):
             raise InputError(f"was given without {alone[name]}, to which it belongs", key=name)
         beside = (self.seal_torque, self.churning_torque, self.breakaway_torque)
@@ -1064,7 +1069,7 @@ class LossMap(Table):
 
     `count` is that of both axes, `torque_count` or `force_count` and `speed_count` are those of one. With
     `quadrants` of 4 there is a map of the output too, over its torque and speed with their signs: there
-    the output also drives.
+    the output also drives, and loads are held at rest.
     """
 
     torque: Annotated[float, TORQUE] | None = None
@@ -1073,6 +1078,9 @@ class LossMap(Table):
     """Largest force, where gears take one; 1.5 times that of the operating point unless given."""
     speed: Annotated[float, MAP_SPEED] | None = None
     """Largest speed of the driver; 1.5 times that of the operating point unless given."""
+    lowest_speed: Annotated[float, SPEED] | None = None
+    """Lowest speed of the driver beside standstill in the map of four quadrants, whose speeds go up from it
+    in equal ratios; 1 rpm unless given."""
     temperatures: (
         Annotated[tuple[Annotated[float, TEMPERATURE], ...], Field(max_length=50)] | None
     ) = None
@@ -1487,7 +1495,7 @@ class Case(Table):
         wrong.tried(_check_aims, self.targets, self.studies, self.source)
         wrong.tried(_check_load, self, self.gears)
         wrong.tried(_check_losses, self.losses, self.gears.shafts, self.bodies)
-        for check in (_check_meant, _check_formulas, _check_driver):
+        for check in (_check_meant, _check_formulas, _check_driver, _check_quadrants):
             wrong.tried(check, self)
         wrong.demand_none()
         operation, models = self.operation, self.models
@@ -1633,6 +1641,7 @@ class DriveCase(Table):
             travels = self.last.load == "force"
             turning = self.bodies[: len(self.bodies) - travels]
             wrong.tried(_check_load, self, self.last)
+            wrong.tried(_check_quadrants, self)
             wrong.tried(_check_losses, self.losses, turning, self.bodies)
         if self.operation.driver:
             told = (
@@ -1747,6 +1756,23 @@ def _check_load(case: Case | DriveCase, gears: GearsTable) -> None:
             "a loss map runs over the torque of an output, which a test rig does not have; leave this "
             "table out",
             key="loss_map",
+        )
+
+
+def _check_quadrants(case: Case | DriveCase) -> None:
+    """InputError unless there are speeds between the lowest and the largest of a map of four quadrants."""
+    asked = case.loss_map
+    if asked is None or asked.quadrants != 4:
+        return
+    largest = 1.5 * case.operation.speed if asked.speed is None else asked.speed
+    if largest == 0.0:
+        told = "0 was given; a map of four quadrants asks for a speed above standstill"
+        raise InputError(told, key="loss_map.speed")
+    if asked.lowest_speed is not None and asked.lowest_speed >= largest:
+        raise InputError(
+            f"{SPEED.show(asked.lowest_speed)} was given; it lies below the largest speed of the map, "
+            f"{SPEED.show(largest)}",
+            key="loss_map.lowest_speed",
         )
 
 

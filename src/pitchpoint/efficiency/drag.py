@@ -90,6 +90,16 @@ class Drag(eqx.Module):
         """True if more than friction in motion holds the bodies at rest."""
         return bool(self.breakaway.factors) or float(self.breakaway_torque) > 0.0
 
+    def held_times(self, factor: float) -> "Drag":
+        """The same place with what holds it at rest times a factor."""
+        scaled = {
+            name: value if name == "preload" else value * factor
+            for name, value in self.breakaway_factors.items()
+        }
+        return replace(
+            self, breakaway_torque=self.breakaway_torque * factor, breakaway_factors=scaled
+        )
+
     def torque(self, *, speed: Each, load: Each, kinematic_viscosity: Each) -> Each:
         """Torque between the bodies, in the common shape of the arguments [N m]; not negative.
 

@@ -7,12 +7,12 @@ import argparse
 import math
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-__all__ = ["LOCKED", "LossTable", "Point", "main"]
+__all__ = ["LOCKED", "LossTable", "Point", "Rest", "main"]
 
 LOCKED = -1.0
-"""Stands in a table where friction locks the drive; a loss is never negative."""
+"""Stands in a table where friction locks the drive; what is lost is never negative."""
 
 
 class Point(NamedTuple):
@@ -22,9 +22,9 @@ class Point(NamedTuple):
         loss: power lost [W]; NaN where it is not known.
         efficiency: power out over power in, whichever way it goes; NaN where none comes out.
         input_torque: of the driver, positive along a positive speed of the output; NaN where the loss is,
-            and at rest, where friction takes what is less than the torques of `LossTable.at_rest`.
+            and at rest, where it may have any value of a band, see `LossTable.at_rest`.
         locked: True where friction locks the drive against its output, or does so at a node beside.
-        outside: True beyond the table; the loss is that of the nearest point in it.
+        outside: True beyond the table; the torque that is lost is that of the nearest point in it.
     """
 
     loss: float
@@ -34,38 +34,51 @@ class Point(NamedTuple):
     outside: bool
 
 
+class Rest(NamedTuple):
+    """Torques of the driver under which a drive stands still with a load at its output.
+
+    Attributes:
+        lowest: below it the output begins to move backwards; NaN where it is not known.
+        highest: above it the output begins to move forwards; likewise.
+        locked: True where friction locks the drive against a load at its output: it holds without a driver.
+        outside: True beyond the table; friction is that of the nearest point in it.
+    """
+
+    lowest: float
+    highest: float
+    locked: bool
+    outside: bool
+
+
 class LossTable(NamedTuple):
-    """Losses over torque, speed and temperature, and torques that start the drive from rest.
+    """Torque that a drive loses, over torque, speed and temperature of its output.
 
     Attributes:
         torques: of the output along its motion, ascending: positive where it drives its load, negative where
             the load drives it.
-        speeds: of the output, ascending from zero.
+        speeds: of the output, ascending from zero, where friction is that which starts the drive from rest.
         temperatures: of the oil, ascending [degC].
-        losses: by law over torque, speed and temperature [W]; `LOCKED` or NaN where there is none.
+        loss_torques: power lost over speed of the output, by law over torque, speed and temperature; `LOCKED`
+            or NaN where there is none.
         speed_ratio: speed of the output over that of the driver, positive.
-        rest: temperatures of the torques that start the drive from rest, ascending [degC].
-        starting: torque of the driver that starts it without load, by law over these temperatures.
-        back_driving: torque of the output that starts it backwards, likewise; NaN where none does.
         units: of torque and speed of the output, and of torque of the driver.
 
     Example:
-        >>> losses = {"own": (((0.0,), (-1.0,)), ((0.0,), (1.0,)), ((0.0,), (2.0,)))}
-        >>> table = LossTable((-2.0, 0.0, 2.0), (0.0, 10.0), (40.0,), losses, 0.1)
+        >>> lost = {"own": (((0.0,), (-1.0,)), ((0.2,), (0.1,)), ((0.5,), (0.2,)))}
+        >>> table = LossTable((-2.0, 0.0, 2.0), (0.0, 10.0), (40.0,), lost, 0.1)
         >>> table.at(1.0, 5.0, 40.0)
         Point(loss=0.75, efficiency=0.8695652173913043, input_torque=0.115, locked=False, outside=False)
         >>> table.at(1.0, -5.0, 40.0).locked, table.at(3.0, 5.0, 40.0).outside
         (True, True)
+        >>> table.at_rest(2.0, 40.0)
+        Rest(lowest=0.2, highest=0.25, locked=False, outside=False)
     """
 
     torques: Sequence[float]
     speeds: Sequence[float]
     temperatures: Sequence[float]
-    losses: Mapping[str, Sequence[Sequence[Sequence[float]]]]
+    loss_torques: Mapping[str, Sequence[Sequence[Sequence[float]]]]
     speed_ratio: float
-    rest: Sequence[float] = ()
-    starting: Mapping[str, Sequence[float]] = {}
-    back_driving: Mapping[str, Sequence[float]] = {}
     units: Sequence[str] = ("N m", "rad/s", "N m")
 
     def at(self, torque: float, speed: float, temperature: float, law: str = "") -> Point:
@@ -78,72 +91,103 @@ class LossTable(NamedTuple):
             law: of friction; the first one by default.
 
         Returns:
-            The state. The loss is linear between nodes; below the lowest speed that is not zero it goes with
-            the power of the speed that leads to the next node, the first power at least. Torque and
-            efficiency follow from the balance of power.
+            The state. The torque that is lost is linear between nodes over torque, temperature and the
+            logarithm of the speed; below the lowest speed that is not zero it stays as it is there. Torque of
+            the driver and efficiency follow from the balance of power.
 
         Raises:
             ValueError: there is no such law.
         """
         along = torque if speed >= 0.0 else -torque
-        place = (along, self.torques), (abs(speed), self.speeds), (temperature, self.temperatures)
-        outside = not all(axis[0] <= value <= axis[-1] for value, axis in place)
-        loss = self._loss(_named(self.losses, law), along, abs(speed), temperature)
-        if loss < 0.0:
+        outside = self._outside(along, abs(speed), temperature)
+        lost = self.lost(along, abs(speed), temperature, law)
+        if lost < 0.0:
             return Point(math.nan, math.nan, math.nan, True, outside)
+        loss = lost * abs(speed)
         if speed == 0.0:
             return Point(loss, math.nan, math.nan, False, outside)
-        given = torque * speed
-        taken = given + loss
-        turning = taken / (speed / self.speed_ratio)
-        return Point(loss, _efficiency(given, taken), turning, False, outside)
+        driving = (along + lost) * self.speed_ratio
+        return Point(
+            loss,
+            _efficiency(along, along + lost),
+            math.copysign(1.0, speed) * driving,
+            False,
+            outside,
+        )
 
-    def at_rest(self, temperature: float, law: str = "") -> "tuple[float, float]":
-        """Torque of the driver that starts the drive from rest without load, and that of the output.
+    def at_many(self, torque: Any, speed: Any, temperature: Any, law: str = "") -> Point:
+        """The same at many points, as arrays of NumPy, which this asks for.
 
         Args:
-            temperature: of the oil [degC]; beyond the table its end counts.
+            torque, speed, temperature: in any shapes that broadcast.
             law: of friction; the first one by default.
 
         Returns:
-            Both torques; NaN where the table has none, and where friction holds the drive whatever they are.
-        """
-        if not self.rest:
-            return math.nan, math.nan
-        low, high, weight = _cell(self.rest, temperature)
-        first, second = _named(self.starting, law), _named(self.back_driving, law)
-        return (
-            _mixed(first[low], first[high], weight),
-            _mixed(second[low], second[high], weight),
-        )
+            Arrays of their common shape.
 
-    def _loss(
-        self,
-        losses: Sequence[Sequence[Sequence[float]]],
-        torque: float,
-        speed: float,
-        temperature: float,
-    ) -> float:
-        """Loss at a place of the table, or at the nearest one; `LOCKED` beside a node that is."""
+        Raises:
+            ValueError: there is no such law.
+
+        Example:
+            >>> lost = {"own": (((0.0,), (-1.0,)), ((0.2,), (0.1,)), ((0.5,), (0.2,)))}
+            >>> table = LossTable((-2.0, 0.0, 2.0), (0.0, 10.0), (40.0,), lost, 0.1)
+            >>> table.at_many([1.0, 1.0], [5.0, -5.0], 40.0).loss.tolist()
+            [0.75, nan]
+        """
+        return _at_many(self, torque, speed, temperature, law)
+
+    def at_rest(self, torque: float, temperature: float, law: str = "") -> Rest:
+        """Torques of the driver between which the drive stands still, in the mean over the phases.
+
+        Args:
+            torque: of the output on its load, of either sign.
+            temperature: of the oil [degC].
+            law: of friction; the first one by default.
+
+        Returns:
+            The band. The drive holds a load without a driver where the band has zero in it.
+
+        Raises:
+            ValueError: there is no such law.
+        """
+        forwards, back = (self.lost(one, 0.0, temperature, law) for one in (torque, -torque))
+        outside = any(self._outside(one, 0.0, temperature) for one in (torque, -torque))
+        highest = math.nan if forwards < 0.0 else (torque + forwards) * self.speed_ratio
+        lowest = math.nan if back < 0.0 else (torque - back) * self.speed_ratio
+        return Rest(lowest, highest, forwards < 0.0 or back < 0.0, outside)
+
+    def lost(self, torque: float, speed: float, temperature: float, law: str = "") -> float:
+        """Torque that is lost at a place of the table, or at the nearest; `LOCKED` beside a node that is.
+
+        Args:
+            torque: of the output along its motion.
+            speed: of the output, not negative; at zero the torque is that which starts it.
+            temperature: of the oil [degC].
+            law: of friction; the first one by default.
+        """
+        values = _named(self.loss_torques, law)
         few, many, more = _cell(self.torques, torque)
         cold, warm, warmer = _cell(self.temperatures, temperature)
 
         def at(column: int) -> float:
-            first, second = losses[few][column], losses[many][column]
+            first, second = values[few][column], values[many][column]
             return _mixed(
                 _mixed(first[cold], first[warm], warmer),
                 _mixed(second[cold], second[warm], warmer),
                 more,
             )
 
-        slow, fast, faster = _cell(self.speeds, speed)
-        if slow > 0 or faster in (0.0, 1.0) or len(self.speeds) == 2:
-            return _mixed(at(slow), at(fast), faster)
-        loss, beyond = at(1), at(2)
-        if not (0.0 < loss < beyond):
-            return _mixed(at(0), loss, faster)
-        power = math.log(beyond / loss) / math.log(self.speeds[2] / self.speeds[1])
-        return float(loss * faster ** max(power, 1.0))
+        if speed == 0.0 or len(self.speeds) == 2:
+            return at(0 if speed == 0.0 else 1)
+        slow, fast, faster = _cell(self.speeds[1:], max(speed, self.speeds[1]))
+        if 0.0 < faster < 1.0:
+            low, high = self.speeds[slow + 1], self.speeds[fast + 1]
+            faster = math.log(speed / low) / math.log(high / low)
+        return _mixed(at(slow + 1), at(fast + 1), faster)
+
+    def _outside(self, torque: float, speed: float, temperature: float) -> bool:
+        place = (torque, self.torques), (speed, self.speeds), (temperature, self.temperatures)
+        return not all(axis[0] <= value <= axis[-1] for value, axis in place)
 
 
 def main(table: LossTable, about: str = "", arguments: "Sequence[str] | None" = None) -> int:
@@ -163,16 +207,97 @@ def main(table: LossTable, about: str = "", arguments: "Sequence[str] | None" = 
     parser.add_argument("--torque", type=float, required=True, help="of the output, " + torque)
     parser.add_argument("--speed", type=float, required=True, help="of the output, " + speed)
     parser.add_argument("--temperature", type=float, required=True, help="of the oil, degC")
-    parser.add_argument("--law", choices=[*table.losses], default=next(iter(table.losses)))
+    parser.add_argument(
+        "--law", choices=[*table.loss_torques], default=next(iter(table.loss_torques))
+    )
     asked = parser.parse_args(arguments)
     found = table.at(asked.torque, asked.speed, asked.temperature, asked.law)
     for name, value, unit in zip(Point._fields, found, ("W", "", driver, "", ""), strict=False):
         print((name + ": " + repr(value) + " " + unit).rstrip())
+    if asked.speed == 0.0:
+        rest = table.at_rest(asked.torque, asked.temperature, asked.law)
+        print("holds from: " + repr(rest.lowest) + " to " + repr(rest.highest) + " " + driver)
     return 0
 
 
+CHUNK = 4096
+"""Points whose arrays stay in the cache of a processor."""
+
+
+def _at_many(table: LossTable, torque: Any, speed: Any, temperature: Any, law: str) -> Point:
+    import numpy as np
+
+    values = np.array(_named(table.loss_torques, law), float)
+    torques, degrees = table.torques, table.temperatures
+    logarithms = [math.log(one) for one in table.speeds[1:]]
+    exact = bool((values >= 0.0).all())
+
+    def mixed(first: Any, second: Any, weight: Any) -> Any:
+        between = first + weight * (second - first)
+        if exact:
+            return between
+        between[(first < 0.0) | (second < 0.0)] = LOCKED
+        return np.where(weight == 0.0, first, np.where(weight == 1.0, second, between))
+
+    def cell(axis: Sequence[float], place: Any) -> "tuple[Any, int, Any]":
+        last = len(axis) - 1
+        if last == 0:
+            return 0, 0, np.zeros(place.shape)
+        step = (axis[-1] - axis[0]) / last
+        if all(abs(axis[0] + k * step - one) < 1e-9 * step for k, one in enumerate(axis)):
+            count = (place - axis[0]) * (1.0 / step)
+        else:
+            count = np.interp(place, axis, np.arange(last + 1.0))
+        count = np.fmin(np.fmax(count, 0.0), last)
+        near = np.rint(count)
+        count = count if exact else np.where(abs(count - near) < 1e-9, near, count)
+        low = np.minimum(count.astype(np.intp), last - 1)
+        return low, 1, count - low
+
+    def at(torque: Any, speed: Any, degree: Any) -> Any:
+        sign, pace = np.copysign(1.0, speed), abs(speed)
+        along, rest = torque * sign, pace == 0.0
+        (few, many, more), (cold, warm, warmer) = cell(torques, along), cell(degrees, degree)
+        slow, fast, faster = cell(logarithms, np.log(pace))
+        place = (few * values.shape[1] + slow + 1) * values.shape[2] + cold
+        if rest.any():
+            place = np.where(rest, place - (slow + 1) * values.shape[2], place)
+            faster = np.where(rest, 0.0, faster)
+        steps = many * values.shape[1] * values.shape[2], fast * values.shape[2], warm
+        flat = values.reshape(-1)
+
+        def column(first: Any) -> Any:
+            few, many = (
+                mixed(flat[one], flat[one + steps[2]], warmer) for one in (first, first + steps[0])
+            )
+            return mixed(few, many, more)
+
+        lost = mixed(column(place), column(place + steps[1]), faster)
+        unknown = np.isnan(along + speed + degree)
+        if unknown.any():
+            lost = np.where(unknown, math.nan, lost)
+        locked = lost < 0.0
+        lost = lost if exact else np.where(locked, math.nan, lost)
+        driving = along + lost
+        share = along / driving
+        inside = (along >= torques[0]) & (along <= torques[-1]) & (pace <= table.speeds[-1])
+        inside &= (degree >= degrees[0]) & (degree <= degrees[-1])
+        turns = (along * driving > 0.0) & ~rest
+        efficiency = np.where(turns, np.minimum(share, 1.0 / share), math.nan)
+        turning = np.where(rest, math.nan, driving * (sign * table.speed_ratio))
+        return lost * pace, efficiency, turning, locked, ~inside
+
+    places = np.broadcast_arrays(*(np.asarray(one, float) for one in (torque, speed, temperature)))
+    every = [np.ascontiguousarray(one).reshape(-1) for one in places]
+    parts = (slice(start, start + CHUNK) for start in range(0, max(every[0].size, 1), CHUNK))
+    with np.errstate(all="ignore"):
+        found = [at(*(one[part] for one in every)) for part in parts]
+    whole = map(np.concatenate, zip(*found, strict=True))
+    return Point._make(one.reshape(places[0].shape) for one in whole)
+
+
 def _efficiency(given: float, taken: float) -> float:
-    """Power out over power in from power at the output and at the driver, both along the drive."""
+    """Power out over power in, from torques of the output and of the driver along the motion."""
     if given > 0.0 and taken > 0.0:
         return given / taken
     return taken / given if given < 0.0 and taken < 0.0 else math.nan

@@ -11,7 +11,13 @@ from pitchpoint.efficiency.drive import Drive, braked
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
 from pitchpoint.programs import program
 
-__all__ = ["no_load_torque", "starting_torque", "starting_torque_of_drive"]
+__all__ = [
+    "no_load_torque",
+    "starting_torque",
+    "starting_torque_of_drive",
+    "torques_at_rest",
+    "torques_at_rest_of_drive",
+]
 
 Each = Float[Array, "*b"]
 
@@ -40,10 +46,10 @@ def no_load_torque(
 
 
 @program
-def starting_torque(
+def torques_at_rest(
     design: Design, operation: Operation, models: Models, engaged: Engagement | None = None
-) -> Each:
-    """Torque at which the driver begins to turn from rest, at the worst phase of the mesh [N m].
+) -> tuple[Each, Each]:
+    """Torque at which the driver begins to turn from rest: its mean over the phases, and the largest [N m].
 
     Beside the teeth act the breakaway and seal torques and the bearings at speed zero, where
     Palmgren's torque of the lubricant keeps its lower value; nothing churns. Laws of tooth friction do
@@ -58,34 +64,50 @@ def starting_torque(
         engaged: contacts and shares at that load, where they are known already.
 
     Returns:
-        Torque, shape [*b]; NaN where friction holds the drive whatever the torque.
+        Both torques, shape [*b]; NaN where friction holds the drive whatever the torque.
 
     From the same balance with the bodies about to move; Palmgren (1959) for the bearings.
     """
     resting = replace(design, drag=at_rest(design.drag))
     found = cycle(resting, operation, models, engaged=engaged)
-    return found.extremes(found.state.input_torque)[1]
+    return found.mean_input_torque, found.extremes(found.state.input_torque)[1]
 
 
-def starting_torque_of_drive(drive: Drive, operation: Operation, models: Sequence[Models]) -> Each:
-    """Torque at which the input of a drive of several meshes begins to turn from rest [N m].
+def torques_at_rest_of_drive(
+    drive: Drive, operation: Operation, models: Sequence[Models]
+) -> tuple[Each, Each]:
+    """The same of a drive of several meshes, at its input [N m].
 
-    What starts a stage is the load of the one before it; each stands at its worst phase. Bearings of a shaft
-    feel the teeth of the stage that overcomes them, not those of the stage behind, which carry little then.
+    What starts a stage is the load of the one before it, by the means of all stages or with each at its worst
+    phase. Bearings of a shaft feel the teeth of the stage that overcomes them, not those of the stage behind,
+    which carry little then.
 
     Args:
         drive: see `chained`; for back-driving `drive.driven_backwards()`.
-        operation: operating points [*b], see `starting_torque`; their load is that of the output.
+        operation: operating points [*b], see `torques_at_rest`; their load is that of the output.
         models: laws of each stage.
 
     Returns:
-        Torque, shape [*b]; NaN where friction holds a stage whatever the torque.
+        Both torques, shape [*b]; NaN where friction holds a stage whatever the torque.
 
     From the torques of the stages, from the output to the input.
     """
-    torque, ratios = operation.load, drive.ratios
+    mean, largest, ratios = operation.load, operation.load, drive.ratios
     for number in reversed(range(len(drive.stages))):
         design = replace(drive.stages[number].design, drag=braked(drive, number))
-        point = replace(operation, load=torque, speed=operation.speed * ratios[number])
-        torque = starting_torque(design, point, models[number])
-    return torque
+        point = replace(operation, speed=operation.speed * ratios[number])
+        mean = torques_at_rest(design, replace(point, load=mean), models[number])[0]
+        largest = torques_at_rest(design, replace(point, load=largest), models[number])[1]
+    return mean, largest
+
+
+def starting_torque(
+    design: Design, operation: Operation, models: Models, engaged: Engagement | None = None
+) -> Each:
+    """Torque at which the driver begins to turn from rest at the worst phase, see `torques_at_rest` [N m]."""
+    return torques_at_rest(design, operation, models, engaged)[1]
+
+
+def starting_torque_of_drive(drive: Drive, operation: Operation, models: Sequence[Models]) -> Each:
+    """The same of a drive, see `torques_at_rest_of_drive` [N m]."""
+    return torques_at_rest_of_drive(drive, operation, models)[1]

@@ -9,7 +9,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-from pitchpoint.analyses.four_quadrants import table_of
+from pitchpoint.analyses.four_quadrants import error_words, table_of
 from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
@@ -28,15 +28,21 @@ SIGNS = (
     "output. Power balances: torque times speed of the driver = torque times speed of the output + loss."
 )
 BETWEEN = (
-    "Nodes are as computed. The loss is linear between them; below the lowest speed that is not zero it goes "
-    "with the power of the speed that leads to the next node, the first power at least. Torque of the driver "
-    "and efficiency follow from the balance of power."
+    "Every fourth speed of the table is as computed, the others by a monotone cubic. The torque that is "
+    "lost is linear between the values of the table over torque, temperature and the logarithm of the "
+    "speed; below the lowest speed that is not zero it stays as it is there, and does not vanish towards "
+    "rest. Torque of the driver and efficiency follow from the balance of power."
 )
 BEYOND = (
-    "Beyond the table the loss is that of the nearest point in it, and `outside` is true. Where friction "
-    "locks the drive against its output, or does so at a node beside, `locked` is true and the rest is NaN. "
-    "At rest the loss is zero, torque of the driver and efficiency are NaN; the efficiency is NaN too where "
-    "no power comes out, as where both ends put power in."
+    "Beyond the table the torque that is lost is that of the nearest point in it, and outside is true. Where "
+    "friction locks the drive against its output, or does so at a node beside, locked is true and the rest "
+    "is NaN. The efficiency is NaN too where no power comes out, as where both ends put power in."
+)
+AT_REST = (
+    "At rest no power is lost, and the torque of the driver may have any value of a band: at_rest gives for "
+    "a load the torque below which it moves back and that above which it is moved on, in the mean over the "
+    "phases of the teeth, with what holds bearings and seals at rest. Where the band has zero in it the "
+    "drive holds the load without its driver."
 )
 
 
@@ -48,7 +54,7 @@ def evaluator(outcome: Outcome, folder: Path) -> list[Path]:
     """
     _demand_map(outcome)
     try:
-        table = table_of(outcome.parts[FOUR_QUADRANTS.name], outcome.parts.get("running"))
+        table = table_of(outcome.parts[FOUR_QUADRANTS.name])
         texts = {"loss_table.py": module(outcome, table), "loss_table.h": header(outcome, table)}
     except (
         AttributeError,
@@ -93,7 +99,7 @@ def module(outcome: Outcome, table: LossTable) -> str:
     code = "".join(source.splitlines(keepends=True)[first.end_lineno :])
     code = re.sub(
         r"^__all__ = .*$",
-        '__all__ = ["ABOUT", "TABLE", "Point", "at", "at_rest"]',
+        '__all__ = ["ABOUT", "TABLE", "Point", "Rest", "at", "at_many", "at_rest"]',
         code,
         count=1,
         flags=re.M,
@@ -104,17 +110,23 @@ def module(outcome: Outcome, table: LossTable) -> str:
         "    python loss_table.py --torque 5 --speed -3 --temperature 40",
         "    from loss_table import at",
         "    at(5.0, -3.0, 40.0).input_torque",
+        "    at_many([5.0, 6.0], [-3.0, 2.0], [40.0, 40.0]).input_torque  # with NumPy",
+        "    at_rest(5.0, 40.0).highest",
     ]
     paragraphs = ["\n".join(wrap(text, 100)) for text in _told(outcome, table)]
     head = "\n\n".join(
-        [*paragraphs, "\n".join(usage), "Python 3.10 or later; nothing else is needed."]
+        [
+            *paragraphs,
+            "\n".join(usage),
+            "Python 3.10 or later; nothing else is needed but for arrays.",
+        ]
     )
     return (
         f'"""{head}\n"""\n{code}\n\n'
         f"ABOUT = {{{about}}}\n"
         f'"""Where the table comes from."""\n\n'
         f"TABLE = LossTable(\n{fields})\n"
-        "at, at_rest = TABLE.at, TABLE.at_rest\n\n"
+        "at, at_many, at_rest = TABLE.at, TABLE.at_many, TABLE.at_rest\n\n"
         'if __name__ == "__main__":\n    raise SystemExit(main(TABLE, __doc__))\n'
     )
 
@@ -127,11 +139,12 @@ def header(outcome: Outcome, table: LossTable) -> str:
         table: made of it.
     """
     code = files("pitchpoint.exports").joinpath("loss_table.h").read_text("utf-8")
-    shape = len(table.losses), len(table.torques), len(table.speeds), len(table.temperatures)
+    shape = len(table.loss_torques), len(table.torques), len(table.speeds), len(table.temperatures)
     names = ("LAWS", "TORQUES", "SPEEDS", "TEMPERATURES")
     usage = (
         "struct loss_table_point here = loss_table_at(5.0, -3.0, 40.0, 0); the last number is that of the "
-        'friction law, by name loss_table_law("..."). C99 with math.h and string.h.'
+        'friction law, by name loss_table_law("..."). loss_table_at_many takes arrays, loss_table_at_rest '
+        "gives the torques that hold a load. C99 with math.h and string.h."
     )
     head = "\n *\n * ".join(
         "\n * ".join(wrap(text, 100)) for text in (*_told(outcome, table), usage)
@@ -142,18 +155,20 @@ def header(outcome: Outcome, table: LossTable) -> str:
         "torques[LOSS_TABLE_TORQUES]": table.torques,
         "speeds[LOSS_TABLE_SPEEDS]": table.speeds,
         "temperatures[LOSS_TABLE_TEMPERATURES]": table.temperatures,
-        "losses[LOSS_TABLE_LAWS][LOSS_TABLE_TORQUES][LOSS_TABLE_SPEEDS][LOSS_TABLE_TEMPERATURES]": [
-            *table.losses.values()
+        "loss_torques[LOSS_TABLE_LAWS][LOSS_TABLE_TORQUES][LOSS_TABLE_SPEEDS][LOSS_TABLE_TEMPERATURES]": [
+            *table.loss_torques.values()
         ],
     }
-    texts = {**_origin(outcome), "law_names[LOSS_TABLE_LAWS]": [*table.losses]}
+    texts = {**_origin(outcome), "law_names[LOSS_TABLE_LAWS]": [*table.loss_torques]}
     return (
         f"/* {head}\n */\n#ifndef LOSS_TABLE_H\n#define LOSS_TABLE_H\n\n"
         f"#include <math.h>\n#include <string.h>\n\n{sizes}"
         f"#define LOSS_TABLE_SPEED_RATIO {table.speed_ratio!r}\n\n"
         "struct loss_table_point {\n"
         f"    double loss;         /* W */\n    double efficiency;\n"
-        f"    double input_torque; /* {driver} */\n    int locked, outside;\n}};\n\n"
+        f"    double input_torque; /* {driver} */\n    int locked, outside;\n}};\n"
+        "struct loss_table_rest {\n"
+        f"    double lowest, highest; /* {driver} */\n    int locked, outside;\n}};\n\n"
         + "".join(f"static const char *const loss_table_{n} = {_c(v)};\n" for n, v in texts.items())
         + "".join(f"static const double loss_table_{n} = {_c(v)};\n" for n, v in arrays.items())
         + f"\n{code}"
@@ -168,24 +183,17 @@ def _told(outcome: Outcome, table: LossTable) -> Iterable[str]:
 def _head(outcome: Outcome, table: LossTable) -> Iterable[str]:
     data = outcome.parts[FOUR_QUADRANTS.name]
     torque, speed, driver = table.units
-    errors = "; ".join(
-        f"{law}: {100.0 * most:.2g} % at most, {100.0 * mean:.2g} % in the mean"
-        for law, most, mean in zip(
-            table.losses,
-            data["interpolation_error"].values,
-            data["mean_interpolation_error"].values,
-            strict=True,
-        )
-    )
     yield "Loss of a drive and torque of its driver at any torque and speed of its output."
     yield SIGNS
     yield f"Units: torque {torque}, speed {speed}, torque of the driver {driver}, temperature degC, loss W."
     yield BETWEEN
     yield (
-        f"Error of the loss half way between nodes against direct computation, by friction law: {errors}; "
-        "more values of loss_map.count and loss_map.temperatures bring it down."
+        "Error of the loss against direct computation, by friction law: "
+        + "; ".join(error_words(data, law) for law in range(len(table.loss_torques)))
+        + ". More values of loss_map.count and loss_map.temperatures bring it down."
     )
     yield BEYOND
+    yield AT_REST
     yield str(data.attrs["note"])
     yield f"Made by Pitchpoint {data.attrs['version']}."
 

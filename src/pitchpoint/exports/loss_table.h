@@ -31,12 +31,36 @@ static double loss_table_mixed(double first, double second, double weight)
 static double loss_table_column(int law, struct loss_table_cell torque, int speed,
                                 struct loss_table_cell temperature)
 {
-    const double *first = loss_table_losses[law][torque.low][speed];
-    const double *second = loss_table_losses[law][torque.high][speed];
+    const double *first = loss_table_loss_torques[law][torque.low][speed];
+    const double *second = loss_table_loss_torques[law][torque.high][speed];
     return loss_table_mixed(
         loss_table_mixed(first[temperature.low], first[temperature.high], temperature.weight),
         loss_table_mixed(second[temperature.low], second[temperature.high], temperature.weight),
         torque.weight);
+}
+
+/* Torque that is lost, along the motion of the output; negative where friction locks the drive. */
+static double loss_table_lost(double torque, double speed, double temperature, int law)
+{
+    const double *moving = loss_table_speeds + 1;
+    const struct loss_table_cell t = loss_table_cell(loss_table_torques, LOSS_TABLE_TORQUES, torque);
+    const struct loss_table_cell oil =
+        loss_table_cell(loss_table_temperatures, LOSS_TABLE_TEMPERATURES, temperature);
+    if (speed == 0.0)
+        return loss_table_column(law, t, 0, oil);
+    struct loss_table_cell n = loss_table_cell(moving, LOSS_TABLE_SPEEDS - 1, speed);
+    if (n.weight > 0.0 && n.weight < 1.0)
+        n.weight = log(speed / moving[n.low]) / log(moving[n.high] / moving[n.low]);
+    return loss_table_mixed(loss_table_column(law, t, n.low + 1, oil),
+                            loss_table_column(law, t, n.high + 1, oil), n.weight);
+}
+
+static int loss_table_outside(double torque, double speed, double temperature)
+{
+    const double *torques = loss_table_torques, *degrees = loss_table_temperatures;
+    return !(torque >= torques[0] && torque <= torques[LOSS_TABLE_TORQUES - 1] &&
+             speed <= loss_table_speeds[LOSS_TABLE_SPEEDS - 1] && temperature >= degrees[0] &&
+             temperature <= degrees[LOSS_TABLE_TEMPERATURES - 1]);
 }
 
 /* Number of a law by its name; -1 where there is none. */
@@ -53,38 +77,52 @@ static inline struct loss_table_point loss_table_at(double torque, double speed,
 {
     struct loss_table_point found = {NAN, NAN, NAN, 0, 0};
     const double along = speed >= 0.0 ? torque : -torque, pace = fabs(speed);
-    const double *torques = loss_table_torques, *speeds = loss_table_speeds;
-    const double *degrees = loss_table_temperatures;
     if (law < 0 || law >= LOSS_TABLE_LAWS)
         return found;
-    found.outside = !(along >= torques[0] && along <= torques[LOSS_TABLE_TORQUES - 1] &&
-                      pace <= speeds[LOSS_TABLE_SPEEDS - 1] && temperature >= degrees[0] &&
-                      temperature <= degrees[LOSS_TABLE_TEMPERATURES - 1]);
+    found.outside = loss_table_outside(along, pace, temperature);
     if (isnan(along) || isnan(pace) || isnan(temperature))
         return found;
-    const struct loss_table_cell t = loss_table_cell(torques, LOSS_TABLE_TORQUES, along);
-    const struct loss_table_cell n = loss_table_cell(speeds, LOSS_TABLE_SPEEDS, pace);
-    const struct loss_table_cell oil = loss_table_cell(degrees, LOSS_TABLE_TEMPERATURES, temperature);
-    const double low = loss_table_column(law, t, n.low, oil), high = loss_table_column(law, t, n.high, oil);
-    double loss = loss_table_mixed(low, high, n.weight);
-    if (n.low == 0 && n.weight > 0.0 && n.weight < 1.0 && LOSS_TABLE_SPEEDS > 2) {
-        const double beyond = loss_table_column(law, t, LOSS_TABLE_SPEEDS > 2 ? 2 : 0, oil);
-        if (high > 0.0 && beyond > high)
-            loss = high * pow(n.weight, fmax(log(beyond / high) / log(speeds[2] / speeds[1]), 1.0));
-    }
-    if (loss < 0.0) {
+    const double lost = loss_table_lost(along, pace, temperature, law), driving = along + lost;
+    if (lost < 0.0) {
         found.locked = 1;
         return found;
     }
-    found.loss = loss;
+    found.loss = lost * pace;
     if (speed != 0.0) {
-        const double given = torque * speed, taken = given + loss;
-        found.input_torque = taken / (speed / LOSS_TABLE_SPEED_RATIO);
-        if (given > 0.0 && taken > 0.0)
-            found.efficiency = given / taken;
-        else if (given < 0.0 && taken < 0.0)
-            found.efficiency = taken / given;
+        found.input_torque = copysign(driving * LOSS_TABLE_SPEED_RATIO, speed * driving);
+        if (along > 0.0 && driving > 0.0)
+            found.efficiency = along / driving;
+        else if (along < 0.0 && driving < 0.0)
+            found.efficiency = driving / along;
     }
+    return found;
+}
+
+/* The same at many points. */
+static inline void loss_table_at_many(int count, const double *torque, const double *speed,
+                                      const double *temperature, int law, struct loss_table_point *found)
+{
+    for (int k = 0; k < count; ++k)
+        found[k] = loss_table_at(torque[k], speed[k], temperature[k], law);
+}
+
+/* Torques of the driver between which the drive stands still with a load; law counts from 0. */
+static inline struct loss_table_rest loss_table_at_rest(double torque, double temperature, int law)
+{
+    struct loss_table_rest found = {NAN, NAN, 0, 0};
+    if (law < 0 || law >= LOSS_TABLE_LAWS)
+        return found;
+    found.outside =
+        loss_table_outside(torque, 0.0, temperature) || loss_table_outside(-torque, 0.0, temperature);
+    if (isnan(torque) || isnan(temperature))
+        return found;
+    const double forwards = loss_table_lost(torque, 0.0, temperature, law);
+    const double back = loss_table_lost(-torque, 0.0, temperature, law);
+    found.locked = forwards < 0.0 || back < 0.0;
+    if (!(forwards < 0.0))
+        found.highest = (torque + forwards) * LOSS_TABLE_SPEED_RATIO;
+    if (!(back < 0.0))
+        found.lowest = (torque - back) * LOSS_TABLE_SPEED_RATIO;
     return found;
 }
 

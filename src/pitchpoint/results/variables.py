@@ -458,7 +458,11 @@ VARIABLES: dict[str, Variable] = {
         "lost motion at ±4 % of the rated torque", "Δθ_4%", "rad", "arcmin", "angle"
     ),
     "hysteresis_loss": Variable(
-        "hysteresis loss, the width of the loop without torque", "Δθ_h", "rad", "arcmin", "angle"
+        "hysteresis loss by friction of the teeth alone, the width of the loop without torque",
+        "Δθ_h",
+        "rad",
+        "arcmin",
+        "angle",
     ),
     "loaded_pairs": Variable("mean number of pairs that carry", "n", "1"),
     "zone_load": Variable("inward load on each end of the long axis", "F_r", "N", "N", "force"),
@@ -517,6 +521,14 @@ VARIABLES: dict[str, Variable] = {
     "no_load_torque": torque("mean input torque without load", "T_0"),
     "starting_torque": torque("input torque that starts the drive", "T_start"),
     "back_driving_torque": torque("output torque that starts the drive backwards", "T_back"),
+    "least_starting_torque": torque("least input torque that may start the drive", "T_start min"),
+    "largest_starting_torque": torque("input torque that surely starts the drive", "T_start max"),
+    "least_back_driving_torque": torque(
+        "least output torque that may start the drive backwards", "T_back min"
+    ),
+    "largest_back_driving_torque": torque(
+        "output torque that surely starts the drive backwards", "T_back max"
+    ),
     "meeting_error": percent(
         "most that few loads of a stage are off for all meetings of phases, over the mean loss", ""
     ),
@@ -539,10 +551,19 @@ VARIABLES: dict[str, Variable] = {
     "speed": Variable("driver speed", "n", "rad/s", "rpm", "rotational speed"),
     "output_torque": torque("output torque", "T_out"),
     "output_speed": Variable("output speed", "n_out", "rad/s", "rpm", "rotational speed"),
+    "least_holding_torque": torque("input torque below which the load moves back", "T_hold min"),
+    "largest_holding_torque": torque("input torque above which the load moves on", "T_hold max"),
+    "moving_back_torque": torque(
+        "input torque below which it moves back at every phase", "T_hold−"
+    ),
+    "moving_on_torque": torque("input torque above which it moves on at every phase", "T_hold+"),
+    "self_locking": Variable("friction holds the load without the driver", "", "1"),
     "interpolation_error": percent("largest error of the loss half way between nodes, over it", ""),
     "mean_interpolation_error": percent(
         "mean error of the loss half way between nodes, over it", ""
     ),
+    "light_load_error": percent("largest error of the loss below the least load of the map", ""),
+    "creeping_error": percent("largest error of the loss at a tenth of the lowest speed", ""),
     "temperature": Variable("oil temperature", "θ", "K", "degC", "temperature"),
 }
 
@@ -555,6 +576,14 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
         "torque_ripple": force("ripple of the input force", "ΔF_in"),
         "no_load_torque": force("mean input force without load", "F_0"),
         "starting_torque": force("input force that starts the drive", "F_start"),
+        "least_starting_torque": force("least input force that may start the drive", "F_start min"),
+        "largest_starting_torque": force("input force that surely starts the drive", "F_start max"),
+        "least_holding_torque": force("input force below which the load moves back", "F_hold min"),
+        "largest_holding_torque": force("input force above which the load moves on", "F_hold max"),
+        "moving_back_torque": force(
+            "input force below which it moves back at every phase", "F_back"
+        ),
+        "moving_on_torque": force("input force above which it moves on at every phase", "F_hold+"),
         "speed": speed("driver speed", "v"),
     },
     "loaded": {
@@ -562,6 +591,12 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
         "output_torque": force("output force", "F_out"),
         "output_speed": speed("output speed", "v_out"),
         "back_driving_torque": force("output force that starts the drive backwards", "F_back"),
+        "least_back_driving_torque": force(
+            "least output force that may start the drive backwards", "F_back min"
+        ),
+        "largest_back_driving_torque": force(
+            "output force that surely starts the drive backwards", "F_back max"
+        ),
         "loading_torque": force("force while the deflection grows", "F"),
         "unloading_torque": force("force while the deflection shrinks", "F"),
         "wind_up": deviation("deflection of the loaded member", "Δs"),

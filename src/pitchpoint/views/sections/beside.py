@@ -64,13 +64,23 @@ def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     # The operating point is on both axes; where it is read from words it is so up to rounding.
     there = own.sel(speed=at.speed, temperature=at.temperature, method="nearest")
     return [
-        (words.format(_load(data, name)), _held(data, name, float(there[name])))
+        (words.format(_load(data, name)), _with_band(data, name, there))
         for words, name in (
             (f"{{}} without load at {level('speed', at.speed, data)}", "no_load_torque"),
             ("starting {}", "starting_torque"),
             ("back-driving {}", "back_driving_torque"),
         )
     ]
+
+
+def _with_band(data: xr.Dataset, name: str, there: xr.Dataset) -> str:
+    """A torque, with the ends of its band where it has one."""
+    value = _held(data, name, float(there[name]))
+    ends = [f"{end}_{name}" for end in ("least", "largest")]
+    if not all(one in data for one in ends):
+        return value
+    low, high = (_held(data, one, float(there[one])) for one in ends)
+    return f"{value}, {low} to {high} with the spread of what holds at rest"
 
 
 def _load(data: xr.Dataset, name: str) -> str:
@@ -258,9 +268,10 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     if data is not None:
         for place, (name, value) in enumerate(starting_answer(outcome, laws(data)[0])):
             brief, _, speed = name.partition(" at ")
-            detail = f"at {speed}" if speed else ""
+            told, _, band = value.partition(", ")
+            detail = f"at {speed}" if speed else band
             order = _FROM_REST if brief.startswith("starting") else 76.0 + 0.1 * place
-            yield KeyFigure(order, brief.capitalize(), value, detail)
+            yield KeyFigure(order, brief.capitalize(), told, detail)
 
 
 BESIDE = Section(

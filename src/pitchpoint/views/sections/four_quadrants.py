@@ -1,12 +1,27 @@
-"""Loss, efficiency and torque of the driver over torque and speed of the output with their signs."""
+"""Loss and torque of the driver over torque and speed of the output, and loads held at rest."""
 
 from collections.abc import Iterator
 
 import numpy as np
+import xarray as xr
 
 from pitchpoint.analyses.figures import covered
+from pitchpoint.analyses.four_quadrants import HOLDING, error_words, held_at_operation
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.section import Block, Page, Paragraph, Section
+from pitchpoint.views.figures import laws
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import (
+    Block,
+    Heading,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    Section,
+    Table,
+    by_variant,
+)
 from pitchpoint.views.sections.loss_map import Chart, map_panel
 
 __all__ = ["FOUR_QUADRANTS"]
@@ -20,8 +35,12 @@ OF_OUTPUT = Chart(
 )
 
 
+HELD = f"{OF_OUTPUT.part}.{HOLDING[0]}"
+"""The map as it is now; results of before lack the torques that hold a load."""
+
+
 def _blocks(page: Page) -> Iterator[Block]:
-    there = page.having(OF_OUTPUT.part)
+    there = page.having(HELD)
     data = next(iter(there.values())).parts[OF_OUTPUT.part]
     load, driving = (
         show.described(name, data).long_name for name in ("output_torque", "mean_input_torque")
@@ -32,6 +51,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         "where no power comes out, and where friction locks the drive against its output."
     )
     yield Paragraph(str(data.attrs["note"]), "note")
+    for told in dict.fromkeys(_errors(one) for one in there.values()):
+        yield Paragraph(told, "note")
     if any(bool(np.any(one.parts[OF_OUTPUT.part]["locked"].values)) for one in there.values()):
         told = (
             "Friction locks the drive against its output at some of these points, see the warnings."
@@ -40,6 +61,75 @@ def _blocks(page: Page) -> Iterator[Block]:
     if alone := covered(one.parts for one in there.values()):
         yield Paragraph(alone, "note")
     yield map_panel(there, page.curves, OF_OUTPUT)
+    yield Heading("Held at rest")
+    yield Paragraph(AT_REST)
+    yield from by_variant(page, HELD, lambda _, outcome: _held(outcome))
+
+
+AT_REST = (
+    "At rest the torque of the driver may have any value of a band: below it the load moves back, above it "
+    "the load moves on. The band holds in the mean over the phases of the teeth; beyond the torques of the "
+    "last columns the load moves at every phase. Friction of the teeth is that of a creeping drive, "
+    "with what holds bearings and seals at rest. Where zero lies in the band the load is held without "
+    "the driver."
+)
+
+
+def _errors(outcome: Outcome) -> str:
+    data = outcome.parts[OF_OUTPUT.part]
+    each = "; ".join(error_words(data, law) for law in range(data.sizes["law"]))
+    return f"Error of the loss in the map against direct computation: {each}."
+
+
+def _rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Torques that hold each load from zero on, by law, at the temperature next to that of operation."""
+    data = outcome.parts[OF_OUTPUT.part]
+    there = data.sel(temperature=data.attrs["degree"], method="nearest")
+    there = there.isel(output_torque=there["output_torque"].values >= 0.0)
+    return [
+        {
+            "friction law": law,
+            head("output_torque", data): shown("output_torque", float(load), data),
+        }
+        | {head(n, data): _word(there, n, (k, place)) for n in HOLDING}
+        for k, law in enumerate(laws(data))
+        for place, load in enumerate(there["output_torque"].values)
+    ]
+
+
+def _word(data: xr.Dataset, name: str, at: tuple[int, int]) -> str:
+    value = float(data[name].transpose("law", "output_torque", ...).values[at])
+    return shown(name, value, data) if np.isfinite(value) else "locked"
+
+
+def _held(outcome: Outcome) -> Iterator[Block]:
+    rows = _rows(outcome)
+    yield Table([*rows[0]], [[*row.values()] for row in rows], caption="Torques that hold a load")
+
+
+def _screen(outcome: Outcome) -> Iterator[Printed]:
+    if HOLDING[0] in outcome.parts.get(OF_OUTPUT.part, ()):
+        yield Printed("Held at rest", _rows(outcome), _errors(outcome))
+
+
+def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Torque that holds the load of operation at rest, under the first law."""
+    if HOLDING[0] not in outcome.parts.get(OF_OUTPUT.part, ()):
+        return
+    data = outcome.parts[OF_OUTPUT.part]
+    held = next(iter(held_at_operation(data).values()))
+    ends = [held[name] for name in HOLDING[:2]]
+    load = show.quantity("output_torque", data.attrs["load"], of=data)
+    if held["self_locking"]:
+        words, detail = "none", f"self-locking: friction holds {load} without the driver"
+    elif None in ends:
+        words, detail = "not known", f"{load} lies beyond the map, or friction jams the teeth"
+    else:
+        low, high = (show.quantity(n, e, of=data) for n, e in zip(HOLDING, ends, strict=False))
+        words = f"{low} to {high}"
+        free = "held without the driver" if ends[0] <= 0.0 else "less lets it go, more lifts it"
+        detail = f"for {load} at rest; {free}"
+    yield KeyFigure(36.0, "Holding torque", words, detail)
 
 
 FOUR_QUADRANTS = Section(
@@ -47,6 +137,8 @@ FOUR_QUADRANTS = Section(
     title="Loss map of the output",
     short="Four quadrants",
     order=710.0,
-    parts=("four_quadrants",),
+    parts=(HELD,),
     blocks=_blocks,
+    answer=_key_figures,
+    screen=_screen,
 )
