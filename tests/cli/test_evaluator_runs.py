@@ -29,6 +29,7 @@ from pitchpoint.analyses.running import BANDS, RUNNING, from_rest
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.loss_table import LossTable
+from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import header, module
 from pitchpoint.runs.run import Outcome, describe, keep, open_result
 from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
@@ -520,3 +521,16 @@ def test_the_head_tells_signs_errors_and_origin(moving: tuple[Ready, Outcome]) -
         "flanks",
     ):
         assert words in head
+
+
+@pytest.mark.parametrize(
+    ("added", "told"),
+    [
+        ('lowest_speed = "3000 rpm"', "lies below the largest speed of the map, 2250 rpm"),
+        ('speed = "0 rpm"', "asks for a speed above standstill"),
+    ],
+)
+def test_speeds_that_make_no_map(added: str, told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        variant(PAIR + added).built({})
+    variant(PAIR + added.replace("3000", "5").replace('"0 ', '"9 ')).built({})

@@ -125,8 +125,8 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     elif None in ends:
         words, detail = "not known", f"{load} lies beyond the map, or friction jams the teeth"
     else:
-        low, high = (show.quantity(n, e, of=data) for n, e in zip(HOLDING, ends, strict=False))
-        words = f"{low} to {high}"
+        low = shown(HOLDING[0], ends[0], data)
+        words = f"{low} to {show.quantity(HOLDING[1], ends[1], of=data)}"
         free = "held without the driver" if ends[0] <= 0.0 else "less lets it go, more lifts it"
         detail = f"for {load} at rest; {free}"
     yield KeyFigure(36.0, "Holding torque", words, detail)
