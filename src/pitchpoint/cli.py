@@ -632,21 +632,26 @@ def _pages_from(incomplete: str) -> list[str]:
 
 @app.command()
 def docs(
-    page: Annotated[
-        str | None,
+    words: Annotated[
+        list[str] | None,
         typer.Argument(
-            metavar="PAGE", help="Print this page; none lists them.", autocompletion=_pages_from
+            metavar="[PAGE | WORD...]",
+            help="Print this page, or list where these words are; none lists all pages.",
+            autocompletion=_pages_from,
         ),
     ] = None,
     json_: AsJson = False,
 ) -> None:
-    """Read the documentation in the terminal.
+    """Read the documentation in the terminal, or search it.
 
-    Into a file or a pipe it goes as Markdown.
+    Into a file or a pipe a page goes as Markdown.
     """
     from pitchpoint import pages
 
-    if page is None:
+    page = " ".join(words or [])
+    if page and "/" not in page and not pages.is_page(page) and (found := pages.search(page)):
+        _show_found(found, json_)
+    elif not page:
         _show(
             [{"page": one, "title": pages.title(one)} for one in pages.names()],
             json_,
@@ -660,6 +665,23 @@ def docs(
         _console().print(Markdown(pages.page(page), hyperlinks=False))
     else:
         typer.echo(pages.page(page), nl=False)
+
+
+def _show_found(found: list[dict[str, str]], as_json: bool) -> None:
+    """Places of a search, a line each."""
+    from pitchpoint.views.show import first_clauses
+
+    if as_json:
+        _emit(found)
+        return
+    width = max(len(one["page"]) for one in found)
+    for one in found:
+        line = first_clauses(one["line"], max(_console().width - width - 2, _LEAST))
+        typer.echo(f"{one['page']:<{width}}  {line}")
+
+
+_LEAST = 30
+"""Characters of a line that a search shows at least."""
 
 
 def _families_from(incomplete: str) -> list[str]:

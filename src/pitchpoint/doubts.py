@@ -21,6 +21,7 @@ __all__ = [
     "fails",
     "in_stage",
     "moves",
+    "of_designs",
     "reworded",
     "stored",
     "worst_of_kinds",
@@ -170,6 +171,22 @@ def _stage_words(number: int, sentence: str) -> str:
     if sentence.startswith(_FAILS):
         return f"{_FAILS}stage {number}: {sentence.removeprefix(_FAILS)}"
     return f"Stage {number}: {sentence[:1].lower()}{sentence[1:]}"
+
+
+def of_designs(sentence: str, names: str) -> Doubt:
+    """Sentence on some designs or variants by their names.
+
+    Example:
+        >>> from pitchpoint.doubts import fails
+        >>> of_designs(fails("teeth melt."), "cold and hot")
+        'Fails: cold and hot: teeth melt.'
+    """
+
+    def named(text: str) -> str:
+        begin = _FAILS if text.startswith(_FAILS) else ""
+        return f"{begin}{names}: {text.removeprefix(begin)}"
+
+    return reworded(sentence, named)
 
 
 def apart(sentences: Iterable[str]) -> dict[str, list[str]]:

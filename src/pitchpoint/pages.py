@@ -1,12 +1,13 @@
 """Pages of the documentation in Markdown, as the package ships them or as they lie in a clone."""
 
 import re
+from collections import Counter
 from pathlib import Path
 
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.registry import known_as, nearest
 
-__all__ = ["names", "page", "title"]
+__all__ = ["is_page", "names", "page", "search", "title"]
 
 _PACKAGE = Path(__file__).parent
 _FOLDER = next(
@@ -14,6 +15,9 @@ _FOLDER = next(
 )
 _FOR_THE_SITE = ("_", "index", "reference/api")
 """Beginnings of what says nothing outside of the site: `help` tells what a Python name is."""
+
+MOST = 10
+"""Places that a search lists."""
 
 _HEAD = re.compile(r"\A---\n.*?\n---\n+", re.DOTALL)
 
@@ -36,13 +40,64 @@ def page(name: str) -> str:
     Raises:
         InputError: there is no such page.
     """
-    wanted, known = name.removesuffix(".md"), names()
-    found = [one for one in known if one.rpartition("/")[2] == wanted]
-    chosen = known_as(wanted, known) or (found[0] if len(found) == 1 else None)
+    chosen = _chosen(name)
     if chosen is None or _FOLDER is None:
-        near = f"; there are {' and '.join(found)}" if found else nearest(wanted, known)
+        near = nearest(name.removesuffix(".md"), names())
         raise InputError(f"'{shorten(name)}' is no page of the documentation{near}")
     return _HEAD.sub("", (_FOLDER / f"{chosen}.md").read_text("utf-8"))
+
+
+def is_page(name: str) -> bool:
+    """True for the name of a page, see `page`."""
+    return _chosen(name) is not None
+
+
+def _chosen(name: str) -> str | None:
+    """Whole name of a page; None for that of none, or of several."""
+    wanted, known = name.removesuffix(".md"), names()
+    ending = [one for one in known if one.rpartition("/")[2] == wanted]
+    return known_as(wanted, known) or (ending[0] if len(ending) == 1 else None)
+
+
+def search(words: str) -> list[dict[str, str]]:
+    """Lines that have all of some words, the nearest first: titles, headings, rows of a table, others.
+
+    Args:
+        words: of any case, with spaces between them.
+
+    Returns:
+        At most `MOST` places, two of one page at most: the page, and its line without marks.
+    """
+    wanted = words.lower().split()
+    found = sorted(
+        (_rank(line, wanted[0]), name, _plain(line))
+        for name in names()
+        for line in page(name).splitlines()
+        if all(word in line.lower() for word in wanted)
+    )
+    many: Counter[str] = Counter()
+    kept = []
+    for _, name, line in found:
+        many[name] += 1
+        if many[name] <= _OF_A_PAGE and len(kept) < MOST:
+            kept.append({"page": name, "line": line})
+    return kept
+
+
+_OF_A_PAGE = 2
+_MARKS = re.compile(r"\]\([^)]*\)|[\[\]`*|\\#>]+")
+
+
+def _rank(line: str, word: str) -> int:
+    """Place of a line in a search."""
+    if line.startswith("#"):
+        return 0 if line.startswith("# ") else 1
+    return 2 if _plain(line).lower().startswith(word) else 3
+
+
+def _plain(line: str) -> str:
+    """A line without marks."""
+    return " ".join(_MARKS.sub(" ", line).split())
 
 
 def title(name: str) -> str:

@@ -3,13 +3,18 @@
 import re
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from sound import PAIR
 
 from pitchpoint import cli
 from pitchpoint.errors import CollectedInputError, InputError
+from pitchpoint.runs import run
+from pitchpoint.runs.check import check
+from pitchpoint.runs.run import STRENGTH as RATED
 from pitchpoint.runs.run import load_case
 
 Run = Callable[..., tuple[int, str, list[str]]]
@@ -209,3 +214,51 @@ def test_names_are_found_however_they_are_spelled(tmp_path: Path) -> None:
     path.write_text(f'{PAIR}[models]\nfriction = ["xu_2007", "XU 2007"]\n')
     with pytest.raises(InputError, match="given twice"):
         load_case(str(path))
+
+
+VARIANTS = PAIR + '[variants.good]\n[variants.bad]\ngears = { module = "2 mmm" }\n'
+VARIANTS += '[variants.strong]\noperation = { torque = "60 kN m" }\n'
+
+
+def test_a_variant_that_is_wrong_has_its_name(told: Run) -> None:
+    status, _, err = told(VARIANTS)
+    assert (status, len(err)) == (2, 1)
+    assert err[0].startswith('error: bad.toml@bad: gears.module: "2 mmm" is not a length')
+
+
+def test_what_fails_of_a_variant_has_its_name(told: Run) -> None:
+    status, out, _ = told(VARIANTS.replace("2 mmm", "2.5 mm"))
+    assert status == 0 and "Fails: strong: the root stress of gear" in " ".join(out.split())
+    assert "bad:" not in out and "good:" not in out
+
+
+def test_a_variant_is_built_once(told: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    rated = []
+
+    def compute(*given: Any) -> Any:
+        rated.append(given)
+        return RATED.compute(*given)
+
+    monkeypatch.setattr(run, "STRENGTH", replace(RATED, compute=compute))
+    assert told(VARIANTS.replace("2 mmm", "2.5 mm"))[0] == 0
+    assert len(rated) == 3
+
+
+@pytest.mark.parametrize(
+    ("case", "sentence"),
+    [
+        ("", "no case was given; name a file or one of atanasiu2011"),
+        ("out/report.html", "out/report.html: is a page of a result, no case; give "),
+        ("out/default", "out/default: is a folder of a result, no case; give "),
+        ("out/default/cycle.nc", "cycle.nc: is a dataset of a result, no case; give "),
+        ("other", "other: is a folder, no case file; there are pair.toml in it"),
+        ("none.nc", "none.nc: there is no such case file"),
+    ],
+)
+def test_what_belongs_to_a_result_is_no_case(told: Run, case: str, sentence: str) -> None:
+    for name in ("out/run.json", "out/report.html", "out/default/cycle.nc", "other/pair.toml"):
+        Path(name).parent.mkdir(parents=True, exist_ok=True)
+        Path(name).touch()
+    with pytest.raises(InputError) as caught:
+        check(case)
+    assert sentence in str(caught.value)

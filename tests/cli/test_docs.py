@@ -17,7 +17,7 @@ import typer
 from documentation import PAGES, ROOT, block, blocks
 
 import pitchpoint
-from pitchpoint import cli
+from pitchpoint import cli, pages
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.analyses.engagement import check_heights
 from pitchpoint.analyses.registry import ANALYSES
@@ -405,10 +405,37 @@ def test_pages_can_be_read_without_the_site(
     for name in ("guide/sizing", "sizing.md", "Guide/Sizing"):
         assert printed(monkeypatch, capsys, name) == PAGES["guide/sizing.md"]
     assert printed(monkeypatch, capsys, "gallery/paper").startswith("# A published model")
-    assert "no page of the documentation; there are guide/wear and theory/wear" in printed(
-        monkeypatch, capsys, "wear"
-    )
     assert "did you mean guide/sizing" in printed(monkeypatch, capsys, "guide/sizin")
+
+
+@pytest.mark.parametrize(
+    ("words", "where"),
+    [
+        ("wear", ["guide/wear", "theory/wear", "reference/keys_wear"]),
+        ("Film Ratio", ["guide/python", "publications/xu2021"]),
+        ("backlash_limit", ["reference/keys_wear"]),
+        ("xu_2007", ["reference/models"]),
+        ("min_lambda_ratio", ["reference/variables"]),
+    ],
+)
+def test_words_are_searched(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    words: str,
+    where: list[str],
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    lines = printed(monkeypatch, capsys, *words.split()).splitlines()
+    assert 1 <= len(lines) <= pages.MOST and all(len(line) <= 80 for line in lines)
+    assert {*where} <= {line.split()[0] for line in lines}
+    found = json.loads(printed(monkeypatch, capsys, *words.split(), "--json"))
+    assert [one["page"] for one in found] == [line.split()[0] for line in lines]
+
+
+def test_what_is_nowhere_is_no_page(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "'zzzzq' is no page of the documentation" in printed(monkeypatch, capsys, "zzzzq")
 
 
 def test_a_page_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:

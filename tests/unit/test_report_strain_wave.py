@@ -26,7 +26,9 @@ from pitchpoint.views.explorer import Reader
 from pitchpoint.views.figures import Figure, Panel, curves
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import operating_point, period_of
+from pitchpoint.views.registry import in_order
 from pitchpoint.views.report import render
+from pitchpoint.views.section import key_figures
 from pitchpoint.views.sections.answer import teeth_rows
 from pitchpoint.views.sections.arc import arc_panel, wave_losses, wave_sentence
 from pitchpoint.views.sections.beside import drag_panel, starting_answer
@@ -388,6 +390,13 @@ def test_the_torsional_stiffness_says_what_yields(whole: Outcome, page: str) -> 
     ) in words(page)
     assert "Teeth and ring yield; shafts are not in it." in words(page)
     assert torsion_answer(whole).endswith("; shafts are not in it")
+
+
+def test_what_starts_a_drive_stands_before_its_kinematic_error(whole: Outcome) -> None:
+    names = [figure.name for figure in key_figures(in_order(), whole)]
+    assert (
+        names.index("Starting torque") < names.index("Kinematic error") < names.index("Film ratio")
+    )
 
 
 def test_what_a_user_typed_is_text(page: str) -> None:

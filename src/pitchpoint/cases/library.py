@@ -38,6 +38,24 @@ def path_of(case: str) -> Path:
     return Path(case)
 
 
+def _of_a_result(path: Path) -> str:
+    """What to give in the place of a folder, or of a file of a result; empty for what may be a case."""
+    if not path.is_dir() and not (path.suffix in _WRITTEN and path.is_file()):
+        return ""
+    folder = path if path.is_dir() else path.parent
+    kind = "a folder" if path.is_dir() else _WRITTEN[path.suffix]
+    for one in (folder, folder.absolute().parent):
+        if (one / "run.json").is_file():
+            whole = shorten(as_text(str(one)))
+            return f"is {kind} of a result, no case; give {whole}, which computes the same"
+    inside = ", ".join(shorten(one.name) for one in sorted(folder.glob("*.toml"))[:3])
+    return f"is {kind}, no case file{f'; there are {inside} in it' if path.is_dir() and inside else ''}"
+
+
+_WRITTEN = {".nc": "a dataset", ".html": "a page"}
+"""Files of a result, by their ending."""
+
+
 def _exists(path: Path) -> bool:
     try:
         return path.exists()
@@ -46,8 +64,16 @@ def _exists(path: Path) -> bool:
 
 
 def find(case: str) -> tuple[str, Tree]:
-    """Short name and tables of a case by its name or its file."""
+    """Short name and tables of a case by its name or its file.
+
+    Raises:
+        InputError: none is given; what is given belongs to a result, or is no case file.
+    """
+    if not case.strip():
+        raise InputError(f"no case was given; name a file or one of {', '.join(names())}")
     path = path_of(case)
+    if told := _of_a_result(path):
+        raise InputError(told, file=visible(as_text(case)))
     tree = read(path)
     return (case if case in names() else visible(as_text(path.name))), tree
 

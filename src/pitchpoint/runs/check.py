@@ -1,13 +1,14 @@
 """Checking a case: everything that is wrong with it, or what warns before it is computed."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pitchpoint.cases.document import variants
 from pitchpoint.cases.library import find
 from pitchpoint.cases.record import is_record, is_result
+from pitchpoint.doubts import Doubt, as_doubt, of_designs
 from pitchpoint.errors import CollectedInputError, InputError
-from pitchpoint.runs.run import describe, foretold
+from pitchpoint.runs.run import forewarned
 
 __all__ = ["check"]
 
@@ -16,6 +17,8 @@ def check(
     case: str, only: Sequence[str] = (), settings: Mapping[str, Any] | None = None
 ) -> list[str]:
     """What fails and what warns of a case before it is computed, the former first.
+
+    What is so of some variants alone has their names.
 
     Args:
         case: name of a shipped case, a file, or a result.
@@ -26,23 +29,35 @@ def check(
         InputError: what is wrong in any of the variants, each thing once; a `CollectedInputError` of
             several.
     """
-    failing: list[str] = []
-    warnings: list[str] = []
-    wrong: dict[str, InputError] = {}
-    for name in only or [*_variants(case)]:
+    told: dict[str, dict[Doubt, list[str]]] = {"implausible": {}, "warnings": {}}
+    wrong: dict[str, dict[str, InputError]] = {}
+    checked = only or [*_variants(case)]
+    for name in checked:
         try:
-            chosen = [name] if name else ()
-            told = describe(case, chosen, settings=settings)[0]
-            failing += told["implausible"] + foretold(case, chosen, settings=settings)
-            warnings += told["warnings"]
-        except CollectedInputError as error:
-            wrong.update((str(one), one) for one in error.errors)
+            for kind, sentences in forewarned(case, [name] if name else (), settings).items():
+                for text in map(as_doubt, sentences):
+                    told[kind].setdefault(text, []).append(name)
         except InputError as error:
-            wrong[str(error)] = error
+            for one in error.every:
+                wrong.setdefault(str(one), {})[name] = one
     if wrong:
-        every = list(wrong.values())
+        every = [*_located(wrong.values(), checked)]
         raise every[0] if len(every) == 1 else CollectedInputError(every)
-    return list(dict.fromkeys(failing + warnings))
+    return [
+        text if len(names) == len(checked) else of_designs(text, " and ".join(names))
+        for of_kind in told.values()
+        for text, names in of_kind.items()
+    ]
+
+
+def _located(
+    wrong: Iterable[Mapping[str, InputError]], checked: Sequence[str]
+) -> Iterator[InputError]:
+    """What is wrong, as `FILE@VARIANT` where only some variants of a file have it."""
+    for by_variant in wrong:
+        error = next(iter(by_variant.values()))
+        alone = error.file and len(by_variant) < len(checked)
+        yield error.at(file=f"{error.file}@{' and @'.join(by_variant)}") if alone else error
 
 
 def _variants(case: str) -> Iterator[str]:

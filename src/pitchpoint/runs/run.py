@@ -430,21 +430,28 @@ def describe(
 
 
 @double_precision()
-def foretold(
-    case: CaseLike, only: Sequence[str] = (), *, settings: Mapping[str, Any] | None = None
-) -> list[str]:
-    """What fails of a case by what costs little, the strength of its teeth; sound gears say nothing."""
-    built = [variant.built({}) for variant in held(case, only, settings)]
-    rated = [
-        (one, STRENGTH.compute(one, {}, _silent)) for one in built if not STRENGTH.why_not(one)
-    ]
-    return [
-        text
-        for one, part in rated
-        for text in apart([*doubts_of(part.attrs), *unlikely(one, {"strength": part})])[
-            "implausible"
-        ]
-    ]
+def forewarned(
+    case: CaseLike, only: Sequence[str] = (), settings: Mapping[str, Any] | None = None
+) -> dict[str, list[str]]:
+    """What fails of a case by what costs little, the strength of its teeth, and what warns of its design.
+
+    Raises:
+        InputError: anything wrong with the input that shows before the computation.
+    """
+    sentences: list[str] = []
+    for variant in held(case, only, settings):
+        _jobs(variant, {})  # made, not computed: a wrong study shows now
+        built = variant.built({})
+        sentences += [*_of_design(variant, built), *_too_weak(built)]
+    return apart(sentences)
+
+
+def _too_weak(built: Ready) -> list[str]:
+    """What the teeth do not bear; sound gears say nothing."""
+    if STRENGTH.why_not(built):
+        return []
+    part = STRENGTH.compute(built, {}, _silent)
+    return apart([*doubts_of(part.attrs), *unlikely(built, {"strength": part})])["implausible"]
 
 
 def _silent(done: int, doing: str = "") -> None:
