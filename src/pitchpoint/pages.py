@@ -76,7 +76,7 @@ def search(words: str) -> list[dict[str, str]]:
         if all(word in line.lower() for word in wanted)
     )
     many: Counter[str] = Counter()
-    kept = []
+    kept: list[dict[str, str]] = []
     for _, name, line in found:
         many[name] += 1
         if many[name] <= _OF_A_PAGE and len(kept) < MOST:

@@ -38,11 +38,12 @@ def check(
                 for text in map(as_doubt, sentences):
                     told[kind].setdefault(text, []).append(name)
         except InputError as error:
-            for one in error.every:
+            every = error.errors if isinstance(error, CollectedInputError) else (error,)
+            for one in every:
                 wrong.setdefault(str(one), {})[name] = one
     if wrong:
-        every = [*_located(wrong.values(), checked)]
-        raise every[0] if len(every) == 1 else CollectedInputError(every)
+        located = [*_located(wrong.values(), checked)]
+        raise located[0] if len(located) == 1 else CollectedInputError(located)
     return [
         text if len(names) == len(checked) else of_designs(text, " and ".join(names))
         for of_kind in told.values()
