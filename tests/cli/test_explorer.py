@@ -429,6 +429,29 @@ def test_stages_turn_together(chromium: Browser, tmp_path: Path) -> None:
 
 
 @in_browser
+@pytest.mark.whole
+def test_a_wave_turns_with_the_wheel_before_it(chromium: Browser, tmp_path: Path) -> None:
+    """The wheel of the spur pair and the wave generator are on one shaft."""
+    read = Reader()
+    over = [Sweep(key="operation.speed", start="1000 rpm", stop="1500 rpm", count=2.0)]
+    found = explore(str(EXAMPLES / "spur_and_strain_wave.toml"), over, read=read)
+    write_explorer(found, read.drawings, tmp_path / "drive.html")
+    chromium.open(tmp_path / "drive.html", 1280, prefers_reduced_motion="reduce")
+    chromium.wait(DRAWN)
+    wheel = "Number(document.querySelector('.moving:not([hidden]) .close .gear-2')"
+    wheel += ".getAttribute('transform').match(/rotate.([-0-9.]+)/)[1])"
+    wave = "(one => Math.atan2(one.getAttribute('x1'), -one.getAttribute('y1')) * 180 / Math.PI)"
+    wave += "(document.querySelector('.moving:not([hidden]) .whole .axis'))"
+    before = np.array(chromium.run(f"[{wheel}, {wave}]"))
+    phase = "(s => { s.value = 0.5; s.dispatchEvent(new Event('input')) })"
+    chromium.run(f"{phase}(document.getElementById('phase'))")
+    turned, waved = np.array(chromium.run(f"[{wheel}, {wave}]")) - before
+    assert abs(turned) > 1.0
+    assert waved == pytest.approx(turned, rel=1e-6)
+    assert chromium.console == []
+
+
+@in_browser
 def test_teeth_move_only_when_asked_and_change_with_the_design(driven: Browser) -> None:
     before = driven.run(GEAR)
     assert driven.run("document.getElementById('play').textContent") == "Play"

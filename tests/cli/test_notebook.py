@@ -12,6 +12,7 @@ import plotly.graph_objects as go
 import pytest
 import scipy.optimize
 import xarray as xr
+from xarray.plot.utils import label_from_attrs
 
 import pitchpoint as pp
 from pitchpoint._jax import jax, jnp
@@ -173,6 +174,17 @@ def test_every_figure_of_the_report_is_one_of_plotly(result: pp.Result) -> None:
         for name in dir(getattr(result.plot, section)):
             assert isinstance(getattr(getattr(result.plot, section), name)(), go.Figure)
     assert dir(result.plot.cycle) == ["against", "efficiency", "friction", "input_torque"]
+
+
+@pytest.mark.parametrize(("units", "unit"), [("si", "1"), ("shown", "%")])
+def test_axes_of_other_plotters_get_names_and_units(
+    result: pp.Result, units: str, unit: str
+) -> None:
+    """What xarray writes beside the axes of its plots by matplotlib."""
+    cycle = result.dataset("cycle", units=units)
+    assert label_from_attrs(cycle.efficiency) == f"instantaneous efficiency [{unit}]"
+    for name, variable in cycle.variables.items():
+        assert variable.dtype.kind in "OUT" or {"long_name", "units"} <= {*variable.attrs}, name
 
 
 def test_a_figure_stands_by_itself(result: pp.Result) -> None:

@@ -302,8 +302,8 @@ def _by_law(array: xr.DataArray, shared: Sequence[str]) -> Iterator[tuple[str, x
 
 
 def _extreme(data: xr.Dataset, array: xr.DataArray) -> xr.DataArray:
-    """Largest value over the mesh cycle, or the smallest one of a film, where pairs touch."""
-    touching = array.where(data["active"])
+    """Largest value over the mesh cycle, or the smallest one of a film, where pairs carry."""
+    touching = array.where(data["load"] > 0.0)
     return touching.max() if _EXTREMES[str(array.name)] == "" else touching.min()
 
 

@@ -208,7 +208,7 @@ def _rendered(found: Explored[Point], drawings: Sequence[Moving]) -> str:
         "drawing": [[] if one is None else one.drawing for one in found.seen],
         "acting": [[] if one is None else one.acting for one in found.seen],
         "pace": [[] if one is None else one.pace for one in found.seen],
-        "over": layout("", ""),
+        "over": layout("", "", xaxis=_LEVEL),
     }
     return (
         environment()
@@ -372,6 +372,10 @@ def _sentences(found: Explored[Point]) -> dict[str, Any]:
     return {"why": why, "told": told, "absent": absent, "sentences": [*known]}
 
 
+_LEVEL = {"automargin": False, "tickangle": 0}
+"""Labels that turned upright would change the margin, and with it whether they turn: plotly.js gives up."""
+
+
 def _drawn_courses(found: Explored[Point]) -> list[dict[str, Any]]:
     """Courses that have a finite value somewhere, phases once."""
     names = dict.fromkeys(name for one in found.seen if one is not None for name in one.courses)
@@ -389,7 +393,7 @@ def _drawn_courses(found: Explored[Point]) -> list[dict[str, Any]]:
                 known[key] = len(phases)
                 phases.append(one.x)
             points.append(None if one is None else [known[str(one.x)], one.y])
-        look = layout(first.abscissa, first.axis)
+        look = layout(first.abscissa, first.axis, xaxis=_LEVEL)
         drawn.append(
             {"name": name, "title": first.title, "phases": phases, "points": points, "layout": look}
         )

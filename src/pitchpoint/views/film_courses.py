@@ -329,9 +329,14 @@ def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
     yield figure
 
 
+_NO_SHARE = 1e-9
+"""Part of a load that is none: what a film many times the roughness leaves of the law of asperities."""
+
+
 def _asperities(name: str, data: xr.Dataset, axis: str) -> Figure:
     """Part of the load that asperities carry."""
     shares = data["asperity_share"].values
+    shares = np.where(shares < _NO_SHARE, 0.0, shares)
     key, most = (
         Key("all contacts", PALETTE[0]),
         Key("contact that carries most", PALETTE[1], "dash"),

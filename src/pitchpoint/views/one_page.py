@@ -143,7 +143,9 @@ def _main_figures(page: Page, shown: Iterable[Panel]) -> Iterator[Figure]:
         figure, panel = drawn[name]
         curves = panel.curves if len(panel.curves) > 1 else []
         keys = tuple(Key(curve.label, curve.colour, curve.dash) for curve in curves)
-        yield replace(figure, keys=figure.keys or keys)
+        label = panel.choices[panel.at].label if panel.choices else ""
+        chosen = f" · {label}" if any(variant in label for variant in page.outcomes) else ""
+        yield replace(figure, title=figure.title + chosen, keys=figure.keys or keys)
 
 
 def _assumed(manifest: Mapping[str, Any]) -> str:

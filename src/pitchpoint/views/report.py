@@ -231,6 +231,8 @@ def _marked(words: str) -> "markupsafe.Markup":
     """Words, escaped, with `code` set as code and units as printed."""
     from markupsafe import Markup, escape
 
+    if isinstance(words, Markup):
+        return words
     parts = [escape(part) for part in show.pretty(words).split("`")]
     if len(parts) % 2 == 0:
         return escape(show.pretty(words))

@@ -67,7 +67,7 @@ _MOST_OF = 0.6
 
 _NUMBER = re.compile(r"[−+-]?\d[\d.,]*(e[−+-]?\d+)?")
 
-_INDEXED = re.compile(r"(?<![\w`./])(Δ?[^\W\d_])_([^\W²³]{1,5})(?![^\W²³]|\()")
+_INDEXED = re.compile(r"(?<![\w`.])(?<!\w\w/)(?<!\./)(Δ?[^\W\d_])_([^\W²³]{1,5})(?![^\W²³]|\()")
 _LAST_UNIT = re.compile(r"(?<=\d) (um|urad|degC|degF|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
 
 

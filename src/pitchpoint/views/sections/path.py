@@ -107,6 +107,8 @@ def along(data: xr.Dataset, name: str, law: int, path: PathOfContact) -> Points:
     the base pitches since the pair entered, which is the same place for straight teeth.
     """
     values = values_of(data, name)[law]
+    if name in _UNDER_LOAD:
+        values = np.where(data["load"].values[law] > 0.0, values, np.nan)
     entered = data["phase"].values[:, None] + np.arange(float(data.sizes["pair"]))
     if values.ndim == 1:
         by_pair = np.broadcast_to(values[:, None], entered.shape)
@@ -122,6 +124,10 @@ def along(data: xr.Dataset, name: str, law: int, path: PathOfContact) -> Points:
     touches = data["active"].values[..., 0] & (entered >= -SHORT) & (entered <= end + SHORT)
     touches = touches.T.ravel()
     return gapped(entered.T.ravel()[touches], by_pair.T.ravel()[touches])
+
+
+_UNDER_LOAD = ("film_thickness", "lambda_ratio", "friction")
+"""What there is none of where flanks carry nothing."""
 
 
 def _at_middle(data: xr.Dataset, values: np.ndarray, place: np.ndarray) -> np.ndarray:

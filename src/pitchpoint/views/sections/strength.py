@@ -164,7 +164,8 @@ def _values(name: str, data: xr.Dataset) -> tuple[str, ...]:
 def _blocks_of(_: int, outcome: Outcome) -> Iterator[Block]:
     whole = outcome.parts["strength"]
     rows = strength_rows(outcome)
-    yield Table([*rows[0]], [[*row.values()] for row in rows])
+    whole_words = [[cell.replace(" ", "\u00a0") for cell in row.values()] for row in rows]
+    yield Table([*rows[0]], whole_words)
     for text in chain(*_doubts(whole).values()):
         yield Paragraph(text, "warning")
     for text in _caveats(whole):
