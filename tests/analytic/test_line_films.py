@@ -198,7 +198,8 @@ def test_load_gap_and_energy_are_balanced():
 @pytest.mark.whole
 def test_the_flow_of_oil_is_the_same_through_every_face():
     case = contact(0.5e9)
-    problem, at = problem_of(case), grid(129)
+    at = grid(129)
+    problem = problem_of(case, at)
     film = solve_lines(case).film
     pressure, gap = film.pressure / problem.flow.pressure, film.gap / problem.flow.height
     mass, conductance = problem.flow.mass_and_conductance(pressure, gap, at)
@@ -429,7 +430,8 @@ def test_oils_by_value_draw_as_oils_bear_unless_a_newtonian_one_is_asked_for():
 @pytest.mark.parametrize("texture", [None, Rough(rq=0.2e-6, modulus=MODULUS)])
 def test_the_matrix_is_that_of_differences(texture):
     """Balances of cells that are full: rows of the matrix times the scale of their defects."""
-    problem, at = problem_of(contact(0.6e9, texture=texture)), grid(33)
+    at = grid(33)
+    problem = problem_of(contact(0.6e9, texture=texture), at)
 
     def gain(given):
         pressure = jnp.zeros(33).at[1:-1].set(given[:-1])

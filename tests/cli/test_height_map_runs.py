@@ -238,8 +238,8 @@ def test_maps_that_do_not_fit_the_contact_are_told(
 
 
 @pytest.mark.whole
-def test_lines_without_ends_take_no_maps(folder: Path) -> None:
-    case = written(folder, table("both", "waves.csv"), "line.toml")
-    with pytest.raises(InputError, match="one profile all along") as caught:
-        load_case(case, settings={"film.solver": "line"})
-    assert caught.value.key == "film.heights"
+def test_lines_without_ends_take_no_profiles_across(folder: Path) -> None:
+    across = table("both", "waves.csv", 'direction = "across"\n')
+    with pytest.raises(InputError, match="profiles along the surface speeds") as caught:
+        load_case(written(folder, across, "line.toml"), settings={"film.solver": "line"})
+    assert caught.value.key == "film.heights.both.direction"

@@ -8,12 +8,16 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, Progress
-from pitchpoint.analyses.film_contacts import LEAST, Done, alike, film_model_of, states
+from pitchpoint.analyses.film_contacts import LEAST, Done, alike, asked, film_model_of, states
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.cases.build import Built, tooth_size
+from pitchpoint.cases.height_maps import height_maps
+from pitchpoint.cases.schema import FilmTable
+from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import UNSOLVED
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -143,9 +147,18 @@ def _films(
         oil=design.lubricant,
         temperature=float(built.operation.temperature),
         roughness_rq=float(design.roughness.composite_rq),
+        heights=_heights(asked(built)),
     )
     size = tooth_size(design.mesh)
-    return solve_lines(contacts, nodes=model.nodes, size=size, progress=done)
+    try:
+        return solve_lines(contacts, nodes=model.nodes, size=size, progress=done)
+    except InputError as error:
+        raise InputError(error.message, key=f"film.{error.key}") from None
+
+
+def _heights(table: FilmTable) -> tuple[HeightMap, ...]:
+    """Profiles of the surfaces of lines; those of patches are not of the lines beside them."""
+    return () if table.over_patch else height_maps(table)
 
 
 def values_of_lines(

@@ -932,6 +932,8 @@ class FilmTable(Table):
                 raise InputError(f"was given; {why}", key=key)
         if self.over_patch:
             _check_patch(self)
+        else:
+            _check_line(self)
         if self.squeezes and self.thermal not in (None, "isothermal"):
             told = f'"{self.thermal}" was given; films with squeeze are isothermal: leave it or time out'
             raise InputError(told, key="thermal")
@@ -993,7 +995,8 @@ _STEADY = (
     'films of this solver are steady; take solver = "finite_line" or "elliptic", or leave it out'
 )
 _EVEN = (
-    'lines of this solver have one profile all along; take solver = "finite_line", or leave it out'
+    '"across" was given; lines of this solver are the same all along, and take profiles along the surface '
+    'speeds; take solver = "finite_line", or leave it out'
 )
 _NOT_READ = 'films that are read by interferometry are those of solver = "elliptic"; leave it out'
 _ELLIPSE = "an ellipse ends by itself; leave it out"
@@ -1001,7 +1004,6 @@ _NOT_OF: Mapping[str, Mapping[str, str]] = {
     "line": {
         **{key: _NO_ENDS for key in ("cells", "ends", "end_profile", *_OF_ENDS)},
         **dict.fromkeys(("time", "moments"), _STEADY),
-        "heights": _EVEN,
         "refractive_index": _NOT_READ,
     },
     "finite_line": {"refractive_index": _NOT_READ},
@@ -1011,6 +1013,13 @@ _NOT_OF: Mapping[str, Mapping[str, str]] = {
 
 MOST_NODES = 257
 """Largest number of nodes along a patch, whose memory grows with their square times that of the cells."""
+
+
+def _check_line(table: FilmTable) -> None:
+    """InputError for profiles that lines without ends do not take."""
+    for name, one in table.heights or ():
+        if one is not None and one.direction == "across":
+            raise InputError(_EVEN, key=f"heights.{name}.direction")
 
 
 def _check_patch(table: FilmTable) -> None:

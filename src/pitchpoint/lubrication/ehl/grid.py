@@ -24,6 +24,7 @@ __all__ = [
     "line_kernel",
     "lowest",
     "prolongation",
+    "restricted",
 ]
 
 Ends = Literal["entrained", "squeezed"]
@@ -70,6 +71,11 @@ class Grid(eqx.Module):
     ahead: Bool[Arrays, " face"]
     kernel: Float[Arrays, "node node"]
     reached: Float[Arrays, "_ inner"]
+
+    @property
+    def edges(self) -> Float[Array, " edge"]:
+        """Of the cells, shape (node + 1,)."""
+        return self.x[0] + jnp.append(0.0, jnp.cumsum(self.widths))
 
     @property
     def middle(self) -> Int[Array, ""]:
@@ -157,6 +163,12 @@ def lowest(x: Arrays, values: Array, node: Array) -> tuple[Array, Array]:
     at = jnp.clip(0.5 * (x0 + x1 - first / level), x0, x2)
     value = h0 + (at - x0) * (first + bend * (at - x1))
     return jnp.where(bend > 0.0, at, x1), jnp.where(bend > 0.0, value, h1)
+
+
+def restricted(values: Float[Array, " node"]) -> Array:
+    """Means over the cells of the next coarser grid, each of which is one cell and half of both beside it."""
+    padded = jnp.pad(values, 1, mode="edge")
+    return (0.25 * (padded[:-2] + padded[2:]) + 0.5 * values)[::2]
 
 
 @lru_cache(maxsize=16)

@@ -94,8 +94,7 @@ def _strip(
     gap = problem.gap(pressure, level, at)
     asperities, room = flow.asperity_pressure(gap), flow.room(gap)
     length = contact.half_width / problem.yielding
-    edges = at.x[0] + jnp.append(0.0, jnp.cumsum(at.widths))
-    speeds, passes = _forward(contact), passing(at.x, edges)
+    speeds, passes = _forward(contact), passing(at.x, at.edges)
     spread = spread_of(_conduction(contact), speeds, length, room * flow.height, passes)
     none, sliding = jnp.zeros(()), contact.speed_b - contact.speed_a
     given = pressure - asperities, gap, room, asperities, none, sliding

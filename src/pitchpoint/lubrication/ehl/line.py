@@ -12,14 +12,15 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.hertz import line_half_width, line_pressure
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import Grid, lowest
+from pitchpoint.lubrication.ehl.grid import Grid, lowest, restricted
+from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth, Texture
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials._leaves import as_array
 from pitchpoint.materials.fluid import Fluid
 
-__all__ = ["SLOWEST", "LineContact", "Problem", "problem_of"]
+__all__ = ["SLOWEST", "LineContact", "Problem", "length_of", "problem_of"]
 
 SLOWEST: Final = 1e-9
 """Least unit of speed [m/s], for contacts that stand still."""
@@ -55,6 +56,8 @@ class LineContact(eqx.Module):
         inlet: distance from the middle of the contact at which oil begins to fill the gap [m]; a short one
             starves the contact.
         conduction: of heat, for the temperature of film and surfaces; None for isothermal films.
+        heights: profiles of the surfaces, maps that are the same all along the line and stay where they are,
+            with x from the middle of each contact towards positive speeds; the same for all contacts.
     """
 
     line_load: Float[Arrays, "..."]
@@ -67,6 +70,7 @@ class LineContact(eqx.Module):
     fluid: Fluid
     texture: Texture | None
     conduction: Conduction | None
+    heights: tuple[HeightMap, ...]
 
     def __init__(
         self,
@@ -81,12 +85,14 @@ class LineContact(eqx.Module):
         texture: Texture | None = None,
         inlet: ArrayLike = FLOODED,
         conduction: Conduction | None = None,
+        heights: tuple[HeightMap, ...] = (),
     ) -> None:
         self.line_load, self.radius = as_array(line_load), as_array(radius)
         self.modulus = as_array(modulus)
         self.speed_a, self.speed_b = as_array(speed_a), as_array(speed_b)
         self.approach, self.inlet = as_array(approach), as_array(inlet)
         self.fluid, self.texture, self.conduction = fluid, texture, conduction
+        self.heights = heights
 
     @property
     def entrainment(self) -> Float[Arrays, "..."]:
@@ -114,6 +120,8 @@ class Problem(eqx.Module):
         film: guess of it, for a start.
         speed: unit of speed [m/s].
         inlet: distance from the middle from which on there is oil.
+        lowered: by how much less heights make the gap in each cell of the finest grid, shape (node,); zero
+            for even surfaces.
     """
 
     flow: Flow
@@ -122,10 +130,14 @@ class Problem(eqx.Module):
     film: Float[Arrays, ""]
     speed: Float[Arrays, ""]
     inlet: Float[Arrays, ""]
+    lowered: Float[Arrays, "..."]
 
     def gap(self, pressure: Array, level: Array, at: Grid) -> Array:
         """Gap of the mean planes at every node, shape (node,)."""
-        return level + 0.5 * at.x**2 + self.yielding * (at.kernel @ pressure)
+        lowered = self.lowered
+        while lowered.shape > at.x.shape:
+            lowered = restricted(lowered)
+        return level + 0.5 * at.x**2 - lowered + self.yielding * (at.kernel @ pressure)
 
     def two_films(self, pressure: Array, level: Array, at: Grid) -> Array:
         """Gap that is open to the oil at the middle node, and the smallest one, shape (2,)."""
@@ -162,16 +174,18 @@ class Problem(eqx.Module):
         return found
 
 
-def problem_of(contact: LineContact) -> Problem:
-    """One contact in units of its own length, pressure and speed."""
+def problem_of(contact: LineContact, at: Grid) -> Problem:
+    """One contact in units of its own length, pressure and speed.
+
+    Args:
+        contact: one.
+        at: the finest grid on which it is solved.
+    """
     half_width, pressure = contact.half_width, contact.hertz_pressure
     speed = jnp.abs(contact.entrainment)
     unit = jnp.maximum(speed + jnp.abs(contact.approach) * contact.radius / half_width, SLOWEST)
     film = guess(contact)
-    # Thick films and rough surfaces carry on a length beyond that of the dry contact.
-    rough = 0.0 if contact.texture is None else contact.texture.rq
-    beyond = contact.radius * (INLETS * film + SUMMITS * rough) / half_width**2
-    ratio = jnp.sqrt(1.0 + beyond)
+    ratio = _longer(contact, film)
     length = half_width * ratio
     height = length**2 / contact.radius
     fluid = contact.fluid
@@ -186,8 +200,36 @@ def problem_of(contact: LineContact) -> Problem:
         jnp.zeros(()),
     )
     return Problem(
-        flow, 1.0 / ratio, 0.5 * jnp.pi / ratio, film / height, unit, contact.inlet / length
+        flow,
+        1.0 / ratio,
+        0.5 * jnp.pi / ratio,
+        film / height,
+        unit,
+        contact.inlet / length,
+        _lowered(contact, at, length) / height,
     )
+
+
+def _longer(contact: LineContact, film: Array) -> Array:
+    """Length over which a contact carries, over that of the dry one: thick films and asperities add to it."""
+    rough = 0.0 if contact.texture is None else contact.texture.rq
+    beyond = contact.radius * (INLETS * film + SUMMITS * rough) / contact.half_width**2
+    return jnp.sqrt(1.0 + beyond)
+
+
+def length_of(contact: LineContact) -> Float[Array, "*b"]:
+    """Unit of length of contacts [m]."""
+    return contact.half_width * _longer(contact, guess(contact))
+
+
+def _lowered(contact: LineContact, at: Grid, length: Array) -> Array:
+    """By how much less heights make the gap in each cell, shape (node,); zero without any [m]."""
+    if not contact.heights:
+        return jnp.zeros(())
+    # Grids follow the entrainment. Means between edges that fall are those between edges that rise.
+    turned = jnp.where(contact.entrainment < 0.0, -length, length)
+    beside = length * jnp.array([-1.0, 1.0])
+    return sum((one.over(turned * at.edges, beside)[0] for one in contact.heights), jnp.zeros(()))
 
 
 def guess(contact: LineContact) -> Array:

@@ -13,6 +13,7 @@ from pitchpoint.contact.asperities import ETA_BETA_SIGMA, SIGMA_OVER_BETA
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import FLOODED, LineContact
+from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH, THERMAL, USUAL_ASPERITIES
 from pitchpoint.lubrication.ehl.solve import NODES
 from pitchpoint.lubrication.ehl.texture import BOUNDARY_FRICTION, Rough
@@ -74,6 +75,7 @@ class FilmModel:
         temperature: ArrayLike,
         roughness_rq: ArrayLike,
         inlet: ArrayLike | None = None,
+        heights: tuple[HeightMap, ...] = (),
     ) -> LineContact:
         """Contacts `*b` to solve, of arrays that broadcast against each other.
 
@@ -88,6 +90,7 @@ class FilmModel:
             roughness_rq: composite Rq [m]; zero for smooth surfaces.
             inlet: distance from the middle of a contact at which oil begins [m]; that of the model by
                 default.
+            heights: profiles of the surfaces.
 
         Raises:
             InputError: there is no thermal effect of this name, or it lacks what `members` tells.
@@ -102,6 +105,7 @@ class FilmModel:
             texture=self.texture(roughness_rq, modulus),
             inlet=self.inlet if inlet is None else inlet,
             conduction=self.conduction(oil),
+            heights=heights,
         )
 
     def fluid(self, oil: Lubricant, temperature: ArrayLike) -> Fluid:

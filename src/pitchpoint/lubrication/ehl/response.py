@@ -17,7 +17,7 @@ from pitchpoint.lubrication.ehl.newton import residual, step
 __all__ = ["answer", "pushed", "pushed_rest", "stiffness_and_damping"]
 
 
-def pushed(contact: LineContact, problem: Problem) -> Problem:
+def pushed(contact: LineContact, problem: Problem, at: Grid) -> Problem:
     """Changes of a problem with the load of its contact, as a part of it, and with the approach [s/m].
 
     They are the last axis of every number. The film stays as warm as it is.
@@ -25,13 +25,14 @@ def pushed(contact: LineContact, problem: Problem) -> Problem:
     Args:
         contact: one.
         problem: the same in units of its own.
+        at: the grid.
     """
 
     def changed(more: Array) -> Problem:
         load, approach = contact.line_load * (1.0 + more[0]), contact.approach + more[1]
         given: Any = load, approach
         other = eqx.tree_at(lambda one: (one.line_load, one.approach), contact, given)
-        return warmed(problem_of(other), problem.flow.temperature_rise)
+        return warmed(problem_of(other, at), problem.flow.temperature_rise)
 
     found: Problem = jax.jacfwd(changed)(jnp.zeros(2))
     return found

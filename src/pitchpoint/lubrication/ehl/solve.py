@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final, TypeVar
 
@@ -33,6 +33,8 @@ from pitchpoint.lubrication.ehl.newton import (
     polished,
     residual,
 )
+from pitchpoint.lubrication.ehl.patch.heights import HeightMap
+from pitchpoint.lubrication.ehl.profiles import check_profiles
 from pitchpoint.lubrication.ehl.response import (
     answer,
     pushed,
@@ -127,12 +129,14 @@ def line_films(contact: LineContact, nodes: int = NODES, ends: Ends = "entrained
         every cell stays full of oil, or not, as it is.
     """
     grids = _ladder(nodes, ends)
-    shape = jnp.broadcast_shapes(*map(jnp.shape, jax.tree.leaves(contact)))
-    contact = jax.tree.map(lambda leaf: jnp.broadcast_to(leaf, shape), contact)
+    heights, even = contact.heights, replace(contact, heights=())
+    shape = jnp.broadcast_shapes(*map(jnp.shape, jax.tree.leaves(even)))
+    even = jax.tree.map(lambda leaf: jnp.broadcast_to(leaf, shape), even)
 
-    def one(single: LineContact) -> LineFilm:
+    def one(alone: LineContact) -> LineFilm:
+        single = replace(alone, heights=heights)
         problem, pressure, level, found = _followed(single, grids)
-        push = pushed(single, problem)
+        push = pushed(single, problem, grids[-1])
         given = problem, push, pressure, level
         response = stiffness_and_damping(single, *given, answer(*given, grids[-1]), grids[-1])
         film = line_film(single, problem, pressure, level, response, grids[-1])
@@ -140,12 +144,13 @@ def line_films(contact: LineContact, nodes: int = NODES, ends: Ends = "entrained
             found = found & ~_torn(film.gap / problem.flow.height, problem)
         return _withheld(film, found)
 
-    return one(contact) if contact.line_load.ndim == 0 else jax.lax.map(one, contact)
+    return one(even) if even.line_load.ndim == 0 else jax.lax.map(one, even)
 
 
 def _followed(contact: LineContact, grids: tuple[Grid, ...]) -> tuple[Problem, Array, Array, Array]:
     """A contact as warm as it is, its pressure and level with derivatives, and whether they were found."""
-    problem, at = problem_of(contact), grids[-1]
+    at = grids[-1]
+    problem = problem_of(contact, at)
     frozen, still = jax.lax.stop_gradient((problem, contact))
     state = from_coarse(frozen, grids)
     if contact.conduction is None:
@@ -180,10 +185,12 @@ def solve_lines(
 
     Raises:
         InputError: a radius, modulus, viscosity, roughness, conductivity or heat capacity that is not
-            positive, or nodes that no grid has.
+            positive, nodes that no grid has, or heights that are no profile of a line, or too fine for the
+            nodes.
     """
-    shape, flat = _flat(contact)
+    shape, flat = _flat(replace(contact, heights=()))
     check(flat)
+    check_profiles(contact, nodes)
     begin = None if start is None else _begin(start, flat.line_load.shape[0], nodes)
     closes = np.asarray(flat.approach) != 0.0
     # Each on the grid that it would have alone, and back in the order in which they came.
@@ -192,7 +199,7 @@ def solve_lines(
     done = 0
     for ends, which in zip(ENDS, groups, strict=True):
         some, given = _taken(flat, which), _taken(begin, which)
-        for portion in _portions(some, given, nodes, ends, profiles):
+        for portion in _portions(some, contact.heights, given, nodes, ends, profiles):
             portions.append(portion)
             done += portion[1].code.size
             if progress is not None:
@@ -242,6 +249,7 @@ def _flat(contact: LineContact) -> tuple[tuple[int, ...], LineContact]:
 
 def _portions(
     flat: LineContact,
+    heights: tuple[HeightMap, ...],
     begin: tuple[Any, Any] | None,
     nodes: int,
     ends: Ends,
@@ -255,7 +263,8 @@ def _portions(
         which = np.minimum(np.arange(first, first + PORTION), every - 1)
         part, given = _taken((flat, begin), which)
         wanted = np.arange(PORTION) < count
-        film, ended, domain = solve(part, wanted, given, _ladder(nodes, ends))
+        rough = replace(part, heights=heights)
+        film, ended, domain = solve(rough, wanted, given, _ladder(nodes, ends))
         film = film if profiles else _without_profiles(film)
         yield jax.tree.map(lambda leaf: np.asarray(leaf)[:count], (film, ended, domain))  # noqa: B023
 
@@ -266,8 +275,11 @@ def _portion(
     start: tuple[Float[Any, "b node"], Float[Any, " b"]] | None,
     grids: tuple[Grid, ...],
 ) -> tuple[LineFilm, Ended, Float[Array, "b 2"]]:
+    heights, even = contact.heights, replace(contact, heights=())
+
     def one(given: Any) -> tuple[LineFilm, Ended, Array]:
-        single, asked, begin = given
+        alone, asked, begin = given
+        single = replace(alone, heights=heights)
         code = _before(single)
         # Traced once, for its shape and for its numbers.
         solve = jax.jit(partial(_solved, grids=grids))
@@ -276,7 +288,7 @@ def _portion(
         ended: tuple[LineFilm, Ended, Array] = jax.lax.cond(asked & (code == Code.SOLVED), *ways)
         return ended
 
-    found: tuple[LineFilm, Ended, Array] = jax.lax.map(one, (contact, wanted, start))
+    found: tuple[LineFilm, Ended, Array] = jax.lax.map(one, (even, wanted, start))
     return found
 
 
@@ -302,7 +314,7 @@ def _solved(
 ) -> tuple[LineFilm, Ended, Array]:
     at = grids[-1]
     problem, state, turns = _iterated(contact, begin, grids)
-    push = pushed(contact, problem)
+    push = pushed(contact, problem, at)
     others = pushed_rest(problem, push, state.pressure, state.level, at)
     pressure, level, answers = polished(problem, state, at, others)
     response = stiffness_and_damping(contact, problem, push, pressure, level, answers, at)
@@ -338,7 +350,8 @@ def _iterated(
     contact: LineContact, begin: tuple[Array, Array] | None, grids: tuple[Grid, ...]
 ) -> tuple[Problem, State, Array | None]:
     """The contact as warm as it becomes, its solution, and the turns to its temperature."""
-    problem, at = problem_of(contact), grids[-1]
+    at = grids[-1]
+    problem = problem_of(contact, at)
     if begin is None:
         state = from_coarse(problem, grids)
     else:

@@ -22,7 +22,15 @@ from pitchpoint.lubrication.ehl.patch.layout import (
     without_oil,
 )
 
-__all__ = ["check_maps", "check_maps_on", "check_standing", "unseen"]
+__all__ = [
+    "SHOWN",
+    "check_cover",
+    "check_map",
+    "check_maps",
+    "check_maps_on",
+    "check_standing",
+    "unseen",
+]
 
 COARSEST: Final = 4
 """Steps of a map over the width of a contact, at least, along an axis on which heights change."""
@@ -37,24 +45,29 @@ SHOWN: Final = 0.85
 def check_maps(contact: PatchContact) -> None:
     """InputError for heights that no surface has, and for maps that cannot move as a whole."""
     for one in contact.heights:
-        for key, values in (("heights", one.heights), ("x", one.x), ("y", one.y)):
-            wrong = int(np.sum(~np.isfinite(np.asarray(values))))
-            if wrong:
-                what = "height" if key == "heights" else f"place {key}"
-                raise InputError(
-                    f"a height map with {wrong} {what}{'s' * (wrong > 1)} that are no finite number",
-                    key=key,
-                )
-        for key, places in (("x", one.x), ("y", one.y)):
-            if not np.all(np.diff(np.asarray(places)) > 0.0):
-                raise InputError(f"places {key} of a height map have to rise", key=key)
-        _check_period(one)
+        check_map(one)
         if one.member is not None and _uneven(_speed(contact, one.member)):
             raise InputError(
                 "a height map moves as a whole: the surface that takes it along needs one speed along the "
                 "contact line",
                 key="heights",
             )
+
+
+def check_map(one: HeightMap) -> None:
+    """InputError for a map with heights or places that no surface has."""
+    for key, values in (("heights", one.heights), ("x", one.x), ("y", one.y)):
+        wrong = int(np.sum(~np.isfinite(np.asarray(values))))
+        if wrong:
+            what = "height" if key == "heights" else f"place {key}"
+            raise InputError(
+                f"a height map with {wrong} {what}{'s' * (wrong > 1)} that are no finite number",
+                key=key,
+            )
+    for key, places in (("x", one.x), ("y", one.y)):
+        if not np.all(np.diff(np.asarray(places)) > 0.0):
+            raise InputError(f"places {key} of a height map have to rise", key=key)
+    _check_period(one)
 
 
 def _uneven(speed: NDArray[np.float64]) -> bool:
@@ -103,11 +116,19 @@ def check_maps_on(contact: PatchContact, layout: Layout, cells: int) -> None:
         return
     for one in contact.heights:
         for axis, places, ends in zip("xy", (one.x, one.y), extents(contact, layout), strict=True):
-            _check_cover(one, axis, np.asarray(places), ends)
+            check_cover(one, axis, np.asarray(places), ends)
     _check_reach(contact, layout, cells)
 
 
-def _check_cover(one: HeightMap, axis: str, places: NDArray[np.float64], ends: Ends) -> None:
+def check_cover(one: HeightMap, axis: str, places: NDArray[np.float64], ends: Ends) -> None:
+    """InputError for a map that leaves a part of a contact out, or that is coarse along an axis.
+
+    Args:
+        one: the map.
+        axis: x or y.
+        places: of the map along it [m].
+        ends: of the contact along it [m].
+    """
     low, high = ends
     if not one.periodic and (places[0] > low or places[-1] < high):
         raise InputError(
