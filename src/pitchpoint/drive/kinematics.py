@@ -154,11 +154,8 @@ def _check_ends(ends: Ends, bodies: Sequence[str]) -> None:
 
 def _matrix(links: Sequence[Link], bodies: Sequence[str]) -> Float[np.ndarray, "link body"]:
     """Factors of all relations, each with one as its largest."""
-    matrix: np.ndarray = np.array(
-        [[link.relation.get(body, 0.0) for body in bodies] for link in links]
-    )
-    largest: np.ndarray = np.max(np.abs(matrix), axis=1, keepdims=True)
-    return matrix / largest
+    rows = [[link.relation.get(body, 0.0) for body in bodies] for link in links]
+    return np.array([[factor / max(map(abs, row)) for factor in row] for row in rows])
 
 
 def _unsettled(
