@@ -122,6 +122,7 @@ def _of_solved(ends: Sequence[tuple[str, float]]) -> list[Doubt]:
             "friction laws",
             most / least,
             moves=GUESSED,
+            brief=f"Mean friction {least:.3g} by {low}, {most:.3g} by {high}.",
         )
     ]
 

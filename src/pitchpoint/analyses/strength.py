@@ -295,7 +295,7 @@ def _bounds(built: Built, found: Numbers) -> Iterator[Doubt]:
                 f"The root safety of gear {gear} is below {most / stress:.3g}: twice the tensile strength of "
                 f"{used.record.name}, {most / 1e6:.4g} MPa, breaks it at once, and what it endures when "
                 "it is warm and for many cycles is less.",
-                brief=f"The root safety of gear {gear} is below {most / stress:.3g}, by its strength once.",
+                brief=f"The root safety of gear {gear} is below {most / stress:.3g}.",
             )
 
 

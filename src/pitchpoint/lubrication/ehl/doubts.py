@@ -243,7 +243,8 @@ def extrapolated_pressure(pressure: float) -> str:
 def of_volume(fluid: Fluid) -> Iterator[Doubt]:
     """That viscosity or density under pressure rest on assumed constants."""
     if fluid.assumed is not None:
-        yield Doubt(fluid.assumed, "volume of the oil", moves=GUESSED)
+        brief = "the volume of this oil under pressure is assumed"
+        yield Doubt(fluid.assumed, "volume of the oil", moves=GUESSED, brief=brief)
 
 
 def _of_half_space(
