@@ -53,7 +53,7 @@ def begun(built: Built, cells: int = CELLS) -> tuple[Start, Cells]:
 def turn(built: Built, cells: int = CELLS, depth: np.ndarray | None = None) -> tuple[Turn, Cells]:
     """What a turn wears off flanks as new, or off worn ones."""
     start, grid = begun(built, cells)
-    gone = jnp.zeros((2, grid.count, grid.strips)) if depth is None else array(depth)
+    gone = jnp.zeros(grid.shape) if depth is None else array(depth)
     given = built.design, built.operation, built.models[0], WEAR
     return jax.device_get(one_turn(*given, grid, start, gone)), grid
 
@@ -162,6 +162,27 @@ def _sliding(built: Built, coefficient: jax.Array) -> jax.Array:
     return loss()
 
 
+@pytest.mark.parametrize("count", [CELLS // 2, CELLS])
+def test_the_deepest_places_are_the_ends_of_the_path_whatever_the_cells(count: int):
+    """Half of the load times sliding over rolling at A and E, from base and tip circles alone."""
+    found, cells = of_pair("equal", count)
+    built = pair("equal")
+    mesh, teeth = built.design.mesh, np.array([23.0, 61.0])
+    base, tips = np.asarray(mesh.base_radii), np.asarray(mesh.tip_radii)
+    far = np.sqrt(tips**2 - base**2)[::-1]
+    near = np.sqrt(float(mesh.centre_distance) ** 2 - base.sum() ** 2) - far
+    half = float(built.operation.load) / base[1] / float(mesh.face_width) / 2.0
+    # Gear 1 drives: a turn of it turns gear 2 by 23 of its 61 teeth.
+    turns = np.array([1.0, 23.0 / 61.0])
+    expected = K * half * turns * (far / near * teeth / teeth[::-1] - 1.0)
+    assert found.depth.max(axis=(1, 2)) == pytest.approx(expected, rel=1e-3)
+    assert np.all(found.depth[:, : cells.count].max(axis=(1, 2)) < 0.97 * expected)
+    halves = np.repeat(found.depth[:, :count:2] + found.depth[:, 1:count:2], 2, axis=1) / 2.0
+    merged = cells.merged(found.depth)
+    assert merged[:, :count] == pytest.approx(halves, rel=1e-12)
+    assert np.array_equal(merged[:, count:], found.depth[:, count:])
+
+
 def test_the_mean_depth_is_that_of_the_guideline_for_plastics():
     found, _ = of_pair("equal")
     built = pair("equal")
@@ -200,8 +221,9 @@ def test_nothing_wears_where_the_flanks_roll():
         place = roll**2 / (2.0 * float(mesh.base_radii[0]))
         edges = np.linspace(*np.asarray(cells.flank)[0], count + 1)
         at = int(np.searchsorted(edges, place)) - 1
-        least.append(found.depth[0, at - 1 : at + 2, 0].mean() / found.depth[0].max())
-        inner = found.depth[0, 2:-2, 0]
+        of_cells = found.depth[0, :count, 0]
+        least.append(of_cells[at - 1 : at + 2].mean() / of_cells.max())
+        inner = of_cells[2:-2]
         assert abs(int(np.argmin(inner)) + 2 - at) <= 1
     assert least[1] / least[0] == pytest.approx(0.5, abs=0.12)
     assert least[2] / least[1] == pytest.approx(0.5, abs=0.12)
@@ -217,7 +239,7 @@ def rate_of(built: Built, cells: int = CELLS) -> tuple[Any, tuple[int, int, int]
     def rate(depth: np.ndarray) -> Rate:
         return Rate.of(one_turn(*given, array(depth)))
 
-    return rate, (2, grid.count, grid.strips)
+    return rate, grid.shape
 
 
 @pytest.mark.whole
@@ -278,7 +300,7 @@ def at_depth(built: Built, wear: WearModel, depth: float) -> list[Reached]:
     def rate(depth: np.ndarray) -> Rate:
         return Rate.of(one_turn(*given, array(depth)))
 
-    states = [unworn(rate, (2, grid.count, grid.strips))]
+    states = [unworn(rate, grid.shape)]
     limit, first = Limit(1e12, depth=depth), states[0].rate.pressure
     while not states[-1].end:
         states.append(after(states[-1], rate, limit, start=first, tolerance=1e-5))
@@ -400,7 +422,7 @@ def test_films_tell_the_load_on_asperities(monkeypatch):
         return seen[-1][1]
 
     monkeypatch.setattr("pitchpoint.wear.history.asperity_share", told)
-    none = jnp.zeros((2, cells.count, cells.strips))
+    none = jnp.zeros(cells.shape)
     found = one_turn(*given, FILMS, cells, start, none)
     ((at, share),) = seen
     load = np.asarray(at.load)
@@ -432,7 +454,7 @@ def test_a_film_that_is_not_solved_is_never_a_result(monkeypatch):
     monkeypatch.setattr(film_share, "solve_lines", but_one)
     built = pair("equal")
     start, cells = begun(built)
-    none = jnp.zeros((2, cells.count, cells.strips))
+    none = jnp.zeros(cells.shape)
     given = built.design, built.operation, built.models[0], FILMS
     assert bool(one_turn(*given, cells, start, none).lost)
 

@@ -21,17 +21,21 @@ from pitchpoint.doubts import Doubt
 from pitchpoint.efficiency.quasi_static import contacts_at
 from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 from pitchpoint.wear.gradients import march_sensitivities
 from pitchpoint.wear.history import ROOM, Cells, Start, WearModel, as_new, one_turn
-from pitchpoint.wear.march import End, Limit, Rate, Reached, after
+from pitchpoint.wear.march import FIRST, End, Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
 from pitchpoint.wear.stages import run_in_end, severe_start
 from pitchpoint.wear.teeth import Tips, backlash_growth, half_teeth, tips_of
 
 __all__ = ["asked", "further", "joined", "wear_part"]
+
+TOLD = 0.03
+"""Error of the largest depth, over it, from which on a sentence tells it."""
 
 HOLDS = 0.2
 """Depth over the module up to which flanks wear along normals that stay where they are."""
@@ -67,10 +71,15 @@ def _course(built: Built) -> _Course:
     )
 
 
-def _rate(built: Built, depth: np.ndarray) -> Rate:
-    """What a turn does to flanks that have lost so much; those of a kept profile count as new."""
+def _rate(built: Built, depth: np.ndarray, *, coarser: bool = False) -> Rate:
+    """What a turn does to flanks that have lost so much; those of a kept profile count as new.
+
+    On a coarser grid each two cells are as deep as both on average.
+    """
     start, cells, model, _ = _course(built)
     seen = depth if asked(built).profile == "updated" else np.zeros_like(depth)
+    if coarser:
+        cells, seen = cells.coarser, cells.merged(seen)
     given = built.design, built.operation, built.models[0], model, cells, start
     return Rate.of(one_turn(*given, array(seen)))
 
@@ -80,7 +89,7 @@ def wear_part(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
     progress(0, "flanks as new")
     _check_tips(built)
     cells = _course(built).cells
-    return _piece(unworn(lambda depth: _rate(built, depth), (2, cells.count, cells.strips)), None)
+    return _piece(unworn(lambda depth: _rate(built, depth), cells.shape), None)
 
 
 def _check_tips(built: Built) -> None:
@@ -110,7 +119,8 @@ def _limit(built: Built) -> Limit:
     if (most := table.backlash_limit) is not None:
         teeth.append(("backlash", lambda depth: _play(built, depth) - most))
     limit = limit_of(table, _deepest(built))
-    return replace(limit, hardness=_hardness(built), teeth=tuple(teeth))
+    rows = _course(built).cells.deepest
+    return replace(limit, deepest=rows, hardness=_hardness(built), teeth=tuple(teeth))
 
 
 def _hardness(built: Built) -> float:
@@ -148,6 +158,7 @@ def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | 
         limit,
         start=float(last.attrs["first_pressure"]),
         tolerance=asked(built).tolerance,
+        coarser=lambda depth: _rate(built, depth, coarser=True),
     )
     return _piece(reached, float(last.attrs["first_pressure"]))
 
@@ -203,16 +214,21 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     course, end = _course(built), str(parts[-1].attrs["end"])
     if end == "lost" and len(parts) > 1:
         parts = parts[:-1]  # the state before, from which no step was found
-    deepest_of_all = float(parts[-1]["worn_depth"].max())
-    if end == "depth" and deepest_of_all >= (1.0 - 1e-9) * _deepest(built):
-        end = "module"
     names = [str(name) for name in parts[0].data_vars if name != "next_step"]
     values = {name: np.concatenate([part[name].values for part in parts]) for name in names}
     flank, across = (np.asarray(one) for one in course.cells.middles)
     dims = {name: tuple(map(str, parts[0][name].dims)) for name in names}
-    deepest = values["worn_depth"].max(axis=(2, 3))
-    fastest = values["depth_per_turn"].max(axis=(2, 3))
-    volumes = [np.asarray(course.cells.volumes(array(one))) for one in values["worn_depth"]]
+    depth, per_turn = values["worn_depth"], values["depth_per_turn"]
+    rows = course.cells.deepest
+    deepest, fastest = (one[:, :, rows].max(axis=(2, 3)) for one in (depth, per_turn))
+    if end == "depth" and deepest[-1].max() >= (1.0 - 1e-9) * _deepest(built):
+        end = "module"
+    merged = np.stack([course.cells.merged(one) for one in depth])
+    values["wear_error"] += np.abs(deepest - merged[:, :, rows].max(axis=(2, 3)))
+    volumes = [np.asarray(course.cells.volumes(array(one))) for one in depth]
+    sensitivities = _sensitivities(built, values)
+    inner = course.cells.count
+    values |= {"worn_depth": depth[:, :, :inner], "depth_per_turn": per_turn[:, :, :inner]}
     added = {
         "deepest_wear": (("step", "member"), deepest),
         "fastest_wear": (("step", "member"), fastest),
@@ -223,6 +239,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         "flank_ends": (("member", "side"), np.asarray(course.cells.flank)),
         "across_ends": (("side",), np.asarray(course.cells.across)),
         "contact_span": (("axis",), np.asarray(course.cells.span)),
+        **_where(built, depth),
     }
     figures = _figures(built, values, deepest, fastest)
     codes = np.full(len(parts), int(Code.SOLVED))
@@ -232,7 +249,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         {
             **{name: (dims[name], one) for name, one in values.items()},
             **added,
-            **_of_teeth(built, values["worn_depth"]),
+            **_of_teeth(built, depth),
             **{name: ((), one) for name, one in figures.items()},
         },
         {},
@@ -246,10 +263,60 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         members=_bodies(built),
         driver=built.driver,
         tolerance=asked(built).tolerance,
-        sensitivities=_sensitivities(built, values),
+        sensitivities=sensitivities,
         warnings=_warnings(built, values, deepest, end),
         solve=told_of(codes, values["wear_error"].max(axis=1), np.arange(codes.size)),
     )
+
+
+def _where(built: Built, depth: np.ndarray) -> dict[str, Any]:
+    """Where each member is deepest in each step, and the largest depths along flanks with places."""
+    start, cells = _course(built).start, _course(built).cells
+    middles = np.asarray(cells.middles[0])
+    flank = np.broadcast_to(middles[..., None], (2, cells.count, cells.strips))
+    if start.places is not None:
+        flank = np.asarray(start.places)
+    depth = depth[:, :, cells.deepest]
+    most = depth.reshape(len(depth), 2, -1).argmax(axis=2)
+    deepest = flank.reshape(2, -1)[np.arange(2), most]
+    radii = _radii(built, deepest.T).T
+    turns = not np.isnan(radii).all()
+    found = {
+        "deepest_radius" if turns else "deepest_place": (
+            ("step", "member"),
+            np.where(depth.any(axis=(2, 3)), radii if turns else deepest, np.nan),
+        )
+    }
+    if start.places is None:
+        return found
+    if cells.strips > 1:
+        return found | _largest_in_cells(built, flank, depth)
+    order = np.argsort(flank[..., 0], axis=1)[:, : int(np.isfinite(flank[0]).sum())]
+    return found | {
+        "profile_radius": (
+            ("member", "place"),
+            _radii(built, np.take_along_axis(flank[..., 0], order, axis=1)),
+        ),
+        "profile_depth": (
+            ("step", "member", "place"),
+            np.take_along_axis(depth[..., 0], order[None], axis=2),
+        ),
+    }
+
+
+def _largest_in_cells(built: Built, flank: np.ndarray, depth: np.ndarray) -> dict[str, Any]:
+    """The largest depth of places across the face, by the cell along the flank in which they lie."""
+    cells = _course(built).cells
+    ends, middles = np.asarray(cells.flank)[..., None, None], np.asarray(cells.middles[0])
+    part = np.nan_to_num((flank - ends[:, 0]) / (ends[:, 1] - ends[:, 0]))
+    cell = np.clip((cells.count * part).astype(int), 0, cells.count - 1)
+    largest = np.zeros((len(depth), 2, cells.count))
+    for step, member in np.ndindex(len(depth), 2):
+        np.maximum.at(largest[step, member], cell[member], depth[step, member])
+    return {
+        "profile_radius": (("member", "place"), _radii(built, middles)),
+        "profile_depth": (("step", "member", "place"), largest),
+    }
 
 
 def _of_teeth(built: Built, depth: np.ndarray) -> dict[str, Any]:
@@ -319,6 +386,19 @@ def _warnings(
     built: Built, values: Mapping[str, np.ndarray], deepest: np.ndarray, end: str
 ) -> list[str]:
     told = told_of_wear(built.case, _course(built).model)
+    error = float(np.max(values["wear_error"][-1] / np.maximum(deepest[-1].max(), FIRST)))
+    if error > TOLD:
+        told.append(
+            Doubt(
+                f"Wear: the largest depth may be {100.0 * error:.2g} % off by the grid on the flanks and the "
+                f"steps of the march; more wear.cells (of {int(asked(built).cells)}) and wear.phases (of "
+                f"{int(asked(built).phases)}), and a smaller wear.tolerance, tell.",
+                "wear grid",
+                error,
+                moves=error,
+                about=("deepest_wear", "final_depth", "final_cycles", "life_hours"),
+            )
+        )
     if end == "lost":
         told.append(
             Doubt(
@@ -420,21 +500,24 @@ def _deepest(built: Built) -> float:
 
 
 def _radii(built: Built, flank: np.ndarray) -> np.ndarray:
-    """Radius of each place of a flank about the axis of its member; not a number where it travels."""
+    """Radius of places of each flank about the axis of its member; not a number where it travels."""
     mesh = built.design.mesh
     contacts: Contacts = contacts_at(mesh, _course(built).start.phase)
     found = np.full(flank.shape, np.nan)
     for body in mesh.coordinates:
         if body.member is not None and body.turns:
-            found[body.member] = _radius(body, contacts, flank[body.member])
+            found[body.member] = _radius(mesh, body, contacts, flank[body.member])
     return found
 
 
-def _radius(body: Coordinate, contacts: Contacts, flank: np.ndarray) -> np.ndarray:
+def _radius(mesh: Mesh, body: Coordinate, contacts: Contacts, flank: np.ndarray) -> np.ndarray:
     active = np.asarray(contacts.active)
     point = np.asarray(contacts.point)[:, active]
     centre, axis = np.asarray(body.place), np.asarray(body.axis)
     away = np.linalg.norm(np.cross((point - centre[:, None]).T, axis), axis=1)
     along = np.broadcast_to(contacts.flank[body.member], active.shape)[active]
+    if mesh.along_action:  # of an involute the square of the radius grows with the arc length
+        straight = np.polynomial.Polynomial.fit(along, away**2, 1)
+        return np.asarray(np.sqrt(straight(flank)))
     order = np.argsort(along)
     return np.asarray(np.interp(flank, along[order], away[order]))

@@ -263,7 +263,11 @@ VARIABLES: dict[str, Variable] = {
         "largest depth that a turn wears off", "dh/dN max", "m", "nm", "length"
     ),
     "worn_volume": Variable("volume worn off a flank", "V", "m3", "mm3", "volume"),
-    "wear_error": deviation("error of the depth by the steps of the march", "Δh"),
+    "deepest_place": length("arc length where the flank is deepest", "s"),
+    "deepest_radius": length("radius where the flank is deepest", "r"),
+    "profile_depth": deviation("depth of wear, by contacts and up to the ends of the path", "h"),
+    "profile_radius": length("radius of the place on the flank", "r"),
+    "wear_error": deviation("error of the largest depth by steps and grid", "Δh"),
     "wear_pressure": pressure("largest pressure of the mesh cycle", "p_H max"),
     "worn_tip_land": length("thickness of the teeth at their tips, normal section", "s_an"),
     "backlash_growth": deviation(

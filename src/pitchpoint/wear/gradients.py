@@ -169,14 +169,17 @@ def march_sensitivities(
         three = rate(at + 0.75 * step * two[0], moved + 0.75 * step * two[1])
         moved = moved + step * (2.0 * one + 3.0 * two[1] + 4.0 * three[1]) / 9.0
         here, slope = rate(after, moved)
-    if not float(first[0].max()) > 0.0:
+    rows = cells.deepest
+    new, new_slope = first[0][:, rows], first[1][:, :, rows]
+    last, here, moved = depth[-1][:, rows], here[:, rows], moved[:, :, rows]
+    if not float(new.max()) > 0.0:
         return {}
-    start = np.unravel_index(int(np.argmax(first[0])), first[0].shape)
-    place = np.unravel_index(int(np.argmax(depth[-1])), depth[-1].shape)
-    deepest, fast = float(depth[-1][place]), float(here[place])
+    start = np.unravel_index(int(np.argmax(new)), new.shape)
+    place = np.unravel_index(int(np.argmax(last)), last.shape)
+    deepest, fast = float(last[place]), float(here[place])
     return {
         name: Sensitivity(
-            rate=float(first[1][k][start] / first[0][start]),
+            rate=float(new_slope[k][start] / new[start]),
             depth=float(moved[k][place]) / deepest if deepest > 0.0 else np.nan,
             life=-float(moved[k][place]) / (turns[-1] * fast) if fast > 0.0 else np.nan,
         )

@@ -61,14 +61,25 @@ ROOM = 2.5
 
 _SHORT = 1e-3  # of a cell: shorter ways count as that long
 
+_SLICED = 6  # slices of a line from which on half of them show how its load falls to an end
+
+# Of the three midpoints beside an end, in what a parabola and a straight line have there.
+_PARABOLA, _STRAIGHT = (15.0 / 8.0, -10.0 / 8.0, 3.0 / 8.0), (1.5, -0.5, 0.0)
+
 Two = Float[Array, "2"]
 Each = Float[Arrays, "*#b"]
 Lanes = Float[Arrays, "pair slice *#b"]
-Depths = Float[Array, "2 cell strip"]
+Depths = Float[Array, "2 cell strip"]  # of the cells, and behind them of places
 
 
 class Cells(eqx.Module):
-    """Even grids on the flanks of both members.
+    """Even grids on the flanks of both members, and places on them.
+
+    The mean over a cell says little of a depth that is largest at its edge, as at the ends of the path of
+    contact. Where each place of a flank is passed once in an engagement, depths are held at places too:
+    first under all contacts, whose gaps they open, then where pairs of teeth are at both ends of each
+    stretch between events, on lines of several slices at the ends of the line in place of its outer slices.
+    Curvatures and volumes are those of the cells.
 
     Attributes:
         flank: arc lengths at which they begin and end, of each member [m].
@@ -76,6 +87,8 @@ class Cells(eqx.Module):
         span: mean half-widths of the contacts along the flank and across it, with flanks as new [m].
         count: along the flank; static.
         strips: across the face; static.
+        places: of each strip; static, none where contacts may pass a place more than once.
+        nearest: weights of the three contacts beside an end, in what is at this end.
     """
 
     flank: Float[Array, "2 2"]
@@ -83,6 +96,33 @@ class Cells(eqx.Module):
     span: Two
     count: int = eqx.field(static=True)
     strips: int = eqx.field(static=True)
+    places: int = eqx.field(static=True, default=0)
+    nearest: Float[Array, "3"] | None = None
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Shape of depths: those of the cells, and behind them those of the places."""
+        return 2, self.count + self.places, self.strips
+
+    @property
+    def deepest(self) -> slice:
+        """Depths among which the largest is: places, where there are any.
+
+        Strips of cells lie fixed while slices of contact lines move over them, which heaps in some of them
+        what is worn beside them.
+        """
+        return slice(self.count if self.places else 0, None)
+
+    @property
+    def coarser(self) -> Self:
+        """The same with places by straight lines, for an estimate of their error."""
+        return self if self.nearest is None else replace(self, nearest=array(_STRAIGHT))
+
+    def merged(self, depth: Float[np.ndarray, "2 cell strip"]) -> Float[np.ndarray, "2 cell strip"]:
+        """Depths with each two neighbouring cells as deep as both on average."""
+        halves = self.count - self.count % 2
+        mean = (depth[:, :halves:2] + depth[:, 1:halves:2]) / 2.0
+        return np.concatenate([np.repeat(mean, 2, axis=1), depth[:, halves:]], axis=1)
 
     @property
     def lengths(self) -> Two:
@@ -106,11 +146,13 @@ class Cells(eqx.Module):
 
     def volumes(self, depth: Depths) -> Two:
         """Volume that is gone from a flank of each member [m3]."""
-        return jnp.sum(depth, axis=(1, 2)) * self.lengths * self.width
+        return jnp.sum(depth[:, : self.count], axis=(1, 2)) * self.lengths * self.width
 
     def surfaces(self, depth: Depths) -> tuple[Worn, Worn]:
         """Both members' flanks with so much gone."""
-        first, second = (Worn(depth[k], self.flank[k], self.across, self.span) for k in range(2))
+        first, second = (
+            Worn(depth[k, : self.count], self.flank[k], self.across, self.span) for k in range(2)
+        )
         return first, second
 
 
@@ -202,7 +244,7 @@ class Turn(eqx.Module):
     """What one turn of the driver does to a flank of each member.
 
     Attributes:
-        depth: worn off every cell [m].
+        depth: worn off every cell and place [m].
         volume: worn off a flank of each member, from force and sliding alone [m3].
         pressure: largest one [Pa].
         conforming: True where a loaded contact is flatter than it is taken for.
@@ -247,6 +289,9 @@ class Start(eqx.Module):
         spots: where they lie on both members.
         body: compliance of what is under the teeth; None where it does not couple them.
         teeth: where the contacts lie on them; None where the sharing of the load does not ask how they yield.
+        parts: phases in each stretch between events; static.
+        places: arc lengths of the places on both flanks, see `Cells`, not a number where nothing touches [m];
+            None where there are none.
         felt: worn flanks at these spots, for many states of them; None where each is looked at anew.
     """
 
@@ -256,6 +301,8 @@ class Start(eqx.Module):
     spots: tuple[Spot, Spot]
     body: Coupling | None
     teeth: TeethAt | None
+    parts: int = eqx.field(static=True)
+    places: Depths | None = None
     felt: tuple[WornAt, WornAt] | None = None
 
     @classmethod
@@ -274,7 +321,11 @@ class Start(eqx.Module):
             given = mesh.sections, design.solids, models.compliance
             teeth = teeth_at(contacts, *given)
             body = mesh.body_compliance(contacts, design.solids) if mesh.couples else None
-        return cls(phase, weight, contacts, mesh.spots(contacts, phase), body, teeth)
+        spots, places = mesh.spots(contacts, phase), None
+        if mesh.along_action:
+            flank = jnp.where(contacts.active, contacts.flank, jnp.nan)
+            places = _at_places(flank, jnp.array(_PARABOLA), parts)
+        return cls(phase, weight, contacts, spots, body, teeth, parts, places)
 
     def on(self, cells: Cells) -> Self:
         """The same for many states of flanks, where the wear is the same across the face.
@@ -298,7 +349,8 @@ class Start(eqx.Module):
         if self.felt is None:
             first, second = cells.surfaces(depth)
             return (first,), (second,)
-        return (self.felt[0].at(depth[0, :, 0]),), (self.felt[1].at(depth[1, :, 0]),)
+        one, other = (felt.at(depth[k, : cells.count, 0]) for k, felt in enumerate(self.felt))
+        return (one,), (other,)
 
     def engaged(self, share: Lanes, contacts: Contacts | None = None) -> Engagement:
         """Contacts over the period, as new or as they are worn, and what they carry.
@@ -308,7 +360,7 @@ class Start(eqx.Module):
             contacts: as they are worn.
         """
         felt = self.contacts if contacts is None else contacts
-        return Engagement(self.phase, self.weight, felt, share, None, 1)
+        return Engagement(self.phase, self.weight, felt, share, None, self.parts)
 
 
 def as_new(
@@ -329,7 +381,10 @@ def as_new(
     start = _begun(design, models.without_friction, parts)
     share = shares_at(design, start.contacts, operation.load, models, start.body)
     at, ways = travelled(design, operation, models.without_friction, start.engaged(share))
-    return start, cells_on(at, ways, count)
+    cells = cells_on(at, ways, count)
+    if start.places is None:
+        return start, cells
+    return start, replace(cells, places=start.places.shape[1], nearest=array(_PARABOLA))
 
 
 @program
@@ -449,7 +504,8 @@ def one_turn(
     contacts, flat = worn_contacts(cells, start, depth)
     worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
     share = shares_at(worn, contacts, operation.load, models, start.body)
-    known = start.engaged(share, contacts if contacts.shape == "ellipse" else None).loaded()
+    known = start.engaged(share, contacts if contacts.shape == "ellipse" else None)
+    known = known.loaded() if design.mesh.couples else known
     known, wide = felt_over_width(design, operation, models, cells, known, depth)
     if wear.films is not None:
         at, _ = travelled(design, operation, models, known)
@@ -497,7 +553,11 @@ def worn_contacts(
         start: with flanks as new.
         depth: worn off so far [m].
     """
-    return with_worn(start.contacts, start.worn(cells, depth), start.spots)
+    contacts, flat = with_worn(start.contacts, start.worn(cells, depth), start.spots)
+    if cells.places:
+        gone = _under(contacts, depth[:, cells.count :])
+        contacts = replace(contacts, gap=start.contacts.gap + gone)
+    return contacts, flat
 
 
 @program
@@ -562,6 +622,16 @@ def wear_of(
     gone = jnp.stack([turns[k] * rate * slid for k, rate in enumerate(rates)])
     along = jnp.stack([_spread(at, way, known.weight) for way in ways])
     depths = _laid(cells, at, along, gone)
+    if cells.nearest is not None:
+        # In a period, all that wears a flank at a contact is its force times sliding over the way there.
+        rubbed = jnp.stack([turns[k] * rate for k, rate in enumerate(rates)]) * jnp.where(
+            carries, at.line_load, 0.0
+        )
+        slid_over = as_array(at.sliding) * mesh.period / at.speed
+        passed, held = ways / known.weight, along - ways
+        values = jnp.stack([rubbed, slid_over + jnp.zeros_like(rubbed), passed, held])
+        places = _of_places(_at_places(values, cells.nearest, known.nodes))
+        depths = jnp.concatenate([depths, places], axis=1)
     return Turn(
         depth=depths,
         volume=jnp.sum(gone, axis=(1, 2, 3)),
@@ -636,6 +706,38 @@ def _laid(
     # By a loop over the members: fused with what made them, ways would be computed again for every cell.
     found: Depths = jax.lax.map(of, (cells.flank, cells.lengths, flank, ways, gone))
     return found
+
+
+def _at_places(
+    values: Float[Array, "*b pair slice node"], nearest: Float[Array, "3"], parts: int
+) -> Float[Array, "*b place slice"]:
+    """Values of contacts, and behind them those at the ends of stretches, each slice a strip; see `Cells`."""
+    apart = values.reshape(*values.shape[:-1], -1, parts)
+    ends = jnp.stack([apart[..., :3] @ nearest, apart[..., :-4:-1] @ nearest], axis=-1)
+    if ends.shape[-3] >= _SLICED:
+        first, last = (
+            jnp.einsum("k,...kse->...se", nearest, side)
+            for side in (ends[..., :3, :, :], ends[..., :-4:-1, :, :])
+        )
+        ends = ends.at[..., 0, :, :].set(first).at[..., -1, :, :].set(last)
+    rows = [jnp.moveaxis(one, -2, -1) for one in (values, ends.reshape(*ends.shape[:-2], -1))]
+    return jnp.concatenate(
+        [one.reshape(*one.shape[:-3], -1, one.shape[-1]) for one in rows], axis=-2
+    )
+
+
+def _of_places(values: Float[Array, "4 2 place strip"]) -> Depths:
+    """Depth per turn from line load times rate, sliding, and the way past a place or over what is covered."""
+    rubbed, slid, passed, held = jnp.maximum(values, 0.0)
+    way = passed + held
+    return jnp.asarray(rubbed * slid / jnp.where(way > 0.0, way, 1.0))
+
+
+def _under(contacts: Contacts, places: Float[Array, "2 place strip"]) -> Lanes:
+    """What is gone from both flanks under each contact [m]."""
+    pairs, slices, nodes = contacts.active.shape
+    gone = jnp.sum(places[:, : pairs * nodes], axis=0).reshape(pairs, nodes, slices)
+    return jnp.asarray(jnp.moveaxis(gone, 1, 2))
 
 
 def _reaches(

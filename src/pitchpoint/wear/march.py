@@ -1,7 +1,7 @@
 """The march of wear over the life of a drive: steps as long as their error allows, whatever the cycles."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf
 from typing import Literal, Self
 
@@ -37,7 +37,7 @@ class Rate:
     """What a turn does to flanks in a state.
 
     Attributes:
-        depth: worn off every cell by a turn [member, cell, strip] [m].
+        depth: worn off every cell and place by a turn [member, cell, strip] [m].
         pressure: largest one [Pa].
         conforming: True where flanks were flatter than contacts are taken for.
         outgrown: True where contacts reach beyond the cells across the face.
@@ -72,6 +72,7 @@ class Limit:
         pressure: largest one over that with flanks as new.
         hardness: of the softer flank, which no pressure exceeds: beyond it surfaces yield [Pa].
         teeth: measures of the depth that stay below zero, each with the end that it makes.
+        deepest: depths among which the largest is, see `Cells`.
     """
 
     turns: float
@@ -79,6 +80,7 @@ class Limit:
     pressure: float = inf
     hardness: float = inf
     teeth: tuple[tuple[End, Callable[[Values], float]], ...] = ()
+    deepest: slice = field(default_factory=lambda: slice(None))
 
 
 @dataclass(frozen=True)
@@ -87,9 +89,9 @@ class Reached:
 
     Attributes:
         turns: of the driver, so far.
-        depth: worn off every cell [member, cell, strip] [m].
+        depth: worn off every cell and place [member, cell, strip] [m].
         rate: what a turn does there.
-        error: of the depth, of each member: what every step may be wrong by, added up [m].
+        error: of the depth, of each member: what steps and grid may be wrong by in every step, added up [m].
         step: turns of the next step, as its error is expected to allow.
         end: what ended the march; empty as long as it goes on.
     """
@@ -130,6 +132,7 @@ def after(
     *,
     start: float,
     tolerance: float,
+    coarser: Callable[[Values], Rate] | None = None,
 ) -> Reached:
     """Flanks one step later, at a limit at the most.
 
@@ -141,6 +144,7 @@ def after(
         limit: where the march ends.
         start: largest pressure with flanks as new [Pa].
         tolerance: error of a step, over the largest depth.
+        coarser: the rate on a coarser grid, for an estimate of what the grid does; none on grids of tests.
 
     Source: Bogacki and Shampine (1989), by SciPy.
     """
@@ -173,6 +177,11 @@ def after(
         depth = march.y if turns == march.t else march.dense_output()(turns)
         depth = np.maximum(depth, before.depth.ravel())  # a polynomial between two states may fall
         found = seen_at(depth)
+        apart = (
+            np.zeros(2)
+            if coarser is None
+            else _of_grid(depth.reshape(shape), limit.deepest, found, coarser)
+        )
     except _LostError:
         return replace(before, end="lost")
     depth = depth.reshape(shape)
@@ -183,10 +192,19 @@ def after(
         turns=turns,
         depth=depth,
         rate=found,
-        error=before.error + np.maximum(estimated, allowed),
+        error=before.error + np.maximum(estimated, allowed) + (turns - before.turns) * apart,
         step=march.h_abs,
         end="outgrown" if found.outgrown and not end else end,
     )
+
+
+def _of_grid(depth: Values, rows: slice, found: Rate, coarser: Callable[[Values], Rate]) -> Values:
+    """What a coarser grid changes of a turn's wear where each member is deepest [m]."""
+    other = coarser(depth)
+    if other.lost:
+        raise _LostError
+    apart = np.abs(other.depth - found.depth)[:, rows].reshape(2, -1)
+    return np.asarray(apart[np.arange(2), depth[:, rows].reshape(2, -1).argmax(axis=1)])
 
 
 class _LostError(Exception):
@@ -204,7 +222,7 @@ def _ends(
     inside = march.dense_output()
 
     def beyond_depth(turns: float) -> float:
-        return float(inside(turns).max()) - limit.depth
+        return float(inside(turns).reshape(shape)[:, limit.deepest].max()) - limit.depth
 
     def pressure(turns: float) -> float:
         return rate(march.y if turns == march.t else inside(turns)).pressure

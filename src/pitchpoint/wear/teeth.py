@@ -135,7 +135,7 @@ def backlash_growth(mesh: Mesh, cells: Cells, start: Start, depth: Values) -> fl
 
 def _unworn(mesh: Mesh, cells: Cells) -> Mesh:
     """The same mesh with surfaces that nothing is gone from: its contacts are those of a worn one."""
-    none = jnp.zeros((2, cells.count, cells.strips))
+    none = jnp.zeros(cells.shape)
     return mesh.worn(cells.surfaces(none))
 
 

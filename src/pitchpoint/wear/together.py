@@ -31,7 +31,7 @@ class Marches(eqx.Module):
 
     Attributes:
         turns: of the driver; fewer than asked for where a depth is reached before.
-        depth: worn off every cell [m].
+        depth: worn off every cell and place, see `Cells` [m].
         cells: of each drive.
         pressure: largest one there, and with flanks as new [Pa].
         steps: of each march.
@@ -117,12 +117,12 @@ def _worn(
     def turn(depth: Array) -> Turn:
         return turn_alone(design, operation, models, wear, own, start, depth)
 
-    none = jnp.zeros((2, cells.count, cells.strips))
+    none = jnp.zeros(cells.shape)
     new = turn(none)
     first = jnp.max(new.depth)
 
     def reaches(t: Array, y: Array, args: None, **_: object) -> Array:
-        return jnp.max(y) - jnp.minimum(limit, _DEEPEST)
+        return jnp.max(y[:, cells.deepest]) - jnp.minimum(limit, _DEEPEST)
 
     found = diffrax.diffeqsolve(
         diffrax.ODETerm(lambda _, depth, __: turn(depth).depth),

@@ -123,9 +123,9 @@ def _how(data: xr.Dataset) -> str:
         f"{_by_films(data)}. {feedback}. All teeth of a gear wear alike, forces are those without friction, "
         f"and contacts stay on the normals of the flanks as new. {int(data['wear_steps'])} steps of the "
         f"march, each with an error of {100.0 * float(data.attrs['tolerance']):g} % of the largest depth "
-        "at most, which are added up. Curvatures are those of the depths smoothed over two cells to either "
-        "side, so that pressures depend on the number of cells: repeat with another one (wear.cells) where "
-        "they matter."
+        "at most, which are added up; so is what a coarser grid on the flanks changes there. Curvatures are "
+        "those of the depths smoothed over two cells to either side, so that pressures depend on the number "
+        "of cells: repeat with another one (wear.cells) where they matter."
     )
 
 
@@ -162,7 +162,15 @@ def _severe(data: xr.Dataset) -> str:
     return f"{SEVERE:g} {SEVERE_BY[str(data.attrs['severe_by'])]}"
 
 
-_OF_MEMBER = ("deepest_wear", "wear_error", "fastest_wear", "worn_volume", "worn_tip_land")
+_OF_MEMBER = (
+    "deepest_wear",
+    "deepest_radius",
+    "deepest_place",
+    "wear_error",
+    "fastest_wear",
+    "worn_volume",
+    "worn_tip_land",
+)
 
 
 def _members(data: xr.Dataset) -> list[str]:
@@ -177,17 +185,7 @@ def _table(data: xr.Dataset) -> Table:
         for name in _OF_MEMBER
         if name in data
     ]
-    rows.insert(1, ("where", *(_where(data, k) for k in range(2))))
     return Table(["at the end", *names], rows)
-
-
-def _where(data: xr.Dataset, member: int) -> str:
-    depth = data["worn_depth"].values[-1, member]
-    if depth.max() <= 0.0:
-        return "nowhere"
-    cell = int(np.argmax(depth.max(axis=1)))
-    name, places = _places(data, member)
-    return f"{titled(name, data)} {show.quantity(name, float(places[cell]))}"
 
 
 def _places(data: xr.Dataset, member: int) -> tuple[str, np.ndarray]:
@@ -228,7 +226,7 @@ def _moved(lines: list[Trace]) -> dict[str, list[Any]]:
 
 def _flank(name: str, data: xr.Dataset, member: int) -> Figure:
     place, _ = _places(data, member)
-    top = float(display("worn_depth", data["worn_depth"].values[:, member].max()))
+    top = float(display("worn_depth", data["deepest_wear"].values[:, member].max()))
     look = layout(
         f"{titled(place, data)} [{show.unit_of(place)}]",
         short_axis("worn_depth", data),
@@ -246,13 +244,20 @@ def _keys(data: xr.Dataset) -> tuple[Key, ...]:
 
 
 def _lines(data: xr.Dataset, member: int, step: int) -> list[Trace]:
-    depth, (place, x) = data["worn_depth"].values[step, member], _places(data, member)
-    unit = show.unit_of("worn_depth", data)
-    order = np.argsort(x)
-    each = zip(_keys(data), (depth.mean(axis=1), depth.max(axis=1)), strict=False)
+    place, x = _places(data, member)
+    depth, unit = data["worn_depth"].values[step, member], show.unit_of("worn_depth", data)
+    largest = x, depth.max(axis=1)
+    if "profile_depth" in data:
+        largest = data["profile_radius"].values[member], data["profile_depth"].values[step, member]
+    courses = [(x, depth.mean(axis=1)), largest][-len(_keys(data)) :]
     return [
-        plain(key, display(place, x[order]), display("worn_depth", values[order]), unit)
-        for key, values in each
+        plain(
+            key,
+            display(place, at[order := np.argsort(at, kind="stable")]),
+            display("worn_depth", values[order]),
+            unit,
+        )
+        for key, (at, values) in zip(_keys(data), courses, strict=True)
     ]
 
 
