@@ -97,7 +97,7 @@ class Rated:
 
 
 def check_strength(case: Case, used: Used) -> None:
-    """InputError for a table that these gears have no use for, or a limit without its treatment.
+    """InputError for a table that these gears have no use for, or a limit or method that does not suit them.
 
     Args:
         case: whole.
@@ -107,6 +107,7 @@ def check_strength(case: Case, used: Used) -> None:
         return
     if not case.gears.rated:
         raise InputError(UNRATED, key="strength")
+    _check_method(case.strength, _plastic(used))
     _treatments(case.strength, used)
 
 
@@ -121,7 +122,6 @@ def rated_case(case: Case, used: Used, oil: LubricantRecord, roughness: Roughnes
     """
     table = case.strength or _USUAL
     plastic = _plastic(used)
-    _check_method(table, plastic)
     grade, of_grade = _class(table, case)
     mean_ra = (float(roughness.ra_1) + float(roughness.ra_2)) / 2.0
     return Rated(
