@@ -20,6 +20,7 @@ from pitchpoint.lubrication.ehl.newton import dry, step
 from pitchpoint.lubrication.ehl.solve import OF_HALF, line_films, solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import moes_1992
+from pitchpoint.materials import lubricants
 from pitchpoint.materials.fluid import Fluid
 from pitchpoint.status import Code
 
@@ -220,6 +221,39 @@ def test_films_are_mirrored_when_surfaces_turn_round():
     np.testing.assert_array_equal(one.x, -other.x[::-1])
     assert one.minimum_place == -other.minimum_place
     assert one.rolling == -other.rolling and one.shear_force == -other.shear_force
+
+
+def free_volume(pressure, ambient):
+    """Viscosity of the gear oil at 80 degC, with the constants of the catalogue as the book writes them."""
+    modulus = 7.232e9 * np.exp(-4.873e-3 * 353.15)
+    volume = (1.0 - np.log1p(11.65 * pressure / modulus) / 11.65) * (1.0 + 7.187e-4 * 30.15)
+    occupied, free = 0.6988 * (1.0 - 7.679e-4 * 30.15), 1.0 + 7.187e-4 * 30.15
+    at_rest = occupied / (free - occupied)
+    return ambient * np.exp(4.336 * (occupied / (volume - occupied) - at_rest))
+
+
+@pytest.mark.whole
+def test_traction_is_the_integral_of_the_printed_laws_over_the_film():
+    """Doolittle, Tait and Carreau as the book writes them, at the pressure and gap of every node."""
+    oil = lubricants.find("sae-80w-90").build()
+    laws = {"viscosity_law": "doolittle_1951", "density_law": "tait_1888"}
+    measured, usual = (
+        Fluid.of(oil, 353.15, shear_law="carreau_1972", **chosen) for chosen in (laws, {})
+    )
+    given = np.array([0.5e9, 0.8e9, 1.1e9]), 3.0
+    slide = np.array([0.02, 0.1, 0.3])
+    films = solve_lines(contact(*given, slide=slide, fluid=measured))
+    assert films.solved.all()
+    film, other = films.film, solve_lines(contact(*given, slide=slide, fluid=usual)).film
+    thinner = film.central_film / other.central_film
+    assert (thinner > 0.9).all() and (thinner < 1.0).all()
+    pressure, load = np.asarray(film.pressure), contact(*given).line_load
+    drawn = free_volume(pressure, float(measured.viscosity)) * (slide * 3.0)[:, None] / film.film
+    thinned = drawn * (1.0 + (drawn / 7e6) ** 2) ** ((0.45 - 1.0) / 2.0)
+    stress = np.minimum(thinned, 2e6 + 0.08 * pressure) * film.filled
+    expected = np.trapezoid(stress, film.x) / load
+    assert np.asarray(film.friction) == pytest.approx(np.asarray(expected), rel=0.01)
+    assert expected[0] < 0.1 * expected[-1]
 
 
 def test_contacts_that_approach_leave_others_as_they_are():
