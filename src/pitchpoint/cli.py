@@ -649,7 +649,7 @@ def docs(
     from pitchpoint import pages
 
     page = " ".join(words or [])
-    if page and "/" not in page and not pages.is_page(page) and (found := pages.search(page)):
+    if page and "/" not in page and not pages.is_page(page) and (found := pages.search_pages(page)):
         _show_found(found, json_)
     elif not page:
         _show(

@@ -7,7 +7,7 @@ from pathlib import Path
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.registry import known_as, nearest
 
-__all__ = ["is_page", "names", "page", "search", "title"]
+__all__ = ["is_page", "names", "page", "search_pages", "title"]
 
 _PACKAGE = Path(__file__).parent
 _FOLDER = next(
@@ -59,7 +59,7 @@ def _chosen(name: str) -> str | None:
     return known_as(wanted, known) or (ending[0] if len(ending) == 1 else None)
 
 
-def search(words: str) -> list[dict[str, str]]:
+def search_pages(words: str) -> list[dict[str, str]]:
     """Lines that have all of some words, the nearest first: titles, headings, rows of a table, others.
 
     Args:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pitchpoint
-from pitchpoint.analyses.caveats import leaves, told_of_law
+from pitchpoint.analyses.caveats import range_left, told_of_law
 from pitchpoint.doubts import BRIEF, Doubt, apart, as_doubt, doubts_of, fails, in_stage, stored
 from pitchpoint.lubrication.applicability import Limited
 from pitchpoint.lubrication.registry import ASPERITY_LOAD, FILM_THICKNESS, LAWS
@@ -64,7 +64,7 @@ def test_every_doubt_fits_a_line(call: ast.Call) -> None:
 def test_a_range_that_is_left_fits_beside_the_name_of_its_law(law: Limited) -> None:
     partly = {"weight": np.array([0.123, 0.877])}
     run = {f"outside {law.name} {name}": np.array([True, False]) for name in law.ranges}
-    for doubt in told_of_law(law, leaves(law, {**partly, **run}, "film")):
+    for doubt in told_of_law(law, range_left(law, {**partly, **run}, "film")):
         assert "12 % of a cycle" in as_doubt(doubt).brief
         assert len(as_doubt(doubt).brief) <= BRIEF, as_doubt(doubt).brief
 

@@ -40,9 +40,9 @@ __all__ = [
     "films_lost",
     "friction_beyond",
     "jamming_words",
-    "leaves",
     "proportions_counted",
     "proportions_words",
+    "range_left",
     "rolling_share",
     "room_warning",
     "told_of_law",
@@ -314,7 +314,7 @@ def _proportions(points: Sequence[Built]) -> list[str]:
 
 def film_warning(film: FilmThickness, run: Mapping[str, np.ndarray]) -> list[str]:
     """Conditions that leave the range of the film law, which answers there too."""
-    return told_of_law(film, leaves(film, run, "film"))
+    return told_of_law(film, range_left(film, run, "film"))
 
 
 def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
@@ -383,7 +383,7 @@ def asperity_warning(law: AsperityLoad | None, run: Mapping[str, np.ndarray]) ->
     """Conditions that leave the range of the law of the load on asperities, and where it is cut."""
     if law is None:
         return []
-    reasons: list[str] = [*leaves(law, run, "asperity load")]
+    reasons: list[str] = [*range_left(law, run, "asperity load")]
     cut = np.any(run["asperity_load_ratio"] >= 1.0, axis=(1, 2))
     if cut.any():
         reasons.append(
@@ -403,7 +403,10 @@ def told_of_law(law: Limited, reasons: Sequence[str]) -> list[str]:
 
 def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
     """Why a law does not hold at an operating point, in words; empty where it does."""
-    reasons: list[str] = [*leaves(law, run, "friction"), *map(str, run.get("outside films", ()))]
+    reasons: list[str] = [
+        *range_left(law, run, "friction"),
+        *map(str, run.get("outside films", ())),
+    ]
     if run["locked"].any():
         largest = f"{run['friction'].max():.2g}"
         locks = f"its friction coefficient, {largest}, locks the mesh"
@@ -465,7 +468,7 @@ def friction_beyond(
     return reasons
 
 
-def leaves(law: Limited, run: Mapping[str, np.ndarray], gives: str) -> list[Doubt]:
+def range_left(law: Limited, run: Mapping[str, np.ndarray], gives: str) -> list[Doubt]:
     """Which conditions leave the range of a law that `gives` a film, say, in words."""
     outside = {name: run[f"outside {law.name} {name}"] for name in law.ranges}
     return [

@@ -987,7 +987,7 @@ def _pair_warnings(pair: _Pair) -> list[Doubt]:
                 f"in radially: they overlap by up to {-pair.cutter_radial_gap:.3g} {pair.modules}, which "
                 "these figures leave out; a cutter with fewer teeth leaves them.",
                 moves=REMARKED,
-                brief=f"The cutter takes off tips of gear 2: {-pair.cutter_radial_gap:.3g} {pair.modules}.",
+                brief=f"The cutter takes {-pair.cutter_radial_gap:.3g} {pair.modules} off tips of gear 2.",
             )
         )
     return found
