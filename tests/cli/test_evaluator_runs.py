@@ -17,10 +17,10 @@ import xarray as xr
 from pitchpoint import cli
 from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.analysis import silent
+from pitchpoint.analyses.figures import standstill_figures
 from pitchpoint.analyses.four_quadrants import (
     loss_of_output,
     quadrant_axes,
-    standstill_figures,
     table_of,
 )
 from pitchpoint.analyses.loss_map import maps

@@ -25,7 +25,7 @@ import sound
 import xarray as xr
 
 from pitchpoint import Case, cli, double_precision, run, study
-from pitchpoint.analyses import four_quadrants
+from pitchpoint.analyses import figures
 from pitchpoint.analyses.films import (
     _BY_FILM_LAW,
     _BY_LAW,
@@ -146,10 +146,7 @@ def loss_map(text: str) -> xr.Dataset:
             "locked": (dims, np.zeros(losses.shape, bool)),
             "largest_holding_torque": ((dims[0], dims[1], dims[3]), np.ones((1, 2, 1))),
             "self_locking": ((dims[0], dims[1], dims[3]), np.zeros((1, 2, 1), bool)),
-            **{
-                name: ("law", [0.1])
-                for name in (*four_quadrants.ERRORS, "mean_interpolation_error")
-            },
+            **{name: ("law", [0.1]) for name in (*figures.ERRORS, "mean_interpolation_error")},
             "mean_input_torque": ((), 1.0, told),
         },
         {

@@ -8,10 +8,13 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.summaries import AT_CONTACT
+from pitchpoint.results.store import without_nan
 
 __all__ = [
     "CAMPBELL",
     "CONTACT",
+    "ERRORS",
+    "HOLDING",
     "MAIN",
     "OF_CROSSING",
     "OF_LAWS",
@@ -29,7 +32,9 @@ __all__ = [
     "covered",
     "covers",
     "error_ranges",
+    "error_words",
     "headline",
+    "held_at_operation",
     "holding",
     "json_figures",
     "main_figures",
@@ -37,6 +42,7 @@ __all__ = [
     "of_contact",
     "of_operation",
     "out_of_range",
+    "standstill_figures",
     "why_not",
 ]
 
@@ -243,3 +249,76 @@ def error_ranges(data: xr.Dataset | None) -> Iterator[tuple[str, list[str], Any]
         data["curve"].values, data["kinematic_error_range"].values, strict=True
     ):
         yield str(curve), causes, values
+
+
+HOLDING = (
+    "least_holding_torque",
+    "largest_holding_torque",
+    "moving_back_torque",
+    "moving_on_torque",
+)
+"""Torques of the driver that hold a load, and those beyond which it moves at every phase."""
+
+ERRORS = ("interpolation_error", "light_load_error", "creeping_error")
+"""Largest errors: between loads and speeds of the map, below its least load, below its lowest speed."""
+
+
+def error_words(data: xr.Dataset, law: int) -> str:
+    """How near the map comes to direct computation under one law, in words.
+
+    Args:
+        data: the map.
+        law: place of the law.
+    """
+    names = (*ERRORS, "mean_interpolation_error")
+    most, light, creeping, mean = (f"{100.0 * float(data[name][law]):.2g} %" for name in names)
+    torque, speed = (
+        f"{float(values[values > 0.0].min()):.4g} {data[name].attrs['units']}"
+        for name in ("output_torque", "output_speed")
+        for values in [data[name].values]
+    )
+    return (
+        f"{data['law'].values[law]} {most} at most and {mean} in the mean half way between nodes, {light} at "
+        f"torques below {torque}, {creeping} at a tenth of {speed}, the lowest speed"
+    )
+
+
+def held_at_operation(data: xr.Dataset) -> dict[str, dict[str, Any]]:
+    """Torques of the driver that hold the load of the operating point at rest, by law; None where not known.
+
+    Args:
+        data: the map, between whose nodes of load and temperature they are linear.
+    """
+    load, degree = data.attrs["load"], data.attrs["degree"]
+    there = data[[*HOLDING, "self_locking"]].astype(float).interp(output_torque=load)
+    if data.sizes["temperature"] > 1:
+        ends = data["temperature"].values[[0, -1]]
+        there = there.interp(temperature=np.clip(degree, *ends))
+    else:
+        there = there.isel(temperature=0)
+    locked = there["self_locking"] > 0.0
+    return {
+        law: {
+            **{n: without_nan(float(there[n].sel(law=law))) for n in HOLDING},
+            "self_locking": bool(locked.sel(law=law)),
+        }
+        for law in data["law"].values.tolist()
+    }
+
+
+def standstill_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Torques that hold the load of the operating point at rest, and how near the map is, by law.
+
+    Args:
+        parts: of a result.
+    """
+    data = parts.get("four_quadrants")
+    if data is None or HOLDING[0] not in data:
+        return {}
+    errors = (*ERRORS, "mean_interpolation_error")
+    return {
+        "four_quadrants": {
+            law: held | {name: float(data[name][k]) for name in errors}
+            for k, (law, held) in enumerate(held_at_operation(data).items())
+        }
+    }

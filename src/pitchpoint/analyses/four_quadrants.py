@@ -12,6 +12,7 @@ from scipy.interpolate import PchipInterpolator
 
 from pitchpoint import units
 from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.figures import ERRORS, HOLDING
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
 from pitchpoint.analyses.running import creeping_speed, from_rest
 from pitchpoint.cases.schema import LossMap
@@ -19,20 +20,16 @@ from pitchpoint.cases.stages import Ready
 from pitchpoint.doubts import Doubt, doubts_of
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.results.rounding import ROUNDING
-from pitchpoint.results.store import dataset, without_nan
+from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
 
 __all__ = [
-    "HOLDING",
     "both",
-    "error_words",
-    "held_at_operation",
     "loss_of_output",
     "mirrored",
     "pieces",
     "quadrant_axes",
     "speed_ratio",
-    "standstill_figures",
     "table_of",
 ]
 
@@ -45,19 +42,8 @@ CREEPING = 0.1
 CREEPS = 1
 """Place of that speed among those half way, behind rest."""
 
-ERRORS = ("interpolation_error", "light_load_error", "creeping_error")
-"""Largest errors: between loads and speeds of the map, below its least load, below its lowest speed."""
-
 FINER = 4
 """Parts of each ratio of speeds in the table, between which it is linear in their logarithm."""
-
-HOLDING = (
-    "least_holding_torque",
-    "largest_holding_torque",
-    "moving_back_torque",
-    "moving_on_torque",
-)
-"""Torques of the driver that hold a load, and those beyond which it moves at every phase."""
 
 SLOWEST = 0.01
 """Most that the lowest speed is of the largest one, where a drive is slow itself."""
@@ -460,67 +446,6 @@ def _off(
             found = table.lost(*place, [*table.loss_torques][at[0]])
             errors[at] = np.nan if found < 0.0 else abs(found / lost[at] - 1.0)
     return errors
-
-
-def error_words(data: xr.Dataset, law: int) -> str:
-    """How near the map comes to direct computation under one law, in words.
-
-    Args:
-        data: the map.
-        law: place of the law.
-    """
-    names = (*ERRORS, "mean_interpolation_error")
-    most, light, creeping, mean = (f"{100.0 * float(data[name][law]):.2g} %" for name in names)
-    torque, speed = (
-        f"{float(values[values > 0.0].min()):.4g} {data[name].attrs['units']}"
-        for name in ("output_torque", "output_speed")
-        for values in [data[name].values]
-    )
-    return (
-        f"{data['law'].values[law]} {most} at most and {mean} in the mean half way between nodes, {light} at "
-        f"torques below {torque}, {creeping} at a tenth of {speed}, the lowest speed"
-    )
-
-
-def held_at_operation(data: xr.Dataset) -> dict[str, dict[str, Any]]:
-    """Torques of the driver that hold the load of the operating point at rest, by law; None where not known.
-
-    Args:
-        data: the map, between whose nodes of load and temperature they are linear.
-    """
-    load, degree = data.attrs["load"], data.attrs["degree"]
-    there = data[[*HOLDING]].interp(output_torque=load)
-    if data.sizes["temperature"] > 1:
-        ends = data["temperature"].values[[0, -1]]
-        there = there.interp(temperature=np.clip(degree, *ends))
-    else:
-        there = there.isel(temperature=0)
-    table = table_of(data)
-    return {
-        law: {
-            **{n: without_nan(float(there[n].sel(law=law))) for n in HOLDING},
-            "self_locking": table.lost(-load, 0.0, float(celsius(np.array(degree))), law) < 0.0,
-        }
-        for law in table.loss_torques
-    }
-
-
-def standstill_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    """Torques that hold the load of the operating point at rest, and how near the map is, by law.
-
-    Args:
-        parts: of a result.
-    """
-    data = parts.get("four_quadrants")
-    if data is None:
-        return {}
-    errors = (*ERRORS, "mean_interpolation_error")
-    return {
-        "four_quadrants": {
-            law: held | {name: float(data[name][k]) for name in errors}
-            for k, (law, held) in enumerate(held_at_operation(data).items())
-        }
-    }
 
 
 def table_of(data: xr.Dataset) -> LossTable:

@@ -10,7 +10,7 @@ from pitchpoint.analyses.along_action import (
 )
 from pitchpoint.analyses.analysis import Analysis, Several, of_gears_with
 from pitchpoint.analyses.cycle import CYCLE
-from pitchpoint.analyses.figures import WIND_UP
+from pitchpoint.analyses.figures import WIND_UP, standstill_figures
 from pitchpoint.analyses.films import FILM, FILM_SQUEEZE, FINITE_FILM
 from pitchpoint.analyses.lacking import no_bodies, no_deviations, no_joint, no_quadrants, rigid
 from pitchpoint.analyses.loss_map import LOSS_MAP
@@ -81,7 +81,7 @@ FOUR_QUADRANTS = Analysis(
     compute="pitchpoint.analyses.four_quadrants:quadrants_of",
     pieces="pitchpoint.analyses.four_quadrants:pieces",
     joined="pitchpoint.analyses.four_quadrants:joined_quadrants",
-    figures="pitchpoint.analyses.four_quadrants:standstill_figures",
+    figures=standstill_figures,
 )
 
 ANALYSES: Registry[Analysis | Several] = Registry(

@@ -9,7 +9,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-from pitchpoint.analyses.four_quadrants import error_words, table_of
+from pitchpoint.analyses.figures import error_words
+from pitchpoint.analyses.four_quadrants import table_of
 from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError

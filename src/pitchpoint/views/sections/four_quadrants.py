@@ -5,8 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import covered
-from pitchpoint.analyses.four_quadrants import HOLDING, error_words, held_at_operation
+from pitchpoint.analyses.figures import HOLDING, covered, error_words, held_at_operation
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import laws
