@@ -241,7 +241,7 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
         yield Doubt(
             f"K_v by method C holds well below resonance, up to (v z_1/100) sqrt(u²/(1 + u²)) = "
             f"{MOST_RESONANCE:.2g} m/s, at which it stays; this pair is at {resonance:.3g} m/s: give "
-            "dynamic_factor in [strength].",
+            'dynamic_factor in [strength], or dynamic_method = "B".',
             brief=f"K_v ends at {MOST_RESONANCE:.2g} m/s, here {resonance:.3g} m/s: give dynamic_factor.",
         )
     for gear, notch in enumerate(found["notch_parameter"], 1):
