@@ -33,6 +33,8 @@ from pitchpoint.cases.solids import (
     SolidInUse,
     datum,
     failures,
+    fitted_on_steel,
+    grown,
     heated,
     heating,
     solids_in_use,
@@ -64,6 +66,7 @@ from pitchpoint.lubrication.conditions import FILM, Law, arguments, demand_shape
 from pitchpoint.lubrication.inlet_heating import Inlet, with_inlet_heating
 from pitchpoint.lubrication.registry import (
     ASPERITY_LOAD,
+    BOUNDARY,
     FILM_THICKNESS,
     INLET_HEATING,
     LAWS,
@@ -187,8 +190,18 @@ class Built:
 
     @property
     def heated(self) -> list[str]:
-        """Sentences on teeth that their own loss warms."""
-        return [used.told for used in self.solids if used.told]
+        """Sentences on teeth that their own loss warms, and on what is left out of teeth of plastic."""
+        plastic = [number for number, used in enumerate(self.solids, 1) if used.plastic]
+        told: list[str] = [used.told for used in self.solids if used.told]
+        if not plastic:
+            return told
+        names = [law.name for law in self.laws if law.largest == BOUNDARY]
+        told += [fitted_on_steel(names, plastic)] if names else []
+        if {"circumferential_backlash", "centre_distance"} <= {*self.dimensions}:
+            angle, teeth = (getattr(self.case.gears, key) for key in ("pressure_angle", "teeth"))
+            distance = float(self.dimensions["centre_distance"])
+            told += grown(self.solids, tuple(teeth), float(angle), distance)
+        return told
 
     @property
     def laws(self) -> list[FrictionLaw]:

@@ -1,7 +1,8 @@
 """Materials of a case as they are used: at the temperature of the gears, with where they come from."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import tan
 from typing import Any, cast, get_args
 
 import numpy as np
@@ -10,7 +11,7 @@ from pitchpoint._jax import array
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import Case, Materials, SolidValues
-from pitchpoint.doubts import fails
+from pitchpoint.doubts import GUESSED, Doubt, fails
 from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.efficiency.warm_teeth import Heated
@@ -20,7 +21,17 @@ from pitchpoint.materials import solids
 from pitchpoint.materials.data import Datum, Status
 from pitchpoint.materials.solids import Solid, SolidRecord, celsius, heat_failure
 
-__all__ = ["SolidInUse", "datum", "failures", "heated", "heating", "solids_in_use", "surrounded"]
+__all__ = [
+    "SolidInUse",
+    "datum",
+    "failures",
+    "fitted_on_steel",
+    "grown",
+    "heated",
+    "heating",
+    "solids_in_use",
+    "surrounded",
+]
 
 BY_VALUE = "by value"
 _PLASTIC_BELOW = 30e9  # Pa; no metal for gears is as soft, no plastic without fibres as stiff
@@ -77,6 +88,69 @@ def failures(used: Used) -> list[str]:
         )
         for gear, (one, text) in enumerate(zip(used, told, strict=True), 1)
         if text
+    ]
+
+
+def fitted_on_steel(laws: Sequence[str], plastic: Sequence[int]) -> Doubt:
+    """That laws of friction know nothing of plastics.
+
+    Args:
+        laws: names of those that were fitted to steel in oil.
+        plastic: numbers of the gears that are of plastic.
+    """
+    gears = " and ".join(f"gear {number}" for number in plastic)
+    are = "are" if len(plastic) > 1 else "is"
+    return Doubt(
+        f"Friction by {' and '.join(laws)} was fitted to steel on steel in oil, and {gears} {are} plastic: "
+        "loss and efficiency are those of a steel pair under this load; where the friction of the pair is "
+        'measured, name "constant" with its coefficient.',
+        moves=GUESSED,
+        about=("mean_efficiency",),
+        brief=f"Friction is that of steel; {gears} {are} plastic.",
+    )
+
+
+EXPANSION = 1e-4
+"""Thermal expansion of unfilled plastics [1/K]: a round figure, no data of one of them."""
+
+ROOM = 293.15
+"""Temperature at which gears are measured [K], ISO 1."""
+
+_SLIGHT = 0.005
+"""Backlash over module below which what growth takes is not told."""
+
+
+def grown(
+    used: Used, teeth: tuple[float, float], pressure_angle: float, centre_distance: float
+) -> list[str]:
+    """That the growth of warm plastic takes backlash, where it is more than slight.
+
+    Args:
+        used: materials of both gears at their temperature.
+        teeth: z1 and z2, negative for a ring.
+        pressure_angle: of the rack [rad].
+        centre_distance: [m].
+
+    Validity: spur gears that grow evenly, to first order in the growth e: teeth of the same angle reach
+    further out, so that they are thicker by 2 r_w tan(alpha) e at the pitch circle.
+    """
+    taken, hottest = 0.0, ROOM
+    for number, one in zip(teeth, used, strict=True):
+        if one.plastic:
+            radius = centre_distance * number / abs(sum(teeth))
+            growth = EXPANSION * (one.temperature - ROOM)
+            taken += growth * 2.0 * radius * tan(pressure_angle)
+            hottest = max(hottest, one.temperature)
+    if taken < _SLIGHT * 2.0 * centre_distance / abs(sum(teeth)):
+        return []
+    return [
+        Doubt(
+            f"Plastic at {celsius(hottest)} has grown since it was measured at {celsius(ROOM)}, which is "
+            f"left out: with {EXPANSION:g} 1/K, about that of unfilled plastics, some {1e6 * taken:.2g} um "
+            "of the circumferential backlash are taken; water that it takes up takes more, a housing that "
+            "grows gives some back.",
+            brief=f"Warm plastic grows: some {1e6 * taken:.2g} um of the backlash go, left out.",
+        )
     ]
 
 

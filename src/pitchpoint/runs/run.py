@@ -302,6 +302,7 @@ def _own(function: Callable[..., Any]) -> FrictionLaw:
     """A user's function as a law; InputError if it asks for what is no condition, or is not JAX."""
     wanted, _ = arguments(function)
     name = getattr(function, "__name__", "own")
+    name = "own_law" if name == "<lambda>" else name
     _demand_traceable(function, wanted, name)
     return FrictionLaw(
         name, f"{name}, the user's own", function, (), ({}, 0.0), largest=_LARGEST_OF_OWN
