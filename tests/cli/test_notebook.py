@@ -19,7 +19,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.figures import out_of_range
 from pitchpoint.results.labelled import in_units
 from pitchpoint.results.store import dataset
-from pitchpoint.runs.run import Progress
+from pitchpoint.runs.run import Progress, own_law
 
 SHIFT, TORQUE, WARM = "gears.profile_shift.1", "operation.torque", "operation.temperature"
 PAIR = pp.Case(
@@ -240,6 +240,11 @@ def in_math(*, slide_roll_ratio: Any) -> Any:
 
 def in_python(*, sliding: Any, rough: float = 0.1) -> Any:
     return rough if sliding > 0.0 else 0.0
+
+
+def test_a_lambda_has_a_name_in_results() -> None:
+    own = own_law(PAIR.held[0], lambda *, slide_roll_ratio: 0.05 + 0.0 * slide_roll_ratio).own
+    assert own is not None and (own.name, own.title) == ("own_law", "own_law, the user's own")
 
 
 @pytest.mark.parametrize("law", [in_numpy, in_math, in_python])
