@@ -396,6 +396,7 @@ def _warnings(
                 "wear grid",
                 error,
                 moves=error,
+                brief=f"Wear: the depth may be {100.0 * error:.2g} % off by grid and steps.",
                 about=("deepest_wear", "final_depth", "final_cycles", "life_hours"),
             )
         )
