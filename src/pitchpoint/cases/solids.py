@@ -143,13 +143,14 @@ def grown(
             hottest = max(hottest, one.temperature)
     if taken < _SLIGHT * 2.0 * centre_distance / abs(sum(teeth)):
         return []
+    lost = float(f"{1e6 * taken:.2g}")  # um
     return [
         Doubt(
             f"Plastic at {celsius(hottest)} has grown since it was measured at {celsius(ROOM)}, which is "
-            f"left out: with {EXPANSION:g} 1/K, about that of unfilled plastics, some {1e6 * taken:.2g} um "
+            f"left out: with {EXPANSION:g} 1/K, about that of unfilled plastics, some {lost:g} um "
             "of the circumferential backlash are taken; water that it takes up takes more, a housing that "
             "grows gives some back.",
-            brief=f"Warm plastic grows: some {1e6 * taken:.2g} um of the backlash go, left out.",
+            brief=f"Warm plastic grows: some {lost:g} um of the backlash go, left out.",
         )
     ]
 
