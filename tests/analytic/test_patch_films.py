@@ -20,10 +20,12 @@ from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, film_near, solve_patch
+from pitchpoint.lubrication.ehl.patch.grid_error import OF_ELLIPSE
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import linear, product
 from pitchpoint.lubrication.ehl.patch.response import polished
+from pitchpoint.lubrication.ehl.registry import COARSE
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import hamrock_dowson_1977_central
@@ -97,6 +99,21 @@ def test_a_ball_has_the_film_of_hamrock_and_dowson():
         modulus=MODULUS,
     )
     assert found.film.central_film == pytest.approx(float(law), rel=0.05)
+
+
+def test_errors_by_the_grid_are_estimated_from_half_as_many_cells():
+    fine, half = coarse(ball()), solve_patch(ball(), nodes=33, cells=32)
+    for name, part, error in zip(
+        ("central_film", "minimum_film"),
+        OF_ELLIPSE,
+        (fine.ended.grid, fine.ended.grid_minimum),
+        strict=True,
+    ):
+        one, other = getattr(fine.film, name), getattr(half.film, name)
+        assert error == pytest.approx(part * (max(one, other) / min(one, other) - 1.0), rel=1e-3)
+    assert fine.ended.grid_minimum > COARSE
+    assert any(told.startswith("the grid is coarse for the films") for told in fine.warnings)
+    assert np.isnan([half.ended.grid, half.ended.grid_minimum]).all()
 
 
 def moderate_ball(load: float, viscosity: float, ratio: float = 1.0) -> PatchContact:

@@ -1,20 +1,29 @@
-"""Estimates of the error by the grid against twice as many nodes, of random smooth lines.
+"""Estimates of the error by the grid against twice as many nodes, of random smooth contacts.
 
-    .venv/bin/python tests/long/errors_of_grids.py [number]
+    .venv/bin/python tests/long/errors_of_grids.py [number [patches [nodes [seed]]]]
 
-Drawn as in `many_line_films.py`. Ends with an error unless nine in ten films, in the middle and smallest
-ones, are off by less than was estimated, and half by more than a third of that.
+Lines without ends are drawn as in `many_line_films.py`; ellipses and finite lines, half as many as `patches`
+of each, as in `many_patch_films.py`, those with a load parameter M of 5 to 1000. Ends with an error unless
+nine in ten films of each kind, in the middle and smallest ones, are off by less than was estimated, and half
+by more than a third of that. Counts contacts without a film on one of the grids, and without an estimate.
 """
 
 import sys
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from many_line_films import HIGH, LOW, MODULUS
+from many_patch_films import drawn
 from scipy.stats import qmc
 
 import pitchpoint
+from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.line import LineContact
+from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
+from pitchpoint.lubrication.ehl.patch.layout import laid_out
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.materials.fluid import Fluid
 
@@ -22,6 +31,9 @@ BELOW, ABOVE = 0.9, 0.5
 """Shares of films that are off by less than was estimated, and by more than a third of it."""
 
 ALPHAS = (1e-8, 3e-8)
+
+LOADS = (5.0, 1000.0)
+"""Load parameters M of ellipses and finite lines, by the line load in their middle."""
 
 
 def lines(count: int, nodes: int = 129, seed: int = 21) -> tuple[np.ndarray, np.ndarray]:
@@ -45,12 +57,59 @@ def lines(count: int, nodes: int = 129, seed: int = 21) -> tuple[np.ndarray, np.
     return estimated[:, both], true_errors(coarse, fine)[:, both]
 
 
-def true_errors(coarse: Films, fine: Films) -> np.ndarray:
+def true_errors(coarse: Films | PatchFilms, fine: Films | PatchFilms) -> np.ndarray:
     """Of the film in the middle and the smallest one, against those on a finer grid."""
     names = "central_film", "minimum_film"
     return np.stack(
         [np.abs(getattr(fine.film, one) / getattr(coarse.film, one) - 1.0) for one in names]
     )
+
+
+def patches(kind: int, count: int, nodes: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """The same of finite lines, kind 0, or ellipses, kind 1."""
+    estimated, true, lost = [], [], 0
+    for contact in _smooth(kind, count, seed):
+        films = [_solved(contact, number) for number in (nodes, 2 * nodes - 1)]
+        if any(one is None for one in films):
+            lost += 1
+            continue
+        estimated.append([films[0].ended.grid, films[0].ended.grid_minimum])
+        true.append(true_errors(*films))
+    told, off = np.array(estimated).T, np.array(true).T
+    known = np.isfinite(told).all(axis=0) & np.isfinite(off).all(axis=0)
+    print(
+        f"{lost} of {count} without a film on one of the grids, {np.sum(~known)} without an estimate"
+    )
+    return told[:, known], off[:, known]
+
+
+def _smooth(kind: int, count: int, seed: int) -> Iterator[PatchContact]:
+    """So many contacts without asperities."""
+    for k, one in enumerate(drawn(16 * count, seed)):
+        contact = replace(one.contact, texture=None)
+        if k % 2 != kind or 4.0 * one.pressure / MODULUS > WIDE:
+            continue
+        if LOADS[0] < _load(contact) < LOADS[1]:
+            yield contact
+            count -= 1
+        if count == 0:
+            return
+
+
+def _load(contact: PatchContact) -> float:
+    """Load parameter M of the line load in the middle."""
+    layout = laid_out(contact, 64)
+    line_load = 0.5 * np.pi * layout.hertz_pressure * layout.half_width / (MODULUS * layout.radius)
+    speeds = 2.0 * float(contact.fluid.viscosity) * layout.speed / (MODULUS * layout.radius)
+    return float(line_load / np.sqrt(speeds))
+
+
+def _solved(contact: PatchContact, nodes: int) -> PatchFilms | None:
+    try:
+        films = solve_patch(contact, nodes=nodes, cells=nodes - 1)
+    except InputError:
+        return None
+    return films if films.solved else None
 
 
 def judged(name: str, estimated: np.ndarray, true: np.ndarray) -> bool:
@@ -67,11 +126,14 @@ def judged(name: str, estimated: np.ndarray, true: np.ndarray) -> bool:
     return bool((below >= BELOW).all() and (above >= ABOVE).all())
 
 
-def main(count: int = 60) -> int:
+def main(count: int = 60, more: int = 20, nodes: int = 65, seed: int = 21) -> int:
     """Print the table; 1 where estimates are too often wrong."""
     with pitchpoint.double_precision():
-        return int(not judged("lines", *lines(count)))
+        right = [judged("lines without ends", *lines(count))] if count else []
+        for kind, name in enumerate(("finite lines", "ellipses")) if more else ():
+            right.append(judged(name, *patches(kind, more // 2, nodes, seed)))
+    return int(not all(right))
 
 
 if __name__ == "__main__":
-    sys.exit(main(*map(int, sys.argv[1:2])))
+    sys.exit(main(*map(int, sys.argv[1:5])))

@@ -51,7 +51,6 @@ def whole(
     lanes: tuple[str, ...],
     more: Lanes,
     again: Again,
-    of_grid: Sequence[Doubt] = (),
     **attributes: Any,
 ) -> xr.Dataset:
     """Films of the cycle, with those by film laws and friction by the laws of the case beside them.
@@ -63,7 +62,6 @@ def whole(
         lanes: names of the axes of a contact.
         more: what else the dataset holds.
         again: solves the contact of a lane with another set of summits.
-        of_grid: doubts about the grid of contacts that were solved on another one too.
         attributes: of the dataset.
     """
     found = xr.concat(parts, "point", combine_attrs="drop").rename(point="phase")
@@ -92,7 +90,6 @@ def whole(
         warnings=[
             *_lost(codes[loaded]),
             *_of_pieces(parts),
-            *of_grid,
             *_about(built, states, found),
             *_of_summits(spread),
         ],

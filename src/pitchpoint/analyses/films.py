@@ -28,11 +28,10 @@ _MAIN = (
     "film_efficiency",
     "loaded_contacts",
     "solved_contacts",
+    "largest_central_film_error",
+    "largest_minimum_film_error",
 )
 _BY_LINES = ("mean_line_friction", "mean_line_loss")
-_OF_LINES = (*_MAIN, "largest_central_film_error", "largest_minimum_film_error")
-"""Only grids of lines have an error for every contact."""
-
 _OF_FINITE = ("smallest_central_film", "largest_end_pressure")
 _IN_SERIES = ("film_torsional_stiffness", "stiffness_without_films", "stiffness_with_films")
 _SQUEEZE_MAIN = (
@@ -155,7 +154,7 @@ def _squeeze_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    return {"film": _figures_of(parts.get("film"), _OF_LINES)}
+    return {"film": _figures_of(parts.get("film"), _MAIN)}
 
 
 def _finite_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
@@ -204,7 +203,7 @@ FILM = Analysis(
     compute=_compute,
     pieces=_pieces,
     joined=_joined,
-    main=_OF_LINES,
+    main=_MAIN,
     figures=_figures,
 )
 

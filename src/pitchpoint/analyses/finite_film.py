@@ -10,7 +10,13 @@ import xarray as xr
 
 from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Piece, Progress
-from pitchpoint.analyses.film import OF_LINES, films_of_lines, over_rough, values_of_lines
+from pitchpoint.analyses.film import (
+    GRID_ERRORS,
+    OF_LINES,
+    films_of_lines,
+    over_rough,
+    values_of_lines,
+)
 from pitchpoint.analyses.film_contacts import alike, asked, film_model_of, states
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
@@ -18,14 +24,14 @@ from pitchpoint.cases.build import Built, tooth_size
 from pitchpoint.cases.films import patch_grid
 from pitchpoint.doubts import WITHHELD, Doubt
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.doubts import GRID, of_grid
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.heat import PatchTemperatures
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST
-from pitchpoint.lubrication.ehl.registry import COARSE, ISOTHERMAL
-from pitchpoint.lubrication.ehl.solve import OF_HALF
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.materials.rheology import lorentz_lorenz_1880
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -112,7 +118,7 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     lines = _as_lines(built, given, taken, values["film_inlet"])
     ended = [one.ended for one in films if isinstance(one, PatchFilms)]
     found = [one for one in films if isinstance(one, PatchFilms) and one.solved]
-    told = _told(films)
+    errors = np.array([[one.ended.grid, one.ended.grid_minimum] for one in found]).reshape(-1, 2).T
     return dataset(
         {
             **{name: ((*_OF_PIECE, *_MORE.get(name, ())), one) for name, one in values.items()},
@@ -120,7 +126,7 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
             **_kept(built, films, lanes, values, load),
         },
         {},
-        warnings=told,
+        warnings=[*_told(films), *of_grid(*errors)],
         residual=max((one.ended.reynolds for one in found), default=0.0),
         iterations=max((one.steps for one in ended), default=0),
     )
@@ -129,7 +135,8 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
 def _told(films: Sequence[PatchFilms | Refused]) -> list[Doubt]:
     """Warnings of contacts that were solved, and why others were refused, each once.
 
-    What the last row of a line is has its place beside the pressures near the ends.
+    What the last row of a line is has its place beside the pressures near the ends, and errors by the grid
+    are told of all of them together.
     """
     texts: dict[Doubt, None] = {}
     for one in films:
@@ -137,7 +144,9 @@ def _told(films: Sequence[PatchFilms | Refused]) -> list[Doubt]:
             sentence = f"a contact was not taken: {one.why}"
             texts[Doubt(sentence, moves=WITHHELD, brief="a contact was not taken")] = None
         elif one.solved:
-            texts |= dict.fromkeys(doubt for doubt in one.warnings if doubt.kind != ENDS)
+            texts |= dict.fromkeys(
+                doubt for doubt in one.warnings if doubt.kind not in (ENDS, GRID)
+            )
     return [*texts]
 
 
@@ -255,7 +264,7 @@ Friction is that of magnitudes, as friction laws and lines have it: sliding of a
 sense at the pitch line, and the force of the whole contact says little about heat and loss.
 """
 
-_OWN = ("rolling_resistance", "film_inlet", "film_rise", "flash_rise")
+_OWN = ("rolling_resistance", "film_inlet", "film_rise", "flash_rise", *GRID_ERRORS)
 """Values of contacts that are made of several."""
 
 _SHAPES: dict[str, tuple[int, ...]] = {
@@ -275,6 +284,7 @@ def _of_film(films: PatchFilms, line: bool) -> dict[str, Any]:
     return found | {
         "rolling_resistance": np.hypot(*film.rolling),
         "film_inlet": -films.layout.inlet,
+        **dict(zip(GRID_ERRORS, (films.ended.grid, films.ended.grid_minimum), strict=True)),
         **_rises(film.heat),
         **({"row_film": _of_middle_row(film)} if line else {}),
     }
@@ -461,7 +471,6 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         _LANES,
         more,
         again,
-        _of_grid(values, fields["kept_at"][1], coarse),
         title="films of finite contacts",
         solver=table.solver,
         grid=json.dumps([nodes, cells]),
@@ -503,27 +512,6 @@ def _finite_figures(
     return {
         name: (dims, np.where(np.isinf(one), np.nan, one)) for name, (dims, one) in found.items()
     }
-
-
-def _of_grid(
-    values: Mapping[str, np.ndarray], at: np.ndarray, coarse: Mapping[str, tuple[Any, np.ndarray]]
-) -> list[Doubt]:
-    """Errors by the grid of the kept contacts, estimated as those of lines, where they count."""
-    errors = []
-    for name, part in zip(("central_film", "minimum_film"), OF_HALF, strict=True):
-        fine = np.array([values[name][tuple(place)] if place[0] >= 0 else np.nan for place in at])
-        change = np.abs(coarse[f"coarse_{name}"][1] / np.where(fine > 0.0, fine, np.nan) - 1.0)
-        errors.append(float(part * np.max(change[np.isfinite(change)], initial=0.0)))
-    worst = max(errors)
-    if worst < COARSE:
-        return []
-    central, minimum = (100.0 * error for error in errors)
-    sentence = (
-        "Films: the grid is coarse for the contact that carries most or that with the thinnest film: in the "
-        f"middle it may be off by {central:.2g} %, at its thinnest by {minimum:.2g} %; take more `nodes`."
-    )
-    brief = f"Films: coarse grid, off by up to {100.0 * worst:.2g} %; take more nodes."
-    return [Doubt(sentence, "grid of kept", worst, moves=worst, brief=brief)]
 
 
 def _interferometry(built: Built, values: Mapping[str, np.ndarray]) -> str:

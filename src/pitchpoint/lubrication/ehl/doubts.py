@@ -23,10 +23,12 @@ from pitchpoint.materials.registry import SHEAR_STRESS
 from pitchpoint.status import Code
 
 __all__ = [
+    "GRID",
     "UNSOLVED",
     "check",
     "flooded_inlet",
     "of_conduction",
+    "of_grid",
     "of_heat",
     "of_volume",
     "starved",
@@ -63,6 +65,9 @@ SHEARED: Final = 0.1
 WIDE: Final = 0.1
 """Half-width over radius, or over the size of a tooth, from which on bodies are no half spaces any more."""
 
+
+GRID: Final = "grid"
+"""Kind of the sentence on films that the grid makes wrong."""
 
 UNSOLVED: Final = "unsolved"
 """Kind of the sentence on contacts that have no film."""
@@ -146,7 +151,7 @@ def warnings(
     yield from _of_half_space(some, half_width, size)
     yield from _of_inlet(some, half_width)
     yield from _of_long_inlet(some, found)
-    yield from _of_grid(*grid_error[:, solved])
+    yield from of_grid(*grid_error[:, solved])
     yield from _of_shear(some, found)
     if some.texture is not None:
         yield from _of_roughness(np.asarray(some.texture.rq), half_width)
@@ -356,15 +361,21 @@ def _of_thinning(fluid: Fluid) -> Iterator[Doubt]:
         )
 
 
-def _of_grid(central: NDArray[np.float64], minimum: NDArray[np.float64]) -> Iterator[Doubt]:
+def of_grid(central: NDArray[np.float64], minimum: NDArray[np.float64]) -> Iterator[Doubt]:
+    """That a grid is coarse for films.
+
+    Args:
+        central: estimated errors of films in the middle, over them, NaN where unknown, shape (b,).
+        minimum: the same of smallest films.
+    """
     worst = np.fmax(central, minimum)
     coarse = worst > COARSE
     if coarse.any():
         yield Doubt(
             f"the grid is coarse for the films of {coarse.sum()} of {coarse.size} contacts: in the middle "
-            f"they may be off by {100.0 * np.nanmax(central):.2g} %, smallest ones by "
+            f"they may be off by {100.0 * np.fmax.reduce(central, initial=0.0):.2g} %, smallest ones by "
             f"{100.0 * np.nanmax(minimum):.2g} %; take more nodes",
-            "grid",
+            GRID,
             np.nanmax(worst),
             moves=np.nanmax(worst),
             brief=f"coarse grid: films off by up to {100.0 * np.nanmax(worst):.2g} %, take more nodes",

@@ -17,6 +17,7 @@ from pitchpoint.lubrication.ehl.doubts import (
     WIDE,
     extrapolated_pressure,
     of_conduction,
+    of_grid,
     of_heat,
     of_volume,
     starved,
@@ -30,6 +31,7 @@ from pitchpoint.lubrication.ehl.patch.fields import (
     Response,
     patch_film,
 )
+from pitchpoint.lubrication.ehl.patch.grid_error import grid_errors
 from pitchpoint.lubrication.ehl.patch.heat import (
     TEMPERATURES,
     PatchTemperatures,
@@ -90,6 +92,9 @@ class PatchEnded:
         steps: of Newton's method, on all grids.
         temperature: defect of the temperature of the film over its largest rise; None of isothermal films.
         turns: between pressure and temperature, on all grids; None of isothermal films.
+        grid: estimate of the error of the film in the middle that the grid makes, over that film, from the
+            film on a grid with half as many cells either way; NaN where there is none.
+        grid_minimum: the same of the smallest film.
     """
 
     code: Code
@@ -98,6 +103,8 @@ class PatchEnded:
     steps: int
     temperature: float | None = None
     turns: int | None = None
+    grid: float = np.nan
+    grid_minimum: float = np.nan
 
 
 @dataclass(frozen=True)
@@ -200,6 +207,9 @@ def solve_patch(
     pressure: Any = np.asarray(end.pressure)
     response = Response(array(approach), array(by_load), end.by_load, end.by_approach)
     ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)
+    if code == Code.SOLVED and ended.reynolds < ENOUGH:
+        errors = grid_errors(own, layout, problem, pressure, end.level, held)
+        ended = replace(ended, grid=errors[0], grid_minimum=errors[1])
     heats = heated(own)
     if heats is not None:
         off = float(_defect(heats, problem, end.pressure, end.level))
@@ -518,10 +528,11 @@ def _warnings(
         yield Doubt(
             f"the grid is coarse for a film of {1e9 * film.mean_film:.3g} nm: beside the contact the gap "
             f"opens by {1e9 * least:.3g} nm within a cell; take more nodes",
-            "grid",
+            "opening",
             least / float(film.mean_film),
             brief=f"coarse grid for a film of {1e9 * film.mean_film:.3g} nm: take more nodes",
         )
+    yield from of_grid(np.array([ended.grid]), np.array([ended.grid_minimum]))
     if film.heat is not None:
         peclet = np.array([[film.heat.peclet_a], [film.heat.peclet_b]])
         slowest = [[np.min(np.abs(one))] for one in (contact.speed_a, contact.speed_b)]

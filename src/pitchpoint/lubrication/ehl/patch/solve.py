@@ -47,6 +47,7 @@ __all__ = [
     "dry_start",
     "dry_under",
     "finer",
+    "gap_on",
     "shown_film",
     "solve",
     "touches",
@@ -158,7 +159,7 @@ def touches(problem: Problem, state: State) -> bool:
     """Whether smooth surfaces carry load without oil, as where a grid is too coarse for their film."""
     if float(problem.flow.texture.rq) > 0.0:
         return False
-    gap = _gap(problem, array(state.pressure), array(state.level))
+    gap = gap_on(problem, array(state.pressure), array(state.level))
     return bool(np.any(np.asarray(problem.flow.asperity_pressure(gap)) > 0.0))
 
 
@@ -192,7 +193,7 @@ def _bedded(problem: Problem, bed: float) -> HalfSpace:
 def _mean_gap(problem: Problem, dry: NDArray[np.float64], pressure: Any, level: Any) -> float:
     """Mean gap where a dry contact carries, as much as it carries."""
     weight = np.asarray(problem.bodies.areas)[:, None] * dry
-    gap = np.asarray(_gap(problem, pressure, array(level)))
+    gap = np.asarray(gap_on(problem, pressure, array(level)))
     return float(np.sum(gap * weight) / np.sum(weight))
 
 
@@ -200,7 +201,8 @@ def _gap_of(problem: Problem, pressure: Array, level: Array) -> Array:
     return problem.gap(pressure, level)
 
 
-_gap = fast_program(_gap_of)
+gap_on = fast_program(_gap_of)
+"""Gap of the mean planes in every cell of a solution, in units of its own, shape (y, x)."""
 
 
 def finer(coarse: Found, fine: Problem, fine_dry: NDArray[np.float64]) -> tuple[Any, Any]:
