@@ -101,6 +101,7 @@ def test_a_ball_has_the_film_of_hamrock_and_dowson():
     assert found.film.central_film == pytest.approx(float(law), rel=0.05)
 
 
+@pytest.mark.whole
 def test_errors_by_the_grid_are_estimated_from_half_as_many_cells():
     fine, half = coarse(ball()), solve_patch(ball(), nodes=33, cells=32)
     for name, part, error in zip(

@@ -62,8 +62,8 @@ def grid_errors(
     rise = np.asarray(problem.flow.temperature_rise)
     near = Earlier(layout, pressure - held, mean, rise if rise.ndim else None)
     half = as_warm(near, layout, problem_on(contact, layout, nodes // 2 + 1, cells // 2, cells))
-    start = warm_start(near, layout, half, np.asarray(dry_under(half).pressure))
-    state = iterated(half, *map(array, start), WARM_TIME, None, CAREFUL)
+    begin, level = warm_start(near, layout, half, np.asarray(dry_under(half).pressure))
+    state = iterated(half, array(begin), array(level), WARM_TIME, None, CAREFUL)
     if not state.residual < ENOUGH:
         return UNKNOWN
     coarse = _films(half, np.asarray(gap_on(half, state.pressure, state.level)))
