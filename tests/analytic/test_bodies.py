@@ -130,8 +130,10 @@ def test_a_rim_is_judged_by_what_its_material_bears():
 
     assert told("3.3 GPa", "1.2 mm") == []
     (steel,) = told("206 GPa", "1.2 mm")
-    assert "usual for its size and its wave are 0.26 mm" in steel
+    assert "usual for cups of steel of its size and its wave are 0.26 mm" in steel
     (soft,) = told("3.3 GPa", "3.6 mm")
-    within = re.search(r"strains the rim of the flexspline by (\S+) %; .* 0\.5 % at (\S+) mm", soft)
+    within = re.search(r"strains the rim of the flexspline by (\S+) %,.* 0\.5 % .*: (\S+) mm", soft)
     assert float(within[1]) == pytest.approx(0.57, abs=0.06)
     assert told("3.3 GPa", f"{0.95 * float(within[2])} mm") == []
+    (thin,) = told("3.3 GPa", "0.26 mm")
+    assert "usual for cups of plastic of its size and its wave are 1.22 mm, to be set as" in thin

@@ -73,7 +73,12 @@ def test_the_tooth_found_makes_a_drive_without_interference(found):
     """Every place of the flank on its way against the groove: outlines and positions alone."""
     module = 0.5e-3
     drive = build_strain_wave(
-        teeth=TEETH, module=module, face_width=0.01, form=found.form, deflection=found.deflection
+        teeth=TEETH,
+        module=module,
+        face_width=0.01,
+        form=found.form,
+        deflection=found.deflection,
+        walls="two modules",  # as the search has them
     )
     made = Made() * module
     flank = DoubleArc(found.form, module, float(drive.rim.thickness), made)

@@ -113,7 +113,7 @@ def test_what_lies_behind_the_teeth_stands_among_the_inputs_with_its_status() ->
     assumed = {
         "wave_generator.bearing.ball_diameter": (PROPORTIONS.ball * 60e-3, "0.078 of the pitch"),
         "wave_generator.bearing.race_thickness": (PROPORTIONS.race * 60e-3, "0.0125 of the pitch"),
-        "flexspline.rim_thickness": (0.6e-3, "two modules"),
+        "flexspline.rim_thickness": (0.6e-3, "by the strain of its wave"),
         "flexspline.wall_thickness": (0.3e-3, "half of the rim"),
         "flexspline.cup_length": (30e-3, "half of the pitch diameter"),
         "yielding.bottom_thickness": (0.6e-3, "as thick as the rim"),

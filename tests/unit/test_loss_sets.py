@@ -137,9 +137,9 @@ def test_gears_without_a_wave_generator_have_no_such_losses():
         losses({**TREE, "gears": gears})
 
 
-@pytest.mark.parametrize(("ratio", "part"), [(50, 0.84), (100, 0.87), (160, 0.88)])
-def test_the_bearing_of_the_losses_is_that_of_the_stiffness(ratio, part):
-    """Its diameter is the circle of the balls in usual proportions: exact at 100, and as noted elsewhere."""
+@pytest.mark.parametrize("ratio", [30, 50, 100, 160])
+def test_the_bearing_of_the_losses_is_that_of_the_stiffness(ratio):
+    """Its diameter is the circle of the balls in usual proportions: as noted within 0.6 %, exact at 100."""
     teeth, diameter = 2 * ratio, 60e-3
     drive = build_strain_wave(
         teeth=(teeth, teeth + 2), module=diameter / teeth, face_width=1e-2, bearing=Balls()
@@ -147,5 +147,4 @@ def test_the_bearing_of_the_losses_is_that_of_the_stiffness(ratio, part):
     bore = 2.0 * float(drive.rim.radius) - float(drive.rim.thickness)
     circle = ball_circle(Balls(), diameter, bore)
     (value,) = constants("mean_diameter")
-    assert circle / diameter == pytest.approx(part, abs=0.006)
-    assert circle / diameter == pytest.approx(value, rel=0.035 if ratio != 100 else 0.002)
+    assert circle / diameter == pytest.approx(value, rel=0.0065 if ratio != 100 else 0.002)

@@ -398,6 +398,7 @@ def _warnings(
                 moves=error,
                 brief=f"Wear: the depth may be {100.0 * error:.2g} % off by grid and steps.",
                 about=("deepest_wear", "final_depth", "final_cycles", "life_hours"),
+                brief=f"Wear: the depth may be {100.0 * error:.2g} % off by grid and steps.",
             )
         )
     if end == "lost":

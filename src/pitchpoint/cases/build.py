@@ -465,7 +465,8 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     fitted = loss_sets()[name].fitted if name else None
     point = operation_at(case.operation)
     built = Built(case, design, point, models, oil, used, tuple(told), fitted=fitted)
-    of_materials = built.family.of_materials(design.mesh, design.solids)
+    records = [one.record for one in used]
+    of_materials = built.family.of_materials(design.mesh, design.solids, records)
     return replace(built, told=(*told, *of_materials, *_left_out(built), *_extrapolated(built)))
 
 

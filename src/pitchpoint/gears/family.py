@@ -13,9 +13,9 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.bodies import MassInertia
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.table import Deviation
-from pitchpoint.materials.solids import Solid
+from pitchpoint.materials.solids import Solid, SolidRecord
 
-__all__ = ["Family", "Followed", "Made", "Turning", "waves"]
+__all__ = ["Family", "Followed", "Made", "Records", "Solids", "Turning", "waves"]
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,8 @@ class Turning:
     )
 
 
+Solids = Sequence[Solid]
+Records = Sequence[SolidRecord]
 Made = tuple[Mesh, tuple[str, ...]]
 """A mesh and what is to be said of it."""
 
@@ -88,7 +90,7 @@ class Family:
     drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, Any] = field(default_factory=dict)
     bodies: Callable[[Any, Any, Sequence[float]], tuple[list[MassInertia], str]] | None = None
-    of_materials: Callable[[Any, Sequence[Solid]], tuple[str, ...]] = lambda mesh, solids: ()
+    of_materials: Callable[[Any, Solids, Records], tuple[str, ...]] = lambda *_: ()
     together: Callable[[Sequence[Any], str, int], list[Made | InputError]] | None = None
 
 

@@ -142,6 +142,7 @@ def fit_double_arc(
         ...     face_width=0.01,
         ...     form=found.form,
         ...     deflection=found.deflection,
+        ...     walls="two modules",
         ... )
 
     Source: design variables and bounds as Zhao et al. (2022) and Liu et al. (2025) describe them; they

@@ -8,7 +8,7 @@ from typing import Any
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.gears.bodies import MassInertia, as_one, disc
-from pitchpoint.gears.family import Family, Followed, Turning, waves
+from pitchpoint.gears.family import Family, Followed, Records, Solids, Turning, waves
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_circle
 from pitchpoint.gears.strain_wave.design import (
@@ -115,6 +115,12 @@ def _of_drive(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Any]:
         **_of_walls(gears, drive),
         **_of_parts(gears, drive),
     }
+
+
+def _of_cup(drive: StrainWave, solids: Solids, records: Records) -> tuple[str, ...]:
+    """Sentences on a rim by the material of the flexspline."""
+    tensile = records[0].tensile_strength
+    return check_rim(drive, float(solids[0].young), None if tensile is None else tensile.value)
 
 
 _RIMS = {
@@ -253,7 +259,7 @@ FAMILY = Family(
         "spline alone, shown by order, stay as they are.",
     ),
     bodies=_bodies,
-    of_materials=lambda drive, solids: check_rim(drive, float(solids[0].young)),
+    of_materials=_of_cup,
     drawing={
         "tooth": ("corner", "xy"),
         "space": ("space_corner", "xy"),

@@ -29,9 +29,10 @@ class Proportions:
         outside: outer diameter of the circular spline.
         ball, balls: diameter of the balls of the wave generator's bearing, and their number.
         race: thickness of the outer race that bends with the ring.
-        rim: largest thickness of the flexspline's rim.
+        rim: largest thickness of the flexspline's rim, of steel.
         strain: largest one by which the wave bends that rim; chosen so that drives of 50 and 30 are softer
             than those of 100 about as catalogues say.
+        plastic_rim, plastic_strain: the same of plastic, as printed and moulded cups are.
     """
 
     flange: float = 0.5
@@ -46,6 +47,8 @@ class Proportions:
     race: float = 0.0125
     rim: float = 0.01
     strain: float = 3.75e-4
+    plastic_rim: float = 0.02
+    plastic_strain: float = 2e-3
 
     def behind(self, diameter: float) -> dict[str, float]:
         """Usual dimensions of the parts behind the teeth, by name [m]; of bolts their number.
@@ -79,12 +82,13 @@ class Proportions:
 PROPORTIONS = Proportions()
 
 
-def rim_by_strain(diameter: float, deflection: float) -> float:
+def rim_by_strain(diameter: float, deflection: float, *, plastic: bool = False) -> float:
     """Thickness of a rim that its wave bends no further than usual [m].
 
     Args:
         diameter: pitch diameter of the flexspline [m].
         deflection: of the ring on the long axis [m].
+        plastic: True for cups of plastic, False for those of steel.
 
     From the curvature 3 w0/r^2 by which a wave of two lobes bends a ring that keeps its length: the strain
     at its faces is 6 w0 t/d^2. A derived rule; what makers take is not published.
@@ -93,4 +97,9 @@ def rim_by_strain(diameter: float, deflection: float) -> float:
         >>> [round(1e3 * rim_by_strain(0.06, 0.06 / (2 * ratio)), 3) for ratio in (30, 50, 100)]
         [0.225, 0.375, 0.6]
     """
-    return min(PROPORTIONS.rim * diameter, PROPORTIONS.strain * diameter**2 / (6.0 * deflection))
+    most, strain = (
+        (PROPORTIONS.plastic_rim, PROPORTIONS.plastic_strain)
+        if plastic
+        else (PROPORTIONS.rim, PROPORTIONS.strain)
+    )
+    return min(most * diameter, strain * diameter**2 / (6.0 * deflection))
