@@ -306,9 +306,8 @@ class LubricantRecord:
 
     def data(self) -> dict[str, Datum]:
         """Return the values by name, each with its status and source."""
-        gold = (
-            {"gold_s", "gold_t"} if self.free_volume else set()
-        )  # whose law the volume takes the place of
+        # The volume takes the place of Gold's law.
+        gold = {"gold_s", "gold_t"} if self.free_volume else set()
         plain = {key: datum for key, datum in self._plain().items() if key not in gold}
         return {**plain, **self.free_volume}
 
