@@ -212,8 +212,9 @@ def test_films_of_all_turns_are_counted():
 
 def test_films_are_solved_by_the_choices_of_the_case():
     chosen = {"solver": "line", "nodes": 65, "boundary_friction": 0.08}
-    films = built(film=chosen).models[0].law.films
-    assert films == FilmModel(nodes=65, boundary_friction=0.08, inlet=2e-3)
+    (models,) = built(film=chosen).models
+    assert models.law.films == FilmModel(nodes=65, boundary_friction=0.08, inlet=2e-3)
+    assert models.film == built(friction="xu_2007").models[0].film  # for the range of laws
 
 
 @pytest.mark.whole

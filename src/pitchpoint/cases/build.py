@@ -695,9 +695,9 @@ def _under(
     formulas = tuple(law for law in laws if law.films is None)
     parameters = {law.name: _parameters(law, given.get(law.name, {})) for law in formulas}
     sharing = iter(replace(models, friction=formulas, parameters=parameters).each)
+    alone = replace(models.without_friction, film=models.film)
     return tuple(
-        next(sharing) if law.films is None else replace(models.without_friction, friction=(law,))
-        for law in laws
+        next(sharing) if law.films is None else replace(alone, friction=(law,)) for law in laws
     )
 
 
