@@ -396,7 +396,6 @@ def _warnings(
                 "wear grid",
                 error,
                 moves=error,
-                brief=f"Wear: the depth may be {100.0 * error:.2g} % off by grid and steps.",
                 about=("deepest_wear", "final_depth", "final_cycles", "life_hours"),
                 brief=f"Wear: the depth may be {100.0 * error:.2g} % off by grid and steps.",
             )
