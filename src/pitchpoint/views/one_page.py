@@ -116,7 +116,8 @@ def _differing(page: Page) -> Table | None:
     if len(few) < 2 or not table.rows:
         return None
     title, rows = "Inputs that differ", named_inputs(table)
-    return _cut(Table(["", *few], rows, caption=title), _INPUTS)
+    room = _INPUTS if page.designs else _INPUTS // 2  # the gears of a case stand above
+    return _cut(Table(["", *few], rows, caption=title), room)
 
 
 def _results(page: Page, outcome: Outcome) -> Table:
