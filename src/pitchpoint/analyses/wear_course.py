@@ -291,7 +291,7 @@ def _where(built: Built, depth: np.ndarray) -> dict[str, Any]:
         return found
     if cells.strips > 1:
         return found | _largest_in_cells(built, flank, depth)
-    order = np.argsort(flank[..., 0], axis=1)[:, : int(np.isfinite(flank[0]).sum())]
+    order = _along_flank(flank[..., 0])[:, : int(np.isfinite(flank[0]).sum())]
     return found | {
         "profile_radius": (
             ("member", "place"),
@@ -302,6 +302,13 @@ def _where(built: Built, depth: np.ndarray) -> dict[str, Any]:
             np.take_along_axis(depth[..., 0], order[None], axis=2),
         ),
     }
+
+
+def _along_flank(places: np.ndarray) -> np.ndarray:
+    """Order of places along both flanks; where two stretches meet, in the sense of the path of contact."""
+    met = np.round(places / np.nanmax(places), 9)
+    sense = np.sign(places[:, 1] - places[:, 0])[:, None] * np.arange(places.shape[1])
+    return np.lexsort((sense, met), axis=1)
 
 
 def _largest_in_cells(built: Built, flank: np.ndarray, depth: np.ndarray) -> dict[str, Any]:
