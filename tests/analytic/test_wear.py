@@ -464,18 +464,20 @@ def test_a_film_that_is_not_solved_is_never_a_result(monkeypatch):
 
 def test_tips_lose_what_the_flank_loses_over_the_cosine_of_its_angle():
     built = pair("equal")
-    _, cells = begun(built)
-    mesh, tips = built.design.mesh, tips_of(built.design.mesh, cells)
+    start, cells = begun(built)
+    mesh, tips = built.design.mesh, tips_of(built.design.mesh, cells, start)
     arc = np.asarray(mesh.dimensions()["tip_thickness"])
     radius, base = np.asarray(mesh.tip_radii), np.asarray(mesh.base_radii)
     half = arc / (2.0 * radius)
     assert tips.width == pytest.approx(2.0 * radius * np.sin(half), rel=1e-6)
     assert tips.taken == pytest.approx(1.0 / np.cos(np.arccos(base / radius) - half), rel=1e-6)
-    depth = np.zeros((2, cells.count, cells.strips))
-    depth[:, -1] = 1e-5
+    flank = np.asarray(start.places)
+    outermost = flank > (1.0 - 1e-9) * np.nanmax(flank, axis=(1, 2), keepdims=True)
+    depth = np.zeros(cells.shape)
+    depth[:, cells.count :][outermost] = 1e-5
     assert tips.left(depth) == pytest.approx(tips.width - 1e-5 * tips.taken, rel=1e-12)
-    depth[:, -1], depth[:, 0] = 0.0, 1e-5
-    assert tips.left(depth) == pytest.approx(tips.width, rel=1e-12)
+    # Neither cells beside the tip nor places below it count.
+    assert tips.left(1e-5 - depth) == pytest.approx(tips.width, rel=1e-12)
 
 
 def test_cells_lie_on_the_involutes_of_the_teeth():
@@ -497,12 +499,13 @@ def test_cells_lie_on_the_involutes_of_the_teeth():
 def test_even_wear_of_both_flanks_adds_both_depths_to_the_backlash():
     built = pair("equal")
     start, cells = begun(built)
-    depth = np.full((2, cells.count, cells.strips), 1e-5)
+    depth = np.full(cells.shape, 1e-5)
     grown = backlash_growth(built.design.mesh, cells, start, depth)
     assert grown == pytest.approx(2e-5, rel=1e-9)
     depth[1] = 0.0
     # A pair that is not worn there touches first.
-    depth[0, : cells.count // 2] = 0.0
+    flank = np.asarray(start.places)[0]
+    depth[0, cells.count :][flank < np.nanmedian(flank)] = 0.0
     less = backlash_growth(built.design.mesh, cells, start, depth)
     assert 0.0 < less <= 1e-5 * (1.0 + 1e-9)
 

@@ -37,6 +37,9 @@ __all__ = ["asked", "further", "joined", "wear_part"]
 TOLD = 0.03
 """Error of the largest depth, over it, from which on a sentence tells it."""
 
+SLICED = 0.06
+"""Error of the depth on helical lines, over it, times their slices: above that of random pairs."""
+
 HOLDS = 0.2
 """Depth over the module up to which flanks wear along normals that stay where they are."""
 
@@ -66,9 +69,8 @@ def _course(built: Built) -> _Course:
         start, cells = as_new(design, built.operation, built.models[0], parts=parts, count=every)
     except InputError as error:
         raise InputError(error.message, key="wear") from None
-    return _Course(
-        start, cells, model, tips_of(design.mesh, cells) if design.mesh.toothed else None
-    )
+    tips = tips_of(design.mesh, cells, start) if design.mesh.toothed else None
+    return _Course(start, cells, model, tips)
 
 
 def _rate(built: Built, depth: np.ndarray, *, coarser: bool = False) -> Rate:
@@ -225,6 +227,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         end = "module"
     merged = np.stack([course.cells.merged(one) for one in depth])
     values["wear_error"] += np.abs(deepest - merged[:, :, rows].max(axis=(2, 3)))
+    values["wear_error"] += _of_slices(course.start) * deepest
     volumes = [np.asarray(course.cells.volumes(array(one))) for one in depth]
     sensitivities = _sensitivities(built, values)
     inner = course.cells.count
@@ -267,6 +270,12 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         warnings=_warnings(built, values, deepest, end),
         solve=told_of(codes, values["wear_error"].max(axis=1), np.arange(codes.size)),
     )
+
+
+def _of_slices(start: Start) -> float:
+    """What slices of lines are taken to be off by, over the depth: none on lines of one."""
+    slices = start.contacts.active.shape[1]
+    return SLICED / slices if start.places is not None and slices > 1 else 0.0
 
 
 def _where(built: Built, depth: np.ndarray) -> dict[str, Any]:

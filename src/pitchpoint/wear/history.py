@@ -292,6 +292,7 @@ class Start(eqx.Module):
         parts: phases in each stretch between events; static.
         places: arc lengths of the places on both flanks, see `Cells`, not a number where nothing touches [m];
             None where there are none.
+        gap: of flanks as new at these places, likewise [m].
         felt: worn flanks at these spots, for many states of them; None where each is looked at anew.
     """
 
@@ -303,6 +304,7 @@ class Start(eqx.Module):
     teeth: TeethAt | None
     parts: int = eqx.field(static=True)
     places: Depths | None = None
+    gap: Float[Array, "place strip"] | None = None
     felt: tuple[WornAt, WornAt] | None = None
 
     @classmethod
@@ -321,11 +323,18 @@ class Start(eqx.Module):
             given = mesh.sections, design.solids, models.compliance
             teeth = teeth_at(contacts, *given)
             body = mesh.body_compliance(contacts, design.solids) if mesh.couples else None
-        spots, places = mesh.spots(contacts, phase), None
+        spots, places, gap = mesh.spots(contacts, phase), None, None
         if mesh.along_action:
-            flank = jnp.where(contacts.active, contacts.flank, jnp.nan)
-            places = _at_places(flank, jnp.array(_PARABOLA), parts)
-        return cls(phase, weight, contacts, spots, body, teeth, parts, places)
+            lengths = jnp.stack(
+                [
+                    jnp.broadcast_to(length, contacts.active.shape)
+                    for length in (*contacts.flank, contacts.gap)
+                ]
+            )
+            touching = jnp.where(contacts.active, lengths, jnp.nan)
+            held = _at_places(touching, jnp.array(_PARABOLA), parts)
+            places, gap = held[:2], held[2]
+        return cls(phase, weight, contacts, spots, body, teeth, parts, places, gap)
 
     def on(self, cells: Cells) -> Self:
         """The same for many states of flanks, where the wear is the same across the face.

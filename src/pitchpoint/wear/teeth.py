@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 from numpy.polynomial.chebyshev import chebfit, chebval
 from numpy.typing import NDArray
 
@@ -19,6 +19,9 @@ __all__ = ["STEEPEST", "HalfTeeth", "Tips", "backlash_growth", "half_teeth", "ti
 STEEPEST = np.deg2rad(60.0)
 """Angle between flank and axis of the tooth beyond which a tip is rounded."""
 
+SAME = 1e-6
+"""Distance of places over the length of the flank below which they are one place."""
+
 Values = NDArray[np.float64]
 
 
@@ -31,21 +34,21 @@ class Tips(NamedTuple):
     Attributes:
         width: of flanks as new [m].
         taken: off it by a unit of depth there, one over the cosine of the angle of the flank [1].
-        cell: that holds this place.
+        rows: which of the depths lie there: those of places on a flank that has any, else of a cell.
     """
 
     width: Float[np.ndarray, "2"]
     taken: Float[np.ndarray, "2"]
-    cell: tuple[int, int]
+    rows: Bool[np.ndarray, "2 row strip"]
 
     def left(self, depth: Values) -> Values:
         """Thickness at the tip where most is gone from it across the face, of each member [m].
 
         Args:
-            depth: worn off [member, cell, strip] [m].
+            depth: worn off every cell and place [member, row, strip] [m].
         """
-        gone = [depth[k, cell].max() for k, cell in enumerate(self.cell)]
-        return np.asarray(self.width - self.taken * np.array(gone))
+        gone = np.where(self.rows, depth, 0.0).max(axis=(1, 2))
+        return np.asarray(self.width - self.taken * gone)
 
 
 class HalfTeeth(NamedTuple):
@@ -87,17 +90,17 @@ def _at_cells(nodes: tuple[Values, ...], flank: Values) -> Values:
     return np.asarray(chebval(np.clip(2.0 * place - 1.0, -1.0, 1.0), series))
 
 
-def tips_of(mesh: Mesh, cells: Cells) -> Tips:
+def tips_of(mesh: Mesh, cells: Cells, start: Start) -> Tips:
     """Tips of the teeth of a mesh that has any, see `Mesh.toothed`.
 
     Args:
         mesh: with flanks as new.
         cells: on both flanks.
+        start: of the mesh.
     """
-    width, taken, held = [], [], []
-    for (half, _, angle, reach), ends in zip(
-        jax.device_get(_tips(mesh)), np.asarray(cells.flank), strict=True
-    ):
+    width, taken, rows = [], [], np.zeros(cells.shape, bool)
+    ends_of = zip(jax.device_get(_tips(mesh)), np.asarray(cells.flank), strict=True)
+    for member, ((half, _, angle, reach), ends) in enumerate(ends_of):
         part = 0.5 * (chebyshev_nodes(half.size) + 1.0)
         places = (reach[0] + (reach[1] - reach[0]) * part) ** 2
         cell = (places - ends[0]) / (ends[1] - ends[0]) * cells.count
@@ -106,8 +109,12 @@ def tips_of(mesh: Mesh, cells: Cells) -> Tips:
         at = int(np.flatnonzero(reached)[-1])
         width.append(2.0 * half[at])
         taken.append(1.0 / np.cos(angle[at]))
-        held.append(int(np.clip(cell[at], 0, cells.count - 1)))
-    return Tips(np.array(width), np.array(taken), (held[0], held[1]))
+        if start.places is None:
+            rows[member, int(np.clip(cell[at], 0, cells.count - 1))] = True
+        else:
+            apart = np.abs(np.asarray(start.places[member]) - places[at])
+            rows[member, cells.count :] = apart <= np.nanmin(apart) + SAME * abs(ends[1] - ends[0])
+    return Tips(np.array(width), np.array(taken), rows)
 
 
 @program
@@ -122,15 +129,31 @@ def backlash_growth(mesh: Mesh, cells: Cells, start: Start, depth: Values) -> fl
     In each position the pair with the smallest gap touches first: what it has lost of both flanks is the
     growth there.
 
+    Validity:
+        Helical lines wear least at their pitch line, beside which the nearest slice lies: the growth is too
+        large, and less with more slices.
+
     Args:
         mesh: with flanks as new.
         cells: on both flanks.
         start: of the mesh.
-        depth: worn off [member, cell, strip] [m].
+        depth: worn off every cell and place [member, row, strip] [m].
     """
-    worn = mesh.worn(cells.surfaces(array(depth)))
-    before, after = (_least_gap(one, start) for one in (_unworn(mesh, cells), worn))
-    return float(np.max(after - before))
+    if start.gap is None:
+        worn = mesh.worn(cells.surfaces(array(depth)))
+        before, after = (_least_gap(state, start) for state in (_unworn(mesh, cells), worn))
+    else:
+        gap = np.asarray(start.gap)
+        gone = depth[:, cells.count :].sum(axis=0)
+        before, after = (_least_at_places(state, start) for state in (gap, gap + gone))
+    return float(np.nanmax(after - before))
+
+
+def _least_at_places(gap: Values, start: Start) -> Values:
+    """Smallest gap of all pairs in each position in which places are held."""
+    pairs, slices, nodes = start.contacts.active.shape
+    apart = [state.reshape(pairs, -1, slices) for state in np.split(gap, [pairs * nodes])]
+    return np.concatenate([np.fmin.reduce(state, axis=(0, 2)) for state in apart])
 
 
 def _unworn(mesh: Mesh, cells: Cells) -> Mesh:
