@@ -13,6 +13,7 @@ from screens import REPORT, faults_of_the_screen, screen
 
 from pitchpoint.cases.build import ALONE, LACKING
 from pitchpoint.doubts import Doubt
+from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.columns import fitted
@@ -124,6 +125,21 @@ def test_variants_stand_side_by_side(pair: dict[str, Outcome]) -> None:
     rows = beside_each_other(two)
     assert [row[""] for row in rows] == [figure.name for figure in key_figures(in_order(), one)]
     assert all(row["default"] == row["bad"] for row in rows)
+
+
+def test_printed_numbers_of_variants_take_a_line_each_where_there_is_no_room(
+    pair: dict[str, Outcome],
+) -> None:
+    row = Row("loss", "Table 1", 1.0, 1.0, "W", 0.1, "predicted", "pass", "").as_json()
+    missed = row | {"verdict": "miss", "expected_miss": True}
+    rows = [row, missed, row | {"kind": "reference"}, missed | {"kind": "reference"}]
+    long = " ".join(["the film is thin at the pitch point;"] * 10)
+    every = {
+        name: doubting(pair["default"], rows=rows, implausible=[f"Fails: {long}"])
+        for name in ("first", "second", "third", "fourth")
+    }
+    lines = [line for line in shown(every) if "printed numbers: 1 met" in line]
+    assert [line.partition(":")[0] for line in lines] == [*every]
 
 
 def test_key_figures_are_named_once(pair: dict[str, Outcome]) -> None:

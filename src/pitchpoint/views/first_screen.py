@@ -50,7 +50,12 @@ def first_screen(outcomes: Mapping[str, Outcome], report: Path, width: int) -> l
     title = _title(outcome, len(outcomes))
     at = _operation(outcome) if len(outcomes) == 1 else ""
     doubts = _doubts(outcomes, width)
-    foot = [*_rows_met(outcomes, width), *_more(outcomes, report, width)]
+    more = _more(outcomes, report, width)
+    rows = [*_rows_met(outcomes)]
+    folded = [line for text in rows for line in _folded(text, width)]
+    if 1 + len(doubts) + len(folded) + len(more) > FEW_LINES:
+        folded = [show.first_clauses(text, width) for text in rows]
+    foot = [*map(Line, folded), *more]
     room = FEW_LINES - len(doubts) - len(foot) - bool(at)
     titles = _folded(title, width)
     titles = titles if len(titles) <= min(room, 2) else [show.first_clauses(title, width)]
@@ -155,13 +160,13 @@ def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
     return [Line(text, "figure") for text in lines]
 
 
-def _rows_met(outcomes: Mapping[str, Outcome], width: int) -> Iterator[Line]:
+def _rows_met(outcomes: Mapping[str, Outcome]) -> Iterator[str]:
     """How many printed numbers each variant meets, of a published case."""
     for variant, outcome in outcomes.items():
         if outcome.rows:
             several = sum(bool(other.rows) for other in outcomes.values()) > 1
             start = f"{variant}: " if several else ""
-            yield from (Line(text) for text in _folded(f"{start}{in_words(outcome.rows)}", width))
+            yield f"{start}{in_words(outcome.rows)}"
 
 
 def _folded(text: str, width: int) -> list[str]:
