@@ -243,8 +243,31 @@ def in_python(*, sliding: Any, rough: float = 0.1) -> Any:
 
 
 def test_a_lambda_has_a_name_in_results() -> None:
-    own = own_law(PAIR.held[0], lambda *, slide_roll_ratio: 0.05 + 0.0 * slide_roll_ratio).own
-    assert own is not None and (own.name, own.title) == ("own_law", "own_law, the user's own")
+    (own,) = own_law(PAIR.held[0], lambda *, slide_roll_ratio: 0.05 + 0.0 * slide_roll_ratio).own
+    assert not isinstance(own, str) and own.title == "own_law, the user's own"
+    assert own.name == "own_law"
+
+
+def linear(*, slide_roll_ratio: Any, slope: float = 0.1) -> Any:
+    return slope * slide_roll_ratio
+
+
+def test_laws_of_ones_own_stand_beside_those_by_name_in_their_order() -> None:
+    case = pp.Case(PAIR).set({"models.friction": [{"name": "constant", "coefficient": 0.03}]})
+    beside = own_law(case.held[0], ["Xu 2007", linear, "iso_tr_14179_2"]).built({})
+    assert beside.law_names == ["xu_2007", "linear", "iso_tr_14179_2"]
+    assert [choice.name for choice in beside.case.models.friction] == ["xu_2007", "iso_tr_14179_2"]
+    assert own_law(case.held[0], linear).built({}).law_names == ["linear"]
+    assert own_law(case.held[0], ["xu_2007"]).own == ()
+
+
+def test_laws_that_cannot_stand_beside_each_other_are_told() -> None:
+    with pytest.raises(pp.InputError, match="did you mean xu_2007"):
+        pp.run(PAIR, friction=[linear, "xu_2006"])
+    with pytest.raises(pp.InputError, match="friction: two laws are named linear, and results go"):
+        pp.run(PAIR, friction=[linear, linear])
+    with pytest.raises(pp.InputError, match=r"friction: .* a list of such and of names"):
+        pp.run(PAIR, friction=[linear, 0.05])  # type: ignore[list-item]
 
 
 @pytest.mark.parametrize("law", [in_numpy, in_math, in_python])

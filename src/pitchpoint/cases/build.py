@@ -72,6 +72,7 @@ from pitchpoint.lubrication.registry import (
     LAWS,
     ROLLING_RESISTANCE,
     AsperityLoad,
+    ChosenLaws,
     FilmThickness,
     FrictionLaw,
 )
@@ -432,7 +433,7 @@ def operation_at(point: Operating) -> Operation:
     return Operation(array(point.load), array(point.speed), array(point.temperature))
 
 
-def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Built:
+def build(case: Case, document: Document, own: ChosenLaws = ()) -> Built:
     """Design and operating point of a case.
 
     Raises:
@@ -528,7 +529,7 @@ def _check_parts(
     oil: lubricants.LubricantRecord | None,
     mesh: Mesh | None,
     used: tuple[SolidInUse, SolidInUse] | None,
-    own: FrictionLaw | None,
+    own: ChosenLaws,
 ) -> None:
     """Complains of what does not fit together, as far as its parts are sound.
 
@@ -536,7 +537,7 @@ def _check_parts(
         case: whole.
         wrong: that has been found already.
         oil, mesh, used: None for what could not be built.
-        own: a friction law of the user's own.
+        own: friction laws in place of those of the case, if any is the user's own.
     """
     if oil is not None:
         wrong.tried(_check_temperature, case.operation.temperature, oil, "operation.temperature")
@@ -629,15 +630,13 @@ def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:
 
 
 def _models(
-    case: Case, own: FrictionLaw | None, used: Sequence[SolidInUse], mesh: Mesh
+    case: Case, own: ChosenLaws, used: Sequence[SolidInUse], mesh: Mesh
 ) -> tuple[Models, ...]:
-    """Models under each law of the case, or under the user's own."""
-    names = [choice.name for choice in case.models.friction]
-    laws = (
-        [_law(name, case, used, mesh) for name in names]
-        if own is None
-        else [_beside_film(own, case)]
-    )
+    """Models under each law of the case, or under those among which the user's own are."""
+    laws = [
+        _beside_film(law, case) if isinstance(law, FrictionLaw) else _law(law, case, used, mesh)
+        for law in own or [choice.name for choice in case.models.friction]
+    ]
     if any(law.films is not None for law in laws):
         return _under(laws, _common(case.models), _given(case.models))
     return _under_formulas(tuple(laws), case.models)
@@ -737,7 +736,7 @@ _WHY_NOT: Mapping[Shape, str] = {
 """What contacts of a shape are not solved by."""
 
 
-def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None, wrong: Complaints) -> None:
+def _check_shapes(case: Case, mesh: Mesh, own: ChosenLaws, wrong: Complaints) -> None:
     """Complains of a film, a rolling law or a user's own law that hold for contacts of another shape."""
     models = case.models
     chosen: dict[str, Law] = {
@@ -747,8 +746,9 @@ def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None, wrong: Compla
     }
     for key, law in chosen.items():
         wrong.under(key).tried(demand_shape, law, mesh.shape)
-    if own is not None:
-        wrong.tried(demand_shape, own, mesh.shape)
+    for friction in own:
+        if isinstance(friction, FrictionLaw):
+            wrong.tried(demand_shape, friction, mesh.shape)
     if case.film is not None and case.film.solver not in FILM_SOLVERS[mesh.shape]:
         told = (
             f"these gears touch {TOUCH[mesh.shape]}, and {_WHY_NOT[mesh.shape]}; take "

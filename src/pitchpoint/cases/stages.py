@@ -33,7 +33,7 @@ from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity, SIValue
-from pitchpoint.lubrication.registry import FrictionLaw
+from pitchpoint.lubrication.registry import ChosenLaws, FrictionLaw
 from pitchpoint.results.variable import End
 
 __all__ = ["Acting", "BuiltDrive", "Ready", "ready"]
@@ -258,7 +258,7 @@ class BuiltDrive:
 Ready = Built | BuiltDrive
 
 
-def ready(case: Case | DriveCase, document: Document, own: FrictionLaw | None = None) -> Ready:
+def ready(case: Case | DriveCase, document: Document, own: ChosenLaws = ()) -> Ready:
     """A case of one mesh or of several, ready to compute.
 
     Raises:
@@ -272,7 +272,7 @@ def ready(case: Case | DriveCase, document: Document, own: FrictionLaw | None = 
         raise error.at(file=document.name) from None
 
 
-def _warm(case: Case, document: Document, own: FrictionLaw | None) -> Built:
+def _warm(case: Case, document: Document, own: ChosenLaws) -> Built:
     """One mesh with its teeth as warm as their loss makes them."""
     cold = build(case, document, own)
     try:
@@ -281,7 +281,7 @@ def _warm(case: Case, document: Document, own: FrictionLaw | None) -> Built:
         raise error.at(file=document.name) from None
 
 
-def _built(case: DriveCase, document: Document, own: FrictionLaw | None) -> BuiltDrive:
+def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
     numbers = range(1, len(case.stages) + 1)
     documents = [_of_stage(case, document, number) for number in numbers]
     wrong = Complaints()

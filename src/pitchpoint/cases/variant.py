@@ -12,7 +12,7 @@ from pitchpoint.cases.schema import Case, DriveCase, usual_at, validate
 from pitchpoint.cases.stages import Ready, ready
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.families import build_together
-from pitchpoint.lubrication.registry import FrictionLaw
+from pitchpoint.lubrication.registry import ChosenLaws
 
 __all__ = [
     "Variant",
@@ -34,7 +34,7 @@ class Variant:
         name: of the file or of the shipped case, for messages.
         variant: one of those in the file.
         settings: values by dotted key that replace those of the file.
-        own: friction law of the user's own.
+        own: friction laws in place of those of the case, if any is the user's own.
         recorded: name of the case whose record the file is; empty where it is the case itself.
         warnings: about the record.
         folder: of the case file, where files that settings name are looked for.
@@ -44,7 +44,7 @@ class Variant:
     name: str
     variant: str
     settings: Mapping[str, Any] = field(default_factory=dict)
-    own: FrictionLaw | None = None
+    own: ChosenLaws = ()
     recorded: str = ""
     warnings: tuple[str, ...] = ()
     folder: Path | None = None

@@ -23,6 +23,7 @@ __all__ = [
     "LAWS",
     "ROLLING_RESISTANCE",
     "AsperityLoad",
+    "ChosenLaws",
     "FilmThickness",
     "FrictionLaw",
     "InletHeating",
@@ -76,6 +77,10 @@ class FrictionLaw:
     def rivals(self) -> "Iterable[FrictionLaw]":
         """Laws of the library."""
         return LAWS
+
+
+ChosenLaws = tuple[FrictionLaw | str, ...]
+"""Laws in place of those of a case: the user's own, and by name those of the library; none if empty."""
 
 
 LAWS: Final[tuple[FrictionLaw, ...]] = (

@@ -20,7 +20,7 @@ from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.case import Case, CaseLike, as_case, written
-from pitchpoint.runs.run import own_law
+from pitchpoint.runs.run import FrictionChoice, own_law
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,7 +52,7 @@ def gradients(
     *,
     law: str | None = None,
     variant: str | None = None,
-    friction: Callable[..., Any] | None = None,
+    friction: FrictionChoice | None = None,
 ) -> "pd.DataFrame":
     """Derivatives of a main figure by every number of a case file on which it depends.
 
@@ -62,7 +62,7 @@ def gradients(
         by: keys by which to differentiate, all by default.
         law: friction law of the case that acts, the first one by default.
         variant: of the case, the first one by default.
-        friction: a law of one's own, see `run`.
+        friction: laws of one's own, see `run`.
 
     Returns:
         By key `value` and its SI `unit`, and `derivative` by it in SI; `attrs` has `of`, its `value` and

@@ -41,7 +41,7 @@ class Result(Mapping[str, Outcome]):
     Args:
         outcomes: by variant, at least one.
         origins: by variant what gives its case again.
-        friction: law of the user's own under which they were computed.
+        friction: laws of the user's own under which they were computed, see `run`.
         studies: beside those of the case.
 
     Tables and datasets are those of all variants, or of the one that is asked for, by default the first.
@@ -51,7 +51,7 @@ class Result(Mapping[str, Outcome]):
         self,
         outcomes: Mapping[str, Outcome],
         origins: Mapping[str, Callable[[], Case]],
-        friction: Callable[..., Any] | None = None,
+        friction: runs.FrictionChoice | None = None,
         studies: Mapping[str, Study] | None = None,
     ) -> None:
         self._outcomes, self._origins, self._friction = dict(outcomes), origins, friction
@@ -234,7 +234,7 @@ def run(
     analyses: Sequence[str] | None = None,
     settings: Mapping[str, Any] | None = None,
     studies: Mapping[str, Study] | None = None,
-    friction: Callable[..., Any] | None = None,
+    friction: runs.FrictionChoice | None = None,
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> Result:
@@ -249,7 +249,8 @@ def run(
         settings: values by dotted key that replace those of the case, SI numbers or texts with a unit.
         studies: further studies, as `--sweep` makes them.
         friction: a law of one's own in place of those of the case: a function of JAX arrays whose
-            keyword arguments are conditions at a contact, see `pitchpoint.lubrication.conditions`.
+            keyword arguments are conditions at a contact, see `pitchpoint.lubrication.conditions`; or
+            several laws in a list, of one's own and by name, `[my_law, "xu_2007"]`.
         overwrite: True to replace the results of another case in the folder.
         progress: told about parts and points.
 

@@ -24,7 +24,7 @@ from pitchpoint.cases.schema import DriveCase, StageTable, in_form, keys, quanti
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import Quantity, shown
-from pitchpoint.lubrication.registry import FrictionLaw
+from pitchpoint.lubrication.registry import ChosenLaws
 from pitchpoint.registry import nearest
 from pitchpoint.runs.python_values import demand_arguments, plain_value
 from pitchpoint.runs.reading import variants_of
@@ -198,7 +198,7 @@ def held(
     case: CaseLike,
     only: Sequence[str] = (),
     settings: Mapping[str, Any] | None = None,
-    own: FrictionLaw | None = None,
+    own: ChosenLaws = (),
 ) -> list[Variant]:
     """Variants of a case, all or those that are named, with further settings and a law of the user's own."""
     demand_arguments(only=only, settings=settings)

@@ -124,6 +124,11 @@ def _are_names(value: Any) -> bool:
     return listed and all(map(_is_name, value))
 
 
+def _are_laws(value: Any) -> bool:
+    listed = isinstance(value, Sequence) and not isinstance(value, str) and len(value) > 0
+    return callable(value) or (listed and all(callable(one) or _is_name(one) for one in value))
+
+
 def _is_path(value: Any) -> bool:
     return isinstance(value, str | os.PathLike) and "\0" not in os.fsdecode(value)
 
@@ -140,7 +145,10 @@ _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "analyses": (_are_names, 'a list of names of parts, ["operation", "cycle"],'),
     "changes": (_by_key, "a dictionary of values by key"),
     "folder": (_is_path, "the name of a folder"),
-    "friction": (callable, "a function of conditions at a contact"),
+    "friction": (
+        _are_laws,
+        "a function of conditions at a contact, or a list of such and of names,",
+    ),
     "how": (_is_name, 'the name of a way to lay out a study, "grid",'),
     "key": (_is_name, 'a key, "operation.torque",'),
     "n": (_whole(1), "a whole number from 1 on"),

@@ -12,7 +12,7 @@ from pitchpoint.cases.library import as_text, find, path_of
 from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record, is_result
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten, visible
-from pitchpoint.lubrication.registry import FrictionLaw
+from pitchpoint.lubrication.registry import ChosenLaws
 from pitchpoint.registry import nearest
 
 __all__ = ["variants_of"]
@@ -22,7 +22,7 @@ def variants_of(
     case: str,
     only: Sequence[str] = (),
     settings: Mapping[str, Any] | None = None,
-    own: FrictionLaw | None = None,
+    own: ChosenLaws = (),
 ) -> list[Variant]:
     """Variants of a case, all or those that are named; of a record the one that it holds."""
     if is_result(case):
@@ -37,7 +37,7 @@ def variants_of(
 
 
 def _of_result(
-    folder: Path, only: Sequence[str], settings: Mapping[str, Any], own: FrictionLaw | None
+    folder: Path, only: Sequence[str], settings: Mapping[str, Any], own: ChosenLaws
 ) -> list[Variant]:
     """Variants of the folder of a result, each from the case file that was written beside it."""
     known = Record.read(folder / RUN).variants
@@ -56,7 +56,7 @@ def _of_result(
     ]
 
 
-def _handed_over(folder: Path, own: FrictionLaw | None, settings: Mapping[str, Any]) -> Variant:
+def _handed_over(folder: Path, own: ChosenLaws, settings: Mapping[str, Any]) -> Variant:
     """The variant that a folder holds; where an earlier version left no case file there, its record."""
     path = folder / CASE
     if not path.is_file():
@@ -68,10 +68,10 @@ def _handed_over(folder: Path, own: FrictionLaw | None, settings: Mapping[str, A
     return Variant(tree, name, folder.name, recorded=record.case, warnings=told, folder=folder)
 
 
-def _recorded(path: Path, own: FrictionLaw | None, settings: Mapping[str, Any]) -> Variant:
+def _recorded(path: Path, own: ChosenLaws, settings: Mapping[str, Any]) -> Variant:
     """The variant that a record holds."""
     record, name = Manifest.read(path), visible(as_text(path.name))
-    if record.own and own is None:
+    if record.own and not own:
         raise InputError(
             f"was computed with '{shorten(record.own)}', a friction law of the user's own, which no record "
             "can hold; give it again, from Python as friction",

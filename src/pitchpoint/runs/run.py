@@ -43,12 +43,13 @@ from pitchpoint.lubrication.registry import (
     FILM_THICKNESS,
     INLET_HEATING,
     ROLLING_RESISTANCE,
+    ChosenLaws,
     FrictionLaw,
 )
 from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.programs import bound_programs, surroundings
 from pitchpoint.published.registry import publication_of
-from pitchpoint.registry import nearest
+from pitchpoint.registry import letters, nearest
 from pitchpoint.results.store import (
     fingerprint,
     load,
@@ -69,6 +70,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "MEETINGS",
+    "FrictionChoice",
     "Outcome",
     "Progress",
     "compute_alone",
@@ -80,6 +82,9 @@ __all__ = [
     "run_piece",
     "run_variant",
 ]
+
+FrictionChoice = Callable[..., Any] | Sequence[str | Callable[..., Any]]
+"""A friction law of the user's own, or several laws, of one's own and by name."""
 
 MEETINGS = "all meetings of phases"
 """Over what figures of several meshes are averaged."""
@@ -143,7 +148,7 @@ def run(
     analyses: Sequence[str] | None = None,
     settings: Mapping[str, Any] | None = None,
     studies: Mapping[str, Study] | None = None,
-    friction: Callable[..., Any] | None = None,
+    friction: FrictionChoice | None = None,
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> dict[str, Outcome]:
@@ -158,7 +163,8 @@ def run(
         settings: values by dotted key that replace those of the file.
         studies: further studies, as `--sweep` makes them.
         friction: a law of one's own in place of those of the case: a function of JAX arrays whose
-            keyword arguments are conditions at a contact, see `pitchpoint.lubrication.conditions`.
+            keyword arguments are conditions at a contact, see `pitchpoint.lubrication.conditions`; or
+            several laws in a list, of one's own and by name.
         overwrite: True to replace the results of another case in the folder.
         progress: told about parts and points.
 
@@ -175,7 +181,8 @@ def run(
         folder=folder, analyses=analyses, studies=studies, friction=friction, overwrite=overwrite
     )
     given = case if isinstance(case, str) else as_case(case)
-    made = held(given, only, settings, None if friction is None else _own(friction))
+    own, named = _chosen(friction)
+    made = held(given, only, {**(settings or {}), **named}, own)
     work = {variant.variant: (variant, _jobs(variant, studies or {}, analyses)) for variant in made}
     where = None if folder is None else Path(folder)
     watching = progress or Progress()
@@ -277,14 +284,15 @@ def _of_design(variant: Variant, built: Ready) -> list[str]:
     return [*variant.warnings, *built.warnings, *built.heated]
 
 
-def own_law(variant: Variant, function: Callable[..., Any]) -> Variant:
-    """The variant under a friction law of the user's own."""
-    return replace(variant, own=_own(function))
+def own_law(variant: Variant, friction: FrictionChoice) -> Variant:
+    """The variant under friction laws of the user's own, with others by name."""
+    own, named = _chosen(friction)
+    return replace(variant, own=own, settings={**variant.settings, **named})
 
 
 def _hand_over(variant: Variant, title: str, folder: Path, studies: Mapping[str, Study]) -> None:
     """Leave the case as it is run beside its results; none holds a friction law of the user's own."""
-    if variant.own is not None:
+    if variant.own:
         (folder / CASE).unlink(missing_ok=True)
         return
     document = variant.document()
@@ -296,6 +304,22 @@ def _hand_over(variant: Variant, title: str, folder: Path, studies: Mapping[str,
 
 _LARGEST_OF_OWN = 1.0
 """Friction coefficient beyond which a law of the user's own, for whatever materials, is doubted."""
+
+
+def _chosen(friction: FrictionChoice | None) -> tuple[ChosenLaws, dict[str, Any]]:
+    """Laws among which some are the user's own, and the setting that gives the case those by name."""
+    each = [friction] if callable(friction) else list(friction or ())
+    laws = tuple(one if isinstance(one, str) else _own(one) for one in each)
+    named = [law for law in laws if isinstance(law, str)]
+    own = [law.name for law in laws if isinstance(law, FrictionLaw)]
+    meant = [*map(letters, own + named)]
+    for name in own:
+        if meant.count(letters(name)) > 1:
+            told = (
+                f"two laws are named {shorten(name)}, and results go by name; rename the function"
+            )
+            raise InputError(told, key="friction")
+    return laws if own else (), {"models.friction": named} if named else {}
 
 
 def _own(function: Callable[..., Any]) -> FrictionLaw:
@@ -574,7 +598,7 @@ def _part(
 ) -> xr.Dataset:
     labels = {"case": variant.label, "variant": variant.variant, "fingerprint": mark}
     whole = None if folder is None else folder / f"{job.name}.nc"
-    found = None if variant.own is not None else _found(whole, mark)
+    found = None if variant.own else _found(whole, mark)
     progress.part(variant.variant, job.title, found is not None)
     if found is not None:
         if folder is not None:
@@ -600,7 +624,7 @@ def _pieces(
     last: xr.Dataset | None = None
     for number in count():
         path = None if folder is None else folder / f"{job.name}.{number:04d}.nc"
-        piece = None if variant.own is not None else _found(path, labels["fingerprint"])
+        piece = None if variant.own else _found(path, labels["fingerprint"])
         if piece is None:
             with _told_of(variant):
                 piece = job.piece(number, last, progress.points)
@@ -710,7 +734,7 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
             target.model_dump(mode="json", exclude_unset=True)
             for target in (case.targets if _measured(variant) else ())
         ],
-        "own": "" if variant.own is None else variant.own.name,
+        "own": ", ".join(law.name for law in variant.own if isinstance(law, FrictionLaw)),
         "implausible": [],
         "warnings": [],
         "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],

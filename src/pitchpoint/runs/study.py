@@ -24,7 +24,7 @@ from pitchpoint.results.labelled import Units, demand_units, in_units, showing
 from pitchpoint.results.store import fingerprint, make_folder, sole_writer
 from pitchpoint.runs.case import Case, CaseLike, as_case, written
 from pitchpoint.runs.python_values import demand_arguments
-from pitchpoint.runs.run import Progress, compute_alone, own_law
+from pitchpoint.runs.run import FrictionChoice, Progress, compute_alone, own_law
 
 __all__ = ["study"]
 
@@ -41,7 +41,7 @@ def study(
     seed: int = 0,
     units: Units = "si",
     variant: str | None = None,
-    friction: Callable[..., Any] | None = None,
+    friction: FrictionChoice | None = None,
     folder: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -58,7 +58,7 @@ def study(
         units: of the result, "si", those in which values are "shown", or some by kind of quantity,
             {"angle": "arcmin"}, and the others as shown.
         variant: of the case, the first one by default.
-        friction: a law of one's own, see `run`.
+        friction: laws of one's own, see `run`.
         folder: where pieces of 256 designs are kept as soon as they are computed, so that the same call
             goes on from there.
         progress: told about pieces.
