@@ -3,6 +3,7 @@
 import copy
 import dataclasses
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.registry import SUMMITS
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.asperity_load import masjedi_khonsari_2012
-from pitchpoint.lubrication.ehl.doubts import flooded_inlet
+from pitchpoint.lubrication.ehl.doubts import flooded_inlet, of_grid
 from pitchpoint.lubrication.ehl.grid import grid
 from pitchpoint.lubrication.ehl.line import LineContact, problem_of
 from pitchpoint.lubrication.ehl.newton import dry, step
@@ -574,7 +575,46 @@ def test_errors_by_the_grid_are_told_from_grids_with_half_as_many_nodes():
     gentle = solve_lines(contact(0.3e9, 0.1))
     assert not any(one.kind == "grid" for one in gentle.warnings)
     assert gentle.ended.grid_minimum < 0.03
-    assert np.isnan(solve_lines(case, nodes=33).ended.grid_minimum).all()
+    coarsest = solve_lines(case, nodes=33)
+    assert np.isnan(coarsest.ended.grid_minimum).all()
+    (told,) = (one for one in coarsest.warnings if one.kind == "unknown grid")
+    assert "films of 3 of 3 contacts is not known" in told
+
+
+def test_nodes_that_are_named_bring_films_within_what_is_borne():
+    case = contact(np.array([0.3, 0.9, 1.0]) * 1e9, np.array([0.1, 0.3, 3.0]))
+    (told,) = (one for one in solve_lines(case, nodes=65).warnings if one.kind == "grid")
+    (nodes,) = re.findall(r"(\d+) nodes bring that below 3 %", told)
+    assert told.brief.endswith(f"take {nodes} nodes") and int(nodes) > 65
+    assert not any(one.kind == "grid" for one in solve_lines(case, nodes=int(nodes)).warnings)
+
+
+@pytest.mark.parametrize(
+    ("off", "nodes", "words"),
+    [
+        (0.05, 65, "; 129 nodes bring that below 3 %"),
+        (0.1, 65, "; 257 nodes bring that below 3 %"),
+        (0.3, 65, "; 257 nodes, the most, leave 7.5 % of it at worst"),
+        (0.05, 257, "; 257 nodes are the most"),
+        (0.05, None, "; take more nodes"),
+    ],
+)
+def test_errors_by_the_grid_name_the_nodes_that_halve_them_often_enough(off, nodes, words):
+    (told,) = of_grid(
+        np.array([0.01, off]), np.array([0.02, np.nextafter(off, 0.0)]), nodes=nodes, most=257
+    )
+    assert told.endswith(words)
+
+
+def test_films_without_a_coarser_grid_beside_them_are_told():
+    coarse, unknown = of_grid(
+        np.array([0.04, np.nan]), np.array([0.05, np.nan]), nodes=129, most=257
+    )
+    assert coarse.kind == "grid" and "films of 1 of 2 contacts" in coarse
+    assert unknown.startswith(
+        "how far off the grid makes the films of 1 of 2 contacts is not known"
+    )
+    assert [*of_grid(np.array([np.nan]), np.array([0.01]), nodes=129, most=257)] == []
 
 
 def test_what_has_no_film_says_so_and_shows_no_numbers():

@@ -142,6 +142,18 @@ def test_errors_by_the_grid_are_estimated_from_half_as_many_cells():
     assert fine.ended.grid_minimum > COARSE
     assert any(told.startswith("the grid is coarse for the films") for told in fine.warnings)
     assert np.isnan([half.ended.grid, half.ended.grid_minimum]).all()
+    assert any(one.kind == "unknown grid" for one in half.warnings)
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize(("crown", "sharp"), [(0.0, True), (5e-6, True), (4e-5, False)])
+def test_a_smallest_film_at_a_sharp_end_is_told_to_be_a_number_of_the_grid(crown, sharp):
+    """An arc of 5 um ends at .65 of Hertz's pressure; one of 40 um comes to nothing before the line ends."""
+    found = coarse(line(crown=crown))
+    assert any(one.kind == "sharp end" for one in found.warnings) == sharp
+    end = 0.5 * float(line(crown=crown).length)
+    near = end - abs(found.film.minimum_place[1]) < 0.2 * found.layout.half_width
+    assert near == sharp
 
 
 def moderate_ball(load: float, viscosity: float, ratio: float = 1.0) -> PatchContact:

@@ -24,7 +24,7 @@ from pitchpoint.cases.build import Built, tooth_size
 from pitchpoint.cases.films import patch_grid
 from pitchpoint.doubts import WITHHELD, Doubt
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import GRID, of_grid
+from pitchpoint.lubrication.ehl.doubts import GRID, UNKNOWN_GRID, of_grid
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
@@ -145,7 +145,7 @@ def _told(films: Sequence[PatchFilms | Refused]) -> list[Doubt]:
             texts[Doubt(sentence, moves=WITHHELD, brief="a contact was not taken")] = None
         elif one.solved:
             texts |= dict.fromkeys(
-                doubt for doubt in one.warnings if doubt.kind not in (ENDS, GRID)
+                doubt for doubt in one.warnings if doubt.kind not in (ENDS, GRID, UNKNOWN_GRID)
             )
     return [*texts]
 

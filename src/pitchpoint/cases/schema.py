@@ -38,7 +38,13 @@ from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, Gear
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
-from pitchpoint.lubrication.ehl.registry import ASPERITIES, SMOOTH, THERMAL
+from pitchpoint.lubrication.ehl.registry import (
+    ASPERITIES,
+    MOST_LINE_NODES,
+    MOST_PATCH_NODES,
+    SMOOTH,
+    THERMAL,
+)
 from pitchpoint.lubrication.registry import (
     ASPERITY_LOAD,
     FILM_THICKNESS,
@@ -125,7 +131,7 @@ DAMPING = Quantity("viscous damping", 0.0, 1e9, "N s/m")
 DURATION = Quantity("time", 0.0, 1e4, "s", open_low=True)
 RISE = Quantity("time", 0.0, 1e4, "s")
 CYCLES = Quantity("dimensionless", 1, 8, whole=True)
-FILM_NODES = Quantity("dimensionless", 33, 1025, whole=True)
+FILM_NODES = Quantity("dimensionless", 33, MOST_LINE_NODES, whole=True)
 FILM_CELLS = Quantity("dimensionless", 32, 256, whole=True)
 END_LENGTH = Quantity("length", 0.0, 1.0, "mm", open_low=True)
 END_RADIUS = Quantity("length", 0.0, 1e5, "mm", open_low=True)
@@ -1011,9 +1017,6 @@ _NOT_OF: Mapping[str, Mapping[str, str]] = {
 }
 """Keys that a solver of films has nothing to do with, and why."""
 
-MOST_NODES = 257
-"""Largest number of nodes along a patch, whose memory grows with their square times that of the cells."""
-
 
 def _check_line(table: FilmTable) -> None:
     """InputError for profiles that lines without ends do not take."""
@@ -1024,8 +1027,10 @@ def _check_line(table: FilmTable) -> None:
 
 def _check_patch(table: FilmTable) -> None:
     """InputError for what solvers over a patch do not take."""
-    if table.nodes is not None and table.nodes > MOST_NODES:
-        told = f"{table.nodes:g} nodes along a patch; allowed are 33, 65, 129 and {MOST_NODES}"
+    if table.nodes is not None and table.nodes > MOST_PATCH_NODES:
+        told = (
+            f"{table.nodes:g} nodes along a patch; allowed are 33, 65, 129 and {MOST_PATCH_NODES}"
+        )
         raise InputError(told, key="nodes")
     if table.pattern not in (None, 1.0):
         told = "over a patch oil flows both ways, and only the pattern 1 is the same for both"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import ceil, log2
 from typing import Any, Final
 
 import numpy as np
@@ -14,7 +15,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.line import FLOODED, LineContact
-from pitchpoint.lubrication.ehl.registry import COARSE
+from pitchpoint.lubrication.ehl.registry import COARSE, MOST_LINE_NODES
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
 from pitchpoint.lubrication.groups import line_groups
@@ -24,6 +25,7 @@ from pitchpoint.status import Code
 
 __all__ = [
     "GRID",
+    "UNKNOWN_GRID",
     "UNSOLVED",
     "check",
     "flooded_inlet",
@@ -68,6 +70,9 @@ WIDE: Final = 0.1
 
 GRID: Final = "grid"
 """Kind of the sentence on films that the grid makes wrong."""
+
+UNKNOWN_GRID: Final = "unknown grid"
+"""Kind of the sentence on films of which it is not known how wrong the grid makes them."""
 
 UNSOLVED: Final = "unsolved"
 """Kind of the sentence on contacts that have no film."""
@@ -126,6 +131,7 @@ def warnings(
     film: LineFilm,
     code: NDArray[np.int_],
     grid_error: NDArray[np.float64],
+    nodes: int,
     size: float | None,
 ) -> Iterator[Doubt]:
     """What to be wary of about films.
@@ -135,6 +141,7 @@ def warnings(
         film: theirs.
         code: of `Code`, what became of each, shape (b,).
         grid_error: estimates of film in the middle and smallest film of each, shape (2, b).
+        nodes: of their grid.
         size: of the teeth, such as the module [m].
     """
     solved = code == Code.SOLVED
@@ -151,7 +158,7 @@ def warnings(
     yield from _of_half_space(some, half_width, size)
     yield from _of_inlet(some, half_width)
     yield from _of_long_inlet(some, found)
-    yield from of_grid(*grid_error[:, solved])
+    yield from of_grid(*grid_error[:, solved], nodes=nodes)
     yield from _of_shear(some, found)
     if some.texture is not None:
         yield from _of_roughness(np.asarray(some.texture.rq), half_width)
@@ -361,25 +368,59 @@ def _of_thinning(fluid: Fluid) -> Iterator[Doubt]:
         )
 
 
-def of_grid(central: NDArray[np.float64], minimum: NDArray[np.float64]) -> Iterator[Doubt]:
-    """That a grid is coarse for films.
+def of_grid(
+    central: NDArray[np.float64],
+    minimum: NDArray[np.float64],
+    *,
+    nodes: int | None = None,
+    most: int = MOST_LINE_NODES,
+) -> Iterator[Doubt]:
+    """That a grid is coarse for films, or that nobody knows whether it is.
 
     Args:
         central: estimated errors of films in the middle, over them, NaN where unknown, shape (b,).
         minimum: the same of smallest films.
+        nodes: of the grid; None where more of them do not surely bring films nearer.
+        most: nodes that a grid may have.
     """
     worst = np.fmax(central, minimum)
-    coarse = worst > COARSE
+    coarse, unknown = worst > COARSE, np.isnan(minimum)
     if coarse.any():
+        off = float(np.nanmax(worst))
+        remedy, brief = _more_nodes(off, nodes, most)
         yield Doubt(
             f"the grid is coarse for the films of {coarse.sum()} of {coarse.size} contacts: in the middle "
             f"they may be off by {100.0 * np.fmax.reduce(central, initial=0.0):.2g} %, smallest ones by "
-            f"{100.0 * np.nanmax(minimum):.2g} %; take more nodes",
+            f"{100.0 * np.fmax.reduce(minimum, initial=0.0):.2g} %; {remedy}",
             GRID,
-            np.nanmax(worst),
-            moves=np.nanmax(worst),
-            brief=f"coarse grid: films off by up to {100.0 * np.nanmax(worst):.2g} %, take more nodes",
+            off,
+            moves=off,
+            brief=f"coarse grid: films off by up to {100.0 * off:.2g} %, take {brief}",
         )
+    if unknown.any():
+        yield Doubt(
+            f"how far off the grid makes the films of {unknown.sum()} of {unknown.size} contacts is not "
+            "known: none of a coarser grid stand beside them; compare them with those on more nodes",
+            UNKNOWN_GRID,
+            unknown.mean(),
+            moves=GUESSED,
+            brief=f"error by the grid not known of {unknown.sum()} of {unknown.size} films",
+        )
+
+
+def _more_nodes(off: float, nodes: int | None, most: int) -> tuple[str, str]:
+    """What to do about films that are off by so much, and the same in few words.
+
+    Errors of films at least halve with twice as many nodes.
+    """
+    if nodes is None or nodes >= most:
+        return ("take more nodes",) * 2 if nodes is None else (f"{most} nodes are the most",) * 2
+    doubled = ceil(log2(off / COARSE))
+    enough = 2**doubled * (nodes - 1) + 1
+    if enough <= most:
+        return f"{enough} nodes bring that below {100.0 * COARSE:g} %", f"{enough} nodes"
+    left = off * (nodes - 1) / (most - 1)
+    return f"{most} nodes, the most, leave {100.0 * left:.2g} % of it at worst", f"{most} nodes"
 
 
 def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[Doubt]:

@@ -15,6 +15,8 @@ __all__ = [
     "ASPERITIES",
     "COARSE",
     "ISOTHERMAL",
+    "MOST_LINE_NODES",
+    "MOST_PATCH_NODES",
     "SMOOTH",
     "THERMAL",
     "USUAL_ASPERITIES",
@@ -24,6 +26,12 @@ __all__ = [
 
 COARSE: Final = 0.03
 """Error by the grid from which on it is told."""
+
+MOST_LINE_NODES: Final = 1025
+"""Largest number of nodes across a line."""
+
+MOST_PATCH_NODES: Final = 257
+"""Largest number of nodes along a patch, whose memory grows with their square times that of the cells."""
 
 ISOTHERMAL: Final = "isothermal"
 """Name of no heat: the film is as warm as its inlet everywhere."""

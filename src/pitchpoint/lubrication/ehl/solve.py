@@ -207,7 +207,7 @@ def solve_lines(
     back = np.argsort(np.concatenate(groups))
     film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts)[back], *portions)
     grid_error = np.stack([ended.grid, ended.grid_minimum])
-    told = tuple(warnings(flat, film, ended.code, grid_error, size))
+    told = tuple(warnings(flat, film, ended.code, grid_error, nodes, size))
     film, ended = (
         jax.tree.map(lambda leaf: leaf.reshape((*shape, *leaf.shape[1:])), one)
         for one in (film, ended)

@@ -80,6 +80,9 @@ THICK: Final = 3.0
 ENDS: Final = "ends"
 """Kind of the warning on lines that end sharply."""
 
+DROPS: Final = 0.5
+"""Part of Hertz's pressure from which a line falls to nothing within two cells where it ends sharply."""
+
 
 @dataclass(frozen=True)
 class PatchEnded:
@@ -533,6 +536,7 @@ def _warnings(
             brief=f"coarse grid for a film of {1e9 * film.mean_film:.3g} nm: take more nodes",
         )
     yield from of_grid(np.array([ended.grid]), np.array([ended.grid_minimum]))
+    yield from _of_end(contact, film)
     if film.heat is not None:
         peclet = np.array([[film.heat.peclet_a], [film.heat.peclet_b]])
         slowest = [[np.min(np.abs(one))] for one in (contact.speed_a, contact.speed_b)]
@@ -546,3 +550,23 @@ def _warnings(
             1.0,
             brief="the contact line ends sharply: see near_ends for its pressure",
         )
+
+
+def _of_end(contact: PatchContact, film: PatchFilm) -> Iterator[Doubt]:
+    """That the smallest film lies where the grid does not show how the end of a line drops."""
+    held, lowest = np.max(film.dry_pressure, axis=1), np.argmin(np.min(film.gap, axis=1))
+    rows = np.flatnonzero(held > 0.0)
+    near = [two for two in (rows[:2], rows[-2:]) if np.min(np.abs(two - lowest)) < 2]
+    if contact.length is None or not any(
+        max(held[two]) > DROPS * film.hertz_pressure for two in near
+    ):
+        return
+    yield Doubt(
+        "the contact line drops to its end within two cells: the smallest film, "
+        f"{1e9 * film.minimum_film:.3g} nm, lies there and is a number of the grid, which twice as many "
+        "nodes move by tens of percent; rely on films away from the end, or give it a longer relief",
+        "sharp end",
+        -float(film.minimum_film),
+        moves=GUESSED,
+        brief="smallest film lies at a sharp end: a number of the grid",
+    )

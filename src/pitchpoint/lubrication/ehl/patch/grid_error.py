@@ -68,6 +68,8 @@ def grid_errors(
         return UNKNOWN
     coarse = _films(half, np.asarray(gap_on(half, state.pressure, state.level)))
     fine = _films(problem, gap)
+    if not np.nanmin([coarse, fine]) > 0.0:  # parts of a film that is none
+        return UNKNOWN
     apart = np.maximum(coarse, fine) / np.minimum(coarse, fine) - 1.0
     central, least = apart * (OF_ELLIPSE if contact.length is None else OF_LINE)
     return float(central), float(least)
