@@ -651,7 +651,7 @@ def docs(
     page = " ".join(words or [])
     if page and "/" not in page and not pages.is_page(page) and (found := pages.search_pages(page)):
         _show_found(found, json_)
-    elif not page:
+    elif not words:
         _show(
             [{"page": one, "title": pages.title(one)} for one in pages.names()],
             json_,

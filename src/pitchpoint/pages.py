@@ -63,12 +63,14 @@ def search_pages(words: str) -> list[dict[str, str]]:
     """Lines that have all of some words, the nearest first: titles, headings, rows of a table, others.
 
     Args:
-        words: of any case, with spaces between them.
+        words: of any case, with spaces between them; those without a letter or a figure do not count.
 
     Returns:
         At most `MOST` places, two of one page at most: the page, and its line without marks.
     """
-    wanted = words.lower().split()
+    wanted = [word for word in words.lower().split() if any(map(str.isalnum, word))]
+    if not wanted:
+        return []
     found = sorted(
         (_rank(line, wanted[0]), name, _plain(line))
         for name in names()

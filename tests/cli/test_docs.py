@@ -36,7 +36,7 @@ from pitchpoint.runs.jobs import jobs
 PAIR, VARIANTS = blocks("README.md", "toml")
 (WHOLE_WITH_VARIANTS,) = blocks("guide/variants.md", "toml")
 _, MODIFIED = blocks("guide/pairs.md", "toml")
-STRENGTH, INSPECTION, LIMITS = blocks("guide/sizing.md", "toml")
+STRENGTH, SHAFT, INSPECTION, LIMITS = blocks("guide/sizing.md", "toml")
 (PLASTIC,) = blocks("guide/stiffness.md", "toml")
 (MOTION,) = blocks("guide/motion.md", "toml")
 FILM, OIL, FINITE, HEIGHTS = blocks("guide/films.md", "toml")
@@ -57,6 +57,7 @@ CASES = {
     "pair": PAIR,
     "modified": (PAIR, MODIFIED),
     "strength": (PAIR, STRENGTH),
+    "shaft": (PAIR, SHAFT),
     "inspection": (PAIR, INSPECTION),
     "plastic": (PAIR, PLASTIC),
     "motion": (PAIR, MOTION),
@@ -115,7 +116,7 @@ def test_every_block_is_known() -> None:
     assert set(kinds) <= {"sh", "toml", "python", *OF_THE_SITE}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 23
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 24
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 

@@ -40,16 +40,17 @@ def path_of(case: str) -> Path:
 
 def _of_a_result(path: Path) -> str:
     """What to give in the place of a folder, or of a file of a result; empty for what may be a case."""
-    if not path.is_dir() and not (path.suffix in _WRITTEN and path.is_file()):
+    is_folder = os.path.isdir(path)  # other than pathlib's it takes names of any length
+    if not is_folder and not (path.suffix in _WRITTEN and os.path.isfile(path)):
         return ""
-    folder = path if path.is_dir() else path.parent
-    kind = "a folder" if path.is_dir() else _WRITTEN[path.suffix]
+    folder = path if is_folder else path.parent
+    kind = "a folder" if is_folder else _WRITTEN[path.suffix]
     for one in (folder, folder.absolute().parent):
         if (one / "run.json").is_file():
             whole = shorten(as_text(str(one)))
             return f"is {kind} of a result, no case; give {whole}, which computes the same"
     inside = ", ".join(shorten(one.name) for one in sorted(folder.glob("*.toml"))[:3])
-    return f"is {kind}, no case file{f'; there are {inside} in it' if path.is_dir() and inside else ''}"
+    return f"is {kind}, no case file{f'; there are {inside} in it' if is_folder and inside else ''}"
 
 
 _WRITTEN = {".nc": "a dataset", ".html": "a page"}

@@ -1093,8 +1093,7 @@ class LossMap(Table):
     speed: Annotated[float, MAP_SPEED] | None = None
     """Largest speed of the driver; 1.5 times that of the operating point unless given."""
     lowest_speed: Annotated[float, SPEED] | None = None
-    """Lowest speed of the driver beside standstill in the map of four quadrants, whose speeds go up from it
-    in equal ratios; 1 rpm unless given."""
+    """Speed of the driver from which a map of four quadrants goes up in equal ratios; 1 rpm unless given."""
     temperatures: (
         Annotated[tuple[Annotated[float, TEMPERATURE], ...], Field(max_length=50)] | None
     ) = None

@@ -64,14 +64,14 @@ class LossTable(NamedTuple):
         units: of torque and speed of the output, and of torque of the driver.
 
     Example:
-        >>> lost = {"own": (((0.0,), (-1.0,)), ((0.2,), (0.1,)), ((0.5,), (0.2,)))}
-        >>> table = LossTable((-2.0, 0.0, 2.0), (0.0, 10.0), (40.0,), lost, 0.1)
+        >>> lost = {"own": (((0.0,), (-1.0,)), ((0.25,), (0.125,)), ((0.5,), (0.25,)))}
+        >>> table = LossTable((-2.0, 0.0, 2.0), (0.0, 10.0), (40.0,), lost, 0.125)
         >>> table.at(1.0, 5.0, 40.0)
-        Point(loss=0.75, efficiency=0.8695652173913043, input_torque=0.115, locked=False, outside=False)
+        Point(loss=0.9375, efficiency=0.8421052631578947, input_torque=0.1484375, locked=False, outside=False)
         >>> table.at(1.0, -5.0, 40.0).locked, table.at(3.0, 5.0, 40.0).outside
         (True, True)
         >>> table.at_rest(2.0, 40.0)
-        Rest(lowest=0.2, highest=0.25, locked=False, outside=False)
+        Rest(lowest=0.25, highest=0.3125, locked=False, outside=False)
     """
 
     torques: Sequence[float]
@@ -129,10 +129,10 @@ class LossTable(NamedTuple):
             ValueError: there is no such law.
 
         Example:
-            >>> lost = {"own": (((0.0,), (-1.0,)), ((0.2,), (0.1,)), ((0.5,), (0.2,)))}
-            >>> table = LossTable((-2.0, 0.0, 2.0), (0.0, 10.0), (40.0,), lost, 0.1)
+            >>> lost = {"own": (((0.0,), (-1.0,)), ((0.25,), (0.125,)), ((0.5,), (0.25,)))}
+            >>> table = LossTable((-2.0, 0.0, 2.0), (0.0, 10.0), (40.0,), lost, 0.125)
             >>> table.at_many([1.0, 1.0], [5.0, -5.0], 40.0).loss.tolist()
-            [0.75, nan]
+            [0.9375, nan]
         """
         return _at_many(self, torque, speed, temperature, law)
 

@@ -102,7 +102,8 @@ def balance_in_rows(
     count = known.nodes // NODES if known.nodes % NODES == 0 else 1
     parts = [_part(known, number, count) for number in range(count)]
     rows = [(design, operation, part) for part in parts]
-    found = jax.device_get(balances(stacked(rows + rows[-1:] * (CHUNK - count)), models))
+    laws = replace(models, film=None)  # no balance asks for it, and one program serves all films
+    found = jax.device_get(balances(stacked(rows + rows[-1:] * (CHUNK - count)), laws))
 
     def joined(leaf: np.ndarray) -> np.ndarray:
         return np.concatenate(leaf[:count], axis=-1) if leaf.ndim > 1 else np.asarray(leaf.max())
