@@ -295,7 +295,7 @@ class _Looked(Mesh):
     toothed: ClassVar[bool] = True
     overlap_ratio: ClassVar[jax.Array] = jnp.asarray(0.0)
     contact_ratio: ClassVar[jax.Array] = jnp.asarray(1.5)
-    events = motion = driver = driven_by = period = reference = None
+    events = relation = motion = driver = driven_by = period = reference = None
     coordinates = rigid_contacts = spots = flanks_in_turn = None
 
     @property

@@ -175,7 +175,8 @@ def check(data: xr.Dataset, transmits: bool) -> None:
     """Finite, in the range that physics allows, and consistent."""
     of_efficiency = ("efficiency", "efficiency_fluctuation")
     for name, values in data.data_vars.items():
-        if "jamming" in str(name):  # infinite where friction pushes on
+        # Infinite where friction pushes on, and where surfaces are smooth or carry nothing.
+        if "jamming" in str(name) or name == "min_lambda_ratio":
             assert (values > 0.0).all(), name
         elif transmits or not str(name).endswith(of_efficiency):
             assert np.isfinite(values.values.astype(float)).all(), name
