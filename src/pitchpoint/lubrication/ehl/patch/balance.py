@@ -110,11 +110,8 @@ def through(problem: Problem, oil: Field, gap: Field) -> Through:
     mass, ease = problem.flow.mass_and_ease(oil, gap)
     x, (width, spacing) = problem.bodies.x, _widths(problem)
     ahead = (0.5 * (x[1:] + x[:-1]) < 0.0)[:, None]
-    # Falling viscosity, as behind a spike, is no opening gap: the bound is far off until the film doubles.
-    opens = jnp.maximum(1.0, OPENED * mass[:, :-1] / jnp.maximum(mass[:, 1:], 1e-150))
-    most = 0.5 * (1.0 + (OPENED * opens**3) ** 3) * ease[:, :-1]
     eases = at_faces(ease.T, ahead).T
-    eases = jnp.where(ahead.T, eases, jnp.minimum(eases, most))
+    eases = jnp.where(ahead.T, eases, jnp.minimum(eases, 0.5 * (1.0 + OPENED**3) * ease[:, :-1]))
     return Through(
         mass,
         eases * width / spacing,
