@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.layout import Problem
-from pitchpoint.lubrication.ehl.reynolds import at_faces, third_order
+from pitchpoint.lubrication.ehl.reynolds import at_faces, upwind
 from pitchpoint.lubrication.ehl.work import specific_volume
 
 __all__ = [
@@ -30,24 +30,6 @@ Inner = Float[Array, "y inner"]
 
 STEEP = 2.0
 """Conductance between two rows over the geometric mean of theirs, about, at most where gaps are steep."""
-
-OPENED = 2.0
-"""Film at a node over that at the node before it, up to which it counts in what flows between them.
-
-Where a film ends the gap opens to many films within a cell of a coarse grid, and oil does not fill it.
-Counted whole, it drew so much through the last face that the last node of the film was left with next to
-nothing: smooth surfaces touched there in most slow contacts. With twice the film, what the surfaces draw
-leaves the last node 7/9 of the film before it, about what is left where a film is narrowest. Grids that show
-how a film ends never come to the bound. Conductances grow with the film to the power of three.
-"""
-
-CLOSED = 3.0
-"""Film at a node over that at the one behind it, up to which it counts in what flows on from there.
-
-Where the gap closes within a cell, as ahead of rows at a sharp end, the parabola through three nodes passes
-below zero: oil flowed against the surfaces, and rows without oil were solutions. Up to five times it stays
-positive; with three, a third of the films on both sides together flows through the face.
-"""
 
 ALONG, ACROSS = 4, 4
 """Nodes of a row, and rows, that a cell knows: from two before it to one behind."""
@@ -110,22 +92,12 @@ def through(problem: Problem, oil: Field, gap: Field) -> Through:
     mass, ease = problem.flow.mass_and_ease(oil, gap)
     x, (width, spacing) = problem.bodies.x, _widths(problem)
     ahead = (0.5 * (x[1:] + x[:-1]) < 0.0)[:, None]
-    eases = at_faces(ease.T, ahead).T
-    eases = jnp.where(ahead.T, eases, jnp.minimum(eases, 0.5 * (1.0 + OPENED**3) * ease[:, :-1]))
     return Through(
         mass,
-        eases * width / spacing,
-        problem.along[:, None] * _upwind(mass.T).T * width,
+        at_faces(ease.T, ahead).T * width / spacing,
+        problem.along[:, None] * upwind(mass.T).T * width,
         _sides(ease, width[:, 0], spacing, problem.steep),
-        problem.across * jnp.pad(_upwind(mass), ((1, 1), (0, 0)), mode="edge") * spacing,
-    )
-
-
-def _upwind(mass: Array) -> Array:
-    """Masses at the faces between rows, as in a line, but for where they change by more than grids show."""
-    before, here = jnp.concatenate((mass[:1], mass[:-2])), mass[:-1]
-    return third_order(
-        jnp.minimum(before, CLOSED * here), here, jnp.minimum(mass[1:], OPENED * here)
+        problem.across * jnp.pad(upwind(mass), ((1, 1), (0, 0)), mode="edge") * spacing,
     )
 
 
@@ -159,7 +131,7 @@ def work(problem: Problem, oil: Field, gap: Field) -> Work:
     warmth = problem.flow.temperature_rise
     volume = rise * specific_volume(problem.flow, oil.T, warmth.T).T
     volume_beside = rise_beside * _volume_beside(problem, oil)
-    row = 0.5 * jnp.sum(_upwind(flows.mass.T).T * width * volume, axis=1)
+    row = 0.5 * jnp.sum(upwind(flows.mass.T).T * width * volume, axis=1)
     unit = jnp.where(problem.across == 0.0, 1.0, problem.across)
     column = 0.5 * jnp.sum(flows.carried * volume_beside) / unit
     pressed = flows.conducts * rise, flows.sides * rise_beside
