@@ -48,6 +48,7 @@ preload = "300 N"
 between = ["wave generator", "housing"]
 seal_torque = "10 mN m"
 breakaway_torque = "5 mN m"
+breakaway_spread = 1.5
 [loss_map]
 torque_count = 3
 speed_count = 2
