@@ -324,7 +324,7 @@ class Start(eqx.Module):
             teeth = teeth_at(contacts, *given)
             body = mesh.body_compliance(contacts, design.solids) if mesh.couples else None
         spots, places, gap = mesh.spots(contacts, phase), None, None
-        if mesh.along_action:
+        if mesh.along_action and contacts.shape == "line":  # an ellipse covers many strips
             lengths = jnp.stack(
                 [
                     jnp.broadcast_to(length, contacts.active.shape)
