@@ -90,6 +90,7 @@ def mesh():
         module=0.5e-3,
         face_width=0.01,
         form=DOUBLE_ARCS["flat"],
+        walls="two modules",  # the rim of the drive that was looked through for such places
         deflection=1.0122,
         clearance=0.35,
     )
