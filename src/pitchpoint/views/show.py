@@ -189,6 +189,8 @@ def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None)
     """
     variable = described(name, of)
     if not isfinite(value):
+        if name.endswith("film_error"):
+            return "not known"
         return "undefined, no power" if variable.display == "%" else "undefined"
     shown = float(displayed(variable, value))
     return f"{number(shown)} {unit(variable.display)}".strip() if with_unit else number(shown)
