@@ -129,7 +129,7 @@ def test_a_hardness_on_a_scale_is_a_pressure_and_says_so() -> None:
 def test_a_law_of_ones_own_that_cannot_be_is_doubted() -> None:
     def told(coefficient: float) -> str:
         own = FrictionLaw("own", "own", lambda *, pressure: coefficient + 0.0 * pressure)
-        data = CYCLE.compute(replace(variant(), own=own).built({}), None, lambda _: None)
+        data = CYCLE.compute(replace(variant(), own=(own,)).built({}), None, lambda _: None)
         return " ".join(json.loads(data.attrs["warnings"]))
 
     assert "own: its friction coefficient falls to -0.05: such friction drives the gears" in told(
@@ -147,7 +147,7 @@ def test_a_law_of_ones_own_has_the_film_that_the_result_shows() -> None:
 
     own = FrictionLaw("own", "own", law)
     heated = variant(models={"inlet_heating": "murch_wilson_1975"})
-    data = CYCLE.compute(replace(heated, own=own).built({}), None, lambda _: None)
+    data = CYCLE.compute(replace(heated, own=(own,)).built({}), None, lambda _: None)
     temperature = 273.15 + float(TREE["operation"]["temperature"].split()[0])
     expected = 0.02 + 0.08 / (1.0 + loaded(data, "lambda_ratio")) * (temperature / 333.15)
     np.testing.assert_allclose(loaded(data, "friction"), expected, rtol=1e-9)
