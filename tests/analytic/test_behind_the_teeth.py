@@ -36,7 +36,7 @@ PARTS = ("bottom of the cup", "flange joint", "wave generator's shaft", "circula
 
 
 def build(diameter=60e-3, teeth=100, **given):
-    sizes = {"module": diameter / teeth, "face_width": diameter / 6.0}
+    sizes = {"module": diameter / teeth, "face_width": diameter / 6.0, "walls": "two modules"}
     return build_strain_wave(teeth=(teeth, teeth + 2), **(sizes | given))
 
 
