@@ -336,6 +336,21 @@ def kisssoft(**changed: Any) -> Strengths:
     return strengths(solids=(steel, steel), **usual | changed)
 
 
+def third_stage(base: CylindricalPair, **more: Any) -> CylindricalPair:
+    """Helical stage of a wind turbine's gearbox, as KISSsoft prints it."""
+    return with_circles(
+        base,
+        teeth=(24, 95),
+        module=14e-3,
+        tips=(380.747e-3, 1395.376e-3),
+        profile_shift=(0.48, 0.6691),
+        helix_angle=radians(10.0),
+        centre_distance=0.861,
+        face_width=0.36,
+        **more,
+    )
+
+
 def test_a_helical_stage_as_kisssoft_prints_it(base: CylindricalPair) -> None:
     """Third stage. The edition of 2019 has f_eps in Y_F and a cube of the cosine in Y_beta beside it.
 
@@ -343,16 +358,7 @@ def test_a_helical_stage_as_kisssoft_prints_it(base: CylindricalPair) -> None:
     have all digits, as the helical pinion of the FVA Workbench below.
     """
     helix, ratio = radians(10.0), 61.276 / 41.891
-    pair = with_circles(
-        base,
-        teeth=(24, 95),
-        module=14e-3,
-        tips=(380.747e-3, 1395.376e-3),
-        profile_shift=(0.48, 0.6691),
-        helix_angle=helix,
-        centre_distance=0.861,
-        face_width=0.36,
-    )
+    pair = third_stage(base)
     asked = duty(162105.5, 1165.9)
     cycles = numbers(12255.788e6, 3096.199e6)
     asked = replace(asked, cycles_flank=cycles, cycles_root=cycles)
@@ -404,17 +410,7 @@ def test_a_helical_stage_as_kisssoft_prints_it(base: CylindricalPair) -> None:
 def test_the_dynamic_factor_by_method_b_as_kisssoft_prints_it(base: CylindricalPair) -> None:
     """Third stage in class 6: m_red 0.36503 kg/mm, N 0.410, K_v 1.092, and the edition of 2006 throughout."""
     roots, bores = np.array([319.623, 1334.252]), np.array([179.10, 1193.32])
-    pair = with_circles(
-        base,
-        teeth=(24, 95),
-        module=14e-3,
-        tips=(380.747e-3, 1395.376e-3),
-        profile_shift=(0.48, 0.6691),
-        helix_angle=radians(10.0),
-        centre_distance=0.861,
-        face_width=0.36,
-        rim_ratio=roots / bores,
-    )
+    pair = third_stage(base, rim_ratio=roots / bores)
     loads = factors(
         application=1.25,
         dynamic=nan,

@@ -402,22 +402,27 @@ def test_what_one_law_is_warned_of_stands_under_that_law(
     chromium.wait(f"{told}.includes({title!r} + ': too thin a film.')")
 
 
+def half_a_phase_on(chromium: Browser, tmp_path: Path, example: str, turns: str) -> np.ndarray:
+    """How far bodies of a drive of stages turn in half a phase, by a script that reads where they stand."""
+    read = Reader()
+    over = [Sweep(key="operation.speed", start="1000 rpm", stop="1500 rpm", count=2.0)]
+    found = explore(str(EXAMPLES / f"{example}.toml"), over, read=read)
+    write_explorer(found, read.drawings, tmp_path / "drive.html")
+    chromium.open(tmp_path / "drive.html", 1280, prefers_reduced_motion="reduce")
+    chromium.wait(DRAWN)
+    before = np.array(chromium.run(turns))
+    phase = "(s => { s.value = 0.5; s.dispatchEvent(new Event('input')) })"
+    chromium.run(f"{phase}(document.getElementById('phase'))")
+    return np.array(chromium.run(turns)) - before
+
+
 @in_browser
 @pytest.mark.whole
 def test_stages_turn_together(chromium: Browser, tmp_path: Path) -> None:
     """The wheel of one stage and the pinion of the next are on one shaft."""
-    read = Reader()
-    over = [Sweep(key="operation.speed", start="1000 rpm", stop="1500 rpm", count=2.0)]
-    found = explore(str(EXAMPLES / "two_stage.toml"), over, read=read)
-    write_explorer(found, read.drawings, tmp_path / "drive.html")
-    chromium.open(tmp_path / "drive.html", 1280, prefers_reduced_motion="reduce")
-    chromium.wait(DRAWN)
     turns = "[...document.querySelectorAll('.moving:not([hidden]) .close .gear')].map(one => "
     turns += "Number(one.getAttribute('transform').match(/rotate.([-0-9.]+)/)[1]))"
-    before = np.array(chromium.run(turns))
-    phase = "(s => { s.value = 0.5; s.dispatchEvent(new Event('input')) })"
-    chromium.run(f"{phase}(document.getElementById('phase'))")
-    wheel, first, other, pinion = np.array(chromium.run(turns)) - before
+    wheel, first, other, pinion = half_a_phase_on(chromium, tmp_path, "two_stage", turns)
     assert abs(pinion) > 1.0
     assert pinion == pytest.approx(wheel, rel=1e-6)
     assert wheel * first < 0.0
@@ -432,20 +437,12 @@ def test_stages_turn_together(chromium: Browser, tmp_path: Path) -> None:
 @pytest.mark.whole
 def test_a_wave_turns_with_the_wheel_before_it(chromium: Browser, tmp_path: Path) -> None:
     """The wheel of the spur pair and the wave generator are on one shaft."""
-    read = Reader()
-    over = [Sweep(key="operation.speed", start="1000 rpm", stop="1500 rpm", count=2.0)]
-    found = explore(str(EXAMPLES / "spur_and_strain_wave.toml"), over, read=read)
-    write_explorer(found, read.drawings, tmp_path / "drive.html")
-    chromium.open(tmp_path / "drive.html", 1280, prefers_reduced_motion="reduce")
-    chromium.wait(DRAWN)
     wheel = "Number(document.querySelector('.moving:not([hidden]) .close .gear-2')"
     wheel += ".getAttribute('transform').match(/rotate.([-0-9.]+)/)[1])"
     wave = "(one => Math.atan2(one.getAttribute('x1'), -one.getAttribute('y1')) * 180 / Math.PI)"
     wave += "(document.querySelector('.moving:not([hidden]) .whole .axis'))"
-    before = np.array(chromium.run(f"[{wheel}, {wave}]"))
-    phase = "(s => { s.value = 0.5; s.dispatchEvent(new Event('input')) })"
-    chromium.run(f"{phase}(document.getElementById('phase'))")
-    turned, waved = np.array(chromium.run(f"[{wheel}, {wave}]")) - before
+    turns = f"[{wheel}, {wave}]"
+    turned, waved = half_a_phase_on(chromium, tmp_path, "spur_and_strain_wave", turns)
     assert abs(turned) > 1.0
     assert waved == pytest.approx(turned, rel=1e-6)
     assert chromium.console == []

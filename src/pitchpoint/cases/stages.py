@@ -215,7 +215,7 @@ class BuiltDrive:
         ]
         return [*self.case.losses, *own]
 
-    @property
+    @cached_property
     def motion(self) -> list[float]:
         """Rates of the shafts for a radian of the input."""
         shafts = [

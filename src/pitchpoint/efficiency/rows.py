@@ -30,6 +30,7 @@ __all__ = [
     "Row",
     "balance_in_rows",
     "balances",
+    "balances_of",
     "known_engagements",
     "one_engagement",
     "stacked",
@@ -84,6 +85,11 @@ def balances(rows: Row, models: Models) -> Balance:
     return found
 
 
+def balances_of(rows: Row, models: Models) -> Balance:
+    """Balance of every row; no balance asks for the law of the film, and one program serves them all."""
+    return balances(rows, replace(models, film=None))
+
+
 def stacked(rows: list[Any]) -> Any:
     """Trees of arrays as one with an axis in front; what is one object in all of them is looked at once."""
     return jax.tree.map(_stack, *rows)
@@ -102,8 +108,7 @@ def balance_in_rows(
     count = known.nodes // NODES if known.nodes % NODES == 0 else 1
     parts = [_part(known, number, count) for number in range(count)]
     rows = [(design, operation, part) for part in parts]
-    laws = replace(models, film=None)  # no balance asks for it, and one program serves all films
-    found = jax.device_get(balances(stacked(rows + rows[-1:] * (CHUNK - count)), laws))
+    found = jax.device_get(balances_of(stacked(rows + rows[-1:] * (CHUNK - count)), models))
 
     def joined(leaf: np.ndarray) -> np.ndarray:
         return np.concatenate(leaf[:count], axis=-1) if leaf.ndim > 1 else np.asarray(leaf.max())

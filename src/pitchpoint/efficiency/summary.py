@@ -29,7 +29,7 @@ from pitchpoint.efficiency.rows import (
     CHUNK,
     NODES,
     Row,
-    balances,
+    balances_of,
     known_engagements,
     one_engagement,
     stacked,
@@ -250,7 +250,7 @@ def at_points(design: Design, operation: Operation, models: Models) -> dict[str,
         taken = np.minimum(np.arange(start, start + CHUNK), count - 1)
         rows = designs, jax.tree.map(lambda values: np.asarray(values)[taken], operation), known
         found: dict[str, np.ndarray] = jax.device_get(
-            _summaries(rows, balances(rows, replace(models, film=None)), alone, models.film)
+            _summaries(rows, balances_of(rows, models), alone, models.film)
         )
         return found
 
@@ -265,7 +265,7 @@ def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
     if known is None:
         known = known_engagements(design, operation.load, alone)
     rows = design, operation, known
-    return _summaries(rows, balances(rows, replace(models, film=None)), alone, models.film)
+    return _summaries(rows, balances_of(rows, models), alone, models.film)
 
 
 def _by_films(
