@@ -59,6 +59,10 @@ def table() -> st.SearchStrategy[dict[str, Any]]:
 @st.composite
 def rated(draw: st.DrawFn) -> dict[str, Any]:
     case = draw(cases())
+    # What a rating does not ask, as it is usual: the gears and the table are what is drawn.
+    case["lubricant"] = {"name": "pao-vg-460"}
+    case["operation"]["temperature"] = "60 degC"
+    case["models"]["load_sharing"] = "equal"
     gears = case["gears"]
     if draw(st.booleans()):
         gears["helix_angle"] = f"{draw(between(0.0, 35.0))!r} deg"
