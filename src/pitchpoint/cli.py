@@ -882,7 +882,7 @@ def _summary(outcome: "Outcome", number: int) -> None:
 
     _heading(outcome.manifest, number)
     for section in in_order():
-        for printed in section.screen(outcome):
+        for printed in section.prints(outcome):
             _print(printed)
     _warn(outcome.manifest["warnings"])
 

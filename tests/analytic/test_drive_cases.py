@@ -10,12 +10,14 @@ import pytest
 from pitchpoint._jax import jnp
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
-from pitchpoint.analyses.registry import FOUR_QUADRANTS, TORSION
+from pitchpoint.analyses.registry import ANALYSES, FOUR_QUADRANTS, INSPECTION, REFLECTED, TORSION
 from pitchpoint.cases.stages import BuiltDrive
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.drive import drive_cycle
 from pitchpoint.efficiency.drive_summary import together
 from pitchpoint.errors import InputError
+from pitchpoint.results.by_stage import of_stage, stages_of
+from pitchpoint.results.netcdf import decode, encode
 
 COMMON = """
 [lubricant]
@@ -53,7 +55,7 @@ def two():
 
 
 def part(analysis, case, piece=None):
-    return analysis.compute(case, piece or {}, lambda _: None)
+    return analysis.computed(case, piece or {}, lambda _: None)
 
 
 @cache
@@ -331,3 +333,52 @@ def test_few_meetings_of_phases_are_told():
     text = TWO.replace("[23, 61]", "[23, 60]").replace("[19, 70]", "[20, 70]")
     (told,) = [text for text in built(text).warnings if "meet" in text]
     assert told.startswith("On shaft 2 60 and 20 teeth mesh in a turn, with the common divisor 20")
+
+
+TOLERANCES = "[stages.gears.inspection]\nthickness_field = 'cd25'\n"
+TIGHT = (
+    f"[[stages]]\n[stages.gears]\n{FIRST}{TOLERANCES}[[stages]]\n[stages.gears]\n{SECOND}{COMMON}"
+)
+
+
+def test_a_stage_is_inspected_as_in_a_file_of_its_own():
+    whole = decode(encode(part(INSPECTION, built(TIGHT))))
+    assert whole["over_balls"].dims == ("stage", "gear", "limit")
+    assert stages_of(whole) == (1, 2)
+    assert np.isnan(whole["over_balls"].sel(stage=2, limit=["upper", "lower"])).all()
+    inspection = {"gears.inspection.thickness_field": "cd25"}
+    for number, alike in ((1, alone(FIRST, **inspection)), (2, alone(SECOND))):
+        expected = part(INSPECTION, alike)
+        there = of_stage(whole, number)
+        for name, values in expected.variables.items():
+            if values.dtype.kind == "f":
+                np.testing.assert_allclose(there[name], values, rtol=1e-12, err_msg=name)
+            else:
+                assert there[name].values.tolist() == values.values.tolist(), name
+            assert there[name].attrs == values.attrs, name
+        assert there.attrs == expected.attrs
+
+
+def test_backlash_and_inertia_of_the_stages_count_by_the_squares_of_their_ratios():
+    case = built(TIGHT)
+    data, each = part(REFLECTED, case), part(INSPECTION, case)
+    first, second = (of_stage(each, number) for number in (1, 2))
+    (nominal,) = second["backlash_angle"].sel(gear="gear 2").values
+    at_output = first["backlash_angle"].sel(gear="gear 2").values / RATIOS[1] + nominal
+    np.testing.assert_allclose(data["output_backlash"], at_output, rtol=1e-12)
+    assert at_output[3] > at_output[1] > at_output[0]
+    (pinion, wheel), (driving, driven) = first["disc_inertia"].values, second["disc_inertia"].values
+    felt = pinion + (wheel + driving) / RATIOS[0] ** 2 + driven / RATIO**2
+    at_ends = [felt, felt * RATIO**2]
+    np.testing.assert_allclose(data["reflected_inertia"], at_ends, rtol=1e-12)
+    np.testing.assert_allclose(data["reflected_part"].sum("body"), at_ends, rtol=1e-12)
+    masses = [*first["disc_mass"].values, *second["disc_mass"].values]
+    assert float(data["drive_mass"]) == pytest.approx(sum(masses), rel=1e-12)
+
+
+def test_what_is_of_each_mesh_is_there_where_one_of_them_has_it():
+    lacks = {name: analysis.why_not(two()) for name, analysis in ANALYSES.items()}
+    assert lacks["inspection"] is None
+    assert lacks["load_limits"] == "a flexspline is that of a strain wave gear"
+    assert lacks["film"] == "it is computed for one mesh; a stage in a file of its own has it"
+    assert ANALYSES["reflected"].why_not(alone(FIRST)) is not None

@@ -44,7 +44,15 @@ seal_torque = "0.5 N m"
 count = 2
 temperatures = ["60 degC"]
 """
-PARTS = ["operation", "laws", "strength", "torsion", "study_sweep_operation_speed"]
+PARTS = [
+    "inspection",
+    "reflected",
+    "operation",
+    "laws",
+    "strength",
+    "torsion",
+    "study_sweep_operation_speed",
+]
 PARTS += ["study_sweep_stages_1_gears_profile_shift_1", "running", "loss_map", "back_driving"]
 SWEEPS = ["--sweep", "operation.speed=500 rpm:1500 rpm:2"]
 SWEEPS += ["--sweep", "stages.1.gears.profile_shift.1=0:0.3:2"]
@@ -120,8 +128,8 @@ def test_a_seal_at_the_output_is_what_starts_the_drive(folder: Path) -> None:
 @pytest.mark.whole
 def test_a_sweep_holds_the_operating_point(folder: Path) -> None:
     where = folder / "out" / "default"
-    point, speeds = load(where / "operation.nc"), load(where / f"{PARTS[4]}.nc")
-    shifts = load(where / f"{PARTS[5]}.nc")
+    point, speeds = load(where / "operation.nc"), load(where / "study_sweep_operation_speed.nc")
+    shifts = load(where / "study_sweep_stages_1_gears_profile_shift_1.nc")
     for name in ("mean_efficiency", "torque_ripple", "stage_loss"):
         expected = point[name].values[:, 0]
         np.testing.assert_allclose(speeds[name].values[:, -1], expected, rtol=1e-10)
@@ -132,7 +140,14 @@ def test_a_sweep_holds_the_operating_point(folder: Path) -> None:
 @pytest.mark.whole
 def test_the_report_shows_the_stages(folder: Path) -> None:
     page = (folder / "out" / "report.html").read_text()
-    for words in ('id="stages"', 'id="torsion"', 'id="map"', "Wind-up at the output by the stage"):
+    for words in (
+        'id="stages"',
+        'id="inspection"',
+        'id="reflected"',
+        'id="torsion"',
+        'id="map"',
+        "Wind-up at the output by the stage",
+    ):
         assert words in page, words
     assert "shaft 1 drives at 1500 rpm, shaft 3 carries 300" in page
     assert "Averages run over all meetings of the phases of the stages." in page

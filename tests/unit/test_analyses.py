@@ -132,6 +132,7 @@ def test_the_matrix_says_yes_or_why_not_and_stands_in_the_docs() -> None:
     assert [name for name, row in rows.items() if row["cylindrical"] != "yes"] == [
         "load_limits",
         "bodies",
+        "reflected",
         "joint",
     ]
     assert "along their line of action" in rows["joint"]["cylindrical"]

@@ -28,7 +28,7 @@ from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import operating_point, period_of
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.report import render
-from pitchpoint.views.section import key_figures
+from pitchpoint.views.section import Page, key_figures
 from pitchpoint.views.sections.answer import teeth_rows
 from pitchpoint.views.sections.arc import arc_panel, wave_losses, wave_sentence
 from pitchpoint.views.sections.beside import drag_panel, starting_answer
@@ -638,7 +638,7 @@ def test_no_stiffness_is_told_where_nothing_is_carried(whole: Outcome) -> None:
 
 
 def test_orders_stand_over_the_spline_that_makes_them(whole: Outcome) -> None:
-    (panel,) = kinematic_error_panels({"default": whole})
+    (panel,) = kinematic_error_panels(Page({"default": whole}, {}))
     turn, first, second = panel.figures
     assert [len(one.data) for one in panel.figures] == [3, 3, 3]
     assert turn.data[0]["x"][-1] == pytest.approx(360.0 * (1.0 - 0.5 / Z2), abs=1e-3)
@@ -651,9 +651,9 @@ def test_orders_stand_over_the_spline_that_makes_them(whole: Outcome) -> None:
 
 def test_a_spline_without_deviations_has_no_orders(whole: Outcome) -> None:
     one = replace(whole, parts={"kinematic_error": kinematic_error(flexspline=False)})
-    (panel,) = kinematic_error_panels({"default": one})
+    (panel,) = kinematic_error_panels(Page({"default": one}, {}))
     assert [shown.title for shown in panel.figures[1:]] == ["Orders by the circular spline"]
-    assert kinematic_error_panels({"default": outcome({})}) == []
+    assert kinematic_error_panels(Page({"default": outcome({})}, {})) == []
     assert kinematic_error_answer(outcome({})) == ""
 
 
@@ -663,7 +663,7 @@ def test_a_state_without_equilibrium_leaves_a_gap(whole: Outcome) -> None:
     lost["kinematic_error_spectrum"].values[2] = np.nan
     lost["kinematic_error_range"].values[2] = np.nan
     one = replace(whole, parts={"kinematic_error": lost})
-    (panel,) = kinematic_error_panels({"default": one})
+    (panel,) = kinematic_error_panels(Page({"default": one}, {}))
     assert panel.figures[0].data[2]["y"][7] is None
     assert set(panel.figures[1].data[2]["y"]) == {None}
     assert panel.figures[1].data[1]["y"][1] is not None

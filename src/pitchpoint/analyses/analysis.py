@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import xarray as xr
 
@@ -11,6 +11,7 @@ from pitchpoint.cases.schema import Study
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.registry import Deferred
+from pitchpoint.results.by_stage import by_stage
 from pitchpoint.results.variable import Variable
 
 __all__ = [
@@ -94,7 +95,8 @@ class Entry:
         title: for progress and figures.
         lacks: None, or why the part does not exist for a case: what its gears do not have, or its file
             does not ask for (`Unasked`).
-        alone: why it is for one mesh alone, and not for a drive of several; empty where it is for both.
+        of: what it is of: "mesh", and a drive of several has it of each along a dimension `stage`; "drive",
+            of one mesh or several; or "one mesh", which a drive of several has not.
         main: variables that are shown first.
         figures: entries of `--json` from all parts that exist; by default the main variables under the
             name of the part.
@@ -104,7 +106,7 @@ class Entry:
     name: str
     title: str
     lacks: Callable[[Any], str | None] = lambda built: None
-    alone: str = ALONE
+    of: Literal["mesh", "drive", "one mesh"] = "one mesh"
     main: tuple[str, ...] = ()
     figures: Deferred[Callable[[Mapping[str, xr.Dataset]], Mapping[str, Any]] | None] = Deferred(
         None
@@ -113,16 +115,19 @@ class Entry:
 
     def why_not(self, built: Ready) -> str | None:
         """Why the part does not exist for a case; None where it does."""
-        several = isinstance(built, BuiltDrive)
-        return self.alone if several and self.alone else self.lacks(built)
+        if self.of == "drive" or not isinstance(built, BuiltDrive):
+            return self.lacks(built)
+        reasons = [ALONE] if self.of == "one mesh" else [*map(self.lacks, built.meshes)]
+        return None if None in reasons else reasons[0]
 
     def shown(self, parts: Mapping[str, xr.Dataset]) -> Mapping[str, Any]:
         """Entries of `--json`."""
         if self.figures is not None:
             return self.figures(parts)
         data = parts.get(self.name)
-        found = {} if data is None else {name: data[name].values.tolist() for name in self.main}
-        return {self.name: found} if self.main else {}
+        if data is None or not self.main:
+            return {self.name: {}} if self.main else {}
+        return {self.name: {name: data[name].values.tolist() for name in self.main if name in data}}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,8 +135,8 @@ class Analysis(Entry):
     """One part of a result: what it needs, how it is computed, and what is shown of it.
 
     Attributes:
-        compute: dataset of a piece, told a callback for progress. It needs nothing but the case and the
-            piece, so that another process can compute it.
+        compute: dataset of a piece of a drive or a mesh, told a callback for progress. It needs nothing but
+            the case and the piece, so that another process can compute it.
         pieces: where the pieces lie, in order; one that is the whole by default.
         joined: the whole dataset from its pieces.
         onward: of a march, the next piece after the last one as computed, None at its end; it begins after
@@ -144,6 +149,20 @@ class Analysis(Entry):
     onward: Deferred[Callable[[Any, xr.Dataset, Progress], xr.Dataset | None] | None] = Deferred(
         None
     )
+
+    def computed(self, built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
+        """Dataset of a piece; of an analysis of a mesh that of each mesh of a drive.
+
+        Args:
+            built: the case.
+            piece: see `pieces`.
+            progress: told how far it is.
+        """
+        if self.of != "mesh" or not isinstance(built, BuiltDrive):
+            return self.compute(built, piece, progress)
+        numbered = zip(built.numbers, built.meshes, strict=True)
+        there = {number: mesh for number, mesh in numbered if self.lacks(mesh) is None}
+        return by_stage({n: self.compute(mesh, piece, progress) for n, mesh in there.items()})
 
     def parts(self, subject: Subject) -> "Iterable[Analysis]":
         """The analysis itself, unless a case lacks something that it needs."""

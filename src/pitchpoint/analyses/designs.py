@@ -46,7 +46,7 @@ class Designs:
         return Analysis(
             name=self.name,
             title="designs",
-            alone="",
+            of="drive",
             compute=self.compute,
             pieces=lambda _: self.pieces,
             joined=self.joined,

@@ -10,6 +10,7 @@ __all__ = [
     "no_deviations",
     "no_joint",
     "no_quadrants",
+    "of_one_mesh",
     "rigid",
     "untransmitted",
     "without_films",
@@ -72,6 +73,13 @@ def no_bodies(built: Built) -> str | None:
     if not built.transmits:
         return Unasked("a test rig has bodies of any mass")
     return Unasked("masses of cylindrical gears stand with the dimensions of their drawing")
+
+
+def of_one_mesh(built: Ready) -> str | None:
+    """Why there are no sums over the meshes of a drive."""
+    if isinstance(built, BuiltDrive):
+        return None
+    return Unasked("backlash, masses and inertia of one mesh stand with its gears")
 
 
 def no_joint(built: Built) -> str | None:

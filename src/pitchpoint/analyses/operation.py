@@ -1,7 +1,8 @@
 """The operating point, the friction laws of the library there, and the drive backwards."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from math import sqrt
 from typing import Any
 
 import xarray as xr
@@ -22,7 +23,7 @@ from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
-from pitchpoint.doubts import GUESSED, Doubt, doubts_of, in_stage, stored
+from pitchpoint.doubts import FELT, GUESSED, Doubt, doubts_of, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.results.store import without_nan
 
@@ -38,8 +39,38 @@ DIFFERS = 1.5
 
 def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     data = summaries([built], built.models, beside([built]), title="operating point")
-    data.attrs.update(stored([*doubts_of(data.attrs), *_implausible(built)]))
+    beyond = _rated_below(built, data) if isinstance(built, BuiltDrive) else []
+    data.attrs.update(stored([*doubts_of(data.attrs), *_implausible(built), *beyond]))
     return data
+
+
+def _rated_below(built: BuiltDrive, data: xr.Dataset) -> list[str]:
+    """Stages that carry more than what they are rated for, since those behind them lose power."""
+    # What a stage carries is what drives the one behind it, under the law that asks for most.
+    carried = data["stage_input_torque"].max(("law", "point")).values[1:].tolist()
+    stages = zip(built.numbers, built.stages, carried, strict=False)
+    return [
+        in_stage(number, doubt)
+        for number, stage, torque in stages
+        if stage.case.gears.rated
+        for doubt in _above(stage, torque)
+    ]
+
+
+def _above(stage: Built, torque: float) -> Iterator[Doubt]:
+    """How much stresses are higher under this torque than under the load of a stage."""
+    rated = stage.case.operation.load
+    more = torque / rated - 1.0 if rated > 0.0 else 0.0
+    if more > FELT:
+        roots, flanks = (f"{100.0 * part:.2g} %" for part in (more, sqrt(1.0 + more) - 1.0))
+        under, over = (stage.carried.show(float(f"{load:.4g}")) for load in (rated, torque))
+        yield Doubt(
+            f"stresses and safeties are those for {under}, without the losses behind it; it carries {over}, "
+            f"under which stresses of roots are {roots} higher and those of flanks {flanks}.",
+            moves=more,
+            about=("root_stress", "contact_stress"),
+            brief=f"by losses behind it root stress is {roots} higher.",
+        )
 
 
 def _implausible(built: Ready) -> list[str]:
@@ -174,7 +205,7 @@ def _backward_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 OPERATION = Analysis(
     name="operation",
     title="operating point",
-    alone="",
+    of="drive",
     compute=_operation,
     main=(*MAIN, *CONTACT, *REACTIONS, "bearing_load", *TEMPERATURES),
     figures=of_operation,
@@ -182,7 +213,7 @@ OPERATION = Analysis(
 LAWS_THERE = Analysis(
     name="laws",
     title="spread of the friction laws",
-    alone="",
+    of="drive",
     lacks=_untried,
     compute=_laws,
     figures=_law_figures,
@@ -190,7 +221,7 @@ LAWS_THERE = Analysis(
 BACK_DRIVING = Analysis(
     name="back_driving",
     title="back-driving",
-    alone="",
+    of="drive",
     lacks=untransmitted,
     compute=_back_driving,
     figures=_backward_figures,

@@ -12,7 +12,14 @@ from pitchpoint.analyses.analysis import Analysis, Several, of_gears_with
 from pitchpoint.analyses.cycle import CYCLE
 from pitchpoint.analyses.figures import WIND_UP, standstill_figures
 from pitchpoint.analyses.films import FILM, FILM_SQUEEZE, FINITE_FILM
-from pitchpoint.analyses.lacking import no_bodies, no_deviations, no_joint, no_quadrants, rigid
+from pitchpoint.analyses.lacking import (
+    no_bodies,
+    no_deviations,
+    no_joint,
+    no_quadrants,
+    of_one_mesh,
+    rigid,
+)
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
 from pitchpoint.analyses.running import RUNNING
@@ -28,6 +35,7 @@ __all__ = ["ANALYSES", "register"]
 INSPECTION = Analysis(
     name="inspection",
     title="inspection",
+    of="mesh",
     lacks=of_gears_with(
         "inspection", "span, balls and backlash by tolerances are those of cylindrical gears"
     ),
@@ -37,6 +45,7 @@ INSPECTION = Analysis(
 LOAD_LIMITS = Analysis(
     name="load_limits",
     title="load limits",
+    of="mesh",
     lacks=of_gears_with("limits", "a flexspline is that of a strain wave gear"),
     compute="pitchpoint.analyses.load_limits:load_limits_of",
     main=("alternating_stress", "torsional_stress", "mean_stress", "flexspline_torque"),
@@ -44,14 +53,23 @@ LOAD_LIMITS = Analysis(
 BODIES = Analysis(
     name="bodies",
     title="bodies",
+    of="mesh",
     lacks=no_bodies,
     compute="pitchpoint.analyses.bodies:bodies_of",
     main=("body_mass", "body_inertia"),
 )
+REFLECTED = Analysis(
+    name="reflected",
+    title="backlash, mass and inertia at the ends",
+    of="drive",
+    lacks=of_one_mesh,
+    compute="pitchpoint.analyses.reflected:reflected_of",
+    main=("output_backlash", "drive_mass", "reflected_inertia"),
+)
 TORSION = Analysis(
     name="torsion",
     title="torsion",
-    alone="",
+    of="drive",
     lacks=rigid,
     compute="pitchpoint.analyses.torsion:torsion_of",
     main=(*WIND_UP, "kinematic_play"),
@@ -60,6 +78,7 @@ TORSION = Analysis(
 KINEMATIC_ERROR = Analysis(
     name="kinematic_error",
     title="kinematic error",
+    of="mesh",
     lacks=no_deviations,
     compute="pitchpoint.analyses.kinematic_error:error_of",
     main=("kinematic_error_range",),
@@ -76,7 +95,7 @@ JOINT = Analysis(
 FOUR_QUADRANTS = Analysis(
     name="four_quadrants",
     title="loss map of the output",
-    alone="",
+    of="drive",
     lacks=no_quadrants,
     compute="pitchpoint.analyses.four_quadrants:quadrants_of",
     pieces="pitchpoint.analyses.four_quadrants:pieces",
@@ -90,6 +109,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     INSPECTION,
     LOAD_LIMITS,
     BODIES,
+    REFLECTED,
     CYCLE,
     OPERATION,
     LAWS_THERE,

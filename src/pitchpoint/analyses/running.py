@@ -276,7 +276,7 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 RUNNING = Analysis(
     name="running",
     title="running without load",
-    alone="",
+    of="drive",
     lacks=_free,
     compute=_computed,
     main=TORQUES,

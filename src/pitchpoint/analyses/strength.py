@@ -331,7 +331,7 @@ def _nested(values: np.ndarray) -> Any:
 STRENGTH = Analysis(
     name="strength",
     title="strength of the teeth",
-    alone="",
+    of="drive",
     lacks=_unrated,
     compute=_strength,
     main=_MAIN,

@@ -323,7 +323,7 @@ def _number(value: Any) -> float:
 STUDIES = Several(
     name="studies",
     title="studies and sweeps",
-    alone="",
+    of="drive",
     lacks=_unasked,
     figures=_figures,
     each=_studies,

@@ -82,6 +82,28 @@ VARIABLES: dict[str, Variable] = {
     "body_inertia": Variable(
         "moment of inertia of a body about its axis", "J", "kg m2", "kg cm2", "moment of inertia"
     ),
+    "reflected_part": Variable(
+        "moment of inertia of a body as it is felt at an end of the drive",
+        "J_red,i",
+        "kg m2",
+        "kg cm2",
+        "moment of inertia",
+    ),
+    "reflected_inertia": Variable(
+        "moment of inertia of the drive as it is felt at its end",
+        "J_red",
+        "kg m2",
+        "kg cm2",
+        "moment of inertia",
+    ),
+    "drive_mass": Variable("mass of all bodies of the drive", "m", "kg", "kg", "mass"),
+    "output_backlash": Variable(
+        "turn of the output in the backlash of all stages, the input held",
+        "j_θ",
+        "rad",
+        "arcmin",
+        "angle",
+    ),
     "bending_strain": Variable("largest strain by which the wave bends", "ε_b", "1"),
     "bending_amplitude": pressure("alternating bending stress of the flexspline", "σ_b"),
     "alternating_stress": pressure("alternating equivalent stress of the flexspline", "σ_a"),

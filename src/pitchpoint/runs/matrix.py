@@ -1,7 +1,9 @@
 """Which analysis there is for which family, asked of a sample of each."""
 
+import tomllib
 from collections.abc import Sequence
 from importlib import resources
+from pathlib import Path
 
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.registry import ANALYSES
@@ -27,12 +29,22 @@ analyses ask for, with every solver of films: ✓, or – with the number of the
 def matrix() -> list[dict[str, str]]:
     """A row for each analysis: its name and title, and for each family yes, or why it is not there."""
     samples = {tag(table): _asking(str(sample_of(table))) for table in TABLES}
-    samples["several stages"] = [load_case(str(_SEVERAL), settings=_OF_OUTPUT)]
+    turning = [
+        table for table in TABLES if samples[tag(table)][0].transmits and table.load == "torque"
+    ]
+    samples["several stages"] = [_drive(sample_of(table)) for table in turning]
     return [
         {"analysis": analysis.name, "title": analysis.title}
         | {name: _why_not(analysis, cases) for name, cases in samples.items()}
         for analysis in ANALYSES.values()
     ]
+
+
+def _drive(sample: Path) -> Ready:
+    """Two stages of which the second one has the gears of a sample."""
+    tree, gears = (tomllib.loads(path.read_text("utf-8")) for path in (_SEVERAL, sample))
+    tree["stages"][1] |= {"gears": gears["gears"]}
+    return load_case(tree, settings=_OF_OUTPUT)
 
 
 def _asking(sample: str) -> list[Ready]:

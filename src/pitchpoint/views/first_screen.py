@@ -183,7 +183,7 @@ def _more(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Lin
         if any(
             printed.rows or printed.line
             for outcome in outcomes.values()
-            for printed in section.screen(outcome)
+            for printed in section.prints(outcome)
         )
     ]
     every = f"Tables by --full: {', '.join(titles).lower()}"

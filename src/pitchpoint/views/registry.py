@@ -133,6 +133,16 @@ BODIES = Section(
     answer=of_part("bodies", "pitchpoint.views.sections.bodies:bodies_facts"),
     screen=of_part("bodies", "pitchpoint.views.sections.bodies:bodies_printed"),
 )
+REFLECTED = Section(
+    name="reflected",
+    title="Backlash at the output, masses and reflected inertia",
+    short="Inertia",
+    order=108.0,
+    parts=("reflected",),
+    blocks="pitchpoint.views.sections.reflected:reflected_blocks",
+    answer=of_part("reflected", "pitchpoint.views.sections.reflected:reflected_facts"),
+    screen=of_part("reflected", "pitchpoint.views.sections.reflected:reflected_printed"),
+)
 MOTION = Section(
     name="motion",
     title="Motion with friction",
@@ -154,6 +164,7 @@ SECTIONS: Registry[Section] = Registry(
     INSPECTION,
     LOAD_LIMITS,
     BODIES,
+    REFLECTED,
     PATH,
     STRENGTH,
     DRIVE,

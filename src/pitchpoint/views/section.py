@@ -5,10 +5,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from pitchpoint.registry import Deferred, code_at
+from pitchpoint.results.by_stage import of_stage, stages_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import Curves, Panel
 
 if TYPE_CHECKING:
+    import xarray as xr
     from markupsafe import Markup
 
 __all__ = [
@@ -28,6 +30,7 @@ __all__ = [
     "key_figure",
     "key_figures",
     "naming",
+    "of_meshes",
     "of_part",
     "panels",
     "reason",
@@ -139,6 +142,10 @@ class Printed:
     line: str = ""
 
 
+_ELSE = 60.0
+"""Order from which on a figure is what else a joint has, see `KeyFigure`."""
+
+
 @dataclass(frozen=True)
 class KeyFigure:
     """A figure that answers what was asked, at the top of the report and on the first screen.
@@ -162,6 +169,11 @@ class KeyFigure:
         begins = self.detail[:1]
         between = "" if begins in ("", ",", ";") else ", " if begins.isdigit() else " "
         return f"{self.value}{between}{self.detail}"
+
+    def of(self, stage: str) -> "KeyFigure":
+        """That of a stage; what limits a drive keeps its place, the rest comes behind that of the whole."""
+        late = 100.0 if self.order >= _ELSE else 0.0
+        return replace(self, name=f"{self.name}, {stage}", order=self.order + late)
 
 
 def key_figure(order: float, name: str, words: str, until: str) -> KeyFigure:
@@ -229,11 +241,36 @@ class Page:
         }
 
     def each(self, part: str) -> Iterator[tuple[int, str, Outcome]]:
-        """Position, title and outcome of every variant that has a part; no title where there is one."""
+        """Position, title and outcome of every variant that has a part; no title where there is one.
+
+        Of a part of the meshes of a drive that of every stage.
+        """
         there = self.having(part)
-        for position, (name, one) in enumerate(self.outcomes.items()):
-            if name in there:
-                yield position, name if self.several else "", one
+        for position, (name, outcome) in enumerate(self.outcomes.items()):
+            for k, (stage, mesh) in enumerate(of_meshes(outcome, part) if name in there else ()):
+                titles = [name if self.several else "", stage]
+                yield position + k * len(self.outcomes), ", ".join(filter(None, titles)), mesh
+
+
+def of_meshes(outcome: Outcome, *parts: str) -> list[tuple[str, Outcome]]:
+    """The outcome without a title, or that of every stage where a drive has some parts of each of its meshes.
+
+    Args:
+        outcome: of a mesh or a drive.
+        parts: see `Page.having`.
+    """
+    names = (part.partition(".")[0] for part in parts)
+    there = {name: outcome.parts[name] for name in names if name in outcome.parts}
+    whole = {name: data for name, data in there.items() if stages_of(data)}
+    numbers = dict.fromkeys(number for data in whole.values() for number in stages_of(data))
+    return [
+        (f"stage {number}", replace(outcome, parts=outcome.parts | _of_stage(whole, number)))
+        for number in numbers
+    ] or [("", outcome)]
+
+
+def _of_stage(parts: Mapping[str, "xr.Dataset"], number: int) -> dict[str, "xr.Dataset"]:
+    return {name: of_stage(d, number) for name, d in parts.items() if number in stages_of(d)}
 
 
 def by_variant(
@@ -333,10 +370,23 @@ class Section:
             return self.lacks(page)
         return None if page.having(*self.parts) else reason(page, *self.parts)
 
+    def answers(self, outcome: Outcome) -> Iterator[KeyFigure]:
+        """Main figures of one variant, those of each stage by its name."""
+        for stage, mesh in of_meshes(outcome, *self.parts):
+            for figure in self.answer(mesh):
+                yield figure.of(stage) if stage else figure
+
+    def prints(self, outcome: Outcome) -> Iterator[Printed]:
+        """What the command line prints of one variant, that of each stage under its name."""
+        for stage, mesh in of_meshes(outcome, *self.parts):
+            for printed in self.screen(mesh):
+                titles = [stage.capitalize(), printed.title]
+                yield replace(printed, title=": ".join(filter(None, titles))) if stage else printed
+
 
 def key_figures(sections: "Iterable[Section]", outcome: Outcome) -> list[KeyFigure]:
     """What sections answer of an outcome, in the order of the figures."""
-    each = (figure for section in sections for figure in section.answer(outcome))
+    each = (figure for section in sections for figure in section.answers(outcome))
     return sorted(each, key=lambda figure: figure.order)
 
 

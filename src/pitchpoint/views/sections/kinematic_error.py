@@ -1,6 +1,6 @@
 """Kinematic error by deviations of the teeth: over a turn, and by order."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -57,12 +57,11 @@ _FEWEST = 6
 """Orders that are always in it."""
 
 
-def kinematic_error_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
-    """Figures for each variant whose teeth have deviations."""
+def kinematic_error_panels(page: Page) -> list[Panel]:
+    """Figures for each variant whose teeth have deviations, and for each such stage."""
     return [
-        _panel(f"kinematic{position}", name if len(outcomes) > 1 else "", one)
-        for position, (name, one) in enumerate(outcomes.items())
-        if "kinematic_error" in one.parts
+        _panel(f"kinematic{position}", title, outcome)
+        for position, title, outcome in page.each("kinematic_error")
     ]
 
 
@@ -185,7 +184,7 @@ def error_blocks(page: Page) -> Iterator[Block]:
         "By the deviations that the case gives for the teeth, which differ from tooth to tooth: the mesh "
         "cycle, its losses and stiffness are those of teeth without them."
     )
-    for it in kinematic_error_panels(page.outcomes):
+    for it in kinematic_error_panels(page):
         if it.title:
             yield Heading(it.title)
         yield Paragraph(it.note)

@@ -1,0 +1,106 @@
+"""What a drive of several meshes is at its ends: backlash at the output, masses, reflected inertia."""
+
+import json
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Table, by_variant
+
+__all__ = ["reflected_blocks", "reflected_facts", "reflected_printed"]
+
+_ASSUMED = (
+    "Cylindrical gears are discs from bore to reference circle, rings from there outwards; shafts, "
+    "couplings, motor and load are not in it. What is held has a mass and no part in the inertia."
+)
+
+Row = tuple[str, ...]
+
+
+def reflected_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
+    yield from by_variant(page, "reflected", _of_variant)
+
+
+def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
+    data = outcome.parts["reflected"]
+    if "output_backlash" in data:
+        unit = show.unit_of("output_backlash")
+        cells = [_cell("output_backlash", float(v)) for v in data["output_backlash"].values]
+        heads = ["backlash", *map(str, data["case"].values)]
+        row = (f"turn of the output, the input held [{unit}]", *cells)
+        yield Table(heads, [row], compact=True)
+    yield Table(_heads(data), _rows(data), compact=True)
+    yield Paragraph(" ".join([_ASSUMED, *_nominal(data)]), "note")
+
+
+def _nominal(data: xr.Dataset) -> Iterator[str]:
+    """Stages without tolerances."""
+    numbers = json.loads(data.attrs["without_tolerances"])
+    if numbers and "output_backlash" in data:
+        listed = " and ".join(map(str, numbers))
+        yield (
+            f"Stage{'s' if len(numbers) > 1 else ''} {listed} without tolerances in [gears.inspection]: the "
+            "nominal backlash counts."
+        )
+
+
+def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Backlash at the output and inertia at the ends, which a joint is driven with."""
+    data = outcome.parts["reflected"]
+    if "output_backlash" in data:
+        nominal, least, _, largest = (float(v) for v in data["output_backlash"].values)
+        by_tolerances = largest > least
+        ends = [least, largest] if by_tolerances else [nominal]
+        value = " to ".join(_cell("output_backlash", end) for end in ends)
+        yield KeyFigure(
+            59.0,
+            "Backlash at the output",
+            f"{value} {show.unit_of('output_backlash')}",
+            "by tolerances, the input held" if by_tolerances else "nominal, the input held",
+        )
+    inertias = zip(data["end"].values, data["reflected_inertia"].values, strict=True)
+    known = [
+        (str(end), show.quantity("reflected_inertia", float(value)))
+        for end, value in inertias
+        if np.isfinite(value)
+    ]
+    for (end, value), *others in [known] if known else []:
+        more = "".join(f"; {inertia} at the {name}" for name, inertia in others)
+        mass = show.quantity("drive_mass", float(data["drive_mass"]))
+        yield KeyFigure(79.0, "Inertia", value, f"at the {end}{more}; gears {mass}")
+
+
+def reflected_printed(outcome: Outcome) -> Iterator[Printed]:
+    """What the screen shows."""
+    data = outcome.parts["reflected"]
+    yield Printed(rows=[dict(zip(_heads(data), row, strict=True)) for row in _rows(data)])
+
+
+def _heads(data: xr.Dataset) -> list[str]:
+    unit = show.unit_of("body_inertia")
+    ends = [f"at the {end} [{unit}]" for end in data["end"].values]
+    return ["body", f"mass m [{show.unit_of('body_mass')}]", f"inertia J [{unit}]", *ends]
+
+
+def _rows(data: xr.Dataset) -> list[Row]:
+    columns = data["body_mass"], data["body_inertia"], data["reflected_part"].T
+    each = zip(*(column.values for column in columns), strict=True)
+    rows = [
+        (
+            str(name),
+            _cell("body_mass", float(mass)),
+            _cell("body_inertia", float(inertia)),
+            *(_cell("reflected_part", float(part)) for part in parts),
+        )
+        for name, (mass, inertia, parts) in zip(data["body"].values, each, strict=True)
+    ]
+    whole = [_cell("reflected_inertia", float(v)) for v in data["reflected_inertia"].values]
+    return [*rows, ("drive", _cell("drive_mass", float(data["drive_mass"])), "", *whole)]
+
+
+def _cell(name: str, value: float) -> str:
+    return show.quantity(name, value, with_unit=False) if np.isfinite(value) else "–"
