@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jnp
+from pitchpoint.analyses.analysis import Subject
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
 from pitchpoint.analyses.registry import ANALYSES, FOUR_QUADRANTS, INSPECTION, REFLECTED, TORSION
@@ -55,7 +56,13 @@ def two():
 
 
 def part(analysis, case, piece=None):
-    return analysis.computed(case, piece or {}, lambda _: None)
+    return analysis.compute(case, piece or {}, lambda _: None)
+
+
+def of_every_stage(analysis, case):
+    """Part of an analysis of a mesh of every stage that has it."""
+    (made,) = analysis.parts(Subject(None, case))
+    return made.joined(case, [part(made, case, piece) for piece in made.pieces(case)])
 
 
 @cache
@@ -342,7 +349,7 @@ TIGHT = (
 
 
 def test_a_stage_is_inspected_as_in_a_file_of_its_own():
-    whole = decode(encode(part(INSPECTION, built(TIGHT))))
+    whole = decode(encode(of_every_stage(INSPECTION, built(TIGHT))))
     assert whole["over_balls"].dims == ("stage", "gear", "limit")
     assert stages_of(whole) == (1, 2)
     assert np.isnan(whole["over_balls"].sel(stage=2, limit=["upper", "lower"])).all()
@@ -361,7 +368,7 @@ def test_a_stage_is_inspected_as_in_a_file_of_its_own():
 
 def test_backlash_and_inertia_of_the_stages_count_by_the_squares_of_their_ratios():
     case = built(TIGHT)
-    data, each = part(REFLECTED, case), part(INSPECTION, case)
+    data, each = part(REFLECTED, case), of_every_stage(INSPECTION, case)
     first, second = (of_stage(each, number) for number in (1, 2))
     (nominal,) = second["backlash_angle"].sel(gear="gear 2").values
     at_output = first["backlash_angle"].sel(gear="gear 2").values / RATIOS[1] + nominal
@@ -380,5 +387,14 @@ def test_what_is_of_each_mesh_is_there_where_one_of_them_has_it():
     lacks = {name: analysis.why_not(two()) for name, analysis in ANALYSES.items()}
     assert lacks["inspection"] is None
     assert lacks["load_limits"] == "a flexspline is that of a strain wave gear"
-    assert lacks["film"] == "it is computed for one mesh; a stage in a file of its own has it"
+    assert lacks["vibration"] == "it is computed for one mesh; a stage in a file of its own has it"
     assert ANALYSES["reflected"].why_not(alone(FIRST)) is not None
+
+
+def test_a_mesh_at_work_carries_what_drives_the_stage_behind_it():
+    case = two()
+    first, last = case.at_work
+    driving = operation()["stage_input_torque"].values[0, 0]
+    assert first.case.operation.load == pytest.approx(driving[1], rel=1e-12)
+    assert first.case.operation.load > 1.002 * case.stages[0].case.operation.load
+    assert last is case.stages[1]

@@ -14,8 +14,9 @@ from pitchpoint.analyses.torsion import _on_edges_of_stages
 from pitchpoint.cases.schema import Study, Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
+from pitchpoint.results.by_stage import of_stage, stages_of
 from pitchpoint.results.store import load
-from pitchpoint.runs.run import Outcome, describe
+from pitchpoint.runs.run import Outcome, describe, run
 from pitchpoint.views.report import render
 from pitchpoint.views.sections.spread import spread_sentence
 
@@ -252,3 +253,56 @@ def test_the_load_sharing_of_stages_that_differ_is_told_of_each(tmp_path: Path) 
 def test_the_screen_says_why_no_other_friction_law_is_tried() -> None:
     why = "every stage has a friction law of its own"
     assert spread_sentence(Outcome({"lacks": {"laws": why}}, {})) == f"E{why[1:]}."
+
+
+FIRST = 'gears = { teeth = [23, 61], module = "2 mm", face_width = "18 mm" }\n'
+SECOND = 'gears = { teeth = [19, 70], module = "3 mm", face_width = "30 mm" }\n'
+FILM = 'film = { solver = "line", phases = 3, nodes = 33 }\n'
+WEAR = 'wear = { law = "vdi_2736", cycles = 1e6, rate = "1e-9 mm3/(N m)", profile = "kept" }\n'
+POINT = """
+[lubricant]
+name = "pao-vg-150"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "{} N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+[models]
+friction = "iso_tr_14179_2"
+"""
+
+
+@pytest.mark.whole
+def test_films_and_wear_of_a_stage_are_those_of_its_gears_under_what_it_carries(
+    tmp_path: Path,
+) -> None:
+    stages = f"[[stages]]\n{FIRST}{FILM}{WEAR}[[stages]]\n{SECOND}{WEAR}"
+    (tmp_path / "two.toml").write_text(stages + POINT.format(300))
+    parts = ["operation", "film", "wear"]
+    (whole,) = run(str(tmp_path / "two.toml"), folder=tmp_path / "out", analyses=parts).values()
+    carried = float(whole.parts["operation"]["stage_input_torque"][0, 0, 1])
+    (tmp_path / "one.toml").write_text(f"{FIRST}{FILM}{WEAR}{POINT.format(carried)}")
+    (one,) = run(str(tmp_path / "one.toml"), analyses=parts[1:]).values()
+    for part in parts[1:]:
+        there = of_stage(whole.parts[part], 1)
+        for name, values in one.parts[part].items():
+            if values.dtype.kind == "f":
+                np.testing.assert_allclose(there[name], values, rtol=1e-9, err_msg=str(name))
+    assert stages_of(whole.parts["film"]) == (1,)
+    assert stages_of(whole.parts["wear"]) == (1, 2)
+    page = render({"default": whole})
+    for words in ("Films solved, stage 1", "Wear depth, stage 1", "Wear depth, stage 2"):
+        assert words in page, words
+    again = run(str(tmp_path / "out" / "default" / "manifest.json"), analyses=parts)["default"]
+    assert again.parts["wear"].identical(whole.parts["wear"])
+
+
+def test_a_table_of_films_belongs_to_a_stage(tmp_path: Path) -> None:
+    stages = f"{FILM}[[stages]]\n{FIRST}[[stages]]\n{SECOND}"
+    with pytest.raises(InputError, match=r"give a stage the table, film = \{ ... \}"):
+        Variant(tomllib.loads(stages + POINT.format(300)), "two.toml", "default").built({})
+    inside = f"[[stages]]\n{FIRST}{FILM.replace('line', 'elliptic')}[[stages]]\n{SECOND}"
+    with pytest.raises(InputError, match="elliptic") as caught:
+        Variant(tomllib.loads(inside + POINT.format(300)), "two.toml", "default").built({})
+    assert caught.value.key == "stages.1.film.solver"

@@ -1,7 +1,8 @@
 """The contract of an analysis: what it lacks, its pieces, and the dataset that they make."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby
 from typing import Any, Literal, Protocol
 
 import xarray as xr
@@ -11,7 +12,7 @@ from pitchpoint.cases.schema import Study
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.registry import Deferred
-from pitchpoint.results.by_stage import by_stage
+from pitchpoint.results.by_stage import by_stage, of_stage, stages_of
 from pitchpoint.results.variable import Variable
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "Subject",
     "Unasked",
     "of_gears_with",
+    "of_stages",
     "silent",
 ]
 
@@ -97,6 +99,7 @@ class Entry:
             does not ask for (`Unasked`).
         of: what it is of: "mesh", and a drive of several has it of each along a dimension `stage`; "drive",
             of one mesh or several; or "one mesh", which a drive of several has not.
+        under_load: True where it hangs on the load: in a drive on that which a mesh carries with all losses.
         main: variables that are shown first.
         figures: entries of `--json` from all parts that exist; by default the main variables under the
             name of the part.
@@ -107,6 +110,7 @@ class Entry:
     title: str
     lacks: Callable[[Any], str | None] = lambda built: None
     of: Literal["mesh", "drive", "one mesh"] = "one mesh"
+    under_load: bool = False
     main: tuple[str, ...] = ()
     figures: Deferred[Callable[[Mapping[str, xr.Dataset]], Mapping[str, Any]] | None] = Deferred(
         None
@@ -121,7 +125,18 @@ class Entry:
         return None if None in reasons else reasons[0]
 
     def shown(self, parts: Mapping[str, xr.Dataset]) -> Mapping[str, Any]:
-        """Entries of `--json`."""
+        """Entries of `--json`; of a part of the meshes of a drive by stage."""
+        data = parts.get(self.name)
+        stages = {} if data is None else {n: of_stage(data, n) for n in stages_of(data)}
+        each = {n: self._shown({**parts, self.name: own}) for n, own in stages.items()}
+        names = dict.fromkeys(name for found in each.values() for name in found)
+        figures = {
+            name: {f"stage {n}": found[name] for n, found in each.items() if name in found}
+            for name in names
+        }
+        return figures or self._shown(parts)
+
+    def _shown(self, parts: Mapping[str, xr.Dataset]) -> Mapping[str, Any]:
         if self.figures is not None:
             return self.figures(parts)
         data = parts.get(self.name)
@@ -135,8 +150,8 @@ class Analysis(Entry):
     """One part of a result: what it needs, how it is computed, and what is shown of it.
 
     Attributes:
-        compute: dataset of a piece of a drive or a mesh, told a callback for progress. It needs nothing but
-            the case and the piece, so that another process can compute it.
+        compute: dataset of a piece, told a callback for progress. It needs nothing but the case and the
+            piece, so that another process can compute it.
         pieces: where the pieces lie, in order; one that is the whole by default.
         joined: the whole dataset from its pieces.
         onward: of a march, the next piece after the last one as computed, None at its end; it begins after
@@ -150,23 +165,68 @@ class Analysis(Entry):
         None
     )
 
-    def computed(self, built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
-        """Dataset of a piece; of an analysis of a mesh that of each mesh of a drive.
-
-        Args:
-            built: the case.
-            piece: see `pieces`.
-            progress: told how far it is.
-        """
-        if self.of != "mesh" or not isinstance(built, BuiltDrive):
-            return self.compute(built, piece, progress)
-        numbered = zip(built.numbers, built.meshes, strict=True)
-        there = {number: mesh for number, mesh in numbered if self.lacks(mesh) is None}
-        return by_stage({n: self.compute(mesh, piece, progress) for n, mesh in there.items()})
-
     def parts(self, subject: Subject) -> "Iterable[Analysis]":
-        """The analysis itself, unless a case lacks something that it needs."""
-        return () if self.why_not(subject.built) else (self,)
+        """The analysis itself, unless a case lacks something that it needs; of a drive see `of_stages`."""
+        if self.why_not(subject.built):
+            return ()
+        several = self.of == "mesh" and isinstance(subject.built, BuiltDrive)
+        return (of_stages(self) if several else self,)
+
+
+def of_stages(analysis: Analysis) -> Analysis:
+    """An analysis of a mesh as one of a drive: of each mesh that has it, along a dimension `stage`.
+
+    Stages are computed one after the other, a march of one to its end before that of the next begins.
+
+    Args:
+        analysis: of a mesh.
+    """
+
+    def meshes(built: BuiltDrive) -> dict[int, Built]:
+        each = built.at_work if analysis.under_load else built.meshes
+        numbered = zip(built.numbers, each, strict=True)
+        return {number: mesh for number, mesh in numbered if analysis.lacks(mesh) is None}
+
+    def pieces(built: BuiltDrive) -> Iterator[Piece]:
+        for number, mesh in meshes(built).items():
+            yield from ({"stage": number, **piece} for piece in analysis.pieces(mesh))
+            if analysis.onward is not None:
+                return
+
+    def compute(built: BuiltDrive, piece: Piece, progress: Progress) -> xr.Dataset:
+        number = piece["stage"]
+        return _numbered(analysis.compute(meshes(built)[number], piece, progress), number)
+
+    def onward(built: BuiltDrive, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+        there, number = meshes(built), int(last.attrs[_OF_STAGE])
+        march = analysis.onward
+        further = None if march is None else march(there[number], last, progress)
+        if further is not None:
+            return _numbered(further, number)
+        behind = [*there][[*there].index(number) + 1 :]
+        begun = ((n, piece) for n in behind for piece in analysis.pieces(there[n]))
+        return next((compute(built, {"stage": n, **piece}, progress) for n, piece in begun), None)
+
+    def joined(built: BuiltDrive, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+        there = meshes(built)
+        groups = groupby(parts, key=lambda part: int(part.attrs[_OF_STAGE]))
+        each = {number: analysis.joined(there[number], [*own]) for number, own in groups}
+        for data in each.values():
+            data.attrs.pop(_OF_STAGE, None)
+        return by_stage(each)
+
+    march = None if analysis.onward is None else onward
+    return replace(
+        analysis, of="drive", pieces=pieces, compute=compute, onward=march, joined=joined
+    )
+
+
+_OF_STAGE = "of_stage"
+"""Attribute of a piece that is of one stage: its number."""
+
+
+def _numbered(piece: xr.Dataset, number: int) -> xr.Dataset:
+    return piece.assign_attrs({_OF_STAGE: number})
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -61,6 +61,8 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 WEAR = Analysis(
     name="wear",
     title="wear",
+    of="mesh",
+    under_load=True,
     lacks=_unasked,
     compute=_compute,
     joined=_joined,

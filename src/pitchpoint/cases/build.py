@@ -406,6 +406,16 @@ class Built:
         )
         return other.warmed
 
+    def carrying(self, load: float) -> "Built":
+        """The same under another load, with what follows from it, such as the temperature of plastic teeth.
+
+        Args:
+            load: torque or force that the loaded member carries [N m or N].
+        """
+        point = self.case.operation.model_copy(update={self.case.gears.load: load})
+        case = self.case.model_copy(update={"operation": point})
+        return replace(self, case=case, operation=operation_at(point)).warmed
+
 
 _ENDS: tuple[End, ...] = ("driver", "loaded")
 

@@ -34,7 +34,7 @@ __all__ = [
     "strip",
 ]
 
-_NAMING_FILES = (("film", "heights", "*"), ("worn",))
+_NAMING_FILES = (("film", "heights", "*"), ("worn",), ("stages", "*", "film", "heights", "*"))
 """Places of the tables that name files; a star stands for every table there."""
 
 MAX_BYTES = 1_000_000
@@ -178,14 +178,16 @@ def files_of(tree: Tree) -> Iterator[tuple[str, str]]:
         *above, last = place
         tables = [(last, one) for one in _tables_at(tree, place)] if last != "*" else []
         if last == "*":
-            inner = next(_tables_at(tree, tuple(above)), {})
-            tables = [(key, one) for key, one in inner.items() if isinstance(one, dict)]
+            inner = [item for one in _tables_at(tree, tuple(above)) for item in one.items()]
+            tables = [(key, one) for key, one in inner if isinstance(one, dict)]
         yield from ((key, one["file"]) for key, one in tables if isinstance(one.get("file"), str))
 
 
 def _tables_at(tree: Any, place: tuple[str, ...]) -> Iterator[Tree]:
     """Tables at a place of a tree, as far as there are any."""
     table = _bare(tree)
+    if isinstance(table, list):  # of stages, which are not numbered yet
+        table = dict(enumerate(table))
     if not isinstance(table, dict):
         return
     if not place:

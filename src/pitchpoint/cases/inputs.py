@@ -165,9 +165,11 @@ def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
     """Rows of the stages, then those of the tables that they share."""
     for number, one, inside in zip(built.numbers, built.stages, built.documents, strict=True):
         own = document.tree[STAGES][str(number)]
+        following = {"gears": one.following, "film": _of_films(one)}
         for table in ("gears", *(key for key in _OF_STAGE if key in own)):
-            for row in _rows(one.case, inside, table, one.following if table == "gears" else None):
+            for row in _rows(one.case, inside, table, following.get(table)):
                 yield _in_stage(row, number, given=_holds(own, table, row["key"]))
+        yield from (_in_stage(row, number, given=False) for row in _digests(one))
         for key in ("driver", "place", "turn"):
             if key in own:
                 path, value = f"{number}.{key}", getattr(built.case.stages[str(number)], key)
@@ -198,7 +200,7 @@ def _models(built: BuiltDrive, document: Document) -> Iterator[Row]:
             yield _in_stage(row, number, given=given)
 
 
-_OF_STAGE = ("materials", "lubricant", "roughness", "losses", "strength")
+_OF_STAGE = ("materials", "lubricant", "roughness", "losses", "strength", "film", "wear")
 """Tables that a stage may have of its own, beside gears and models."""
 
 

@@ -1562,6 +1562,10 @@ class StageTable(Table):
     """Load factors and limits of the stage, key by key; those of the drive unless given."""
     losses: Losses = Field(default_factory=dict)
     """Losses between two of its own bodies; none unless given."""
+    film: FilmTable | None = None
+    """Asks for films solved over the mesh cycle of the stage; none unless given."""
+    wear: WearTable | None = None
+    """Asks for wear of the stage over the life of the drive; none unless given."""
     place: Annotated[float, PLACE] = 0.0
     """Place of the middle of its face along the shafts."""
     turn: Annotated[float, TURN] = 0.0
@@ -1910,8 +1914,8 @@ def validate(document: Document) -> Case | DriveCase:
 _OF_ONE_MESH = {
     "gears": "was given with [[stages]]; gears belong to a stage, or are all that the file has",
     "dynamics": "vibration is computed for one mesh; give the stage a file of its own",
-    "film": "films are solved for one mesh; give the stage a file of its own",
-    "wear": "wear is computed for one mesh; give the stage a file of its own",
+    "film": "films are those of a mesh; give a stage the table, film = { ... } under its [[stages]]",
+    "wear": "wear is that of a mesh; give a stage the table, wear = { ... } under its [[stages]]",
     "worn": "worn flanks belong to one mesh; give the stage a file of its own",
 }
 

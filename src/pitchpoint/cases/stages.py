@@ -29,6 +29,7 @@ from pitchpoint.cases.strength import UNRATED
 from pitchpoint.doubts import in_stage
 from pitchpoint.drive.kinematics import Ends, Link, body_rates
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
+from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
@@ -216,6 +217,19 @@ class BuiltDrive:
         return [*self.case.losses, *own]
 
     @cached_property
+    def at_work(self) -> tuple[Built, ...]:
+        """Meshes under the mean torques that they carry with all losses, by the first friction law.
+
+        Where friction locks the drive they are those without losses.
+        """
+        figures = drive_figures([(self.design, self.operation)], self.models[0].stages)
+        driving = figures["stage_input_torque"][0]
+        if np.isnan(driving).any():
+            return self.stages
+        pairs = zip(self.stages[:-1], driving[1:].tolist(), strict=True)
+        return (*(mesh.carrying(torque) for mesh, torque in pairs), self.stages[-1])
+
+    @cached_property
     def motion(self) -> list[float]:
         """Rates of the shafts for a radian of the input."""
         shafts = [
@@ -337,7 +351,7 @@ def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
     shared = {key: whole.get(key, {}) for key in _SHARED if gears.rated or key != "strength"}
     both = {key: {**shared.get(key, {}), **stage.get(key, {})} for key in _SHARED}
     tree |= {key: table for key, table in both.items() if table}
-    tree |= {key: stage[key] for key in ("gears", "losses") if key in stage}
+    tree |= {key: stage[key] for key in ("gears", "losses", "film", "wear") if key in stage}
     kept = {key: whole["operation"][key] for key in ("speed", "temperature")}
     tree["operation"] = {**kept, gears.load: SIValue(case.operation.load)}
     if "driver" in stage:

@@ -47,7 +47,7 @@ class Job:
 
     def compute(self, piece: Piece, progress: Progress = silent) -> xr.Dataset:
         """Dataset of a piece."""
-        return self.analysis.computed(self.built, piece, progress)
+        return self.analysis.compute(self.built, piece, progress)
 
     def onward(self, last: xr.Dataset, progress: Progress = silent) -> xr.Dataset | None:
         """Next piece of a march after the last one, None at its end or where nothing marches."""

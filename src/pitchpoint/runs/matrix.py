@@ -1,9 +1,11 @@
 """Which analysis there is for which family, asked of a sample of each."""
 
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.registry import ANALYSES
@@ -32,7 +34,9 @@ def matrix() -> list[dict[str, str]]:
     turning = [
         table for table in TABLES if samples[tag(table)][0].transmits and table.load == "torque"
     ]
-    samples["several stages"] = [_drive(sample_of(table)) for table in turning]
+    asked: list[Mapping[str, Any]] = [*map(_films, FILM_SOLVERS["line"]), _WEAR]
+    drives = [_drive(sample_of(table)) for table in turning]
+    samples["several stages"] = drives + [_drive(sample_of(turning[0]), one) for one in asked]
     return [
         {"analysis": analysis.name, "title": analysis.title}
         | {name: _why_not(analysis, cases) for name, cases in samples.items()}
@@ -40,11 +44,12 @@ def matrix() -> list[dict[str, str]]:
     ]
 
 
-def _drive(sample: Path) -> Ready:
-    """Two stages of which the second one has the gears of a sample."""
+def _drive(sample: Path, settings: Mapping[str, Any] = MappingProxyType({})) -> Ready:
+    """Two stages of which the second one has the gears of a sample, and tables by these settings."""
     tree, gears = (tomllib.loads(path.read_text("utf-8")) for path in (_SEVERAL, sample))
     tree["stages"][1] |= {"gears": gears["gears"]}
-    return load_case(tree, settings=_OF_OUTPUT)
+    inside = {f"stages.2.{key}": value for key, value in settings.items()}
+    return load_case(tree, settings=_OF_OUTPUT | inside)
 
 
 def _asking(sample: str) -> list[Ready]:
