@@ -685,7 +685,8 @@ def test_doubtful_contacts_are_told_with_numbers():
     sheared = solve_lines(contact(0.9e9, slide=0.2)).warnings
     (stress,) = [text for text in sheared if "`shear_law`" in text]
     assert stress.endswith(
-        "more than oils bear: a `shear_law` that limits it is 'ree_eyring_1955' or 'bair_winer_1979'"
+        "more than oils bear: a `shear_law` that lowers it is 'ree_eyring_1955', 'bair_winer_1979' or "
+        "'carreau_1972'"
     )
     assert "MPa in the mean at a mean pressure of 707 MPa" in stress
 

@@ -342,15 +342,15 @@ def _of_long_inlet(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
 
 def _of_shear(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
     """Stress that no oil bears: a Newtonian one has no limit."""
-    limited = [f"'{name}'" for name in SHEAR_STRESS if name != NEWTONIAN]
+    *others, last = (f"'{name}'" for name in SHEAR_STRESS if name != NEWTONIAN)
     drawn, width = np.abs(film.shear_force), 2e6 * film.half_width
     worst = np.argmax(drawn / contact.line_load)
     stress, pressure = drawn[worst] / width[worst], contact.line_load[worst] / width[worst]
     if contact.fluid.shear_law == NEWTONIAN and stress > SHEARED * pressure:
         yield Doubt(
             f"a Newtonian oil is sheared by {stress:.3g} MPa in the mean at a mean pressure of "
-            f"{pressure:.3g} MPa, more than oils bear: a `shear_law` that limits it is "
-            f"{' or '.join(limited)}",
+            f"{pressure:.3g} MPa, more than oils bear: a `shear_law` that lowers it is "
+            f"{', '.join(others)} or {last}",
             "shear",
             stress / pressure,
             brief=f"a Newtonian oil sheared by {stress:.3g} MPa: more than oils bear",
