@@ -3,7 +3,7 @@
 import copy
 import re
 import tomllib
-from math import cos, isclose, pi, radians, tan
+from math import cos, pi, radians, tan
 from types import NoneType
 from typing import get_args
 
@@ -15,7 +15,6 @@ from pitchpoint.cases.schema import Case as Schema
 from pitchpoint.cases.schema import validate
 from pitchpoint.cases.wishes import WISHES
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import TABLES
 from pitchpoint.registry import letters
 
@@ -84,6 +83,7 @@ WRITTEN = {
     "gears.m_n": ("2 mm", {}, 'module = "2 mm"'),
     "gears.b": (["10 mm", "9 mm"], {}, 'face_width = ["10 mm", "9 mm"]'),
     "gears.beta": ("15 deg", {}, 'helix_angle = "15 deg"'),
+    "gears.circumferential_backlash": ("0.1 mm", {}, 'backlash = "0.1 mm"'),
     "gears.x": ([0.1, 0.2], {}, "profile_shift = [0.1, 0.2]"),
     "gears.lead_angle": ("75 deg", {}, 'helix_angle = "15 deg"'),
     "gears.accuracy": (6, {}, "inspection = { iso_class = 6 }"),
@@ -142,19 +142,12 @@ def test_torque_of_the_driver_is_never_taken_for_that_of_the_driven_gear():
     assert 'torque = "4 N m"' in refused(stages)
 
 
-@pytest.mark.parametrize("ring", [40, -60])
-def test_the_centre_distance_for_a_backlash_has_it(ring):
-    told = refused(asked("gears.backlash", "0.1 mm", teeth=[20, ring], profile_shift=[0.2, 0.1]))
-    distance = 1e-3 * float(re.search(r'centre_distance = "([\d.]+) mm"', told)[1])
-    pair = build_cylindrical_pair(
-        teeth=(20, ring),
-        module=2e-3,
-        pressure_angle=radians(20.0),
-        face_width=0.01,
-        profile_shift=(0.2, 0.1),
-        centre_distance=distance,
-    )
-    assert isclose(float(pair.backlash), 1e-4, rel_tol=2e-3)
+@pytest.mark.parametrize("helix", [0.0, 25.0])
+def test_a_backlash_along_the_normal_is_answered_with_that_on_the_pitch_circles(helix):
+    told = refused(asked("gears.j_bn", "0.1 mm", helix_angle=f"{helix} deg"))
+    on_circles = float(re.search(r'backlash = "([\d.]+) um"', told)[1])
+    # without profile shifts the pitch circles are the reference circles: j_bn = j_t cos(beta) cos(alpha_n)
+    assert on_circles * cos(radians(helix)) * cos(radians(20.0)) == pytest.approx(100.0, rel=1e-5)
 
 
 def test_tip_alterations_for_tip_diameters_make_them():
@@ -212,8 +205,8 @@ def test_what_gears_do_not_have_is_told_without_a_neighbour_in_spelling():
 def test_python_and_settings_answer_too():
     with pytest.raises(InputError, match="torque counts at the driven gear; the key is torque"):
         Case(BASE).set(input_torque="2.5 N m")
-    with pytest.raises(InputError, match="follows from the centre distance"):
-        Case(BASE).set({"gears.backlash": "0.1 mm"})
+    with pytest.raises(InputError, match="counts on the pitch circles; the key is backlash"):
+        Case(BASE).set({"gears.j_wt": "0.1 mm"})
 
 
 @pytest.mark.parametrize("table", WISHES)
@@ -225,4 +218,6 @@ def test_no_wish_is_a_key_and_none_stands_twice(table):
     for one in filter(lambda one: one is not NoneType, tables):
         fields = {letters(key): key for key in one.model_fields}
         taken = {fields[name] for name in names if name in fields}
-        assert taken <= {"backlash"}  # a key of strain wave gears, and of no others
+        assert taken <= {
+            "backlash"
+        }  # a key of cylindrical pairs and strain wave gears, and of no others

@@ -165,8 +165,10 @@ def inspection_part(built: Built) -> xr.Dataset:
 def _measured(number: int, built: Built, table: CylindricalGears, asked: Inspection) -> _Measured:
     mesh: Any = built.design.mesh
     drawn, angles = drawing_of(built), (float(mesh.pressure_angle), float(mesh.helix_angle))
-    teeth, shift = (float(np.asarray(both)[number]) for both in (mesh.teeth, mesh.profile_shift))
-    gear = Toothing(teeth, float(mesh.module), *angles, shift)
+    teeth, shift, infeed = (
+        float(np.asarray(both)[number]) for both in (mesh.teeth, mesh.profile_shift, mesh.infeed)
+    )
+    gear = Toothing(teeth, float(mesh.module), *angles, shift + infeed)
     tip = float(drawn["tip_radius"][number])
     form, active, end = (
         _roll(gear, float(drawn[name][number]))

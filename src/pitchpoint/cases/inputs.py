@@ -376,6 +376,9 @@ def _dimensions(built: Built) -> Iterator[Row]:
             variable = VARIABLES.get(name) or VARIABLES[f"{name}_1"]
             value = built.dimensions[name]
             yield _row(DIMENSIONS, name, value, variable.kind, Provenance("derived"))
+    cut = built.following.get("generating_shift")
+    if cut is not None:
+        yield _row(DIMENSIONS, "generating_shift", cut.value, "dimensionless", _mark(cut))
 
 
 def _inertia(built: Built) -> Iterator[Row]:

@@ -6,16 +6,26 @@ asked for often stands here, and is answered before any neighbour is offered.
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from math import atan, cos, inf, pi, radians, tan
+from math import atan, cos, inf, pi, tan
 from typing import Any
 
 from pydantic import TypeAdapter
 
 from pitchpoint import units
-from pitchpoint.gears.cylindrical.inspection import Toothing, backlash
+from pitchpoint.gears.cylindrical.inspection import Toothing
 from pitchpoint.gears.cylindrical.table import TIP, CylindricalGears
 from pitchpoint.gears.families import Gears
-from pitchpoint.gears.table import ANGLE, DISTANCE, FILLET, HELIX, MODULE, RACK, SHIFT, GearsTable
+from pitchpoint.gears.table import (
+    ANGLE,
+    DEVIATION,
+    DISTANCE,
+    FILLET,
+    HELIX,
+    MODULE,
+    RACK,
+    SHIFT,
+    GearsTable,
+)
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.materials.data import oil_names
 from pitchpoint.registry import letters, listed
@@ -31,8 +41,6 @@ _TORQUE = Quantity("torque", 0.0, 1e8, "N m")
 _FORCE = Quantity("force", 0.0, 1e7, "N")
 _SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
 _ROUGHNESS = Quantity("length", 0.0, 1e-4, "um")
-_WIDEST = radians(65.0)
-"""Working pressure angle beyond which no gears mesh."""
 
 _TEETH = Pair(Quantity("dimensionless", -10_000, 10_000, whole=True))
 _OF_PAIR: Mapping[str, Quantity | Pair] = {
@@ -197,40 +205,27 @@ def _by_lead_angle(value: Any, table: Tree, tree: Tree) -> str:
     return _said("helix_angle", HELIX, pi / 2.0 - units.parse(value, "angle"))
 
 
-def _toothings(table: Tree) -> tuple[Toothing, Toothing]:
-    """Both gears as their drawing has them."""
+def _base_radii(table: Tree) -> float:
+    """Sum of the base radii, of a ring their difference [m]."""
     module, pressure, helix = (
         _of_pair(table, key) for key in ("module", "pressure_angle", "helix_angle")
     )
-    teeth, shifts = _of_pair(table, "teeth"), _of_pair(table, "profile_shift")
-    first, second = (
-        Toothing(z, module, pressure, helix, x) for z, x in zip(teeth, shifts, strict=True)
-    )
-    return first, second
-
-
-def _distance_at(gears: Sequence[Toothing], working_angle: float) -> float:
-    """Centre distance of a working pressure angle [m]."""
-    return abs(sum(gear.base_radius for gear in gears)) / cos(working_angle)
+    every = (Toothing(z, module, pressure, helix, 0.0) for z in _of_pair(table, "teeth"))
+    return abs(sum(gear.base_radius for gear in every))
 
 
 def _by_working_angle(value: Any, table: Tree, tree: Tree) -> str:
-    distance = _distance_at(_toothings(table), units.parse(value, "angle"))
+    distance = _base_radii(table) / cos(units.parse(value, "angle"))
     return _said("centre_distance", DISTANCE, distance)
 
 
-def _by_backlash(value: Any, table: Tree, tree: Tree) -> str:
-    """The centre distance whose backlash on the pitch circles is the given one."""
-    from scipy.optimize import brentq
-
-    gears, wanted = _toothings(table), _LENGTH.read(value)
-
-    def beyond(working_angle: float) -> float:
-        distance = _distance_at(gears, working_angle)
-        return backlash(gears[0], gears[1], distance).circumferential - wanted
-
-    angle = brentq(beyond, 1e-6, _WIDEST)
-    return _said("centre_distance", DISTANCE, _distance_at(gears, angle))
+def _by_normal_backlash(value: Any, table: Tree, tree: Tree) -> str:
+    """The backlash on the pitch circles of one along the normal."""
+    known = {key: table[key] for key in table if key in CylindricalGears.model_fields}
+    gears = CylindricalGears.model_validate(known)
+    cosine = _base_radii(table) / gears.operating_distance
+    slope = cosine * cos(gears.toothings[0].base_helix_angle)
+    return _said("backlash", DEVIATION, DEVIATION.read(value) / slope)
 
 
 def _in_modules(key: str, quantity: Quantity) -> Write:
@@ -448,11 +443,18 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             "the root diameter follows from dedendum and profile shift",
             _by_roots,
         ),
+        Wish(("backlash",), ("centre_distance",), "the backlash follows from the centre distance"),
         Wish(
-            ("backlash", "circumferential_backlash", "nominal_backlash", "j_wt", "j_t"),
-            ("centre_distance",),
-            "the backlash follows from the centre distance",
-            _by_backlash,
+            ("circumferential_backlash", "nominal_backlash", "j_wt", "j_t"),
+            ("backlash",),
+            "the backlash counts on the pitch circles",
+            _renamed("backlash"),
+        ),
+        Wish(
+            ("normal_backlash", "j_bn", "j_n"),
+            ("backlash",),
+            "the backlash counts on the pitch circles, not along the normal",
+            _by_normal_backlash,
         ),
         Wish(
             ("working_pressure_angle", "operating_pressure_angle", "alpha_wt"),

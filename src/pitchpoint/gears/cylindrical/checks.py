@@ -100,8 +100,9 @@ class _Pair:
 
     The base sum is that of signed radii, without its sign; the needed sum of profile shifts that of the
     centre distance; the gaps are those of a ring [modules]; the least backlash is that by allowances of the
-    tooth thickness, NaN without any. The cutter of a ring reaches from the end of its involute to the tip of
-    the ring, along the line of action; its gaps are those between its tips and the ring's [modules].
+    tooth thickness, NaN without any; teeth that are thinned for a backlash have it at every
+    distance. The cutter of a ring reaches from the end of its involute to the tip of the ring, along the line
+    of action; its gaps are those between its tips and the ring's [modules].
     """
 
     internal: bool
@@ -110,6 +111,7 @@ class _Pair:
     base_pitch: Number
     centre_distance: Number
     zero_backlash: Number
+    thinned: Number
     base_sum: Number
     shift_sum: Number
     limit_shift_sum: Number
@@ -340,6 +342,7 @@ def _pair_measures(pair: CylindricalPair) -> dict[str, Float[Array, ""]]:
         "base_pitch": pair.base_pitch,
         "centre_distance": pair.centre_distance,
         "zero_backlash": pair.zero_backlash_centre_distance,
+        "thinned": jnp.any(pair.infeed != 0.0),
         "base_sum": jnp.abs(jnp.sum(pair.base_radii)),
         "shift_sum": jnp.sum(pair.profile_shift),
         "limit_shift_sum": -transverse * per_angle,
@@ -474,6 +477,7 @@ def _cutter_measures(pair: CylindricalPair, ring: InvoluteGear) -> dict[str, Flo
         profile_shift=jnp.stack([shift, ring.profile_shift]),
         addendum=jnp.stack([high, ring.addendum]),
         tip_alteration=jnp.stack([jnp.zeros(()), ring.tip_alteration]),
+        infeed=jnp.zeros(2),
         centre_distance=cutting.distance,
     )
     gaps = _ring_gaps(in_place)
@@ -568,7 +572,7 @@ def _check_distance(pair: _Pair) -> Faults:
 
 def _flank_overlap(pair: _Pair) -> Number:
     """By how much the centre distance would have to change for flanks without backlash [m]."""
-    overlap = pair.zero_backlash - pair.centre_distance
+    overlap = (pair.zero_backlash - pair.centre_distance) * (1.0 - pair.thinned)
     return -overlap if pair.internal else overlap
 
 

@@ -41,6 +41,7 @@ _OF_BOTH = (
     "fillet_radius",
     "tip_alteration",
     "rim_ratio",
+    "infeed",
 )
 Values = dict[str, Any]
 Grown = tuple[CylindricalPair, Array | np.ndarray, np.ndarray]
@@ -61,6 +62,7 @@ def build_cylindrical_pair(
     least_tip: float = 0.0,
     centre_distance: float | None = None,
     rim_ratio: tuple[float, float] | None = None,
+    infeed: tuple[float, float] = (0.0, 0.0),
     cutter_teeth: float | None = None,
     cutter_shift: float | None = None,
     driver: int = 1,
@@ -81,6 +83,7 @@ def build_cylindrical_pair(
         least_tip: thickness in the normal section, in modules, to which tips that would be thinner
             are shortened; for tip alterations that are not given.
         rim_ratio: root radius over bore radius of each gear; outer over root radius of a ring.
+        infeed: x_E - x, by which both gears are cut beyond their profile shifts; tips stay where they are.
         cutter_teeth, cutter_shift: z_0 and x_0 of the pinion cutter of a ring; both or none.
         driver: 1 or 2, the gear that drives.
         right_flank: True if the right flanks of both gears touch.
@@ -299,7 +302,7 @@ def _grown(pair: CylindricalPair, axes: int) -> Iterator[Grown]:
         axes: their number.
     """
     pair, ratio, limit, thickness = _over(_complete, pair, axes)
-    undercut = np.asarray(pair.profile_shift) < np.asarray(limit)
+    undercut = np.asarray(pair.profile_shift) + np.asarray(pair.infeed) < np.asarray(limit)
     undercut &= (True, not pair.internal)
     least = np.asarray(pair.least_tip)[..., None] if pair.follows[1] else 0.0
     short = (least > 0.0) & (np.asarray(thickness) < least)

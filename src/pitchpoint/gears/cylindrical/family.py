@@ -24,7 +24,7 @@ from pitchpoint.gears.cylindrical.design import (
     cylindrical_pairs_apart,
     with_bores,
 )
-from pitchpoint.gears.cylindrical.inspection import Toothing, backlash_limits
+from pitchpoint.gears.cylindrical.inspection import backlash_limits
 from pitchpoint.gears.cylindrical.iso_286 import symmetrical_deviation
 from pitchpoint.gears.cylindrical.modified import (
     Modifications,
@@ -34,7 +34,7 @@ from pitchpoint.gears.cylindrical.modified import (
 )
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
-from pitchpoint.gears.family import Family, Made, waves
+from pitchpoint.gears.family import Family, Followed, Made, waves
 from pitchpoint.gears.involute import usual_depths, usual_ring_fillet
 from pitchpoint.gears.layers import LAYERS, labels
 
@@ -81,11 +81,6 @@ def _least_backlash(gears: CylindricalGears, pair: CylindricalPair) -> float:
     allowed, asked = gears.thickness_allowances, gears.inspection
     if allowed is None or asked is None:
         return nan
-    common = gears.module, gears.pressure_angle, gears.helix_angle
-    first, second = (
-        Toothing(teeth, *common, shift)
-        for teeth, shift in zip(gears.teeth, gears.profile_shift, strict=True)
-    )
     distance = float(pair.centre_distance)
     try:
         deviation = asked.deviation(distance) or 0.0
@@ -93,7 +88,7 @@ def _least_backlash(gears: CylindricalGears, pair: CylindricalPair) -> float:
         deviation = 0.0  # told by _check_field
     upper, lower = allowed
     least, *_ = backlash_limits(
-        first, second, distance, upper=upper, lower=lower, deviation=deviation
+        *gears.toothings, distance, upper=upper, lower=lower, deviation=deviation
     )
     return least.normal
 
@@ -240,6 +235,7 @@ def _given(gears: CylindricalGears, driver: str) -> dict[str, Any]:
         "tip_alteration": gears.tip_alteration,
         "least_tip": _least_tip(gears),
         "centre_distance": gears.centre_distance,
+        "infeed": gears.infeed,
         "cutter_teeth": gears.cutter_teeth,
         "cutter_shift": None if gears.cutter_teeth is None else gears.cutter_profile_shift,
         "driver": 2 if driver == "gear 2" else 1,
@@ -250,7 +246,7 @@ def _given(gears: CylindricalGears, driver: str) -> dict[str, Any]:
 def _ring_fillet(gears: CylindricalGears, dedendum: float) -> float:
     return usual_ring_fillet(
         teeth=gears.teeth[1],
-        profile_shift=gears.profile_shift[1],
+        profile_shift=gears.profile_shift[1] + gears.infeed[1],
         dedendum=dedendum,
         pressure_angle=gears.pressure_angle,
         helix_angle=gears.helix_angle,
@@ -271,6 +267,10 @@ _FOLLOWING = {
 
 def _of_pair(gears: CylindricalGears, pair: CylindricalPair) -> dict[str, Any]:
     found = {key: getattr(pair, name) for key, name in _FOLLOWING.items()}
+    if any(gears.infeed):
+        cut = tuple(map(sum, zip(gears.profile_shift, gears.infeed, strict=True)))
+        note = "teeth thinned alike for the backlash, with the tips of nominal ones"
+        found["generating_shift"] = Followed(cut, "derived", note)
     given = _modifications(gears)
     if given is not None:
         lengths = given.completed(pair)

@@ -7,7 +7,15 @@ from math import acos, asin, atan, ceil, cos, floor, inf, log10, nan, pi, sin, t
 
 from pitchpoint.errors import InputError
 
-__all__ = ["Backlash", "Toothing", "backlash", "backlash_limits", "profile_shift_sum"]
+__all__ = [
+    "Backlash",
+    "Toothing",
+    "allowance_for",
+    "backlash",
+    "backlash_limits",
+    "distance_without_backlash",
+    "profile_shift_sum",
+]
 
 
 @dataclass(frozen=True)
@@ -69,8 +77,11 @@ class Toothing:
 
         A flank that the same rack cuts deeper is the same involute, so it counts as a profile shift.
         """
-        shift = allowance / (2.0 * self.module * tan(self.pressure_angle))
-        return replace(self, profile_shift=self.profile_shift + shift)
+        return replace(self, profile_shift=self.profile_shift + self.infeed(allowance))
+
+    def infeed(self, allowance: float) -> float:
+        """Profile shift x_E - x that changes the thickness s_n by an allowance [m]."""
+        return allowance / (2.0 * self.module * tan(self.pressure_angle))
 
     def half_thickness_angle(self, radius: float) -> float:
         """Half the tooth's angle at a radius [m] on the involute [rad]."""
@@ -224,6 +235,45 @@ def backlash_limits(
     ]
     ends.sort(key=lambda one: one.normal)
     return ends[0], at(middle, centre_distance), ends[-1]
+
+
+def allowance_for(
+    first: Toothing, second: Toothing, centre_distance: float, circumferential: float
+) -> float:
+    """Allowance of the normal thickness, alike for both gears, that leaves a backlash [m].
+
+    Args:
+        first, second: gears of the same rack without allowances; the second may be a ring.
+        centre_distance: positive [m].
+        circumferential: backlash j_wt that is wanted [m].
+
+    Source: ISO 21771:2007, with s_n = m_n (pi/2 + 2 x tan(alpha_n)) on both gears j_wt falls by
+    4 a/(m_n |z1 + z2|) of what both thicknesses grow by.
+
+    Example:
+        >>> from math import radians
+        >>> gear = Toothing(20, 1e-3, radians(20.0), 0.0, 0.0)
+        >>> round(1e6 * allowance_for(gear, gear, 0.02, 70e-6), 3)
+        -35.0
+    """
+    missing = circumferential - backlash(first, second, centre_distance).circumferential
+    return -missing * first.module * abs(first.teeth + second.teeth) / (4.0 * centre_distance)
+
+
+def distance_without_backlash(first: Toothing, second: Toothing) -> float:
+    """Centre distance that leaves two gears of the same rack no backlash [m]; NaN where none does.
+
+    Source: ISO 21771:2007, see `profile_shift_sum`.
+
+    Example:
+        >>> from math import radians
+        >>> gear = Toothing(20, 1e-3, radians(20.0), 0.0, 0.0)
+        >>> round(distance_without_backlash(gear, gear), 9)
+        0.02
+    """
+    shifts = 2.0 * tan(first.pressure_angle) * (first.profile_shift + second.profile_shift)
+    value = involute(first.transverse_pressure_angle) + shifts / (first.teeth + second.teeth)
+    return abs(first.base_radius + second.base_radius) / cos(inverse_involute(value))
 
 
 def profile_shift_sum(

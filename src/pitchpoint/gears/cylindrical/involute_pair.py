@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import ClassVar, Self
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jnp
@@ -182,6 +183,8 @@ class InvolutePair(Mesh):
         lanes: static count of pairs held, at least the contact ratio rounded up.
         slices: static count of slices of each contact line; even, or one.
         surfaces: how all flanks of both gears differ from involutes.
+        infeed: x_E - x, the profile shifts by which both gears are cut beyond x; negative for teeth that are
+            thinner than nominal ones and have the same tips.
         cutter_teeth, cutter_shift: z_0 and x_0 of the pinion cutter of a ring, whose tip corners have the
             fillet radius of gear 2; None without one.
     """
@@ -228,6 +231,7 @@ class InvolutePair(Mesh):
     lanes: int = eqx.field(static=True)
     slices: int = eqx.field(static=True)
     surfaces: Surfaces = ((), ())
+    infeed: Float[Arrays, "2"] = eqx.field(default_factory=lambda: np.zeros(2))
     cutter_teeth: Float[Arrays, ""] | None = None
     cutter_shift: Float[Arrays, ""] | None = None
 
@@ -299,7 +303,7 @@ class InvolutePair(Mesh):
 
     @property
     def zero_backlash_centre_distance(self) -> Float[Array, ""]:
-        """Centre distance without backlash for these teeth [m], whatever the one in operation."""
+        """Centre distance without backlash for teeth of these shifts [m], whatever the one in operation."""
         return zero_backlash_centre_distance(
             teeth=self.teeth,
             module=self.module,
@@ -708,12 +712,11 @@ class InvolutePair(Mesh):
 
     def _shortened_tips(self) -> Float[Array, "2"]:
         """Tip alterations at which the tips that are to be shortened are as thick as asked."""
-        return jnp.stack(
-            [
-                gear.tip_alteration - (self._shortening(gear) if short else 0.0)
-                for gear, short in zip(self.gears, self.shortened, strict=True)
-            ]
-        )
+        cuts = [
+            self._shortening(gear) if short else 0.0
+            for gear, short in zip(self.gears, self.shortened, strict=True)
+        ]
+        return self.tip_alteration - jnp.stack(cuts)
 
     def _shortening(self, gear: InvoluteGear) -> Float[Array, ""]:
         """Modules by which a tip is cut back to the least thickness in the normal section."""
@@ -732,8 +735,8 @@ class InvolutePair(Mesh):
             module=self.module,
             pressure_angle=self.pressure_angle,
             helix_angle=self.helix_angle,
-            profile_shift=self.profile_shift[index],
-            tip_alteration=self.tip_alteration[index],
+            profile_shift=self.profile_shift[index] + self.infeed[index],
+            tip_alteration=self.tip_alteration[index] - self.infeed[index],
             addendum=self.addendum[index],
             dedendum=self.dedendum[index],
             fillet_radius=self.fillet_radius[index],

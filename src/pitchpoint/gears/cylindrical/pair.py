@@ -59,7 +59,7 @@ class CylindricalPair(InvolutePair):
             base_helix_angle=self.base_helix_angle,
             transverse_pressure_angle=line.transverse_pressure_angle,
             working_pressure_angle=self.working_pressure_angle,
-            profile_shift=self.profile_shift,
+            profile_shift=self.profile_shift + self.infeed,
             dedendum=self.dedendum,
             fillet_radius=self.fillet_radius,
             reference_radii=jnp.stack([gear.reference_radius for gear in gears]),

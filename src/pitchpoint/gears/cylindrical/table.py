@@ -1,7 +1,7 @@
 """The table [gears] of a pair of cylindrical gears."""
 
 from dataclasses import dataclass
-from math import cos, isnan, nan, pi
+from math import ceil, cos, isnan, nan, pi
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BeforeValidator, GetJsonSchemaHandler, model_validator
@@ -10,7 +10,13 @@ from pydantic_core import CoreSchema
 
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import MEMBERS, din_3967, iso_286
-from pitchpoint.gears.cylindrical.inspection import profile_shift_sum
+from pitchpoint.gears.cylindrical.inspection import (
+    Toothing,
+    allowance_for,
+    backlash,
+    distance_without_backlash,
+    profile_shift_sum,
+)
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
@@ -48,6 +54,9 @@ ALLOWANCE = Quantity("length", -1e-2, 1e-2, "um")
 SPAN = Quantity("dimensionless", 1, 1_000, whole=True)
 
 CUTTER_TEETH = Quantity("dimensionless", 5, 1_000, whole=True)
+
+_ROUNDED = 1e-9
+"""Thickness that is left to rounding [modules]."""
 
 FEWEST_TEETH = 2
 FEWEST_RING_TEETH = 10
@@ -307,7 +316,9 @@ class CylindricalGears(GearsTable):
     least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
     """Tip thickness that shortening keeps, in modules; helical 0.25, spur 0, unless given."""
     centre_distance: Annotated[float, DISTANCE] | None = None
-    """Centre distance a; that without backlash unless given."""
+    """Centre distance a; that without backlash, of teeth that are not thinned, unless given."""
+    backlash: Annotated[float, DEVIATION] | None = None
+    """Backlash j_wt on the pitch circles, for which both teeth are thinned alike; that of a unless given."""
     bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
     """Bore diameters, of a ring its outer one; 0.3, of a ring 1.2, root diameters unless given."""
     flank: Literal["left", "right"] = "left"
@@ -384,6 +395,7 @@ class CylindricalGears(GearsTable):
         amounts = self.modifications.amounts if self.modifications is not None else {}
         given = {f"modifications.{key}": max(pair) for key, pair in amounts.items()}
         given["misalignment"] = abs(self.misalignment or 0.0)
+        given["backlash"] = self.backlash or 0.0
         given |= _allowed(self)
         for key, most in given.items():
             if most > self.module / 2.0:
@@ -433,6 +445,53 @@ class CylindricalGears(GearsTable):
         if any(map(isnan, self.profile_shift)):
             # The table is fixed once it is read, and it is not yet.
             self.__dict__["profile_shift"] = self.shifts_from_distance(self.profile_shift)
+        return self
+
+    @property
+    def toothings(self) -> tuple[Toothing, Toothing]:
+        """Both gears as they are measured, without allowances."""
+        common = self.module, self.pressure_angle, self.helix_angle
+        (first, second), (shift, other) = self.teeth, self.profile_shift
+        return Toothing(first, *common, shift), Toothing(second, *common, other)
+
+    @property
+    def operating_distance(self) -> float:
+        """Centre distance a [m]; NaN where none is given and none fits."""
+        return self.centre_distance or distance_without_backlash(*self.toothings)
+
+    @property
+    def infeed(self) -> tuple[float, float]:
+        """Profile shifts x_E - x by which both gears are cut deeper for the backlash; zero without one.
+
+        Raises:
+            InputError: a backlash that is smaller than that of teeth as they are.
+        """
+        first, second = self.toothings
+        distance = self.operating_distance
+        if self.backlash is None or not distance > abs(first.base_radius + second.base_radius):
+            return 0.0, 0.0  # gears that do not mesh are refused as those without a backlash
+        allowance = allowance_for(first, second, distance, self.backlash)
+        if allowance > _ROUNDED * self.module:
+            least = ceil(1e7 * backlash(first, second, distance).circumferential) * 1e-7
+            raise InputError(
+                f"was given {DEVIATION.show(self.backlash)}, and at the centre distance "
+                f"{DISTANCE.show(distance)} teeth that are not thinned have more; give "
+                f"{DEVIATION.show(least)} or more, or a centre distance nearer to "
+                f"{DISTANCE.show(distance_without_backlash(first, second))}",
+                key="backlash",
+            )
+        return first.infeed(allowance), second.infeed(allowance)
+
+    @model_validator(mode="after")
+    def _one_thickness(self) -> "CylindricalGears":
+        if self.backlash is not None and self.thickness_allowances is not None:
+            raise InputError(
+                "was given beside allowances of the tooth thickness in gears.inspection; each of them says "
+                "how thin the teeth are, give one",
+                key="backlash",
+            )
+        if self.backlash is not None:
+            _ = self.infeed
         return self
 
     @model_validator(mode="after")
