@@ -213,6 +213,9 @@ MOST_PROGRAMS = 1000
 MOST_MEMORY = 1 << 30
 """Memory that a process takes on before its programs are given back [B]; a program takes some megabytes."""
 
+WORTH_GIVING = MOST_MEMORY // 8
+"""What it takes on beyond that before it gives them back anew [B]: others may hold the rest."""
+
 _LOADED = Counter[str]()
 
 
@@ -232,12 +235,18 @@ def _memory() -> int:
         return 0
 
 
-_LOADED["memory"] = _memory()
+_AT_START = _memory()
 
 
 def bound_programs() -> None:
-    """Forget all programs once there are many, or much memory; what is needed again comes from disk."""
-    if _LOADED["programs"] > MOST_PROGRAMS or _memory() - _LOADED["memory"] > MOST_MEMORY:
+    """Forget all programs once there are many, or much memory; what is needed again comes from disk.
+
+    Memory is counted from the start of the process, so that what cannot be given back brings the next time
+    nearer.
+    """
+    taken = _memory() - _AT_START
+    many = _LOADED["programs"] > MOST_PROGRAMS
+    if many or taken > max(MOST_MEMORY, _LOADED["left"] + WORTH_GIVING):
         forget()
 
 
@@ -250,7 +259,7 @@ def forget() -> None:
     with suppress(AttributeError, OSError):  # glibc keeps to itself what is freed
         CDLL(None).malloc_trim(0)
     _LOADED.clear()
-    _LOADED["memory"] = _memory()
+    _LOADED["left"] = _memory() - _AT_START
 
 
 def program(function: Callable[P, R]) -> Program[P, R]:

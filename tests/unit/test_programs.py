@@ -192,18 +192,33 @@ def test_many_programs_are_unloaded_together(monkeypatch):
     assert float(double(jnp.asarray(3.0))) == 6.0
 
 
-def test_programs_are_given_back_with_each_share_of_memory(kept, monkeypatch):
-    monkeypatch.setattr(programs, "MOST_MEMORY", 1000)
-    program = Program(moved, programs.QUICK)
-    held = []
-    for memory in (500, 1400, 1600, 1600, 2500, 2700):
-        monkeypatch.setattr(programs, "_memory", lambda memory=memory: memory)
-        if not held:
-            programs.forget()  # counted from here on
+@pytest.mark.parametrize(
+    ("left", "memory", "held"),
+    [
+        (700, (1400, 1600, 1400, 1600), [True, False, True, False]),
+        # where nothing is given back, each further share is worth a try, and no run less
+        (9999, (1600, 1600, 1700, 1800, 1800), [False, True, True, False, True]),
+    ],
+)
+def test_memory_is_bounded_from_the_start_of_the_process(kept, monkeypatch, left, memory, held):
+    class Heap:
+        taken = 500
+
+        def malloc_trim(self, _):
+            self.taken = min(self.taken, left)
+
+    heap = Heap()
+    for name, value in (("MOST_MEMORY", 1000), ("WORTH_GIVING", 150), ("_AT_START", 500)):
+        monkeypatch.setattr(programs, name, value)
+    monkeypatch.setattr(programs, "_memory", lambda: heap.taken)
+    monkeypatch.setattr(programs, "CDLL", lambda _: heap)
+    programs.forget()
+    program, found = Program(moved, programs.QUICK), []
+    for heap.taken in memory:
         program(Bodies(jnp.arange(3.0), "b"), by=1.0)
         programs.bound_programs()
-        held.append(bool(program.ready))
-    assert held == [True, True, False, True, True, False]
+        found.append(bool(program.ready))
+    assert found == held
 
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="asks Linux for its memory")

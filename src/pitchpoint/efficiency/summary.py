@@ -377,7 +377,7 @@ def in_chunks(
     chunks: list[dict[str, np.ndarray]] = []
     done = 0
     for chunk, used in _chunks(inputs, size):
-        out = jax.device_get(function(chunk))
+        out = function(chunk)
         chunks.append({name: np.asarray(values)[:used] for name, values in out.items()})
         done += used
         if progress is not None:
