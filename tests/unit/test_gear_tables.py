@@ -82,7 +82,7 @@ def test_keys_of_every_family_are_found(key: str, kind: str) -> None:
 def test_with_a_case_the_keys_are_those_of_its_family() -> None:
     for tree, wrong, known in [
         (DRIVE, "gears.helix_angle", "backlash"),
-        (PAIR, "gears.backlash", "centre_distance"),
+        (PAIR, "gears.fixed", "centre_distance"),
         (DRIVE, "gears.tooth.pressure_angle", "convex_radius"),
     ]:
         with pytest.raises(InputError, match=f"there is no such key.*{known}"):
