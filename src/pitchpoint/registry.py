@@ -161,6 +161,19 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 _GRADE = re.compile("[a-z]{1,3}[0-9]{2,4}")
 
+_OTHERWISE = {
+    **dict.fromkeys(("spur", "helical", "internal", "involute"), "cylindrical"),
+    **dict.fromkeys(("harmonic", "harmonicdrive", "strainwavegear"), "strain_wave"),
+    **dict.fromkeys(("coulomb", "mu"), "constant"),
+    **dict.fromkeys(("16mncr5", "20mncr5", "18crnimo76", "17crnimo6"), "case-hardened-mq"),
+    **dict.fromkeys(("42crmo4", "34crnimo6", "c45"), "through-hardened-mq"),
+    **dict.fromkeys(("oil", "oils", "lubricants", "grease"), "lubricant"),
+    **dict.fromkeys(("steels", "plastics", "solid", "solids", "materials"), "material"),
+    **dict.fromkeys(("pom", "delrin", "acetal"), "POM-H"),
+    "nylon": "PA66",
+}
+"""What things are called elsewhere, by letters and figures; steels by their class in ISO 6336-5."""
+
 
 def alike(name: str, known: Iterable[str]) -> list[str]:
     """At most three known names spelled like another, whatever its case, spaces and hyphens.
@@ -173,6 +186,8 @@ def alike(name: str, known: Iterable[str]) -> list[str]:
     """
     plain = {letters(one): one for one in known}
     wanted = letters(name)
+    if (meant := _OTHERWISE.get(wanted)) in plain.values() and wanted not in plain:
+        return [str(meant)]
     if wanted in plain:
         return [plain[wanted]]
     grade = wanted.removeprefix("iso")

@@ -1295,7 +1295,7 @@ def deep(levels: int) -> bytes:
 
 FILES = {
     "not TOML": (b"[gears\nteeth = 3", "is not a TOML file: ", "at line 1"),
-    "two of a kind": (b"a = 1\na = 2", "is not a TOML file: ", "overwrite"),
+    "two of a kind": (b"a = 1\na = 2", "is not a TOML file: ", "line 2", "a = 2; write it once"),
     "binary": (b"\x00\x01\x02", "is not a TOML file", "line 1"),
     "not UTF-8": ("title = 'é'".encode("latin-1"), "is not UTF-8 text", "Latin-1"),
     "empty": (b"", "gears: is missing", "gears, lubricant, roughness, operation"),
@@ -1477,6 +1477,29 @@ def test_nothing_to_cite(name: str, refuse: Callable[..., str], tmp_path: Path) 
         ),
         (["--sweep", "models.friction=1:2:3"], ["--sweep: models.friction: cannot be swept"]),
         (["--sweep", "gears.addendum=1:2.1:3"], ["--sweep: at gears.addendum = 2.1: ", "2.158"]),
+        (
+            ["--set", "gears.family=planetary"],
+            ["no family of gears of Pitchpoint; pitchpoint docs not_included"],
+        ),
+        (["--set", "gears.family=harmonic drive"], ["gears.family: ", "did you mean strain_wave?"]),
+        (["--set", "torque=50 N m"], ["torque: ", "[operation] and [loss_map] have that key"]),
+        (["--set", "friction=xu_2007"], ["friction: ", "[models] has that key"]),
+        (["--set", "gears.film=true"], ["gears.film: ", "[film] is a table of its own"]),
+        (
+            ["--set", "models.friction=0.05"],
+            ["models.friction: ", 'write { name = "constant", coefficient = 0.05 }'],
+        ),
+        (["--set", "models.friction=coulomb"], ["models.friction: ", "did you mean constant?"]),
+        (["--set", "materials.gear_1=16MnCr5"], ["materials.gear_1: ", "case-hardened-mq?"]),
+        (
+            ["--set", "strength.accuracy_class=A6"],
+            ["strength.accuracy_class: ", 'a whole number like "3"; allowed is 3 to 8'],
+        ),
+        (["--set", "strength.safety=1.3"], ["strength.safety: ", "safeties are results"]),
+        (
+            ["--set", "loss_map={ quadrants = 4, lowest_speed = '5000 rpm' }"],
+            ["loss_map.lowest_speed: 5000 rpm was given; allowed is less than the largest speed"],
+        ),
         (["--bogus"], ["No such option: --bogus; see pitchpoint run --help"]),
         (["--variant"], ["--variant", "requires an argument; see pitchpoint --help"]),
         (["--variant", "x"], ['variants: "x" is not a variant', "known are default"]),

@@ -1,7 +1,7 @@
 """Main figures of the parts of a result as JSON has them."""
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -263,17 +263,18 @@ ERRORS = ("interpolation_error", "light_load_error", "creeping_error")
 """Largest errors: between loads and speeds of the map, below its least load, below its lowest speed."""
 
 
-def error_words(data: xr.Dataset, law: int) -> str:
+def error_words(data: xr.Dataset, law: int, words: Callable[[str, float], str]) -> str:
     """How near the map comes to direct computation under one law, in words.
 
     Args:
         data: the map.
         law: place of the law.
+        words: a load or speed of the map by its name, value [SI] to text.
     """
     names = (*ERRORS, "mean_interpolation_error")
     most, light, creeping, mean = (f"{100.0 * float(data[name][law]):.2g} %" for name in names)
     torque, speed = (
-        f"{float(values[values > 0.0].min()):.4g} {data[name].attrs['units']}"
+        words(name, float(values[values > 0.0].min()))
         for name in ("output_torque", "output_speed")
         for values in [data[name].values]
     )

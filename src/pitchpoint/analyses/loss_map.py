@@ -77,7 +77,7 @@ def map_axes(built: Ready) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     around = point.temperature + np.array([-20.0, 0.0, 20.0])
     degrees = np.unique(np.clip(around, *built.temperatures))
     if asked and asked.temperatures:
-        degrees = np.array(asked.temperatures)
+        degrees = np.unique(asked.temperatures)
     loads = int(asked.torque_count or asked.force_count or count) if asked else count
     speeds = int(asked.speed_count or count) if asked else count
     return np.linspace(0.0, torque, loads), np.linspace(0.0, speed, speeds), degrees

@@ -28,6 +28,7 @@ _BARE = re.compile(
     r"[\w.]+\s*=\s*([+-]?[\d.]+(?:e[+-]?\d+)? ?[A-Za-z\u00b5\u03bc\u00b0%/][^\"'#]*?)\s*(?:#.*)?"
 )
 _COLON = re.compile(r"([\w.]+)\s*:\s+(\S.*)")
+_AGAIN = re.compile(r"Cannot (declare .* twice|overwrite a value)")
 _LINE = re.compile(r"\(at line (\d+), column")
 
 
@@ -54,13 +55,21 @@ def not_toml(text: str, error: ValueError) -> str:
     for name, shape in _SHAPES:
         if shape.match(text[:2000]):
             return f"looks like {name}; {_CASE}"
-    number = int((_LINE.search(str(error)) or [0, 0])[1])
+    again = bool(_AGAIN.search(str(error)))
+    last = len(text.splitlines()) if again else 0  # a key at the end of a file has no line told
+    number = int((_LINE.search(str(error)) or [0, last])[1])
     line = [*text.splitlines(), ""][number - 1] if 0 < number <= text.count("\n") + 1 else ""
-    return f"is not a TOML file: {_mended(line, number) or error}"
+    return f"is not a TOML file: {_mended(line, number, again) or error}"
 
 
-def _mended(line: str, number: int) -> str:
-    """What is wrong with a line and what it should have; empty where that is not known."""
+def _mended(line: str, number: int, again: bool) -> str:
+    """What is wrong with a line and what it should have; empty where that is not known.
+
+    Args:
+        line: of the file.
+        number: of that line.
+        again: True where the line gives something a second time.
+    """
     code, at = line.partition("#")[0].strip()[:200], f"line {number}"
     if quote := _QUOTES.search(code):
         straight = shorten(_QUOTES.sub('"', code))
@@ -73,6 +82,9 @@ def _mended(line: str, number: int) -> str:
         meant = comma_readings(comma[0])
         which = "before decimals" if len(meant) == 1 else "in a number"
         return f"{at} has a comma {which}, {comma[0]}; write {' or '.join(meant)}"
+    if again:
+        what = "table" if code.startswith("[") else "key"
+        return f"{at} has a {what} that was there before, {shorten(code)}; write it once"
     if colon := _COLON.fullmatch(code):
         return f"{at} has a colon; write {shorten(f'{colon[1]} = {colon[2]}')}"
     return ""

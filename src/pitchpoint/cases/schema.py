@@ -1787,8 +1787,8 @@ def _check_quadrants(case: Case | DriveCase) -> None:
         raise InputError(told, key="loss_map.speed")
     if asked.lowest_speed is not None and asked.lowest_speed >= largest:
         raise InputError(
-            f"{SPEED.show(asked.lowest_speed)} was given; it lies below the largest speed of the map, "
-            f"{SPEED.show(largest)}",
+            f"{SPEED.show(asked.lowest_speed)} was given; allowed is less than the largest speed of the "
+            f"map, {SPEED.show(largest)}",
             key="loss_map.lowest_speed",
         )
 
@@ -1988,7 +1988,7 @@ def _quantity_anywhere(key: str) -> Quantity | None:
 
 def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | None:
     parts = [part for part in key.split(".") if not part.isdigit()]
-    named = False
+    named, root = False, models[0]
     for position, part in enumerate(parts):
         if named:  # a name of the user's own
             named = False
@@ -2001,7 +2001,7 @@ def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | 
             known = dict.fromkeys(name for each in fields for name in each)
             from pitchpoint.cases.wishes import answer
 
-            told = answer(parts[: position + 1], None, {}, known) or nearest(part, known)
+            told = answer(parts[: position + 1], None, {}, known) or _meant(part, known, root)
             raise InputError(f"there is no such key{told}", key=key)
         if position == len(parts) - 1:
             return quantity_of(holding[0])
@@ -2213,9 +2213,13 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
         from pitchpoint.cases.wishes import answer
 
         told = answer(_place_of(detail, document), given, document.tree, fields)
-        return f"is not a known {what}{told or nearest(str(detail['loc'][-1]), fields)}"
+        return f"is not a known {what}{told or _meant(str(detail['loc'][-1]), fields, model)}"
     if kind == "literal_error":
         allowed = _options(detail["loc"], model) or context["expected"]
+        if detail["loc"][-1] == "family" and isinstance(given, str):
+            from pitchpoint.cases.wishes import no_family
+
+            return f"{shown(given)} is no family of gears{no_family(given, _quoted(allowed))}"
         return f"{shown(given)} is not allowed; use {allowed}"
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return f"{shown(given)} was given where a table belongs"
@@ -2224,6 +2228,25 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
     if kind == "too_long":
         return _too_many(len(given), context["max_length"])
     return f"{shown(given)} is not allowed: {detail['msg'].lower()}"
+
+
+def _quoted(options: str) -> list[str]:
+    """Names between the quotation marks of a list in words."""
+    return options.split("'")[1::2]
+
+
+def _meant(key: str, known: Collection[str], model: type[BaseModel]) -> str:
+    """End of a sentence on a key that a table does not have: its neighbours, or the tables that have it."""
+    tables = [
+        f"[{name}]"
+        for name, info in model.model_fields.items()
+        if name != "formulas" and any(key in form.model_fields for form in forms(info.annotation))
+    ]
+    if key in model.model_fields and forms(model.model_fields[key].annotation):
+        return f"; [{key}] is a table of its own"
+    if alike(key, known) or not tables:
+        return nearest(key, known)
+    return f"; {' and '.join(tables)} {'has' if len(tables) == 1 else 'have'} that key"
 
 
 def _options(location: tuple[Any, ...], model: type[BaseModel]) -> str:

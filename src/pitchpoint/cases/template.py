@@ -14,11 +14,12 @@ from pydantic.fields import FieldInfo
 from pitchpoint.cases.document import STAGES, Tree
 from pitchpoint.cases.loss_sets import SET
 from pitchpoint.cases.schema import Case, DriveCase, quantity_of
+from pitchpoint.cases.wishes import no_family
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import alternatives, forms, sentences, tag
-from pitchpoint.registry import known_as, nearest
+from pitchpoint.registry import known_as
 
 __all__ = ["FAMILIES", "template"]
 
@@ -59,7 +60,7 @@ def template(family: str) -> str:
     """
     found = known_as(family, FAMILIES)
     if found is None:
-        raise InputError(f"'{shorten(family)}' is no family of gears{nearest(family, FAMILIES)}")
+        raise InputError(f"'{shorten(family)}' is no family of gears{no_family(family, FAMILIES)}")
     model, tree = _sample(found)
     lines = [
         f"# A case of Pitchpoint, {found.replace('_', ' ')}. It runs as it is: pitchpoint run FILE.",

@@ -28,7 +28,7 @@ from pitchpoint.gears.table import (
 )
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.materials.data import oil_names
-from pitchpoint.registry import letters, listed
+from pitchpoint.registry import letters, listed, nearest
 
 __all__ = ["WISHES", "Wish", "answer", "answered"]
 
@@ -88,6 +88,29 @@ def answer(place: Sequence[str], value: Any, tree: Tree, fields: Collection[str]
     if line or not wish.keys:
         return f": {wish.why}{f'; write {line}' if line else ''}"
     return f": {wish.why}; the key is {wish.keys[0]}"
+
+
+def no_family(name: str, known: Collection[str]) -> str:
+    """End of a sentence on a family of gears that is not there: the one that is meant, or where to read."""
+    if letters(name) in _NO_FAMILIES:
+        return " of Pitchpoint; pitchpoint docs not_included says what to use instead"
+    return nearest(name, known)
+
+
+_NO_FAMILIES = {
+    *(
+        "planetary",
+        "epicyclic",
+        "bevel",
+        "hypoid",
+        "worm",
+        "crossedhelical",
+        "cycloidal",
+        "cycloid",
+        "rv",
+    ),
+    *("facegear", "chain", "belt"),
+}
 
 
 def answered(place: Sequence[str]) -> tuple[str, ...]:
@@ -663,7 +686,15 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             _renamed("life"),
         ),
         Wish(
-            ("s_hmin", "s_fmin", "minimum_safety", "flank_safety", "root_safety", "safety_factor"),
+            (
+                "s_hmin",
+                "s_fmin",
+                "minimum_safety",
+                "flank_safety",
+                "root_safety",
+                "safety_factor",
+                "safety",
+            ),
             (),
             "safeties are results; a bound on them stands in [targets] or in a study",
         ),

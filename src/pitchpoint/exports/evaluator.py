@@ -184,13 +184,17 @@ def _told(outcome: Outcome, table: LossTable) -> Iterable[str]:
 def _head(outcome: Outcome, table: LossTable) -> Iterable[str]:
     data = outcome.parts[FOUR_QUADRANTS.name]
     torque, speed, driver = table.units
+
+    def in_units(name: str, value: float) -> str:
+        return f"{value:.4g} {data[name].attrs['units']}"
+
     yield "Loss of a drive and torque of its driver at any torque and speed of its output."
     yield SIGNS
     yield f"Units: torque {torque}, speed {speed}, torque of the driver {driver}, temperature degC, loss W."
     yield BETWEEN
     yield (
         "Error of the loss against direct computation, by friction law: "
-        + "; ".join(error_words(data, law) for law in range(len(table.loss_torques)))
+        + "; ".join(error_words(data, law, in_units) for law in range(len(table.loss_torques)))
         + ". More values of loss_map.count and loss_map.temperatures bring it down."
     )
     yield BEYOND

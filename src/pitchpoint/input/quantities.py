@@ -138,7 +138,10 @@ class Quantity:
         try:
             return units.parse(value, "count" if self.whole else self.kind)
         except InputError as error:
-            raise InputError(f"{error.message}; {self.allowed}", value=value) from None
+            message = error.message
+            if self.whole and self._outside(20.0):
+                message = message.replace('like "20"', f'like "{self.example}"')
+            raise InputError(f"{message}; {self.allowed}", value=value) from None
 
 
 @dataclass(frozen=True)
@@ -205,6 +208,10 @@ def named(
 
         known = registry()
         if not isinstance(value, str):
+            number = isinstance(value, int | float) and not isinstance(value, bool)
+            if number and kind == "friction law":
+                told = f'write {{ name = "constant", coefficient = {shown(value)} }}'
+                raise InputError(f"{shown(value)} is not the name of a {kind}; {told}")
             raise InputError(
                 f"{shown(value)} is not the name of a {kind}; known are {listed(known)}"
             )

@@ -153,10 +153,11 @@ def _in_series(data: xr.Dataset) -> str:
 def _least(data: xr.Dataset) -> str:
     """Thinnest films, in words."""
     least = told(data, "smallest_film")
+    below_zero = ": mean planes overlap" if float(data["smallest_film"]) < 0.0 else ""
     if not np.isfinite(float(data.get("smallest_central_film", np.nan))):
-        return f"{least} at least"
+        return f"{least} at least{below_zero}"
     middle = told(data, "smallest_central_film")
-    return f"{middle} at least in the middle of a contact, {least} anywhere"
+    return f"{middle} at least in the middle of a contact, {least} anywhere{below_zero}"
 
 
 def _by_grid(data: xr.Dataset) -> str:

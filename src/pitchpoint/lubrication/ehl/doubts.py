@@ -395,7 +395,7 @@ def of_grid(
             GRID,
             off,
             moves=off,
-            brief=f"coarse grid: films off by up to {100.0 * off:.2g} %, take {brief}",
+            brief=f"coarse grid: films off by up to {100.0 * off:.2g} %, {brief}",
         )
     if unknown.any():
         yield Doubt(
@@ -414,13 +414,17 @@ def _more_nodes(off: float, nodes: int | None, most: int) -> tuple[str, str]:
     Errors of films at least halve with twice as many nodes.
     """
     if nodes is None or nodes >= most:
-        return ("take more nodes",) * 2 if nodes is None else (f"{most} nodes are the most",) * 2
+        coarse = (f"{most} nodes are the most", "no finer one")
+        return ("take more nodes",) * 2 if nodes is None else coarse
     doubled = ceil(log2(off / COARSE))
     enough = 2**doubled * (nodes - 1) + 1
     if enough <= most:
-        return f"{enough} nodes bring that below {100.0 * COARSE:g} %", f"{enough} nodes"
+        return f"{enough} nodes bring that below {100.0 * COARSE:g} %", f"take {enough} nodes"
     left = off * (nodes - 1) / (most - 1)
-    return f"{most} nodes, the most, leave {100.0 * left:.2g} % of it at worst", f"{most} nodes"
+    return (
+        f"{most} nodes, the most, leave {100.0 * left:.2g} % of it at worst",
+        f"take {most} nodes",
+    )
 
 
 def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[Doubt]:

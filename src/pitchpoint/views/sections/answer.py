@@ -134,11 +134,13 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
 
 def _tile(figure: KeyFigure) -> KeyFigure:
     """A key figure with as much beside its value as a tile has room for."""
-    detail = show.first_clauses(figure.detail.lstrip(",; "), _IN_A_TILE) if figure.detail else ""
+    detail = (
+        show.first_clauses(figure.detail.lstrip(",; "), _IN_A_TILE, 0.0) if figure.detail else ""
+    )
     return replace(figure, detail=detail)
 
 
-_IN_A_TILE = 56
+_IN_A_TILE = 64
 """Characters beside a value; what is longer stands in the list below the tiles."""
 
 _SUMMED_UP = 100

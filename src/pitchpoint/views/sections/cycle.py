@@ -158,7 +158,9 @@ def _against(seen: Timed) -> Figure:
         traces,
         layout(short_axis("input_torque", seen[0][1]), short_axis("efficiency")),
         "With the load held, all laws lie on one curve and cover different parts of it; "
-        "the first laws are drawn wider.",
+        "the first laws are drawn wider."
+        if len(seen) > 1
+        else "",
     )
 
 

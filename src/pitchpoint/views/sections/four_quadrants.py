@@ -46,8 +46,9 @@ def _blocks(page: Page) -> Iterator[Block]:
     )
     yield Paragraph(
         f"Where {load} and speed have one sign the driver drives, where they differ the load does. The "
-        f"{driving} is positive where it acts along a positive speed of the output. Cells are blank at rest, "
-        "where no power comes out, and where friction locks the drive against its output."
+        f"{driving} is positive where it acts along a positive speed of the output. The "
+        "efficiency is blank from rest and from no load, where no power comes out, to the nodes beside "
+        "them; everything is where friction locks the drive against its output."
     )
     yield Paragraph(str(data.attrs["note"]), "note")
     for told in dict.fromkeys(_errors(one) for one in there.values()):
@@ -76,8 +77,12 @@ AT_REST = (
 
 def _errors(outcome: Outcome) -> str:
     data = outcome.parts[OF_OUTPUT.part]
-    each = "; ".join(error_words(data, law) for law in range(data.sizes["law"]))
-    return f"Error of the loss in the map against direct computation: {each}."
+
+    def in_units(name: str, value: float) -> str:
+        return show.quantity(name, value, of=data)
+
+    by_law = "; ".join(error_words(data, law, in_units) for law in range(data.sizes["law"]))
+    return f"Error of the loss in the map against direct computation: {by_law}."
 
 
 def _rows(outcome: Outcome) -> list[dict[str, str]]:

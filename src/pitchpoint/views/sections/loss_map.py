@@ -109,6 +109,7 @@ def _scale(name: str, outcomes: Mapping[str, Outcome], chart: Chart) -> dict[str
     inside = [data[name].values[_holds(outcomes[n], data)] for n, data in every.items()]
     maps = inside if sum(map(len, inside)) else [data[name].values for data in every.values()]
     low, high = _ends(np.concatenate([display(name, values).ravel() for values in maps]))
+    low, high = (-max(-low, high), max(-low, high)) if name == _SIGNED else (low, high)
     return {"zmin": low, "zmax": high} if high > low else {}
 
 
@@ -203,7 +204,7 @@ def _figure(
     heat = {
         "type": "contour",
         **shown,
-        **_COLOURS.get(name, {"colorscale": "YlOrRd", "reversescale": True}),
+        **_COLOURS.get(name, {"colorscale": _evenly("#ffffcc", "#feb24c", "#f4714d")}),
         "hoverongaps": False,
         **scale,
         "zauto": not scale,
@@ -248,9 +249,18 @@ def _beginning(name: str, data: xr.Dataset, chart: Chart, shown: Mapping[str, An
     return f" From {' and '.join(ends)} on, the smallest that were computed above rest."
 
 
+def _evenly(*colours: str) -> list[list[Any]]:
+    """A scale of colours; light throughout, so that dark numbers on contours are read everywhere."""
+    last = len(colours) - 1
+    return [[place / last, colour] for place, colour in enumerate(colours)]
+
+
+_SIGNED = "mean_input_torque"
+"""A quantity whose scale has zero in its middle."""
+
 _COLOURS: dict[str, dict[str, Any]] = {
-    "mean_efficiency": {"colorscale": "Cividis", "reversescale": False},
-    "mean_input_torque": {"colorscale": "RdBu", "reversescale": True, "zmid": 0.0},
+    "mean_efficiency": {"colorscale": _evenly("#8fa3cf", "#c9cdd0", "#ffe45c")},
+    _SIGNED: {"colorscale": _evenly("#e08a6d", "#f4f2ef", "#79a9d8")},
 }
 """Colours of quantities of which little is not what is wanted."""
 
