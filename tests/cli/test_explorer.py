@@ -22,7 +22,7 @@ from pitchpoint.runs import explore as exploring
 from pitchpoint.runs.case import Case
 from pitchpoint.runs.explore import Explored, explore, usual
 from pitchpoint.runs.run import Outcome, run
-from pitchpoint.views import show
+from pitchpoint.views import explorer, show
 from pitchpoint.views.explorer import Reader, write_explorer
 from pitchpoint.views.report import packed
 
@@ -380,13 +380,23 @@ def test_another_law_has_other_numbers(driven: Browser, held: dict[str, Any]) ->
     assert driven.wait(f"{BIG} === {wanted!r}")
 
 
+@pytest.mark.parametrize(
+    "values", [[20.0, 43.3, 60.0, 66.7, 90.0], [20.0, 41.3, 50.0, 90.0], [0.1, 0.4]]
+)
+def test_a_slider_reaches_its_last_value(values: list[float]) -> None:
+    span, step = values[-1] - values[0], explorer._step(values)
+    assert span - 0.01 * step < step * (span // step) <= span
+    assert step <= 1.000001 * np.diff(values).min() / 20.0
+    assert explorer._step([20.0, 43.3333333333, 60.0, 66.6666666667, 90.0]) == pytest.approx(1.0 / 3.0)
+
+
 @in_browser
 def test_what_one_law_is_warned_of_stands_under_that_law(
     chromium: Browser, page: Path, held: dict[str, Any], tmp_path: Path
 ) -> None:
-    title, count = held["laws"][1]["title"], len(held["sentences"])
+    name, count = held["laws"][1]["name"], len(held["sentences"])
     warned = held | {
-        "sentences": [*held["sentences"], f"{title}: too thin a film.", "Tips are thin."],
+        "sentences": [*held["sentences"], f"{name}: too thin a film.", "Tips are thin."],
         "told": [[[], [count, count + 1]] for _ in held["told"]],
     }
     text = re.sub(
@@ -399,7 +409,7 @@ def test_what_one_law_is_warned_of_stands_under_that_law(
     assert chromium.run(told) == "Warning. Tips are thin."
     choose = "(m => { m.selectedIndex = 1; m.dispatchEvent(new Event('input', {bubbles: true})) })"
     chromium.run(f"{choose}(document.getElementById('law'))")
-    chromium.wait(f"{told}.includes({title!r} + ': too thin a film.')")
+    chromium.wait(f"{told}.includes({name!r} + ': too thin a film.')")
 
 
 def half_a_phase_on(chromium: Browser, tmp_path: Path, example: str, turns: str) -> np.ndarray:

@@ -308,7 +308,7 @@ def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     assert "by derivatives along the steps of the march" in page
     told = json.loads(outcome.parts["wear"].attrs["sensitivities"])
     of_load = {name: f"{value:+.3f}".replace("-", "−") for name, value in told["load"].items()}
-    row = f'>load</th><td class="n">{of_load["life"]} %</td><td class="n">{of_load["depth"]} %</td>'
+    row = f'>load</th><td class="n">{of_load["life"]}\u00a0%</td><td class="n">{of_load["depth"]}\u00a0%</td>'
     assert row in page
     (figure,) = SECTION.answer(outcome)
     assert figure.name == "Wear depth"

@@ -198,7 +198,7 @@ def _rendered(found: Explored[Point], drawings: Sequence[Moving]) -> str:
     courses = _drawn_courses(found)
     content = {
         "laws": [
-            {"title": law_title(found.own, law), "colour": PALETTE[k % len(PALETTE)]}
+            {"name": law, "title": law_title(found.own, law), "colour": PALETTE[k % len(PALETTE)]}
             for k, law in enumerate(laws(data))
         ],
         "axes": axes,
@@ -242,17 +242,26 @@ def _axis(axis: Axis, found: Explored[Point]) -> dict[str, Any]:
     """What a slider needs, in the unit in which a case file shows the values."""
     quantity = axis.quantity
     values, own = (_shown(axis, one) for one in (axis.values, np.array([axis.own])))
-    gaps = np.diff(values)
     return {
         "key": axis.key,
         "words": _words(axis.key, found.own.manifest),
         "unit": show.unit(unit_in_use(quantity.kind, quantity.unit)),
         "values": values,
         "own": own[0],
-        "step": _plain(gaps.min() / 20.0),
+        "step": _step(values),
         "whole": quantity.whole,
         "shapes": _shapes(axis, found),
     }
+
+
+def _step(values: Sequence[float]) -> float:
+    """Step of a slider: some twentieth of the least gap, a whole number of which reaches the last value.
+
+    It is a trifle short, since a browser never goes beyond the last value.
+    """
+    span = values[-1] - values[0]
+    count = np.ceil(20.0 * span / np.diff(values).min() - 1e-6)  # values have twelve digits
+    return float(span / count * (1.0 - 1e-9))
 
 
 def _shown(axis: Axis, values: np.ndarray) -> list[float]:

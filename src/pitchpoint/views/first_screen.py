@@ -128,7 +128,7 @@ def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
     for row in ranked:
         for variant, text in zip(outcomes, row, strict=True):
             if text is not None:
-                told.setdefault(as_doubt(text).brief, []).append(variant)
+                told.setdefault(show.pretty(as_doubt(text).brief), []).append(variant)
     return [
         text if len(names) == len(outcomes) else f"{_few(names, len(outcomes))}: {text}"
         for text, names in told.items()

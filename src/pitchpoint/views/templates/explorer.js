@@ -210,8 +210,8 @@
     });
   }
 
-  // What is told of one friction law begins with its title.
-  const ofOthers = (sentence) => it.laws.some((one, k) => k !== law() && sentence.startsWith(one.title + ":"));
+  // What is told of one friction law begins with its name or its title.
+  const ofOthers = (sentence) => it.laws.some((one, k) => k !== law() && [one.name, one.title].some((name) => sentence.startsWith(name + ":")));
 
   function warned(point) {
     const [fails, warns] = it.told[point].map((all) => all.filter((one) => !ofOthers(it.sentences[one])));
