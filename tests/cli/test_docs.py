@@ -48,7 +48,12 @@ WEAR, WORN = blocks("guide/wear.md", "toml")
 (WAVE,) = blocks("gears/strain_wave.md", "toml")
 (UNITS,) = blocks("guide/commands.md", "toml")
 (BALL,) = blocks("gears/ball_on_disc.md", "toml")
-SHELL = [line for page in PAGES for text in blocks(page, "sh") for line in text.splitlines()]
+SHELL = [
+    line
+    for page in PAGES
+    for text in blocks(page, "sh")
+    for line in text.replace("\\\n", "").splitlines()
+]
 SET_UP = [
     "sh bootstrap && .venv/bin/pitchpoint run tian2024",
     "sh bootstrap dev && .venv/bin/pytest",

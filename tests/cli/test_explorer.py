@@ -387,7 +387,9 @@ def test_a_slider_reaches_its_last_value(values: list[float]) -> None:
     span, step = values[-1] - values[0], explorer._step(values)
     assert span - 0.01 * step < step * (span // step) <= span
     assert step <= 1.000001 * np.diff(values).min() / 20.0
-    assert explorer._step([20.0, 43.3333333333, 60.0, 66.6666666667, 90.0]) == pytest.approx(1.0 / 3.0)
+    assert explorer._step([20.0, 43.3333333333, 60.0, 66.6666666667, 90.0]) == pytest.approx(
+        1.0 / 3.0
+    )
 
 
 @in_browser
