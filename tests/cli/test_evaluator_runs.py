@@ -17,7 +17,7 @@ import xarray as xr
 from pitchpoint import cli
 from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.analysis import silent
-from pitchpoint.analyses.figures import standstill_figures
+from pitchpoint.analyses.figures import HOLDING_BANDS, standstill_figures
 from pitchpoint.analyses.four_quadrants import (
     loss_of_output,
     quadrant_axes,
@@ -31,9 +31,10 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import header, module
-from pitchpoint.runs.run import Outcome, describe, keep, open_result
+from pitchpoint.runs.run import Outcome, describe, keep, load_case, open_result
 from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 TITLE = '"""*/ #\' \\ ??/ {title}\u2028 % \U0001f600'
 GEARS = sound.PAIR.replace("[23, 61]", "[12, 120]\nprofile_shift = [0.5, 0.0]")
 PAIR = f"""
@@ -206,11 +207,53 @@ def test_between_nodes_it_is_as_near_as_is_told(moving: tuple[Ready, Outcome]) -
     assert heavy.max() <= most
     every = np.exp(random.uniform(np.log(lowest), np.log(largest), 4)).tolist()
     assert off(table, built, 0.4 * table.torques[-1], every).max() <= most
-    assert off(table, built, 0.1 * table.torques[-1], every).max() <= light
+    assert off(table, built, 0.05 * table.torques[-1], every).max() <= light
     assert (
         off(table, built, 41.0, np.geomspace(lowest / 10.0, lowest, 4).tolist()).max() <= creeping
     )
     assert creeping < 0.5  # by the law; a loss that vanished with the speed would miss all of it
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize("name", ["pair_23_61", "strain_wave"])
+def test_told_errors_of_random_points(name: str) -> None:
+    """Both ways, at any torque, speed and temperature: nine of ten are nearer than is told.
+
+    Away from the nodes and from the points half way between them at which the errors were measured.
+    """
+    changes = {"loss_map.quadrants": 4, "operation.temperature": "50 degC"}
+    built = load_case(str(EXAMPLES / f"{name}.toml"), settings=changes)
+    pieces = FOUR_QUADRANTS.pieces(built)
+    data = FOUR_QUADRANTS.joined(
+        built, [FOUR_QUADRANTS.compute(built, piece, silent) for piece in pieces]
+    )
+    table, random = table_of(data), np.random.default_rng(7)
+    loads, driver, degrees = quadrant_axes(built)
+    near = []
+    for load in np.append(random.uniform(0.0, loads[1], 3), random.uniform(0.0, loads[-1], 7)):
+        for way in ("forwards", "backwards"):
+            drive = built if way == "forwards" else four_quadrants._driven_back(built)
+            step = table.speed_ratio if way == "forwards" else 1.0
+            slow, fast = np.log(driver[[1, -1]] * table.speed_ratio / step)
+            speeds = np.exp(random.uniform(slow, fast, driver.size))
+            there = random.uniform(degrees[0], degrees[-1], degrees.size)
+            for law, (loss, _, _) in enumerate(maps(drive, float(load), speeds, there)):
+                lost = loss / (speeds * step)[:, None]
+                torque = (
+                    load + 0.0 * lost if way == "forwards" else -load / table.speed_ratio - lost
+                )
+                for at in np.ndindex(lost.shape):
+                    if table.torques[0] <= torque[at] <= table.torques[-1]:
+                        kind = "light_load" if abs(torque[at]) < loads[1] else "interpolation"
+                        place = float(torque[at]), speeds[at[0]] * step, there[at[1]] - 273.15
+                        found = table.lost(*place, [*table.loss_torques][law])
+                        near.append(
+                            abs(found / lost[at] - 1.0) <= float(data[f"{kind}_error"][law])
+                        )
+    assert len(near) > 250
+    assert np.mean(near) > 0.9
+    assert float(data["interpolation_error"].max()) < 0.04
+    assert float(data["light_load_error"].max()) < 0.08
 
 
 def test_near_standstill_friction_under_load_is_there(moving: tuple[Ready, Outcome]) -> None:
@@ -256,6 +299,25 @@ def test_what_holds_at_rest_has_the_band_that_was_given(moving: tuple[Ready, Out
         output = 2.0 + held
         np.testing.assert_allclose(data[name], 0.1 + step * output, rtol=1e-9)
         np.testing.assert_allclose(data[back], 0.1 / step + output, rtol=1e-9)
+
+
+def test_both_ends_of_what_holds_a_load_have_the_band_that_was_given(
+    moving: tuple[Ready, Outcome],
+) -> None:
+    """Of each end, by half and twice the breakaway torque; the drive holds at least between inner ends."""
+    data = moving[1].parts["four_quadrants"].sel(law="frictionless")
+    step, load = data.speed_ratio, data["output_torque"]
+    for held, least, largest in ((0.5, "high", "low"), (2.0, "low", "high")):
+        seals = 0.1 + step * (2.0 + held)
+        ends = data[f"least_holding_torque_{least}"], data[f"largest_holding_torque_{largest}"]
+        for end, sign in zip(ends, (-1.0, 1.0), strict=True):
+            np.testing.assert_allclose(*xr.broadcast(end, step * load + sign * seals), rtol=1e-9)
+    every = moving[1].parts["four_quadrants"]
+    for name, ends in HOLDING_BANDS.items():
+        assert (every[ends[0]] < every[name]).all()
+        assert (every[name] < every[ends[1]]).all()
+    (told,) = (one for one in FOUR_QUADRANTS_SECTION.answer(moving[1]))
+    assert "with the spread of what holds" in told.detail
 
 
 def test_figures_of_a_load_that_is_held(
@@ -379,9 +441,9 @@ def test_the_module_between_and_beyond_its_nodes(
     torques, speeds = table.torques, table.speeds
     half = (torques[-1] + torques[-2]) / 2.0, np.sqrt(speeds[-1] * speeds[-2])
     points = [
-        (half[0], speeds[-1], 40.0),
-        (torques[-1], half[1], 40.0),
-        (torques[-1], speeds[-1], 50.0),
+        (half[0], speeds[-1], 60.0),
+        (torques[-1], half[1], 60.0),
+        (torques[-1], speeds[-1], sum(table.temperatures[-2:]) / 2.0),
     ]
     points += [
         (2.0 * torques[-1], speeds[-1], 40.0),
@@ -390,14 +452,15 @@ def test_the_module_between_and_beyond_its_nodes(
     ]
     points += [(30.0, speeds[1] / 3.0, 40.0)]
     *found, _, _ = asked(exported, points)
-    lost = np.array(table.loss_torques["xu_2007"])[-2:, -2:, :]
-    means = lost[:, 1, 0].mean(), lost[1, :, 0].mean(), lost[1, 1, :].mean()
+    lost = np.array(table.loss_torques["xu_2007"])[-2:, -2:, -2:]
+    means = lost[:, 1, 1].mean(), lost[1, :, 1].mean(), lost[1, 1, :].mean()
     expected = np.array(means) * [one[1] for one in points[:3]]
     assert [one[0] for one in found[:3]] == pytest.approx(expected.tolist(), rel=1e-13)
     assert [one[4] for one in found] == [False] * 3 + [True] * 2 + [False] * 2
-    assert found[3][0] == pytest.approx(lost[1, 1, 0] * speeds[-1], rel=1e-14)
+    cold = table.lost(torques[-1], speeds[-1], 40.0)
+    assert found[3][0] == pytest.approx(cold * speeds[-1], rel=1e-14)
     given = points[3][0]
-    assert found[3][1] == pytest.approx(given / (given + lost[1, 1, 0]), rel=1e-14)
+    assert found[3][1] == pytest.approx(given / (given + cold), rel=1e-14)
     assert found[5][0] == 0.0
     assert np.isnan(found[5][1:3]).all()
     assert found[6][0] == pytest.approx(table.at(30.0, speeds[1], 40.0).loss / 3.0, rel=1e-13)

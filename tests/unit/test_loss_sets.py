@@ -85,6 +85,24 @@ def test_a_stage_names_a_set():
     assert [*validate(document).stages["2"].losses] == [PLACE]
 
 
+def test_a_sealed_drive_has_a_seal_on_either_shaft_which_its_file_replaces():
+    """Of 60 mm: torques by hand; the bearing stays that of the component set."""
+    sealed = losses({**TREE, "losses": {"set": "strain_wave_sealed"}})
+    assert [*sealed] == [PLACE, "input_seal", "output_seal"]
+    assert sealed[PLACE] == losses()[PLACE]
+    assert sealed["input_seal"].seal_torque == pytest.approx(2.5 * 0.06**2)
+    assert sealed["output_seal"].breakaway_torque == pytest.approx(20.0 * 0.06**2)
+    assert all(place.breakaway_spread == 2.0 for place in sealed.values())
+    own = {"breakaway_torque": "30 mN m", "breakaway_spread": 1.2}
+    other = losses({**TREE, "losses": {"set": "strain_wave_sealed", "input_seal": own}})
+    assert other["input_seal"].breakaway_torque == pytest.approx(0.03)
+    assert other["input_seal"].seal_torque == sealed["input_seal"].seal_torque
+    marks = marks_of({"set": "strain_wave_sealed"})
+    keys = ("seal_torque", "breakaway_torque", "breakaway_spread")
+    assert {marks[f"{one}.{k}"].status for one in [*sealed][1:] for k in keys} == {"assumed"}
+    assert loss_sets()["strain_wave_sealed"].fitted == loss_sets()[NAME].fitted
+
+
 def test_marks_say_how_each_constant_was_come_by():
     marks = marks_of(TREE["losses"])
     fitted = {key for key, mark in marks.items() if mark.status == "fitted"}

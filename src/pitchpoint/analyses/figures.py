@@ -15,6 +15,7 @@ __all__ = [
     "CONTACT",
     "ERRORS",
     "HOLDING",
+    "HOLDING_BANDS",
     "MAIN",
     "OF_CROSSING",
     "OF_LAWS",
@@ -259,6 +260,12 @@ HOLDING = (
 )
 """Torques of the driver that hold a load, and those beyond which it moves at every phase."""
 
+HOLDING_BANDS = {
+    name: (f"{name}_low", f"{name}_high")
+    for name in ("least_holding_torque", "largest_holding_torque")
+}
+"""Ends of the bands of the two that hold, where a loss says how uncertain it is at rest."""
+
 ERRORS = ("interpolation_error", "light_load_error", "creeping_error")
 """Largest errors: between loads and speeds of the map, below its least load, below its lowest speed."""
 
@@ -291,7 +298,8 @@ def held_at_operation(data: xr.Dataset) -> dict[str, dict[str, Any]]:
         data: the map, between whose nodes of load and temperature they are linear.
     """
     load, degree = data.attrs["load"], data.attrs["degree"]
-    there = data[[*HOLDING, "self_locking"]].astype(float).interp(output_torque=load)
+    names = [*HOLDING, *(n for ends in HOLDING_BANDS.values() for n in ends if n in data)]
+    there = data[[*names, "self_locking"]].astype(float).interp(output_torque=load)
     if data.sizes["temperature"] > 1:
         ends = data["temperature"].values[[0, -1]]
         there = there.interp(temperature=np.clip(degree, *ends))
@@ -300,7 +308,7 @@ def held_at_operation(data: xr.Dataset) -> dict[str, dict[str, Any]]:
     locked = there["self_locking"] > 0.0
     return {
         law: {
-            **{n: without_nan(float(there[n].sel(law=law))) for n in HOLDING},
+            **{n: without_nan(float(there[n].sel(law=law))) for n in names},
             "self_locking": bool(locked.sel(law=law)),
         }
         for law in data["law"].values.tolist()

@@ -1,6 +1,6 @@
 """The loss map of the output over its torque and speed with their signs: the output drives too."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
@@ -12,9 +12,10 @@ from scipy.interpolate import PchipInterpolator
 
 from pitchpoint import units
 from pitchpoint.analyses.analysis import Piece, Progress
-from pitchpoint.analyses.figures import ERRORS, HOLDING
+from pitchpoint.analyses.figures import ERRORS, HOLDING, HOLDING_BANDS
+from pitchpoint.analyses.finer_map import finer_map
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
-from pitchpoint.analyses.running import creeping_speed, from_rest
+from pitchpoint.analyses.running import creeping_speed, from_rest, has_spread, held_otherwise
 from pitchpoint.cases.schema import LossMap
 from pitchpoint.cases.stages import Ready
 from pitchpoint.doubts import Doubt, doubts_of
@@ -42,11 +43,14 @@ CREEPING = 0.1
 CREEPS = 1
 """Place of that speed among those half way, behind rest."""
 
-FINER = 4
-"""Parts of each ratio of speeds in the table, between which it is linear in their logarithm."""
-
 SLOWEST = 0.01
 """Most that the lowest speed is of the largest one, where a drive is slow itself."""
+
+LIGHT = 0.25
+"""Part of the first load of the map that is computed too."""
+
+LIGHTER = 0.35
+"""Part of the least load at which the error under lighter ones is measured, between two of the table."""
 
 FALLS_SHORT = 1e-9
 """Part of a torque by which rounding may leave the largest that was computed behind that of the map."""
@@ -64,6 +68,15 @@ BETWEEN = (
 _EACH = ("law", "speed", "temperature")
 _AT_REST = ("law", "temperature")
 _HELD = ("law", "output_torque", "temperature")
+_BAND = HOLDING_BANDS["largest_holding_torque"]
+_OF_BANDS = (
+    "least_holding_torque_low",
+    "largest_holding_torque_high",
+    "least_holding_torque_high",
+    "largest_holding_torque_low",
+)
+"""Ends with most that holds at rest, least and largest torque, then those with least of it."""
+
 _DIMS = ("law", "output_torque", "output_speed", "temperature")
 
 Values = np.ndarray
@@ -83,6 +96,8 @@ def pieces(built: Ready) -> list[Piece]:
 def quadrant_axes(built: Ready) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Torques and temperatures of the loss map, and speeds of the driver: standstill, then in equal ratios.
 
+    A light load is added, for what a load adds to the loss follows a power of it that changes towards none.
+
     Args:
         built: the case.
     """
@@ -92,24 +107,28 @@ def quadrant_axes(built: Ready) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     if any(law.films is not None for law in built.laws):
         lowest = max(lowest, float(speeds[1]))
     moving = np.geomspace(lowest, top, speeds.size - 1) if speeds.size > 2 else speeds[1:]
-    return loads, np.append(0.0, moving), degrees
+    return np.insert(loads, 1, LIGHT * loads[1]), np.append(0.0, moving), degrees
 
 
 def _axes(built: Ready, way: str, *, between: bool) -> tuple[np.ndarray, ...]:
     """Loads, speeds of the driver and temperatures; half way the last is there twice, for the programs.
 
-    The first speed between is one below the lowest.
+    The first load between is a light one, and the first speed between one below the lowest.
     """
     loads, speeds, degrees = quadrant_axes(_driven(built, way))
     if not between:
         return loads, speeds, degrees
-    slow, fast = speeds[1:-1], speeds[2:]
-    others = np.append(CREEPING * speeds[1], np.sqrt(slow * fast)), _half_way(degrees)
-    return _half_way(loads), *(np.append(one, one[-1]) if one.size > 1 else one for one in others)
+    others = np.append(CREEPING * speeds[1], _of_ratio(speeds[1:])), _half_way(degrees)
+    light = np.append(LIGHTER * loads[1], _of_ratio(loads[1:]))
+    return light, *(np.append(one, one[-1]) if one.size > 1 else one for one in others)
 
 
 def _half_way(values: np.ndarray) -> np.ndarray:
     return (values[1:] + values[:-1]) / 2.0 if values.size > 1 else values
+
+
+def _of_ratio(values: np.ndarray) -> np.ndarray:
+    return np.sqrt(values[1:] * values[:-1])
 
 
 def _driven(built: Ready, way: str) -> Ready:
@@ -149,8 +168,13 @@ def quadrants_of(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
     creeping = creeping_speed(built) * (1.0 if way == FORWARDS else speed_ratio(built))
     slowest = min(float(quadrant_axes(driven)[1][1]), creeping)
     mean, largest = from_rest(driven, load, slowest, degrees)
+    bands = {
+        name: (_AT_REST, from_rest(held_otherwise(driven, way), load, slowest, degrees)[0])
+        for name, way in (zip(_BAND, (-1.0, 1.0), strict=True) if has_spread(built) else ())
+    }
     return dataset(
         {
+            **bands,
             "mean_loss": (_EACH, losses),
             "locked": (_EACH, locked),
             "largest_holding_torque": (_AT_REST, mean),
@@ -234,13 +258,21 @@ def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     loss = mirrored(np.where(moves, lost * speeds[:, None], 0.0))
     figures = _figures(loss, torques[:, None, None], both(speeds)[:, None], ratio)
     held, stuck = stuck[:, :, 0], mirrored(stuck & moves)
+    rest = {HOLDING: (lost, surely)}
+    if has_spread(built):
+        low, high = (_over_output(built, parts, name)[0] for name in _BAND)
+        rest[_OF_BANDS] = (high, low)
     unknown = np.isnan(loss) & ~stuck
     found = dataset(
         {
             "mean_loss": (_DIMS, loss),
             **{name: (_DIMS, values) for name, values in figures.items()},
             "locked": (_DIMS, stuck),
-            **_at_rest(lost[:, :, 0], surely[:, :, 0], torques, ratio),
+            **{
+                name: (_HELD, values)
+                for names, each in rest.items()
+                for name, values in zip(names, _ends(each, torques, ratio), strict=True)
+            },
             "self_locking": (_HELD, held[:, ::-1]),
             **{name: (("law",), values) for name, values in errors.items()},
         },
@@ -258,17 +290,11 @@ def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     return found
 
 
-def _at_rest(
-    lost: np.ndarray, surely: np.ndarray, torques: np.ndarray, ratio: float
-) -> dict[str, Any]:
-    """Torques of the driver that hold each load, from the torque that is lost where the output starts."""
-
-    def ends(torque: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        highest = (torques[:, None] + torque) * ratio
-        return -highest[:, ::-1], highest
-
-    each = (*ends(lost), *ends(surely))
-    return {name: (_HELD, values) for name, values in zip(HOLDING, each, strict=True)}
+def _ends(each: Sequence[Values], torques: np.ndarray, ratio: float) -> Iterator[np.ndarray]:
+    """Least and largest torque of the driver that holds each load, from what is lost at rest."""
+    for lost in each:
+        highest = (torques[:, None] + lost[:, :, 0]) * ratio
+        yield from (-highest[:, ::-1], highest)
 
 
 def both(values: np.ndarray) -> np.ndarray:
@@ -307,13 +333,13 @@ def _over_output(built: Ready, parts: Sequence[xr.Dataset], start: str) -> tuple
         locked[way] = np.concatenate([held[:, :, None], stuck[:, :, 1:]], axis=2)
         driving[way] = _ideal(built, way, between=False) + lost[way]
     turned, held = _turned(
-        map_axes(built)[0][1:],
+        quadrant_axes(built)[0][1:],
         lost[FORWARDS][:, 0],
         driving[BACKWARDS],
         lost[BACKWARDS],
         locked[BACKWARDS],
     )
-    loaded = (map_axes(built)[0] > 0.0)[:, None, None]
+    loaded = (quadrant_axes(built)[0] > 0.0)[:, None, None]
     return (
         np.concatenate([turned[:, ::-1], lost[FORWARDS]], axis=1),
         np.concatenate([held[:, ::-1], locked[FORWARDS] & loaded], axis=1),
@@ -390,7 +416,7 @@ def _figures(
 
 def _errors(built: Ready, parts: Sequence[xr.Dataset], table: LossTable) -> dict[str, np.ndarray]:
     """How far what the table loses is off between its nodes, and below the lowest ones [law]."""
-    lightest = min(one for one in table.torques if one > 0.0)
+    lightest = float(quadrant_axes(built)[0][1])
     kinds: dict[str, list[np.ndarray]] = {name: [] for name in ERRORS}
     for way in (FORWARDS, BACKWARDS):
         off, torque = _off_half_way(built, way, parts, table)
@@ -469,38 +495,14 @@ def table_of(data: xr.Dataset) -> LossTable:
 
 
 def _table(axes: Mapping[Any, Any], lost: Values, ratio: float) -> LossTable:
-    torques, speeds, degrees = (np.asarray(axes[name]) for name in _DIMS[1:])
-    speeds, lost = _finer(speeds[speeds >= 0.0], lost)
+    torques, speeds, degrees = (np.asarray(axes[name], float) for name in _DIMS[1:])
+    torques, speeds, degrees, lost = finer_map(torques, speeds[speeds >= 0.0], degrees, lost)
     return LossTable(
         torques=torques.tolist(),
         speeds=speeds.tolist(),
         temperatures=celsius(degrees).tolist(),
         loss_torques=dict(zip(map(str, np.asarray(axes["law"])), lost.tolist(), strict=True)),
         speed_ratio=ratio,
-    )
-
-
-def _finer(speeds: np.ndarray, lost: Values) -> tuple[np.ndarray, Values]:
-    """Speeds with others between, and what is lost there by a monotone cubic of their logarithms.
-
-    Where something is not known under one of two neighbours, it is not known between them.
-    """
-    if speeds.size < 4:
-        return speeds, lost
-    nodes = np.log(speeds[1:])
-    places = np.linspace(nodes[:-1], nodes[1:], FINER, endpoint=False, axis=1).ravel()
-    known = np.where(lost[:, :, 1:] >= 0.0, lost[:, :, 1:], 0.0)
-    between = np.maximum(PchipInterpolator(nodes, known, axis=2)(places), 0.0)
-    before, after = lost[:, :, 1:-1], lost[:, :, 2:]
-    beside = np.where((before < 0.0) | (after < 0.0), LOCKED, before + after)
-    beside = np.repeat(np.where(beside >= 0.0, 0.0, beside), FINER, axis=2)
-    between = np.where(beside == 0.0, between, beside)
-    between[:, :, ::FINER] = before
-    finer = np.exp(places)
-    finer[::FINER] = speeds[1:-1]
-    return (
-        np.concatenate([[0.0], finer, speeds[-1:]]),
-        np.concatenate([lost[:, :, :1], between, lost[:, :, -1:]], axis=2),
     )
 
 

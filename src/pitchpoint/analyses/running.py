@@ -33,6 +33,8 @@ __all__ = [
     "TORQUES",
     "creeping_speed",
     "from_rest",
+    "has_spread",
+    "held_otherwise",
     "running_axes",
     "running_part",
 ]
@@ -75,10 +77,10 @@ def running_part(built: Ready) -> xr.Dataset:
         "starting_torque": (_AT_REST, from_rest(built, 0.0, creeping, degrees)[1]),
         "back_driving_torque": (_AT_REST, from_rest(back, 0.0, turned, degrees)[1]),
     }
-    if _spread(built):
+    if has_spread(built):
         for (low, high), one, speed in zip(BANDS, (built, back), (creeping, turned), strict=True):
             for name, way in ((low, -1.0), (high, 1.0)):
-                held = _held_otherwise(one, way)
+                held = held_otherwise(one, way)
                 data[name] = (_AT_REST, from_rest(held, 0.0, speed, degrees)[1])
     return dataset(
         data,
@@ -92,7 +94,7 @@ def running_part(built: Ready) -> xr.Dataset:
         warnings=_unloaded(built),
         solve=told(np.concatenate([_held(values).ravel() for _, values in data.values()])),
         note="NaN where friction holds the drive whatever the torque",
-        fitted=_fitted(built),
+        fitted=" ".join(filter(None, [_fitted(built), _of_set(built, data, degrees)])),
     )
 
 
@@ -150,14 +152,14 @@ def from_rest(
     return mean, largest
 
 
-def _spread(built: Ready) -> bool:
+def has_spread(built: Ready) -> bool:
     """True if a place says by how much what holds it at rest may be more or less."""
     stages = built.stages if isinstance(built, BuiltDrive) else ()
     every: tuple[Ready, ...] = built, *stages
     return any(loss.breakaway_spread > 1.0 for one in every for loss in one.case.losses.values())
 
 
-def _held_otherwise(built: Ready, way: float) -> Ready:
+def held_otherwise(built: Ready, way: float) -> Ready:
     """The drive with what holds it at rest at the upper end (1) or the lower one (-1) of its spread."""
 
     def scaled(drags: Sequence[Drag], losses: Mapping[str, Loss]) -> tuple[Drag, ...]:
@@ -186,6 +188,20 @@ def _fitted(built: Ready) -> str:
     return (
         f"The losses of the set were fitted from {TEMPERATURE.show(low)} to {TEMPERATURE.show(high)}; "
         "beyond, these torques are extrapolated."
+    )
+
+
+def _of_set(built: Ready, data: Mapping[str, Any], degrees: np.ndarray) -> str:
+    """How the torque from rest backwards stands to that forwards, in words; empty without a set of losses."""
+    if isinstance(built, BuiltDrive) or built.fitted is None:
+        return ""
+    at = int(np.argmin(np.abs(degrees - built.case.operation.temperature)))
+    forth, back = (float(data[name][1][0, at]) for name in TORQUES[1:])
+    step = float(built.backwards.operation.speed) / float(built.operation.speed)
+    return (
+        f"Driving it backwards takes {back * step / forth:.3g} times ratio and starting torque, for teeth "
+        "and bearing then carry what holds the driver; that is nearly the same at every size of a set of "
+        "losses, which drives of makers are not."
     )
 
 

@@ -109,8 +109,11 @@ class LossSet:
 def loss_sets() -> Registry[LossSet]:
     """Sets of losses that come with the package."""
     text = resources.files(__package__).joinpath("loss_sets.toml").read_text(encoding="utf-8")
-    every = (_set(name, entry) for name, entry in tomllib.loads(text).items())
-    return Registry("set of losses", *every)
+    tables = tomllib.loads(text)
+    for table in tables.values():
+        like = tables.get(table.get("like", ""), {"places": {}})
+        table |= {**like, **table, "places": {**like["places"], **table["places"]}}
+    return Registry("set of losses", *(_set(name, table) for name, table in tables.items()))
 
 
 def named_set(losses: Any) -> str:

@@ -7,6 +7,7 @@ import argparse
 import math
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import Any, NamedTuple
 
 __all__ = ["LOCKED", "LossTable", "Point", "Rest", "main"]
@@ -220,80 +221,144 @@ def main(table: LossTable, about: str = "", arguments: "Sequence[str] | None" = 
     return 0
 
 
-CHUNK = 4096
-"""Points whose arrays stay in the cache of a processor."""
+CHUNK = 16384
+"""Points whose arrays stay in the cache of a processor, and outweigh what calls cost."""
+
+BINS = 4096
+"""Most equal parts of an axis by which its cells are looked up; of more they are searched."""
 
 
 def _at_many(table: LossTable, torque: Any, speed: Any, temperature: Any, law: str) -> Point:
     import numpy as np
 
-    values = np.array(_named(table.loss_torques, law), float)
-    torques, degrees = table.torques, table.temperatures
-    logarithms = [math.log(one) for one in table.speeds[1:]]
-    exact = bool((values >= 0.0).all())
-
-    def mixed(first: Any, second: Any, weight: Any) -> Any:
-        between = first + weight * (second - first)
-        if exact:
-            return between
-        between[(first < 0.0) | (second < 0.0)] = LOCKED
-        return np.where(weight == 0.0, first, np.where(weight == 1.0, second, between))
-
-    def cell(axis: Sequence[float], place: Any) -> "tuple[Any, int, Any]":
-        last = len(axis) - 1
-        if last == 0:
-            return 0, 0, np.zeros(place.shape)
-        step = (axis[-1] - axis[0]) / last
-        if all(abs(axis[0] + k * step - one) < 1e-9 * step for k, one in enumerate(axis)):
-            count = (place - axis[0]) * (1.0 / step)
-        else:
-            count = np.interp(place, axis, np.arange(last + 1.0))
-        count = np.fmin(np.fmax(count, 0.0), last)
-        near = np.rint(count)
-        count = count if exact else np.where(abs(count - near) < 1e-9, near, count)
-        low = np.minimum(count.astype(np.intp), last - 1)
-        return low, 1, count - low
-
-    def at(torque: Any, speed: Any, degree: Any) -> Any:
-        sign, pace = np.copysign(1.0, speed), abs(speed)
-        along, rest = torque * sign, pace == 0.0
-        (few, many, more), (cold, warm, warmer) = cell(torques, along), cell(degrees, degree)
-        slow, fast, faster = cell(logarithms, np.log(pace))
-        place = (few * values.shape[1] + slow + 1) * values.shape[2] + cold
-        if rest.any():
-            place = np.where(rest, place - (slow + 1) * values.shape[2], place)
-            faster = np.where(rest, 0.0, faster)
-        steps = many * values.shape[1] * values.shape[2], fast * values.shape[2], warm
-        flat = values.reshape(-1)
-
-        def column(first: Any) -> Any:
-            few, many = (
-                mixed(flat[one], flat[one + steps[2]], warmer) for one in (first, first + steps[0])
-            )
-            return mixed(few, many, more)
-
-        lost = mixed(column(place), column(place + steps[1]), faster)
-        unknown = np.isnan(along + speed + degree)
-        if unknown.any():
-            lost = np.where(unknown, math.nan, lost)
-        locked = lost < 0.0
-        lost = lost if exact else np.where(locked, math.nan, lost)
-        driving = along + lost
-        share = along / driving
-        inside = (along >= torques[0]) & (along <= torques[-1]) & (pace <= table.speeds[-1])
-        inside &= (degree >= degrees[0]) & (degree <= degrees[-1])
-        turns = (along * driving > 0.0) & ~rest
-        efficiency = np.where(turns, np.minimum(share, 1.0 / share), math.nan)
-        turning = np.where(rest, math.nan, driving * (sign * table.speed_ratio))
-        return lost * pace, efficiency, turning, locked, ~inside
-
+    corners, terms, axes = _prepared(table, _named(table.loss_torques, law))
     places = np.broadcast_arrays(*(np.asarray(one, float) for one in (torque, speed, temperature)))
     every = [np.ascontiguousarray(one).reshape(-1) for one in places]
-    parts = (slice(start, start + CHUNK) for start in range(0, max(every[0].size, 1), CHUNK))
+    kinds = float, float, float, bool, bool
+    found = [np.empty(every[0].size, kind) for kind in kinds]
+
+    def fill(part: slice) -> None:
+        torque, speed, degree = (one[part] for one in every)
+        loss, efficiency, turning, locked, outside = (one[part] for one in found)
+        sign, pace = np.copysign(1.0, speed + 0.0), abs(speed)
+        along, rest = torque * sign, pace == 0.0
+        each = (along, np.log(pace), degree)
+        cells, weights, near = zip(*(f(x) for f, x in zip(axes, each, strict=True)), strict=True)
+        slow = np.where(rest, 0, cells[1] + 1) if rest.any() else cells[1] + 1
+        cell = (cells[0] * corners.shape[2] + slow) * corners.shape[3] + cells[2]
+        lost = _sum(terms, cell, weights)
+        locked[:] = False
+        if (missing := np.isnan(lost)).any():
+            few = [one[missing] for one in weights]
+            lost[missing], locked[missing] = _beside(corners, cell[missing], few)
+        driving = along + lost
+        share = along / driving
+        np.multiply(lost, pace, out=loss)
+        efficiency[:] = np.where(share > 0.0, np.minimum(share, 1.0 / share), math.nan)
+        np.multiply(driving, sign * table.speed_ratio, out=turning)
+        efficiency[rest] = turning[rest] = math.nan
+        inside = (along == near[0]) & (degree == near[2]) & (pace <= table.speeds[-1])
+        np.logical_not(inside, out=outside)
+
     with np.errstate(all="ignore"):
-        found = [at(*(one[part] for one in every)) for part in parts]
-    whole = map(np.concatenate, zip(*found, strict=True))
-    return Point._make(one.reshape(places[0].shape) for one in whole)
+        for start in range(0, every[0].size, CHUNK):
+            fill(slice(start, start + CHUNK))
+    return Point._make(one.reshape(places[0].shape) for one in found)
+
+
+_KEPT: "dict[int, tuple[Any, ...]]" = {}
+"""What arrays ask of a table, by the identity of its values, which stand first so that it stays theirs."""
+
+
+def _prepared(table: LossTable, values: "Sequence") -> "tuple[Any, Any, Any]":  # type: ignore[type-arg]
+    import numpy as np
+
+    if id(values) not in _KEPT:
+        corners = _corners(np.array(values, float))
+        moving = [math.log(one) for one in table.speeds[1:]]
+        axes = [_finder(one) for one in (table.torques, moving, table.temperatures)]
+        if len(_KEPT) > 8:
+            _KEPT.clear()
+        _KEPT[id(values)] = values, corners, _terms(corners), axes
+    return _KEPT[id(values)][1:]
+
+
+def _corners(values: Any) -> Any:
+    """Values at the corners of every cell [corner, torque, speed, temperature]; the first speed is rest."""
+    import numpy as np
+
+    torques, speeds, degrees = values.shape
+
+    def ends(count: int) -> "tuple[list[int], list[int]]":
+        lower = [*range(max(count - 1, 1))]
+        return lower, [min(one + 1, count - 1) for one in lower]
+
+    slow, fast = ([0, *(one + 1 for one in side)] for side in ends(speeds - 1))
+    sides = ends(torques), (slow, fast), ends(degrees)
+    return np.stack([values[np.ix_(*one)] for one in product(*sides)])
+
+
+def _terms(corners: Any) -> Any:
+    """Factors of 1, w, v, v w, u, ... in every cell, of the parts u, v, w of torque, speed, temperature."""
+    import numpy as np
+
+    cube = np.where(corners < 0.0, math.nan, corners).reshape(2, 2, 2, -1)
+    for axis in range(3):
+        first, second = np.split(cube, 2, axis)
+        cube = np.concatenate([first, second - first], axis)
+    return cube.reshape(8, -1)
+
+
+def _sum(terms: Any, cell: Any, weights: Any) -> Any:
+    """Sum of the terms of its cell at every point."""
+    values = [one.take(cell, mode="clip") for one in terms]
+    for weight in weights[::-1]:
+        for first, second in zip(values[::2], values[1::2], strict=True):
+            second *= weight
+            first += second
+        values = values[::2]
+    return values[0]
+
+
+def _finder(nodes: Sequence[float]) -> Any:
+    """Function of places on an axis: their cells, parts of the way through them, places kept within."""
+    import numpy as np
+
+    ends = np.array([*nodes, *([nodes[0] + 1.0] if len(nodes) == 1 else [])])
+    steps, upper = 1.0 / np.diff(ends), np.append(ends[1:-1], math.inf)
+    count = math.ceil((ends[-1] - ends[0]) * steps.max())
+    finer = count / (ends[-1] - ends[0])
+    lowest = ends[0] + (np.arange(count + 1 if count < BINS else 0) - 1e-9) / finer
+    first = np.searchsorted(ends[1:-1], lowest, "right")
+
+    def find(place: Any) -> "tuple[Any, Any, Any]":
+        near = np.minimum(np.maximum(place, nodes[0]), nodes[-1])
+        if first.size:
+            low = first.take(((near - ends[0]) * finer).astype(np.intp), mode="clip")
+            low += near >= upper.take(low)
+        else:
+            low = np.searchsorted(ends[1:-1], near, "right")
+            low[np.isnan(near)] = 0
+        return low, (near - ends.take(low)) * steps.take(low), near
+
+    return find
+
+
+def _beside(corners: Any, cell: Any, weights: Any) -> "tuple[Any, Any]":
+    """Torque that is lost and whether friction locks the drive, where not every corner has a value."""
+    import numpy as np
+
+    def ends(weight: Any) -> "tuple[Any, Any]":
+        near = np.rint(weight)
+        kept = np.where(abs(weight - near) < 1e-9, near, weight)
+        return 1.0 - kept, kept
+
+    parts = np.stack([u * v * w for u, v, w in product(*map(ends, weights))])
+    values = corners.reshape(8, -1)[:, cell]
+    counts = parts > 0.0
+    locked = (counts & (values < 0.0)).any(axis=0)
+    lost = np.where(counts, parts * values, 0.0 * parts).sum(axis=0)
+    return np.where(locked, math.nan, lost), locked
 
 
 def _efficiency(given: float, taken: float) -> float:

@@ -29,10 +29,12 @@ SIGNS = (
     "output. Power balances: torque times speed of the driver = torque times speed of the output + loss."
 )
 BETWEEN = (
-    "Every fourth speed of the table is as computed, the others by a monotone cubic. The torque that is "
-    "lost is linear between the values of the table over torque, temperature and the logarithm of the "
-    "speed; below the lowest speed that is not zero it stays as it is there, and does not vanish towards "
-    "rest. Torque of the driver and efficiency follow from the balance of power."
+    "Every third torque, speed and temperature of the table is as computed. Values between follow powers of "
+    "load and speed and exponentials of the temperature, by monotone cubics of logarithms; so do those down "
+    "to an eighth of the least load. The torque that is lost is linear between the values of the table over "
+    "torque, temperature and the logarithm of the speed. Below the lowest speed that is not zero it stays as "
+    "it is there, for which the drive starts too, while laws of friction may rise on towards rest without "
+    "bound. Torque of the driver and efficiency follow from the balance of power."
 )
 BEYOND = (
     "Beyond the table the torque that is lost is that of the nearest point in it, and outside is true. Where "
@@ -42,8 +44,8 @@ BEYOND = (
 AT_REST = (
     "At rest no power is lost, and the torque of the driver may have any value of a band: at_rest gives for "
     "a load the torque below which it moves back and that above which it is moved on, in the mean over the "
-    "phases of the teeth, with what holds bearings and seals at rest. Where the band has zero in it the "
-    "drive holds the load without its driver."
+    "phases of the teeth, with what holds bearings and seals at rest, without the spread of it. Where the "
+    "band has zero in it the drive holds the load without its driver."
 )
 
 
@@ -65,24 +67,29 @@ def evaluator(outcome: Outcome, folder: Path) -> list[Path]:
     ):  # of another version, or another's hand
         told = f"the {FOUR_QUADRANTS.title} is not as this version writes it; run the case again"
         raise InputError(told, key="--evaluator") from None
+    _demand_room(table)
     for name, text in texts.items():
         write_text(folder / name, text)
     return [folder / name for name in texts]
 
 
 def _demand_map(outcome: Outcome) -> None:
-    """InputError unless the result has a map that fits into a file of source."""
+    """InputError unless the result has such a map."""
     name = FOUR_QUADRANTS.name
     if name not in outcome.parts:
         why = outcome.manifest["lacks"].get(name)
         how = f"run {outcome.manifest['case']} with --set loss_map.quadrants=4, which computes it"
         told = f"the result has no {FOUR_QUADRANTS.title}"
         raise InputError(f"{told}: {why}" if why else f"{told}; {how}", key="--evaluator")
-    data = outcome.parts[name]
-    points = data["mean_loss"].size if "mean_loss" in data else 0
-    if points > 2 * MOST:
+
+
+def _demand_room(table: LossTable) -> None:
+    """InputError unless a table fits into a file of source."""
+    axes = table.loss_torques, table.torques, table.speeds, table.temperatures
+    points = math.prod(map(len, axes))
+    if points > MOST:
         raise InputError(
-            f"the {FOUR_QUADRANTS.title} has {points} points, and {2 * MOST} is the most for "
+            f"the table of the {FOUR_QUADRANTS.title} has {points} values, and {MOST} is the most for "
             "a file of source; take a lower loss_map.count",
             key="--evaluator",
         )
@@ -195,7 +202,8 @@ def _head(outcome: Outcome, table: LossTable) -> Iterable[str]:
     yield (
         "Error of the loss against direct computation, by friction law: "
         + "; ".join(error_words(data, law, in_units) for law in range(len(table.loss_torques)))
-        + ". More values of loss_map.count and loss_map.temperatures bring it down."
+        + ". More values of loss_map.count and loss_map.temperatures bring it down, a lower "
+        "loss_map.lowest_speed that of slow motion."
     )
     yield BEYOND
     yield AT_REST

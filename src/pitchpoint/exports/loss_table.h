@@ -6,10 +6,13 @@ struct loss_table_cell {
 
 static struct loss_table_cell loss_table_cell(const double *axis, int count, double value)
 {
-    struct loss_table_cell cell = {0, count > 1 ? 1 : 0, 0.0};
-    while (cell.high < count - 1 && value >= axis[cell.high]) {
-        cell.low += 1;
-        cell.high += 1;
+    struct loss_table_cell cell = {0, count > 1 ? count - 1 : 0, 0.0};
+    while (cell.high > cell.low + 1) {
+        const int middle = (cell.low + cell.high) / 2;
+        if (value >= axis[middle])
+            cell.low = middle;
+        else
+            cell.high = middle;
     }
     if (cell.low != cell.high && !(value <= axis[cell.low])) {
         cell.weight = (value - axis[cell.low]) / (axis[cell.high] - axis[cell.low]);

@@ -579,6 +579,18 @@ VARIABLES: dict[str, Variable] = {
     "output_speed": Variable("output speed", "n_out", "rad/s", "rpm", "rotational speed"),
     "least_holding_torque": torque("input torque below which the load moves back", "T_hold min"),
     "largest_holding_torque": torque("input torque above which the load moves on", "T_hold max"),
+    "least_holding_torque_low": torque(
+        "input torque below which the load surely moves back", "T_hold min −"
+    ),
+    "least_holding_torque_high": torque(
+        "input torque below which the load may move back", "T_hold min +"
+    ),
+    "largest_holding_torque_low": torque(
+        "input torque above which the load may move on", "T_hold max −"
+    ),
+    "largest_holding_torque_high": torque(
+        "input torque above which the load surely moves on", "T_hold max +"
+    ),
     "moving_back_torque": torque(
         "input torque below which it moves back at every phase", "T_hold−"
     ),
@@ -606,6 +618,18 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
         "largest_starting_torque": force("input force that surely starts the drive", "F_start max"),
         "least_holding_torque": force("input force below which the load moves back", "F_hold min"),
         "largest_holding_torque": force("input force above which the load moves on", "F_hold max"),
+        "least_holding_torque_low": force(
+            "input force below which the load surely moves back", "F_hold min −"
+        ),
+        "least_holding_torque_high": force(
+            "input force below which the load may move back", "F_hold min +"
+        ),
+        "largest_holding_torque_low": force(
+            "input force above which the load may move on", "F_hold max −"
+        ),
+        "largest_holding_torque_high": force(
+            "input force above which the load surely moves on", "F_hold max +"
+        ),
         "moving_back_torque": force(
             "input force below which it moves back at every phase", "F_back"
         ),

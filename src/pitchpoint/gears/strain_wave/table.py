@@ -426,11 +426,12 @@ class StrainWaveGears(GearsTable):
 
     @property
     def loss_scales(self) -> dict[str, float]:
-        """Pitch diameter of the flexspline [m], and the deflection on the long axis over it."""
+        """Pitch diameter of the flexspline [m], its square, and the deflection on the long axis over it."""
         first, second = self.tooth_numbers
         deflection = self.wave_generator.deflection * (second - first) / 2.0
         return {
             "pitch diameter": self.module * first,
+            "square of the pitch diameter": (self.module * first) ** 2,
             "deflection over pitch diameter": deflection / first,
         }
 

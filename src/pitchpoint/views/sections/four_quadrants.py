@@ -1,11 +1,18 @@
 """Loss and torque of the driver over torque and speed of the output, and loads held at rest."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import HOLDING, covered, error_words, held_at_operation
+from pitchpoint.analyses.figures import (
+    HOLDING,
+    HOLDING_BANDS,
+    covered,
+    error_words,
+    held_at_operation,
+)
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import laws
@@ -71,7 +78,7 @@ AT_REST = (
     "the load moves on. The band holds in the mean over the phases of the teeth; beyond the torques of the "
     "last columns the load moves at every phase. Friction of the teeth is that of a creeping drive, "
     "with what holds bearings and seals at rest. Where zero lies in the band the load is held without "
-    "the driver."
+    "the driver. In brackets: both ends with the spread of what holds bearings and seals at rest."
 )
 
 
@@ -102,8 +109,11 @@ def _rows(outcome: Outcome) -> list[dict[str, str]]:
 
 
 def _word(data: xr.Dataset, name: str, at: tuple[int, int]) -> str:
-    value = float(data[name].transpose("law", "output_torque", ...).values[at])
-    return shown(name, value, data) if np.isfinite(value) else "locked"
+    """A torque, with the ends of its band where it has one."""
+    names = [name, *(one for one in HOLDING_BANDS.get(name, ()) if one in data)]
+    each = [float(data[n].transpose("law", "output_torque", ...).values[at]) for n in names]
+    value, *ends = (shown(name, one, data) if np.isfinite(one) else "locked" for one in each)
+    return f"{value} ({' to '.join(ends)})" if ends else value
 
 
 def _held(outcome: Outcome) -> Iterator[Block]:
@@ -132,8 +142,18 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         low = shown(HOLDING[0], ends[0], data)
         words = f"{low} to {show.quantity(HOLDING[1], ends[1], of=data)}"
         free = "held without the driver" if ends[0] <= 0.0 else "less lets it go, more lifts it"
-        detail = f"for {load} at rest; {free}"
+        detail = f"for {load} at rest; {_apart(held, data) or free}"
     yield KeyFigure(36.0, "Holding torque", words, detail)
+
+
+def _apart(held: dict[str, Any], data: xr.Dataset) -> str:
+    """How far both ends may be off by the spread of what holds at rest; empty without any."""
+    ends = [
+        " to ".join(shown(HOLDING[0], held[one], data) for one in pair)
+        for pair in HOLDING_BANDS.values()
+        if all(held.get(one) is not None for one in pair)
+    ]
+    return f"ends {' and '.join(ends)} with the spread of what holds" if ends else ""
 
 
 FOUR_QUADRANTS = Section(
