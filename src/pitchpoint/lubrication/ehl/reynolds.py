@@ -11,7 +11,7 @@ from pitchpoint.lubrication.ehl.grid import Along, Grid
 from pitchpoint.lubrication.ehl.texture import Texture
 from pitchpoint.materials.fluid import Fluid
 
-__all__ = ["REACH", "Balance", "Flow", "banded"]
+__all__ = ["REACH", "Balance", "Flow", "at_faces", "banded", "third_order", "upwind"]
 
 REACH = 4
 """Nodes on which the balance of a cell depends: two before it, its own, one behind it."""
@@ -106,7 +106,12 @@ def at_faces(values: Float[Arrays, "node *row"], ahead: Bool[Arrays, "face *#row
 def upwind(values: Float[Arrays, "node *row"]) -> Array:
     """Values at the faces from the nodes around them, two of them on the side where the flow comes from."""
     padded = jnp.concatenate((values[:1], values))
-    return (2.0 * padded[2:] + 5.0 * padded[1:-1] - padded[:-2]) / 6.0
+    return third_order(padded[:-2], padded[1:-1], padded[2:])
+
+
+def third_order(before: Places, here: Places, behind: Places) -> Places:
+    """Value at the face behind a node, of the parabola through its mean and those beside it."""
+    return (2.0 * behind + 5.0 * here - before) / 6.0
 
 
 class Balance(NamedTuple):

@@ -74,6 +74,9 @@ NODES: Final = 129
 CELLS: Final = 128
 """Usual number of cells across."""
 
+LOST: Final = (Code.NOT_CONVERGED, Code.UNRESOLVED)
+"""Codes of films that are looked for once more, with bounds on faces where a film begins or ends."""
+
 THICK: Final = 3.0
 """Length of a contact with its film over that without from which on it is told."""
 
@@ -92,7 +95,7 @@ class PatchEnded:
         code: of `Code`.
         reynolds: largest defect of the balance of a cell, in units of the dry contact's pressure.
         load: defect of the load over it.
-        steps: of Newton's method, on all grids.
+        steps: of Newton's method, on all grids and in both tries.
         temperature: defect of the temperature of the film over its largest rise; None of isothermal films.
         turns: between pressure and temperature, on all grids; None of isothermal films.
         grid: estimate of the error of the film in the middle that the grid makes, over that film, from the
@@ -186,6 +189,9 @@ def solve_patch(
 ) -> PatchFilms:
     """Pressure and film over the patch of a contact of finite length, from coarse to fine grids.
 
+    A contact that is not solved, as a slow line with nearly sharp ends, is tried once more, with bounds on
+    what flows where a film begins or ends within a cell.
+
     Args:
         contact: one, from `finite_line` or `elliptic_contact`.
         nodes: along x, one more than a power of two.
@@ -203,8 +209,29 @@ def solve_patch(
     check_standing(contact)
     lies, own = turned(contact)
     check_heat(own)
+    films = _solved(own, lies, (nodes, cells), progress, start, bounded=False)
+    if films.ended.code not in LOST:
+        return films
+    other = _solved(own, lies, (nodes, cells), progress, start, bounded=True)
+    kept = other if other.solved else films
+    return replace(kept, ended=replace(kept.ended, steps=films.ended.steps + other.ended.steps))
+
+
+def _solved(
+    own: PatchContact,
+    lies: Turned,
+    grid: tuple[int, int],
+    progress: Progress | None,
+    start: PatchFilms | None,
+    *,
+    bounded: bool,
+) -> PatchFilms:
+    """Films of a contact as its grid lies; without bounds none starts from films that have them."""
     code = before(own)
-    layout, problem, state, turns = solve(own, nodes, cells, progress, earlier=_earlier(start))
+    alike = start if start is not None and start.layout.bounded <= bounded else None
+    layout, problem, state, turns = solve(
+        own, *grid, progress, earlier=_earlier(alike), bounded=bounded
+    )
     held, approach, by_load = dry_bodies(problem)
     end = _settled(problem, array(state.pressure), array(state.level))
     pressure: Any = np.asarray(end.pressure)

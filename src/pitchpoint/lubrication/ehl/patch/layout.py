@@ -122,6 +122,8 @@ class Layout(NamedTuple):
         speed: unit of speed [m/s].
         flooded: distance ahead of the middle from which on oil floods the contact [m].
         steep: one where conductances across are limited, as for thin films at tips; else zero.
+        bounded: whether faces where a film begins or ends within a cell are bounded, as for slow lines whose
+            ends are nearly sharp.
     """
 
     inlet: float
@@ -138,6 +140,7 @@ class Layout(NamedTuple):
     speed: float
     flooded: float
     steep: float = 0.0
+    bounded: bool = False
 
     def bodies(self, nodes: int, cells: int, finest: int, ends: str) -> HalfSpace:
         """Half spaces on a grid of so many nodes along and cells across, in units of length.
@@ -466,6 +469,8 @@ class Problem(eqx.Module):
             one before to what it is; zero for a steady film.
         before: mass under each cell from which it went, shape (y, x).
         steep: one where conductances across are limited by the smaller one of two rows; else zero.
+        bounded: whether faces where a film begins or ends within a cell are bounded. Static: other contacts
+            have their programs without it.
     """
 
     flow: Flow
@@ -481,6 +486,7 @@ class Problem(eqx.Module):
     pace: Float[Arrays, ""]
     before: Float[Arrays, "y x"]
     steep: Float[Arrays, ""]
+    bounded: bool = eqx.field(static=True)
 
     def gap(self, pressure: Field, level: Array) -> Array:
         """Gap of the mean planes in every cell, shape (y, x)."""
@@ -538,5 +544,6 @@ def problem_on(
         array(0.0),
         array(np.zeros((cells, nodes))),
         array(layout.steep),
+        bool(layout.bounded),
     )
     return Problem(*found)

@@ -503,14 +503,16 @@ def solve(
     told: Progress | None = None,
     layout: Layout | None = None,
     earlier: Earlier | None = None,
+    *,
+    bounded: bool = False,
 ) -> Solved:
     """Layout, unless one is given, problem and solution of a contact on the last grid of its ladder.
 
     Where the film on the coarsest grid is so much thicker than it was taken for that it needs more room, it
-    gets that.
+    gets that. Bounded, faces where a film begins or ends within a cell are, unless a layout is given.
     """
     grids, fixed = ladder(nodes, cells), layout is not None
-    layout = laid_out(contact, cells) if layout is None else layout
+    layout = laid_out(contact, cells)._replace(bounded=bounded) if layout is None else layout
     check_maps_on(contact, layout, cells)
     solver, heats = _Solver(told), heated(contact)
     if earlier is not None:
@@ -529,7 +531,7 @@ def solve(
         more = _roomier(contact, layout, cells, _film_of(*found))
         if more is None:
             break
-        layout = more
+        layout = more._replace(bounded=bounded)
     for grid in grids[1:]:
         problem = problem_on(contact, layout, *grid, cells)
         found = solver.onto(problem, heats, found, last=grid == grids[-1])
