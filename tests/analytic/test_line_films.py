@@ -590,31 +590,37 @@ def test_nodes_that_are_named_bring_films_within_what_is_borne():
 
 
 @pytest.mark.parametrize(
-    ("off", "nodes", "words"),
+    ("off", "grid", "falls", "words"),
     [
-        (0.05, 65, "; 129 nodes bring that below 3 %"),
-        (0.1, 65, "; 257 nodes bring that below 3 %"),
-        (0.3, 65, "; 257 nodes, the most, leave 7.5 % of it at worst"),
-        (0.05, 257, "; 257 nodes are the most"),
-        (0.05, None, "; take more nodes"),
+        (0.05, (65,), 0.5, "; 129 nodes bring that below 3 %"),
+        (0.1, (65,), 0.5, "; 257 nodes bring that below 3 %"),
+        (0.1, (65,), 0.25, "; 129 nodes bring that below 3 %"),
+        (0.3, (65,), 0.5, "; 257 nodes, the most, leave 7.5 % of it at worst"),
+        (0.05, (257,), 0.5, "; 257 nodes are the most"),
+        (0.07, (65, 64), 0.6, "; 257 nodes and 256 cells bring that below 3 %"),
+        (0.07, (65, 128), 0.6, "; 129 nodes and 256 cells, the most, leave 4.2 % of it at worst"),
     ],
 )
-def test_errors_by_the_grid_name_the_nodes_that_halve_them_often_enough(off, nodes, words):
+def test_errors_by_the_grid_name_the_nodes_that_bring_them_down(off, grid, falls, words):
     (told,) = of_grid(
-        np.array([0.01, off]), np.array([0.02, np.nextafter(off, 0.0)]), nodes=nodes, most=257
+        np.array([0.01, off]),
+        np.array([0.02, np.nextafter(off, 0.0)]),
+        grid=grid,
+        most=257,
+        falls=falls,
     )
     assert told.endswith(words)
 
 
 def test_films_without_a_coarser_grid_beside_them_are_told():
     coarse, unknown = of_grid(
-        np.array([0.04, np.nan]), np.array([0.05, np.nan]), nodes=129, most=257
+        np.array([0.04, np.nan]), np.array([0.05, np.nan]), grid=(129,), most=257
     )
     assert coarse.kind == "grid" and "films of 1 of 2 contacts" in coarse
     assert unknown.startswith(
         "how far off the grid makes the films of 1 of 2 contacts is not known"
     )
-    assert [*of_grid(np.array([np.nan]), np.array([0.01]), nodes=129, most=257)] == []
+    assert [*of_grid(np.array([np.nan]), np.array([0.01]), grid=(129,), most=257)] == []
 
 
 def test_what_has_no_film_says_so_and_shows_no_numbers():

@@ -1,5 +1,6 @@
 """Films of contacts of finite length: against lines, regressions, conservation laws and each other."""
 
+import re
 from functools import cache
 from math import exp, log
 from typing import Any
@@ -140,7 +141,12 @@ def test_errors_by_the_grid_are_estimated_from_half_as_many_cells():
         one, other = getattr(fine.film, name), getattr(half.film, name)
         assert error == pytest.approx(part * (max(one, other) / min(one, other) - 1.0), rel=1e-3)
     assert fine.ended.grid_minimum > COARSE
-    assert any(told.startswith("the grid is coarse for the films") for told in fine.warnings)
+    (told,) = (one for one in fine.warnings if one.kind == "grid")
+    nodes, cells = map(
+        int, re.findall(r"(\d+) nodes and (\d+) cells bring that below 3 %", told)[0]
+    )
+    named = solve_patch(ball(), nodes=nodes, cells=cells)
+    assert named.solved and not any(one.kind == "grid" for one in named.warnings)
     assert np.isnan([half.ended.grid, half.ended.grid_minimum]).all()
     assert any(one.kind == "unknown grid" for one in half.warnings)
 

@@ -24,11 +24,12 @@ from pitchpoint.cases.build import Built, tooth_size
 from pitchpoint.cases.films import patch_grid
 from pitchpoint.doubts import WITHHELD, Doubt
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import GRID, UNKNOWN_GRID, of_grid
+from pitchpoint.lubrication.ehl.doubts import GRID, UNKNOWN_GRID
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
+from pitchpoint.lubrication.ehl.patch.grid_error import of_patches
 from pitchpoint.lubrication.ehl.patch.heat import PatchTemperatures
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
@@ -119,6 +120,7 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     ended = [one.ended for one in films if isinstance(one, PatchFilms)]
     found = [one for one in films if isinstance(one, PatchFilms) and one.solved]
     errors = np.array([[one.ended.grid, one.ended.grid_minimum] for one in found]).reshape(-1, 2).T
+    line = built.design.mesh.shape == "line"
     return dataset(
         {
             **{name: ((*_OF_PIECE, *_MORE.get(name, ())), one) for name, one in values.items()},
@@ -126,7 +128,7 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
             **_kept(built, films, lanes, values, load),
         },
         {},
-        warnings=[*_told(films), *of_grid(*errors)],
+        warnings=[*_told(films), *of_patches(errors, patch_grid(asked(built)), line=line)],
         residual=max((one.ended.reynolds for one in found), default=0.0),
         iterations=max((one.steps for one in ended), default=0),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, log2
+from math import ceil, log, log2
 from typing import Any, Final
 
 import numpy as np
@@ -158,7 +158,7 @@ def warnings(
     yield from _of_half_space(some, half_width, size)
     yield from _of_inlet(some, half_width)
     yield from _of_long_inlet(some, found)
-    yield from of_grid(*grid_error[:, solved], nodes=nodes)
+    yield from of_grid(*grid_error[:, solved], grid=(nodes,))
     yield from _of_shear(some, found)
     if some.texture is not None:
         yield from _of_roughness(np.asarray(some.texture.rq), half_width)
@@ -372,22 +372,24 @@ def of_grid(
     central: NDArray[np.float64],
     minimum: NDArray[np.float64],
     *,
-    nodes: int | None = None,
+    grid: tuple[int, ...],
     most: int = MOST_LINE_NODES,
+    falls: float = 0.5,
 ) -> Iterator[Doubt]:
     """That a grid is coarse for films, or that nobody knows whether it is.
 
     Args:
         central: estimated errors of films in the middle, over them, NaN where unknown, shape (b,).
         minimum: the same of smallest films.
-        nodes: of the grid; None where more of them do not surely bring films nearer.
+        grid: number of nodes, and that of cells across where there are any.
         most: nodes that a grid may have.
+        falls: part of an error that twice as many nodes leave at most.
     """
     worst = np.fmax(central, minimum)
     coarse, unknown = worst > COARSE, np.isnan(minimum)
     if coarse.any():
         off = float(np.nanmax(worst))
-        remedy, brief = _more_nodes(off, nodes, most)
+        remedy, brief = _finer(off, grid, most, falls)
         yield Doubt(
             f"the grid is coarse for the films of {coarse.sum()} of {coarse.size} contacts: in the middle "
             f"they may be off by {100.0 * np.fmax.reduce(central, initial=0.0):.2g} %, smallest ones by "
@@ -408,23 +410,19 @@ def of_grid(
         )
 
 
-def _more_nodes(off: float, nodes: int | None, most: int) -> tuple[str, str]:
-    """What to do about films that are off by so much, and the same in few words.
-
-    Errors of films at least halve with twice as many nodes.
-    """
-    if nodes is None or nodes >= most:
-        coarse = (f"{most} nodes are the most", "no finer one")
-        return ("take more nodes",) * 2 if nodes is None else coarse
-    doubled = ceil(log2(off / COARSE))
-    enough = 2**doubled * (nodes - 1) + 1
-    if enough <= most:
-        return f"{enough} nodes bring that below {100.0 * COARSE:g} %", f"take {enough} nodes"
-    left = off * (nodes - 1) / (most - 1)
-    return (
-        f"{most} nodes, the most, leave {100.0 * left:.2g} % of it at worst",
-        f"take {most} nodes",
-    )
+def _finer(off: float, grid: tuple[int, ...], most: int, falls: float) -> tuple[str, str]:
+    """What to do about films that are off by so much, and the same in few words."""
+    nodes, *cells = grid
+    room = int(log2((most - 1) / max(nodes - 1, *cells, 1)))
+    doubled = min(ceil(log(off / COARSE) / log(1.0 / falls)), room)
+    if not room:
+        return f"{most} nodes are the most", "no finer one"
+    enough = f"{2**doubled * (nodes - 1) + 1} nodes"
+    whole = enough + "".join(f" and {2**doubled * number} cells" for number in cells)
+    left = off * falls**doubled
+    if left <= COARSE:
+        return f"{whole} bring that below {100.0 * COARSE:g} %", f"take {enough}"
+    return f"{whole}, the most, leave {100.0 * left:.2g} % of it at worst", f"take {enough}"
 
 
 def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[Doubt]:

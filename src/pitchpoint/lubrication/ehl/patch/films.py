@@ -17,7 +17,6 @@ from pitchpoint.lubrication.ehl.doubts import (
     WIDE,
     extrapolated_pressure,
     of_conduction,
-    of_grid,
     of_heat,
     of_volume,
     starved,
@@ -31,7 +30,7 @@ from pitchpoint.lubrication.ehl.patch.fields import (
     Response,
     patch_film,
 )
-from pitchpoint.lubrication.ehl.patch.grid_error import grid_errors
+from pitchpoint.lubrication.ehl.patch.grid_error import grid_errors, of_patches
 from pitchpoint.lubrication.ehl.patch.heat import (
     TEMPERATURES,
     PatchTemperatures,
@@ -562,13 +561,15 @@ def _warnings(
             least / float(film.mean_film),
             brief=f"coarse grid for a film of {1e9 * film.mean_film:.3g} nm: take more nodes",
         )
-    yield from of_grid(np.array([ended.grid]), np.array([ended.grid_minimum]))
+    rows, nodes = film.pressure.shape
+    errors = np.array([[ended.grid], [ended.grid_minimum]])
+    yield from of_patches(errors, (nodes, rows), line=contact.length is not None)
     yield from _of_end(contact, film)
     if film.heat is not None:
         peclet = np.array([[film.heat.peclet_a], [film.heat.peclet_b]])
         slowest = [[np.min(np.abs(one))] for one in (contact.speed_a, contact.speed_b)]
         yield from of_heat(contact.fluid, peclet, np.array(slowest), np.array([half_width]))
-    yield from unseen(contact, layout, *film.pressure.shape[::-1])
+    yield from unseen(contact, layout, nodes, rows)
     if contact.length is not None and np.max(film.pressure[[0, -1]]) > film.hertz_pressure:
         yield Doubt(
             "the contact line ends sharply: the pressure of the first and the last row is a number of the "

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array
+from pitchpoint.doubts import Doubt
+from pitchpoint.lubrication.ehl.doubts import of_grid
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST, Layout, Problem, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import CAREFUL, ENOUGH, iterated
@@ -19,8 +22,9 @@ from pitchpoint.lubrication.ehl.patch.solve import (
     gap_on,
     warm_start,
 )
+from pitchpoint.lubrication.ehl.registry import MOST_PATCH_NODES
 
-__all__ = ["OF_ELLIPSE", "grid_errors"]
+__all__ = ["OF_ELLIPSE", "grid_errors", "of_patches"]
 
 UNKNOWN: Final = (np.nan, np.nan)
 """Errors of films that have no coarser grid beside them."""
@@ -31,6 +35,9 @@ that lies between the films of both grids: nine in ten are to be off by less, ha
 
 OF_LINE: Final = np.array([0.4, 1.5])
 """The same of a line. Films at its ends come nearer by little with twice as many nodes."""
+
+LINE_FALLS: Final = float(OF_LINE[1] / (1.0 + OF_LINE[1]))
+"""Part of an error that twice as many nodes leave in nine of ten lines, if each doubling leaves the same."""
 
 
 def grid_errors(
@@ -73,6 +80,20 @@ def grid_errors(
     apart = np.maximum(coarse, fine) / np.minimum(coarse, fine) - 1.0
     central, least = apart * (OF_ELLIPSE if contact.length is None else OF_LINE)
     return float(central), float(least)
+
+
+def of_patches(
+    errors: NDArray[np.float64], grid: tuple[int, int], *, line: bool
+) -> Iterator[Doubt]:
+    """That a grid is coarse for lines, or else ellipses, and which one is not.
+
+    Args:
+        errors: estimated, of films in the middle and of smallest ones, over them, shape (2, b).
+        grid: number of nodes, and that of cells across.
+        line: whether these are lines.
+    """
+    falls = LINE_FALLS if line else 0.5
+    return of_grid(*errors, grid=grid, most=MOST_PATCH_NODES, falls=falls)
 
 
 def _films(problem: Problem, gap: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -122,8 +122,8 @@ class Layout(NamedTuple):
         speed: unit of speed [m/s].
         flooded: distance ahead of the middle from which on oil floods the contact [m].
         steep: one where conductances across are limited, as for thin films at tips; else zero.
-        bounded: whether faces where a film begins or ends within a cell are bounded, as for slow lines whose
-            ends are nearly sharp.
+        bounded: one where flow is bounded at faces where a film begins or ends within a cell, as of slow
+            lines with nearly sharp ends; else zero.
     """
 
     inlet: float
@@ -140,7 +140,7 @@ class Layout(NamedTuple):
     speed: float
     flooded: float
     steep: float = 0.0
-    bounded: bool = False
+    bounded: float = 0.0
 
     def bodies(self, nodes: int, cells: int, finest: int, ends: str) -> HalfSpace:
         """Half spaces on a grid of so many nodes along and cells across, in units of length.
