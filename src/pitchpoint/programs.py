@@ -242,12 +242,19 @@ def bound_programs() -> None:
     """Forget all programs once there are many, or much memory; what is needed again comes from disk.
 
     Memory is counted from the start of the process, so that what cannot be given back brings the next time
-    nearer.
+    nearer. Most of what compiling leaves is free, and glibc has it: programs go only if that is not enough.
     """
-    taken = _memory() - _AT_START
-    many = _LOADED["programs"] > MOST_PROGRAMS
-    if many or taken > max(MOST_MEMORY, _LOADED["left"] + WORTH_GIVING):
+    most = _AT_START + max(MOST_MEMORY, _LOADED["left"] + WORTH_GIVING)
+    if _memory() > most:
+        _trim()
+    if _LOADED["programs"] > MOST_PROGRAMS or _memory() > most:
         forget()
+
+
+def _trim() -> None:
+    """Give back what is free in memory, which glibc keeps to itself otherwise."""
+    with suppress(AttributeError, OSError):
+        CDLL(None).malloc_trim(0)
 
 
 def forget() -> None:
@@ -256,8 +263,7 @@ def forget() -> None:
         one.ready.clear()
     jax.clear_caches()
     gc.collect()
-    with suppress(AttributeError, OSError):  # glibc keeps to itself what is freed
-        CDLL(None).malloc_trim(0)
+    _trim()
     _LOADED.clear()
     _LOADED["left"] = _memory() - _AT_START
 

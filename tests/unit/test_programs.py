@@ -193,19 +193,29 @@ def test_many_programs_are_unloaded_together(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("left", "memory", "held"),
+    ("free", "left", "memory", "held"),
     [
-        (700, (1400, 1600, 1400, 1600), [True, False, True, False]),
+        (0, 700, (1400, 1600, 1400, 1600), [True, False, True, False]),
+        (
+            200,
+            700,
+            (1400, 1600, 1400, 1800),
+            [True, True, True, False],
+        ),  # what is free is enough once
         # where nothing is given back, each further share is worth a try, and no run less
-        (9999, (1600, 1600, 1700, 1800, 1800), [False, True, True, False, True]),
+        (0, 9999, (1600, 1600, 1700, 1800, 1800), [False, True, True, False, True]),
     ],
 )
-def test_memory_is_bounded_from_the_start_of_the_process(kept, monkeypatch, left, memory, held):
+def test_memory_is_bounded_from_the_start_of_the_process(
+    kept, monkeypatch, free, left, memory, held
+):
+    program, found = Program(moved, programs.QUICK), []
+
     class Heap:
         taken = 500
 
         def malloc_trim(self, _):
-            self.taken = min(self.taken, left)
+            self.taken = self.taken - free if program.ready else min(self.taken, left)
 
     heap = Heap()
     for name, value in (("MOST_MEMORY", 1000), ("WORTH_GIVING", 150), ("_AT_START", 500)):
@@ -213,7 +223,6 @@ def test_memory_is_bounded_from_the_start_of_the_process(kept, monkeypatch, left
     monkeypatch.setattr(programs, "_memory", lambda: heap.taken)
     monkeypatch.setattr(programs, "CDLL", lambda _: heap)
     programs.forget()
-    program, found = Program(moved, programs.QUICK), []
     for heap.taken in memory:
         program(Bodies(jnp.arange(3.0), "b"), by=1.0)
         programs.bound_programs()
