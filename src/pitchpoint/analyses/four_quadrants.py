@@ -128,7 +128,8 @@ def _half_way(values: np.ndarray) -> np.ndarray:
 
 
 def _of_ratio(values: np.ndarray) -> np.ndarray:
-    return np.sqrt(values[1:] * values[:-1])
+    found: np.ndarray = np.sqrt(values[1:] * values[:-1])
+    return found
 
 
 def _driven(built: Ready, way: str) -> Ready:
