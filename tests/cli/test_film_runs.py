@@ -1,6 +1,7 @@
 """Films of a mesh cycle from a case file: balance, resume, withheld numbers, report, refusals."""
 
 import json
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,12 +14,15 @@ from sound import PAIR
 from stopped import stopped_and_gone_on
 
 from pitchpoint.analyses import film as solved
+from pitchpoint.analyses.film_contacts import film_model_of
 from pitchpoint.analyses.film_contacts import states as states_of
 from pitchpoint.analyses.film_cycle import _of_pieces, _of_summits
 from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import film_model
 from pitchpoint.cases.schema import FilmTable
+from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import Doubt, stored
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
@@ -184,6 +188,25 @@ def test_keys_that_are_left_out_stand_as_the_model_has_them() -> None:
     assert film_model(FilmTable(solver="line"), (), None) == FilmModel()
     given = FilmTable(solver="line", nodes=65, asperities="none", inlet="2 mm")
     assert film_model(given, (), 3e-3) == FilmModel(nodes=65, asperities="none", inlet=2e-3)
+
+
+def test_nodes_that_are_left_open_are_twice_as_many_beyond_a_load_parameter_of_100() -> None:
+    def at(speed: float, text: str = CASE.replace("nodes = 33\n", "")) -> Built:
+        variant = Variant(tomllib.loads(text), "film.toml", "default")
+        return variant.built({"operation.speed": f"{speed} rad/s"})
+
+    built = at(100.0)
+    design, lanes = built.design, states_of(built)
+    oil = FilmModel().fluid(design.lubricant, float(built.operation.temperature))
+    load, radius, a, b = (
+        lanes[name][lanes["loaded"]] for name in ("line_load", "radius", "speed_a", "speed_b")
+    )
+    stiff = float(design.modulus) * radius
+    parameter = np.max(load / np.sqrt(float(oil.viscosity) * (a + b) * stiff))
+    # Friction is constant, so forces stay, and the parameter falls by the root of the speed.
+    bound = 100.0 * (parameter / 100.0) ** 2
+    assert [film_model_of(at(part * bound)).nodes for part in (0.99, 1.01)] == [257, 129]
+    assert film_model_of(at(0.5 * bound, CASE)).nodes == 33
 
 
 @pytest.mark.whole

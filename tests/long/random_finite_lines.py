@@ -1,4 +1,6 @@
-"""Films of 60 random crowned lines, most of them slow, smooth and fully flooded: how many are solved.
+"""Films of a slow line with nearly sharp ends and of 60 random crowned lines, all smooth and flooded.
+
+How many are solved.
 
     .venv/bin/python tests/long/random_finite_lines.py [number [nodes [seed [from]]]]
 
@@ -25,6 +27,9 @@ from pitchpoint.lubrication.ehl.patch.films import solve_patch
 from pitchpoint.materials.fluid import Fluid
 
 LENGTHS = (10.0, 54.0)
+SLOW = (0.46e9, 0.027, 0.088, 0.025, 0.3, 26.0)
+"""The line that comes before the random ones, as arguments of `crowned_line`."""
+
 LOW = (0.3e9, 0.01, 3e-3, 5e-3, 0.1)
 HIGH = (1.5e9, 3.0, 0.2, 0.2, 10.0)
 MODULUS, ALPHA = 2.26e11, 2e-8
@@ -64,11 +69,12 @@ def crowned_line(
 
 
 def drawn(count: int, seed: int) -> Iterator[Drawn]:
-    """Random lines."""
+    """The slow line, then random ones."""
     unit = qmc.LatinHypercube(len(LOW) + 1, seed=seed).random(count)
     lengths = LENGTHS[0] + unit[:, 0] * np.ptp(LENGTHS)
     values = np.exp(np.log(LOW) + unit[:, 1:] * np.diff(np.log([LOW, HIGH]), axis=0))
     with double_precision():
+        yield crowned_line(*SLOW)
         for row, length in zip(values, lengths, strict=True):
             yield crowned_line(*map(float, row), float(length))
 

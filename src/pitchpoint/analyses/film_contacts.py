@@ -26,6 +26,8 @@ from pitchpoint.efficiency.summary import engaged
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
 from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.solve import usual_nodes
+from pitchpoint.lubrication.groups import load_parameter
 from pitchpoint.lubrication.registry import FILM_THICKNESS, FilmThickness
 from pitchpoint.programs import program
 
@@ -57,10 +59,24 @@ def asked(built: Built) -> FilmTable:
     return built.case.film
 
 
+@lru_cache(maxsize=2)
 def film_model_of(built: Built) -> FilmModel:
-    """How the films of a case are solved."""
-    assert built.film_model is not None
-    return built.film_model
+    """How the films of a case are solved; nodes that it leaves open are those usual for its heaviest line."""
+    model, table = built.film_model, asked(built)
+    assert model is not None
+    if built.design.mesh.shape != "line" or not (table.nodes is None or table.over_patch):
+        return model
+    return replace(model, nodes=usual_nodes(_heaviest(built, model)))
+
+
+def _heaviest(built: Built, model: FilmModel) -> float:
+    """Largest load parameter M of the contact lines over the cycle; none without load."""
+    loaded = states(built)["loaded"]
+    names = ("line_load", "radius", "speed_a", "speed_b")
+    load, radius, *speeds = (states(built)[name][loaded] for name in names)
+    oil = model.fluid(built.design.lubricant, float(built.operation.temperature))
+    given = float(oil.viscosity), radius, float(built.design.modulus)
+    return float(np.max(load_parameter(load, 0.5 * sum(speeds), *given), initial=0.0))
 
 
 def film_laws(shape: Shape) -> list[FilmThickness]:

@@ -164,8 +164,10 @@ def film_choices(model: FilmModel, table: FilmTable | None = None) -> dict[str, 
 
 
 def _grid_choices(model: FilmModel, table: FilmTable | None) -> dict[str, Any]:
-    if table is None or not table.over_patch:
+    if table is None:
         return {"nodes": float(model.nodes)}
+    if not table.over_patch:  # nodes that are left open follow from the contacts
+        return {}
     nodes, cells = patch_grid(table)
     ends = {"ends": table.ends or USUAL_ENDS} if table.solver == "finite_line" else {}
     course = {"moments": float(course_moments(table))} if table.squeezes else {}

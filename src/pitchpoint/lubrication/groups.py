@@ -1,10 +1,12 @@
 """Groups without units by which regressions of films and of what goes with them are written."""
 
+import numpy as np
 from jaxtyping import Float
+from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint.factored import Numbers
 
-__all__ = ["line_groups"]
+__all__ = ["line_groups", "load_parameter"]
 
 Each = Float[Numbers, "*#b"]
 
@@ -34,3 +36,34 @@ def line_groups(
         viscosity * entrainment / (modulus * radius),
         pressure_viscosity * modulus,
     )
+
+
+def load_parameter(
+    line_load: ArrayLike,
+    entrainment: ArrayLike,
+    viscosity: ArrayLike,
+    radius: ArrayLike,
+    modulus: ArrayLike,
+) -> NDArray[np.float64]:
+    """Load parameter of lines, M = w/(E' R) (2 eta0 u/(E' R))^(-1/2), shape (b,): large where films are thin.
+
+    Args:
+        line_load: w [N/m].
+        entrainment: mean surface speed u, either way [m/s].
+        viscosity: eta0 [Pa s].
+        radius: R [m].
+        modulus: E' [Pa].
+
+    Source: Moes (1992).
+
+    Example:
+        >>> float(load_parameter(1e5, 1.0, 0.1, 0.01, 2e11).round(6))
+        5.0
+    """
+    load, speed, oil, radii, moduli = map(
+        np.asarray, (line_load, entrainment, viscosity, radius, modulus)
+    )
+    stiff = moduli * radii
+    speeds = 2.0 * (oil * np.abs(speed) / stiff)
+    found: NDArray[np.float64] = load / stiff / np.sqrt(np.maximum(speeds, 1e-30))
+    return found

@@ -18,7 +18,7 @@ from pitchpoint.lubrication.ehl.line import FLOODED, LineContact
 from pitchpoint.lubrication.ehl.registry import COARSE, MOST_LINE_NODES
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
-from pitchpoint.lubrication.groups import line_groups
+from pitchpoint.lubrication.groups import load_parameter
 from pitchpoint.materials.fluid import Fluid
 from pitchpoint.materials.registry import SHEAR_STRESS
 from pitchpoint.status import Code
@@ -456,8 +456,5 @@ def flooded_inlet(contact: LineContact) -> NDArray[np.float64]:
     11 %: of contacts solved at M of 0.1 to 100 and Moes' L of 2 to 15.
     """
     oil = contact.fluid
-    speed = abs(contact.entrainment)
-    given = oil.viscosity, oil.pressure_viscosity, contact.radius, contact.modulus
-    W, U, _ = map(np.asarray, line_groups(contact.line_load, speed, *given))
-    load = W / np.sqrt(np.maximum(2.0 * U, 1e-30))
-    return 3.0 + 25.0 / load
+    given = oil.viscosity, contact.radius, contact.modulus
+    return 3.0 + 25.0 / load_parameter(contact.line_load, contact.entrainment, *given)

@@ -45,13 +45,16 @@ from pitchpoint.lubrication.ehl.strips import WARM_ENOUGH
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 
-__all__ = ["NODES", "Films", "line_films", "solve_lines"]
+__all__ = ["NODES", "Films", "line_films", "solve_lines", "usual_nodes"]
 
 Tree = TypeVar("Tree")
 
 NODES: Final = 129
 """Nodes on which films of Moes' load parameter M up to 100 come within 1 % of those on twice as many, and
 smallest ones within 3 %."""
+
+HEAVY: Final = 100.0
+"""Load parameter M beyond which twice as many are usual."""
 
 OF_HALF: Final = np.array([0.55, 0.72])
 """Estimate of the error of the film in the middle and of the smallest one, over what the last doubling of the
@@ -220,6 +223,15 @@ def _taken(tree: Tree, which: NDArray[np.int_]) -> Tree:
     """Some of the contacts that arrays have along their first axis."""
     found: Tree = jax.tree.map(lambda leaf: leaf[which], tree)
     return found
+
+
+def usual_nodes(load: float) -> int:
+    """Nodes on which lines are solved unless asked otherwise.
+
+    Args:
+        load: largest load parameter M of Moes among them.
+    """
+    return 2 * NODES - 1 if load > HEAVY else NODES
 
 
 def _ladder(nodes: int, ends: Ends) -> tuple[Grid, ...]:
