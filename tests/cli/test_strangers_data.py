@@ -138,20 +138,20 @@ BREAKING = (
 def loss_map(text: str) -> xr.Dataset:
     """A loss map whose every text is a stranger's."""
     dims = ("law", "output_torque", "output_speed", "temperature")
-    losses = np.array([[[[1.0], [2.0]], [[np.inf], [np.nan]]]])
+    losses = np.array([[[[1.0], [2.0]], [[1.0], [2.0]], [[np.inf], [np.nan]]]])
     told = {"units": text}
     return xr.Dataset(
         {
             "mean_loss": (dims, losses),
             "locked": (dims, np.zeros(losses.shape, bool)),
-            "largest_holding_torque": ((dims[0], dims[1], dims[3]), np.ones((1, 2, 1))),
-            "self_locking": ((dims[0], dims[1], dims[3]), np.zeros((1, 2, 1), bool)),
+            "largest_holding_torque": ((dims[0], dims[1], dims[3]), np.ones((1, 3, 1))),
+            "self_locking": ((dims[0], dims[1], dims[3]), np.zeros((1, 3, 1), bool)),
             **{name: ("law", [0.1]) for name in (*figures.ERRORS, "mean_interpolation_error")},
             "mean_input_torque": ((), 1.0, told),
         },
         {
             "law": [text],
-            "output_torque": ("output_torque", [-1.0, 1.0], told),
+            "output_torque": ("output_torque", [-1.0, 0.0, 1.0], told),
             "output_speed": ("output_speed", [0.0, 1.0], told),
             "temperature": [313.15],
         },
@@ -194,6 +194,10 @@ def test_a_map_that_lacks_a_part_is_refused(tmp_path: Path) -> None:
         lacking = loss_map("x").drop_vars(name)
         with pytest.raises(InputError, match="run the case again"):
             evaluator(Outcome(manifest(), {"four_quadrants": lacking}), tmp_path)
+    for few in ([0], [0, 2]):
+        with pytest.raises(InputError, match="run the case again"):
+            other = loss_map("x").isel(output_torque=few)
+            evaluator(Outcome(manifest(), {"four_quadrants": other}), tmp_path)
 
 
 @pytest.fixture

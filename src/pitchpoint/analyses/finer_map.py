@@ -34,13 +34,16 @@ def finer_map(
     them; where a logarithm has no meaning, the straight line is left.
 
     Args:
-        torques: of the output, ascending, as many negative ones as positive [torque].
+        torques: of the output, ascending, none and as many negative ones as positive [torque].
         speeds: ascending from rest, which stays as it is [speed].
         degrees: temperatures, ascending [temperature].
         lost: torque that is lost [law, torque, speed, temperature]; `LOCKED` or NaN where there is none.
 
     Returns:
         The same with more nodes; all of the given ones are among them, with their values.
+
+    Raises:
+        ValueError: no torque is not in the middle.
 
     Example:
         >>> import numpy as np
@@ -50,6 +53,8 @@ def finer_map(
         >>> bool(np.allclose(values[0, :, 1, 0], 0.5 + np.abs(torques) ** 1.2, rtol=1e-3))
         True
     """
+    if torques.size < 3 or torques[torques.size // 2] != 0.0:
+        raise ValueError("no torque has to be in the middle")
     torques, lost = _under_loads(torques, lost)
     moving = speeds[1:]
     places = _cut(np.log(moving))

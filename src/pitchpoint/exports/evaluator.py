@@ -61,7 +61,7 @@ def evaluator(outcome: Outcome, folder: Path) -> list[Path]:
         texts = {"loss_table.py": module(outcome, table), "loss_table.h": header(outcome, table)}
     except (
         AttributeError,
-        KeyError,
+        LookupError,
         TypeError,
         ValueError,
     ):  # of another version, or another's hand
