@@ -317,7 +317,8 @@ def test_both_ends_of_what_holds_a_load_have_the_band_that_was_given(
         assert (every[ends[0]] < every[name]).all()
         assert (every[name] < every[ends[1]]).all()
     (told,) = (one for one in FOUR_QUADRANTS_SECTION.answer(moving[1]))
-    assert "with the spread of what holds" in told.detail
+    assert told.detail.startswith("at least ")
+    assert told.detail.endswith(" by breakaway_spread")
 
 
 def test_figures_of_a_load_that_is_held(

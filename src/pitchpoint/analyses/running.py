@@ -200,8 +200,8 @@ def _of_set(built: Ready, data: Mapping[str, Any], degrees: np.ndarray) -> str:
     step = float(built.backwards.operation.speed) / float(built.operation.speed)
     return (
         f"Driving it backwards takes {back * step / forth:.3g} times ratio and starting torque, for teeth "
-        "and bearing then carry what holds the driver; that is nearly the same at every size of a set of "
-        "losses, which drives of makers are not."
+        "and bearing then carry what holds the driver. With a set of losses that is nearly the same at every "
+        "size; drives of makers differ."
     )
 
 

@@ -75,12 +75,18 @@ def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
 
 def _with_band(data: xr.Dataset, name: str, there: xr.Dataset) -> str:
     """A torque, with the ends of its band where it has one."""
-    value = _held(data, name, float(there[name]))
-    ends = [f"{end}_{name}" for end in ("least", "largest")]
-    if not all(one in data for one in ends):
+    value, ends = _held(data, name, float(there[name])), _ends(data, name)
+    if not ends:
         return value
-    low, high = (_held(data, one, float(there[one])) for one in ends)
-    return f"{value}, {low} to {high} with the spread of what holds at rest"
+    low, high = (float(there[one]) for one in ends)
+    least = shown(ends[0], low, data) if np.isfinite(low) else "friction holds the drive"
+    return f"{value}, {least} to {_held(data, ends[1], high)} by breakaway_spread"
+
+
+def _ends(data: xr.Dataset, name: str) -> list[str]:
+    """Names of the ends of the band of a torque from rest; none without a spread."""
+    ends = [f"{end}_{name}" for end in ("least", "largest")]
+    return ends if all(one in data for one in ends) else []
 
 
 def _load(data: xr.Dataset, name: str) -> str:
@@ -105,14 +111,17 @@ def running_rows(outcome: Outcome) -> list[dict[str, str]]:
     heads["no_load_torque"] = heads["no_load_torque"].replace(name, at, 1)
     return [
         {"friction law": law, head("temperature"): shown("temperature", float(degree))}
-        | {heads[n]: _screened(data, n, float(there[n].values[k, place])) for n in TORQUES}
+        | {heads[n]: _screened(data, n, there.isel(law=k, temperature=place)) for n in TORQUES}
         for k, law in enumerate(laws(data))
         for place, degree in enumerate(data["temperature"].values)
     ]
 
 
-def _screened(data: xr.Dataset, name: str, value: float) -> str:
-    return shown(name, value, data) if np.isfinite(value) else "held"
+def _screened(data: xr.Dataset, name: str, there: xr.Dataset) -> str:
+    """A torque, with the ends of its band where it has one."""
+    each = [float(there[one]) for one in (name, *_ends(data, name))]
+    value, *ends = (shown(name, one, data) if np.isfinite(one) else "held" for one in each)
+    return f"{value} ({' to '.join(ends)})" if ends else value
 
 
 def loss_split(data: xr.Dataset, law: int) -> tuple[float, float] | None:

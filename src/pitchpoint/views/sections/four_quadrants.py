@@ -69,7 +69,10 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Paragraph(alone, "note")
     yield map_panel(there, page.curves, OF_OUTPUT)
     yield Heading("Held at rest")
-    yield Paragraph(AT_REST)
+    banded = any(
+        HOLDING_BANDS[HOLDING[0]][0] in one.parts[OF_OUTPUT.part] for one in there.values()
+    )
+    yield Paragraph(f"{AT_REST} {IN_BRACKETS}" if banded else AT_REST)
     yield from by_variant(page, HELD, lambda _, outcome: _held(outcome))
 
 
@@ -78,8 +81,9 @@ AT_REST = (
     "the load moves on. The band holds in the mean over the phases of the teeth; beyond the torques of the "
     "last columns the load moves at every phase. Friction of the teeth is that of a creeping drive, "
     "with what holds bearings and seals at rest. Where zero lies in the band the load is held without "
-    "the driver. In brackets: both ends with the spread of what holds bearings and seals at rest."
+    "the driver."
 )
+IN_BRACKETS = "In brackets: how far both ends may be off by breakaway_spread of [losses]."
 
 
 def _errors(outcome: Outcome) -> str:
@@ -141,19 +145,24 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     else:
         low = shown(HOLDING[0], ends[0], data)
         words = f"{low} to {show.quantity(HOLDING[1], ends[1], of=data)}"
-        free = "held without the driver" if ends[0] <= 0.0 else "less lets it go, more lifts it"
-        detail = f"for {load} at rest; {_apart(held, data) or free}"
+        detail = _of_band(held, data, load) or f"for {load} at rest; {_without(ends[0])}"
     yield KeyFigure(36.0, "Holding torque", words, detail)
 
 
-def _apart(held: dict[str, Any], data: xr.Dataset) -> str:
-    """How far both ends may be off by the spread of what holds at rest; empty without any."""
-    ends = [
-        " to ".join(shown(HOLDING[0], held[one], data) for one in pair)
-        for pair in HOLDING_BANDS.values()
-        if all(held.get(one) is not None for one in pair)
-    ]
-    return f"ends {' and '.join(ends)} with the spread of what holds" if ends else ""
+def _without(least: float) -> str:
+    return "held without the driver" if least <= 0.0 else "less lets it go, more lifts it"
+
+
+def _of_band(held: dict[str, Any], data: xr.Dataset, load: str) -> str:
+    """The narrowest and the widest band by the spread of what holds at rest; empty without any."""
+    (widest, least), (largest, most) = HOLDING_BANDS.values()
+    if any(held.get(one) is None for one in (widest, least, largest, most)):
+        return ""
+    narrow, wide = (
+        " to ".join(shown(HOLDING[0], held[one], data) for one in ends)
+        for ends in ((least, largest), (widest, most))
+    )
+    return f"at least {narrow} for {load}; {_without(held[least])}; at most {wide} by breakaway_spread"
 
 
 FOUR_QUADRANTS = Section(

@@ -470,7 +470,8 @@ def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     if "catalogue_lost_motion" in data:
         values = data["catalogue_lost_motion"].values
         shown = dict.fromkeys(show.quantity("catalogue_lost_motion", float(v)) for v in values)
-        yield KeyFigure(71.0, "Lost motion", " and ".join(shown), "at ±4 % of the torque")
+        detail = "at ±4 % of torque, tooth friction alone"
+        yield KeyFigure(71.0, "Lost motion", " and ".join(shown), detail)
 
 
 def _slopes(data: xr.Dataset) -> str:
