@@ -221,7 +221,7 @@ def main(table: LossTable, about: str = "", arguments: "Sequence[str] | None" = 
     return 0
 
 
-CHUNK = 16384
+CHUNK = 8192
 """Points whose arrays stay in the cache of a processor, and outweigh what calls cost."""
 
 BINS = 4096

@@ -6,14 +6,10 @@ struct loss_table_cell {
 
 static struct loss_table_cell loss_table_cell(const double *axis, int count, double value)
 {
-    struct loss_table_cell cell = {0, count > 1 ? count - 1 : 0, 0.0};
-    while (cell.high > cell.low + 1) {
-        const int middle = (cell.low + cell.high) / 2;
-        if (value >= axis[middle])
-            cell.low = middle;
-        else
-            cell.high = middle;
-    }
+    struct loss_table_cell cell = {0, 0, 0.0};
+    for (int left = count - 1; left > 1; left -= left / 2) /* without branches that a processor has to guess */
+        cell.low += value >= axis[cell.low + left / 2] ? left / 2 : 0;
+    cell.high = count > 1 ? cell.low + 1 : 0;
     if (cell.low != cell.high && !(value <= axis[cell.low])) {
         cell.weight = (value - axis[cell.low]) / (axis[cell.high] - axis[cell.low]);
         if (cell.weight > 1.0)

@@ -162,7 +162,9 @@ def _of_band(held: dict[str, Any], data: xr.Dataset, load: str) -> str:
         " to ".join(shown(HOLDING[0], held[one], data) for one in ends)
         for ends in ((least, largest), (widest, most))
     )
-    return f"at least {narrow} for {load}; {_without(held[least])}; at most {wide} by breakaway_spread"
+    return (
+        f"at least {narrow} for {load}; {_without(held[least])}; at most {wide} by breakaway_spread"
+    )
 
 
 FOUR_QUADRANTS = Section(
