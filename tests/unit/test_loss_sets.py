@@ -1,9 +1,11 @@
 """Losses by the name of a set: constants as data, scaled to the gears, told with their marks."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from pitchpoint.analyses.running import running_axes
+from pitchpoint.analyses.running import _of_set, running_axes
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.loss_sets import loss_sets, marks_of
 from pitchpoint.cases.schema import validate
@@ -101,6 +103,20 @@ def test_a_sealed_drive_has_a_seal_on_either_shaft_which_its_file_replaces():
     keys = ("seal_torque", "breakaway_torque", "breakaway_spread")
     assert {marks[f"{one}.{k}"].status for one in [*sealed][1:] for k in keys} == {"assumed"}
     assert loss_sets()["strain_wave_sealed"].fitted == loss_sets()[NAME].fitted
+
+
+def test_the_result_says_how_both_torques_from_rest_stand_to_each_other():
+    """4.4 N m at the output against 0.04 N m at the wave generator and a ratio of 100."""
+    axes, degrees = ("law", "temperature"), np.array([313.15, 333.15])
+    data = {
+        "starting_torque": (axes, np.array([[0.04, 0.03]])),
+        "back_driving_torque": (axes, np.array([[4.4, 4.0]])),
+    }
+    built = Variant(TREE, "drive.toml", "default").built({})
+    assert _of_set(built, data, degrees).startswith(
+        "Driving it backwards takes 1.1 times ratio and"
+    )
+    assert _of_set(replace(built, fitted=None), data, degrees) == ""
 
 
 def test_marks_say_how_each_constant_was_come_by():
