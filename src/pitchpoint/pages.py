@@ -2,6 +2,7 @@
 
 import re
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 from pitchpoint.errors import InputError, shorten
@@ -62,6 +63,8 @@ def _chosen(name: str) -> str | None:
 def search_pages(words: str) -> list[dict[str, str]]:
     """Lines that have all of some words, the nearest first: titles, headings, rows of a table, others.
 
+    Where no line has them all, pages that have them are listed with their titles.
+
     Args:
         words: of any case, with spaces between them; those without a letter or a figure do not count.
 
@@ -75,8 +78,8 @@ def search_pages(words: str) -> list[dict[str, str]]:
         (_rank(line, wanted[0]), name, _plain(line))
         for name in names()
         for line in page(name).splitlines()
-        if all(word in line.lower() for word in wanted)
-    )
+        if _has(line, wanted)
+    ) or [(0, name, title(name)) for name in names() if _has(page(name), wanted)]
     many: Counter[str] = Counter()
     kept: list[dict[str, str]] = []
     for _, name, line in found:
@@ -84,6 +87,10 @@ def search_pages(words: str) -> list[dict[str, str]]:
         if many[name] <= _OF_A_PAGE and len(kept) < MOST:
             kept.append({"page": name, "line": line})
     return kept
+
+
+def _has(text: str, words: Sequence[str]) -> bool:
+    return all(word in text.lower() for word in words)
 
 
 _OF_A_PAGE = 2

@@ -444,6 +444,13 @@ def test_what_is_nowhere_is_no_page(
     assert "'zzzzq' is no page of the documentation" in printed(monkeypatch, capsys, "zzzzq")
 
 
+def test_words_that_no_line_has_together_are_looked_for_in_pages(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = printed(monkeypatch, capsys, "published", "case", "law").splitlines()
+    assert any(line.startswith("guide/targets ") for line in lines)
+
+
 def test_a_page_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = io.StringIO()
     monkeypatch.setattr(screen, "isatty", lambda: True)

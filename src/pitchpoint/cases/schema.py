@@ -61,7 +61,7 @@ from pitchpoint.published.registry import PUBLICATIONS, publication_of
 from pitchpoint.published.tian2024.table import PairOnPath
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
-from pitchpoint.registry import alike, letters, nearest
+from pitchpoint.registry import alike, letters, listed, nearest
 from pitchpoint.results.chosen_units import unit_choice
 from pitchpoint.results.reductions import REDUCTIONS
 from pitchpoint.results.variables import VARIABLES, places_of
@@ -2291,4 +2291,9 @@ def _needed(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     if alternatives(info.annotation):
         return "; write a table"
     options = getattr(info.annotation, "__args__", ())
-    return f"; use one of {', '.join(options)}" if options else "; write text"
+    names = [
+        how.func.known() for how in info.metadata if hasattr(getattr(how, "func", None), "known")
+    ]
+    if options or names:
+        return f"; use one of {listed(options or names[0])}"
+    return "; write text"
