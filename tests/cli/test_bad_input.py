@@ -962,7 +962,7 @@ def bad_drives() -> Iterator[Bad]:
         ("fixed", ("operation", "driver"), "circular spline", ("fixed", "wave generator or flex")),
         ("driver", ("operation", "driver"), "gear 1", ("is not in this drive", "flexspline")),
         ("clearance", ("gears", "clearance"), 1.5, ("less than the depth of the teeth",)),
-        ("family", ("gears", "family"), "strainwave", ("'cylindrical' or 'strain_wave'",)),
+        ("family", ("gears", "family"), "strainwave", ("did you mean strain_wave?",)),
         ("form", ("gears", "tooth", "form"), "involut", ("'double arc' or 'involute'",)),
         ("set", ("gears", "tooth"), {"convex_radius": 1.4}, ("convex_offset", "liu, flat")),
         ("shape", ("gears", "wave_generator", "shape"), "cosine", ("weights were both given",)),

@@ -2001,7 +2001,9 @@ def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | 
             known = dict.fromkeys(name for each in fields for name in each)
             from pitchpoint.cases.wishes import answer
 
-            told = answer(parts[: position + 1], None, {}, known) or _meant(part, known, root)
+            told = answer(parts[: position + 1], None, {}, known) or _meant(
+                parts[: position + 1], known, root
+            )
             raise InputError(f"there is no such key{told}", key=key)
         if position == len(parts) - 1:
             return quantity_of(holding[0])
@@ -2213,7 +2215,7 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
         from pitchpoint.cases.wishes import answer
 
         told = answer(_place_of(detail, document), given, document.tree, fields)
-        return f"is not a known {what}{told or _meant(str(detail['loc'][-1]), fields, model)}"
+        return f"is not a known {what}{told or _meant([*map(str, detail['loc'])], fields, model)}"
     if kind == "literal_error":
         allowed = _options(detail["loc"], model) or context["expected"]
         if detail["loc"][-1] == "family" and isinstance(given, str):
@@ -2235,12 +2237,14 @@ def _quoted(options: str) -> list[str]:
     return options.split("'")[1::2]
 
 
-def _meant(key: str, known: Collection[str], model: type[BaseModel]) -> str:
-    """End of a sentence on a key that a table does not have: its neighbours, or the tables that have it."""
+def _meant(place: Sequence[str], known: Collection[str], model: type[BaseModel]) -> str:
+    """End of a sentence on a key that its table does not have: its neighbours, or the tables that have it."""
+    key = place[-1]
     tables = [
         f"[{name}]"
         for name, info in model.model_fields.items()
-        if name != "formulas" and any(key in form.model_fields for form in forms(info.annotation))
+        if name not in ("formulas", *place[:-1])
+        and any(key in form.model_fields for form in forms(info.annotation))
     ]
     if key in model.model_fields and forms(model.model_fields[key].annotation):
         return f"; [{key}] is a table of its own"
