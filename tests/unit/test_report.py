@@ -27,6 +27,7 @@ from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.results.store import dataset
+from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.units import convert, kind_of, kinds, parse, units_of
 from pitchpoint.views import show
@@ -37,8 +38,9 @@ from pitchpoint.views.outlines import visible_points
 from pitchpoint.views.path import path_of
 from pitchpoint.views.picture import Body, Picture, picture_of
 from pitchpoint.views.point import period_of
-from pitchpoint.views.report import render, write_report
+from pitchpoint.views.report import _failing, render, write_report
 from pitchpoint.views.section import KeyFigure, Paragraph, naming
+from pitchpoint.views.sections import compared as comparison
 from pitchpoint.views.sections.answer import ANSWER, summary
 from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.path import loss_places, loss_sentence
@@ -973,3 +975,16 @@ def test_numbers_for_readers() -> None:
     assert show.quantity("torque_ripple", 6e-14) == "0 N\u00a0m"
     assert show.signed(-0.00004, 3) == "0"
     assert show.pretty("98 mm2/s at 40 degC, mm2/s alone") == "98 mm²/s at 40 °C, mm2/s alone"
+
+
+def test_numbers_beside_print_have_seven_digits_and_unknown_ones_are_said() -> None:
+    row = Row("part of the time", "a table", 0.0, 0.18585924446678, "1", 1e-12, "trend", "miss", "")
+    assert comparison._row(row)["computed"] == "0.1858592"
+    assert comparison._row(replace(row, computed=float("nan")))["computed"] == "not computed"
+    assert comparison._row(replace(row, computed=0.0, tolerance=0.01))["computed"] == "0.000"
+
+
+def test_what_fails_alike_in_several_variants_is_said_once() -> None:
+    told = {"warm": ["Teeth melt."], "cold": ["Teeth jam."], "hot": ["Teeth melt."]}
+    outcomes = {name: Outcome({"implausible": texts}, {}) for name, texts in told.items()}
+    assert _failing(outcomes) == {"Teeth melt.": ["warm", "hot"], "Teeth jam.": ["cold"]}

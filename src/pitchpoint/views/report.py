@@ -100,7 +100,7 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
             cases=page.cases,
             designs=designs,
             variants=[*outcomes],
-            implausible={name: one.manifest["implausible"] for name, one in outcomes.items()},
+            implausible=_failing(outcomes),
             cited=any(one.manifest["sources"] for one in outcomes.values()),
             sections=made,
             absent=_absent(bare, lacking),
@@ -112,6 +112,15 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
             plotly=packed_plotly(),
         )
     )
+
+
+def _failing(outcomes: Mapping[str, Outcome]) -> dict[str, list[str]]:
+    """What cannot stand, each sentence once with the variants that it is about."""
+    variants: dict[str, list[str]] = {}
+    for variant, outcome in outcomes.items():
+        for text in outcome.manifest["implausible"]:
+            variants.setdefault(text, []).append(variant)
+    return variants
 
 
 def _made(section: Section, page: Page) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from itertools import groupby
-from math import ceil, log10
+from math import ceil, floor, isfinite, log10
 from typing import Any
 
 from pitchpoint.results.target_rows import Row, counts, in_words
@@ -73,9 +73,9 @@ def _reasoned(table: list[dict[str, str]]) -> list[dict[str, str]]:
 def _row(row: Row) -> dict[str, str]:
     unit = show.unit(row.unit)
     computed, deviation, tolerance = "not computed", "", ""
-    if row.computed is not None and row.deviation is not None:
+    if row.computed is not None and row.deviation is not None and isfinite(row.computed):
         digits = _decimals(row.tolerance)
-        computed = f"{row.computed:.{digits}f} {unit}".strip()
+        computed = f"{row.computed:.{min(digits, _most_decimals(row.computed))}f} {unit}".strip()
         deviation = show.signed(row.deviation, digits)
         tolerance = "" if row.bound else f"± {row.tolerance:g}"
     return {
@@ -94,6 +94,11 @@ def _row(row: Row) -> dict[str, str]:
 def _decimals(tolerance: float) -> int:
     """Decimals that show a deviation to a tenth of the tolerance or finer."""
     return max(ceil(-log10(tolerance)), 0) + 1 if tolerance > 0.0 else 4
+
+
+def _most_decimals(value: float) -> int:
+    """Decimals of seven significant digits, which no print has more of."""
+    return max(6 - floor(log10(abs(value))), 0) if value else 6
 
 
 COMPARED = Section(
