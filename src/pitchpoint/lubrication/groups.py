@@ -65,5 +65,4 @@ def load_parameter(
     )
     stiff = moduli * radii
     speeds = 2.0 * (oil * np.abs(speed) / stiff)
-    found: NDArray[np.float64] = load / stiff / np.sqrt(np.maximum(speeds, 1e-30))
-    return found
+    return np.asarray(load / stiff / np.sqrt(np.maximum(speeds, 1e-30)))
