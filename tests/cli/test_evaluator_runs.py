@@ -590,7 +590,7 @@ def test_the_head_tells_signs_errors_and_origin(moving: tuple[Ready, Outcome]) -
 @pytest.mark.parametrize(
     ("added", "told"),
     [
-        ('lowest_speed = "3000 rpm"', "lies below the largest speed of the map, 2250 rpm"),
+        ('lowest_speed = "3000 rpm"', "less than the largest speed of the map, 2250 rpm"),
         ('speed = "0 rpm"', "asks for a speed above standstill"),
     ],
 )

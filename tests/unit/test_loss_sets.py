@@ -99,6 +99,13 @@ def test_a_sealed_drive_has_a_seal_on_either_shaft_which_its_file_replaces():
     other = losses({**TREE, "losses": {"set": "strain_wave_sealed", "input_seal": own}})
     assert other["input_seal"].breakaway_torque == pytest.approx(0.03)
     assert other["input_seal"].seal_torque == sealed["input_seal"].seal_torque
+    open_input = {"set": "strain_wave_sealed", "input_seal": "none"}
+    assert [*losses({**TREE, "losses": open_input})] == [PLACE, "output_seal"]
+    nothing = {"breakaway_torque": "0 N m", "seal_torque": "0 N m"}
+    with pytest.raises(InputError, match='write "none" in place of one that a set has'):
+        losses({**TREE, "losses": {**open_input, "input_seal": nothing}})
+    with pytest.raises(InputError, match="where a table belongs"):
+        losses({**TREE, "losses": {"set": NAME, "input_seal": "none"}})
     marks = marks_of({"set": "strain_wave_sealed"})
     keys = ("seal_torque", "breakaway_torque", "breakaway_spread")
     assert {marks[f"{one}.{k}"].status for one in [*sealed][1:] for k in keys} == {"assumed"}

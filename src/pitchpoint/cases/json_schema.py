@@ -10,7 +10,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from pitchpoint.cases.document import DIAMETRAL_PITCH, MARKS, STAGES, STATUSES
-from pitchpoint.cases.loss_sets import SET, SET_TOLD
+from pitchpoint.cases.loss_sets import NOT_THERE, SET, SET_TOLD
 from pitchpoint.cases.schema import Case, DriveCase, measure_of, usual_words
 from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.tables import alternatives, sentences
@@ -142,6 +142,9 @@ def _other_ways(key: str, value: dict[str, Any]) -> list[dict[str, Any]]:
         return [{"type": "array", "items": copy.deepcopy(value["additionalProperties"])}]
     if key == "losses":
         named = [{"type": "string"}, {"$ref": f"#/{_DEFS}/mark"}]
+        value["additionalProperties"] = {
+            "anyOf": [value["additionalProperties"], {"const": NOT_THERE}]
+        }
         value["properties"] = {SET: {"description": SET_TOLD, "anyOf": named}}
     return []
 

@@ -14,6 +14,7 @@ from pitchpoint.input.quantities import SIValue, named
 from pitchpoint.registry import Registry
 
 __all__ = [
+    "NOT_THERE",
     "SET",
     "SET_TOLD",
     "LossSet",
@@ -31,6 +32,10 @@ SET_TOLD = (
     "Named set of losses, scaled to the gears; what is given beside it stands before its own."
 )
 """What it is, as the tables say it of their keys."""
+
+
+NOT_THERE = "none"
+"""What a case says in place of the table of a place that its set has and its drive has not."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +133,7 @@ def named_set(losses: Any) -> str:
 
 
 def expanded(losses: Any, gears: GearsTable | None) -> Any:
-    """Tables of losses with those of the set that they name; values of one's own stay.
+    """Tables of losses with those of the set that they name; values of one's own stay, "none" leaves one out.
 
     Args:
         losses: as a case file has them.
@@ -142,6 +147,7 @@ def expanded(losses: Any, gears: GearsTable | None) -> Any:
     return {
         place: {**places.get(place, {}), **table} if isinstance(table, dict) else table
         for place, table in {**places, **own}.items()
+        if not (place in places and table == NOT_THERE)
     }
 
 

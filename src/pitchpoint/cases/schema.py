@@ -575,7 +575,8 @@ class Loss(Table):
         parts = (self.breakaway_dry, self.breakaway_viscous)
         if not any((*self.factors.values(), *beside, *parts)):
             raise InputError(
-                "all torques and factors are zero: nothing is lost; leave the table out"
+                "all torques and factors are zero: nothing is lost; leave the table out, or write "
+                '"none" in place of one that a set has'
             )
         return self
 
