@@ -466,9 +466,10 @@ class CylindricalGears(GearsTable):
         Raises:
             InputError: a backlash that is smaller than that of teeth as they are.
         """
-        first, second = self.toothings
-        distance = self.operating_distance
-        if self.backlash is None or not distance > abs(first.base_radius + second.base_radius):
+        if self.backlash is None:
+            return 0.0, 0.0
+        (first, second), distance = self.toothings, self.operating_distance
+        if not distance > abs(first.base_radius + second.base_radius):
             return 0.0, 0.0  # gears that do not mesh are refused as those without a backlash
         allowance = allowance_for(first, second, distance, self.backlash)
         if allowance > _ROUNDED * self.module:
