@@ -407,7 +407,7 @@ def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
     )
     assert "12 of 12 contact lines touch at one end only" in first.line
     words = next(iter(SECTION.answer(one))).words
-    assert " at least, " in words and "undefined" not in words
+    assert " at least: mean planes overlap, " in words and "undefined" not in words
     page = opened(render({"default": one}))
     assert "not compared" in page and "undefined, no power" not in page
 
