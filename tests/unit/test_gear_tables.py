@@ -204,6 +204,15 @@ def test_what_a_drive_cannot_have(changes: dict[str, Any], words: str) -> None:
     assert str(caught.value).startswith(f"drive.toml: {words}")
 
 
+def test_one_moment_of_inertia_counts_for_motor_and_load() -> None:
+    def told(inertia: Any) -> list[str]:
+        warnings = drive().built({"dynamics": {"inertia": inertia}}).warnings
+        return [text for text in warnings if "same moment of inertia" in text]
+
+    assert len(told("1 kg cm2")) == 1
+    assert told(["1 kg cm2", "1 kg cm2"]) == []
+
+
 def test_only_chosen_laws_are_compiled_in() -> None:
     (models,) = drive().built({}).models
     assert [law.name for law in models.friction] == ["constant"]

@@ -471,6 +471,9 @@ def build(case: Case, document: Document, own: ChosenLaws = ()) -> Built:
     )
     told = [*warnings, *_yielding(case, mesh), *_of_oil(oil)]
     told += _half_of_a_line(case.lubricant)
+    told += (
+        _inertia_of_both(document) if case.dynamics is not None and not mesh.along_action else []
+    )
     models = _models(case, own, used, mesh)
     name = named_set(document.tree.get("losses"))
     fitted = loss_sets()[name].fitted if name else None
@@ -921,6 +924,17 @@ def _check_joint(case: Case, asked: Dynamics) -> None:
             f"is missing; a joint vibrates between two moments of inertia, a list of those of {ends}",
             key="dynamics.inertia",
         )
+
+
+def _inertia_of_both(document: Document) -> list[str]:
+    """That one moment of inertia counts for motor and load alike; nothing where each has its own."""
+    if isinstance(document.tree["dynamics"].get("inertia"), list):
+        return []
+    told = (
+        "The motor and the load have the same moment of inertia, since dynamics.inertia was given as one "
+        "value; a list has that of the motor, then that of the load."
+    )
+    return [Doubt(told, brief="Motor and load have the one inertia that was given.")]
 
 
 _ALONG_ACTION = ("profile_error", "backlash", "torques", "forces", "motion")
