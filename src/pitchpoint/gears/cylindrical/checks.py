@@ -342,7 +342,7 @@ def _pair_measures(pair: CylindricalPair) -> dict[str, Float[Array, ""]]:
         "base_pitch": pair.base_pitch,
         "centre_distance": pair.centre_distance,
         "zero_backlash": pair.zero_backlash_centre_distance,
-        "thinned": jnp.any(pair.infeed != 0.0),
+        "thinned": jnp.any(pair.infeed != 0.0).astype(float),
         "base_sum": jnp.abs(jnp.sum(pair.base_radii)),
         "shift_sum": jnp.sum(pair.profile_shift),
         "limit_shift_sum": -transverse * per_angle,
