@@ -50,13 +50,16 @@ def test_an_error_of_half_an_order_repeats_after_two_mesh_cycles(alone):
 
 @pytest.mark.whole
 def test_the_error_of_a_motion_follows_its_tolerance(alone):
-    """From one tolerance to the next it may fall by three or by thirty: steps end at kinks by chance."""
+    """From one tolerance to the next it may fall by three or by thirty: steps end at kinks by chance.
+
+    Those are below 1e-8, to which a period closes: what is left of it is a thousand times as much in the motion.
+    """
     exact = found_at(tolerance=1e-13).transmission_error
 
     def error(motion):
         return relative(motion.transmission_error, exact)
 
-    errors = {size: error(found_at(tolerance=size)) for size in (1e-8, 1e-9, 1e-11)}
+    errors = {size: error(found_at(tolerance=size)) for size in (3e-9, 1e-9, 1e-11)}
     errors[1e-10] = error(alone)
     assert all(found < 20.0 * size for size, found in errors.items())
-    assert errors[1e-11] < errors[1e-8] / 100.0
+    assert errors[1e-11] < errors[3e-9] / 100.0
