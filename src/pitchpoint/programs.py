@@ -241,8 +241,9 @@ _AT_START = _memory()
 def bound_programs() -> None:
     """Forget all programs once there are many, or much memory; what is needed again comes from disk.
 
-    Memory is counted from the start of the process, so that what cannot be given back brings the next time
-    nearer. Most of what compiling leaves is free, and glibc has it: programs go only if that is not enough.
+    Memory is counted from the start of the process; where more than that stays after they were given back,
+    they go again once an eighth of a GiB has come on top of what stays. Most of what compiling leaves is
+    free, and glibc has it: programs go only if that is not enough.
     """
     most = _AT_START + max(MOST_MEMORY, _LOADED["left"] + WORTH_GIVING)
     if _memory() > most:

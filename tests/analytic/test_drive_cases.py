@@ -62,7 +62,8 @@ def part(analysis, case, piece=None):
 def of_every_stage(analysis, case):
     """Part of an analysis of a mesh of every stage that has it."""
     (made,) = analysis.parts(Subject(None, case))
-    return made.joined(case, [part(made, case, piece) for piece in made.pieces(case)])
+    on_disk = [decode(encode(part(made, case, piece))) for piece in made.pieces(case)]
+    return made.joined(case, on_disk)
 
 
 @cache

@@ -595,10 +595,10 @@ def test_nodes_that_are_named_bring_films_within_what_is_borne():
         (0.05, (65,), 0.5, "; 129 nodes bring that below 3 %"),
         (0.1, (65,), 0.5, "; 257 nodes bring that below 3 %"),
         (0.1, (65,), 0.25, "; 129 nodes bring that below 3 %"),
-        (0.3, (65,), 0.5, "; 257 nodes, the most, leave 7.5 % of it at worst"),
+        (0.3, (65,), 0.5, "; 257 nodes, the most, leave 7.5 % at worst"),
         (0.05, (257,), 0.5, "; 257 nodes are the most"),
         (0.07, (65, 64), 0.6, "; 257 nodes and 256 cells bring that below 3 %"),
-        (0.07, (65, 128), 0.6, "; 129 nodes and 256 cells, the most, leave 4.2 % of it at worst"),
+        (0.07, (65, 128), 0.6, "; 129 nodes and 256 cells, the most, leave 4.2 % at worst"),
     ],
 )
 def test_errors_by_the_grid_name_the_nodes_that_bring_them_down(off, grid, falls, words):

@@ -52,7 +52,7 @@ def test_an_error_of_half_an_order_repeats_after_two_mesh_cycles(alone):
 def test_the_error_of_a_motion_follows_its_tolerance(alone):
     """From one tolerance to the next it may fall by three or by thirty: steps end at kinks by chance.
 
-    Those are below 1e-8, to which a period closes: what is left of it is a thousand times as much in the motion.
+    They are below 1e-8, to which a period closes: what is left of it is a thousand times as much in it.
     """
     exact = found_at(tolerance=1e-13).transmission_error
 

@@ -11,6 +11,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import Study
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
+from pitchpoint.doubts import Doubt, doubts_of, stored
 from pitchpoint.registry import Deferred
 from pitchpoint.results.by_stage import by_stage, of_stage, stages_of
 from pitchpoint.results.variable import Variable
@@ -213,7 +214,10 @@ def of_stages(analysis: Analysis) -> Analysis:
         each = {number: analysis.joined(there[number], [*own]) for number, own in groups}
         for data in each.values():
             data.attrs.pop(_OF_STAGE, None)
-        return by_stage(each)
+        whole = by_stage(each)
+        if analysis.under_load and built.at_work is built.stages:
+            whole.attrs.update(stored([*doubts_of(whole.attrs), _UNDER_NO_LOSSES]))
+        return whole
 
     march = None if analysis.onward is None else onward
     return replace(
@@ -221,6 +225,10 @@ def of_stages(analysis: Analysis) -> Analysis:
     )
 
 
+_UNDER_NO_LOSSES = Doubt(
+    "Friction locks the drive: each stage is under the load that it has without losses.",
+    brief="Friction locks the drive: loads of stages are without losses.",
+)
 _OF_STAGE = "of_stage"
 """Attribute of a piece that is of one stage: its number."""
 

@@ -7,7 +7,7 @@ from pitchpoint.efficiency.loss_table import LOCKED
 
 __all__ = ["finer_map"]
 
-LIGHTER = 3
+HALVINGS = 3
 """Times that the least load is halved, below which what is lost is a straight line."""
 
 PARTS = 3
@@ -97,9 +97,9 @@ def _straight(nodes: np.ndarray, values: np.ndarray, places: np.ndarray) -> np.n
 def _under_loads(torques: np.ndarray, lost: Values) -> tuple[np.ndarray, Values]:
     """Torques of either sign with others between, and what is lost under them."""
     loads, none = torques[torques > 0.0], torques.size // 2
-    light = loads[0] * 0.5 ** np.arange(LIGHTER, 0, -1)
+    light = loads[0] * 0.5 ** np.arange(HALVINGS, 0, -1)
     places = np.append(light, np.exp(_cut(np.log(loads))))
-    places[LIGHTER::PARTS] = loads
+    places[HALVINGS::PARTS] = loads
     turned = np.moveaxis(lost, 1, -1)
     back, idle, forth = turned[..., none::-1], turned[..., none : none + 1], turned[..., none:]
     sides = [_one_way(np.append(0.0, loads), one, places) for one in (back, forth)]
@@ -118,6 +118,8 @@ def _one_way(loads: np.ndarray, values: np.ndarray, places: np.ndarray) -> np.nd
     nodes, at = np.log(loads[1:]), np.log(places)
     curve = PchipInterpolator(nodes, np.log(np.where(usable, rise, 1.0)), axis=-1)
     within = curve(np.maximum(at, nodes[0]))
-    below = curve(nodes[0], 1)[..., None] * np.minimum(at - nodes[0], 0.0)
+    # Nothing that rises towards no load: where more load adds less, what is below is the first one's.
+    slope = np.maximum(curve(nodes[0], 1)[..., None], 0.0)
+    below = slope * np.minimum(at - nodes[0], 0.0)
     added = values[..., :1] + np.exp(within + below)
     return np.where(usable & ~np.isin(places, loads), added, straight)

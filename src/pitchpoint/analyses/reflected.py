@@ -71,6 +71,7 @@ def reflected_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
         },
         title="reflected",
         warnings=_unknown(bodies),
+        without_backlash=[n for n in numbered if n not in inspected],
         without_tolerances=[n for n, data in inspected.items() if data.sizes["case"] == 1],
     )
 
@@ -129,6 +130,6 @@ def _unknown(bodies: list[_Moving]) -> list[str]:
         Doubt(
             f"Reflected inertia: that of {', '.join(names)} is not known, nor is that of the drive.",
             about=("reflected_inertia", "drive_mass"),
-            brief=f"The inertia of {len(names)} bodies is unknown, and so the drive's.",
+            brief=f"Inertia unknown: {names[0]} and so the drive's.",
         )
     ]

@@ -198,10 +198,13 @@ def _of_set(built: Ready, data: Mapping[str, Any], degrees: np.ndarray) -> str:
     at = int(np.argmin(np.abs(degrees - built.case.operation.temperature)))
     forth, back = (float(data[name][1][0, at]) for name in TORQUES[1:])
     step = float(built.backwards.operation.speed) / float(built.operation.speed)
+    times = back * step / forth
+    if not np.isfinite(times):
+        return ""
+    why = ", for teeth and bearing then carry what holds the driver" if times > 1.0 else ""
     return (
-        f"Driving it backwards takes {back * step / forth:.3g} times ratio and starting torque, for teeth "
-        "and bearing then carry what holds the driver. With a set of losses that is nearly the same at every "
-        "size; drives of makers differ."
+        f"Driving it backwards takes {times:.3g} times ratio and starting torque{why}. By the set of losses "
+        "alone that is nearly the same at every size; drives of makers differ."
     )
 
 

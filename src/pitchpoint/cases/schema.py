@@ -1566,7 +1566,7 @@ class StageTable(Table):
     film: FilmTable | None = None
     """Asks for films solved over the mesh cycle of the stage; none unless given."""
     wear: WearTable | None = None
-    """Asks for wear of the stage over the life of the drive; none unless given."""
+    """Asks for wear of the stage, over turns of the shaft that drives it; none unless given."""
     place: Annotated[float, PLACE] = 0.0
     """Place of the middle of its face along the shafts."""
     turn: Annotated[float, TURN] = 0.0

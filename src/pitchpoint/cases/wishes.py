@@ -92,7 +92,8 @@ def answer(place: Sequence[str], value: Any, tree: Tree, fields: Collection[str]
 
 def no_family(name: str, known: Collection[str]) -> str:
     """End of a sentence on a family of gears that is not there: the one that is meant, or where to read."""
-    if letters(name) in _NO_FAMILIES:
+    plain = letters(name).removesuffix("s").removesuffix("gear").removesuffix("drive")
+    if {plain, letters(name)} & _NO_FAMILIES:
         return " of Pitchpoint; pitchpoint docs not_included says what to use instead"
     return nearest(name, known)
 
@@ -109,7 +110,7 @@ _NO_FAMILIES = {
         "cycloid",
         "rv",
     ),
-    *("facegear", "chain", "belt"),
+    *("face", "chain", "belt"),
 }
 
 
@@ -246,7 +247,7 @@ def _by_normal_backlash(value: Any, table: Tree, tree: Tree) -> str:
     """The backlash on the pitch circles of one along the normal."""
     known = {key: table[key] for key in table if key in CylindricalGears.model_fields}
     gears = CylindricalGears.model_validate(known)
-    cosine = _base_radii(table) / gears.operating_distance
+    cosine = min(_base_radii(table) / gears.operating_distance, 1.0)
     slope = cosine * cos(gears.toothings[0].base_helix_angle)
     return _said("backlash", DEVIATION, DEVIATION.read(value) / slope)
 

@@ -29,7 +29,8 @@ SIGNS = (
     "output. Power balances: torque times speed of the driver = torque times speed of the output + loss."
 )
 BETWEEN = (
-    "Every third torque, speed and temperature of the table is as computed. Values between follow powers of "
+    "Every third torque beyond the least, every third speed and temperature of the table is as computed. "
+    "Values between follow powers of "
     "load and speed and exponentials of the temperature, by monotone cubics of logarithms; so do those down "
     "to an eighth of the least load. The torque that is lost is linear between the values of the table over "
     "torque, temperature and the logarithm of the speed. Below the lowest speed that is not zero it stays as "

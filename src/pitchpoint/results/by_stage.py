@@ -16,10 +16,15 @@ STAGE = "stage"
 """Dimension of the meshes of a drive."""
 
 _OF_STAGES = "of_stages"
-"""Attribute with sizes, labels and attributes that each stage has of its own, as JSON."""
+"""Attribute with what each stage has of its own, as JSON: sizes, texts along dimensions, types and more."""
 
-_EMPTY = {"f": np.nan, "i": np.nan, "u": np.nan, "c": np.nan, "b": False, "U": "", "O": ""}
-"""What stands by kind of values where another stage has more of them."""
+_COUNTED = "{}_number"
+"""Dimension along which numbers differ between the stages, by the name of these."""
+
+_EMPTY = {"b": False, "U": "", "O": ""}
+"""What stands by kind of values where another stage has more of them; else not a number."""
+
+Labels = Mapping[Hashable, Sequence[str]]
 
 
 def by_stage(each: Mapping[int, xr.Dataset]) -> xr.Dataset:
@@ -28,28 +33,43 @@ def by_stage(each: Mapping[int, xr.Dataset]) -> xr.Dataset:
     Args:
         each: by number of the stage, of the same kind.
 
-    Labels of a dimension are those of all stages in the order in which they come up; what a stage has less
-    is not a number, no text or false.
+    Texts along a dimension are those of all stages in the order in which they come up. Numbers along a
+    dimension, such as phases, are a coordinate of each stage along a dimension `NAME_number` unless all
+    stages have the same ones. What a stage has less is not a number, no text or false.
     """
-    labels = _labels(list(each.values()))
-    filled = [_filled(data, labels) for data in each.values()]
-    whole = xr.concat(
-        filled, xr.Variable(STAGE, [*each]), data_vars="all", coords="minimal", combine_attrs="drop"
-    )
-    described = {name: v.attrs for data in each.values() for name, v in data.variables.items()}
-    for name, attributes in described.items():
-        whole.variables[name].attrs = attributes
+    stages = [*each.values()]
+    labels, apart = _texts(stages), _apart(stages)
+    names = dict.fromkeys(name for data in stages for name in data.variables if name not in labels)
+    indices = [name for name in names if name in stages[0].dims and name not in apart]
+    stacked = {
+        name: _stacked(
+            [data.variables.get(name) for data in stages], _sizes(stages, labels), labels, stages
+        )
+        for name in names
+        if name not in indices
+    }
+    renamed = {dim: _COUNTED.format(dim) for dim in apart}
+    whole = xr.Dataset(
+        {
+            name: ((STAGE, *(renamed.get(dim, dim) for dim in dims)), values, attributes)
+            for name, (dims, values, attributes) in stacked.items()
+        },
+        {
+            STAGE: [*each],
+            **{dim: [*texts] for dim, texts in labels.items()},
+            **{name: _longest(name, stages) for name in indices},
+        },
+    ).set_coords([name for name in stacked if any(name in data.coords for data in stages)])
     sentences = [
         in_stage(number, text) for number, data in each.items() for text in doubts_of(data.attrs)
     ]
-    apart = {str(number): _of_its_own(data) for number, data in each.items()}
-    common = next(iter(each.values())).attrs
+    own = {str(number): _of_its_own(data) for number, data in each.items()}
     return whole.assign_attrs(
-        title=common["title"],
-        version=common["version"],
-        solve=json.dumps(_worst([json.loads(data.attrs["solve"]) for data in each.values()])),
+        title=stages[0].attrs["title"],
+        version=stages[0].attrs["version"],
+        solve=json.dumps(_worst([json.loads(data.attrs["solve"]) for data in stages])),
         **stored(sentences),
-        **{_OF_STAGES: json.dumps(apart)},
+        **{_OF_STAGES: json.dumps(own, default=lambda value: value.item())},
     )
 
 
@@ -65,48 +85,103 @@ def of_stage(data: xr.Dataset, number: int) -> xr.Dataset:
         data: as `by_stage` made it.
         number: of the stage.
     """
-    apart = json.loads(data.attrs[_OF_STAGES])[str(number)]
-    there: xr.Dataset = data.sel({STAGE: number}, drop=True)[apart["names"]]
-    for dim, size in apart["sizes"].items():
-        there = there.isel({dim: slice(size)})
-    for dim, labels in apart["labels"].items():
-        there = there.sel({dim: labels})
-    for name, attributes in apart["variables"].items():
-        there.variables[name].attrs = attributes
-    there.attrs = apart["attributes"]
-    return there
+    own = json.loads(data.attrs[_OF_STAGES])[str(number)]
+    row = data[STAGE].values.tolist().index(number)
+    labels = {dim: data[dim].values.tolist() for dim in own["texts"]}
+    variables = {}
+    for name, (dims, kind, attributes) in own["variables"].items():
+        if name in own["texts"]:
+            variables[name] = xr.Variable(dims, own["texts"][name], attributes)
+            continue
+        values = data.variables[name].values
+        values = values[row] if data.variables[name].dims[:1] == (STAGE,) else values
+        places = [_places(dim, own["sizes"][dim], own["texts"], labels) for dim in dims]
+        there = values[np.ix_(*places)] if dims else values
+        variables[name] = xr.Variable(dims, np.asarray(there).astype(kind), attributes)
+    return xr.Dataset(variables, attrs=own["attributes"]).set_coords(own["coordinates"])
 
 
 def _of_its_own(data: xr.Dataset) -> dict[str, Any]:
-    """What a stage has of its own: names, sizes, labels, attributes."""
+    """What a stage has of its own."""
     return {
-        "names": [str(name) for name in data.data_vars],
-        "sizes": {dim: size for dim, size in data.sizes.items() if dim not in data.coords},
-        "labels": {dim: data[dim].values.tolist() for dim in data.sizes if dim in data.coords},
-        "variables": {name: dict(values.attrs) for name, values in data.variables.items()},
-        "attributes": dict(data.attrs),
+        "sizes": dict(data.sizes),
+        "texts": {dim: texts[dim] for texts in [_texts([data])] for dim in texts},
+        "variables": {
+            name: (
+                values.dims,
+                values.dtype.kind if values.dtype.kind in "UO" else str(values.dtype),
+                values.attrs,
+            )
+            for name, values in data.variables.items()
+        },
+        "coordinates": [*data.coords],
+        "attributes": data.attrs,
     }
 
 
-def _labels(each: Sequence[xr.Dataset]) -> dict[Hashable, Any]:
-    """Labels of each dimension in all datasets; a number of them where they have none."""
-    found: dict[Hashable, Any] = {}
-    for data in each:
-        for dim, size in data.sizes.items():
-            if dim in data.coords:
-                found[dim] = [*dict.fromkeys([*found.get(dim, []), *data[dim].values.tolist()])]
-            else:
-                found[dim] = max(found.get(dim, 0), size)
+def _texts(stages: Sequence[xr.Dataset]) -> dict[Hashable, list[str]]:
+    """Texts along dimensions, of all stages."""
+    found: dict[Hashable, list[str]] = {}
+    for data in stages:
+        for dim in data.sizes:
+            if dim in data.coords and data[dim].dtype.kind in "UO":
+                found[dim] = [*dict.fromkeys([*found.get(dim, []), *map(str, data[dim].values)])]
     return found
 
 
-def _filled(data: xr.Dataset, labels: Mapping[Hashable, Any]) -> xr.Dataset:
-    """The dataset with all labels, and as long as the others."""
-    counted = [dim for dim in data.sizes if dim not in data.coords]
-    numbered = data.assign_coords({dim: range(data.sizes[dim]) for dim in counted})
-    every = {dim: range(labels[dim]) if dim in counted else labels[dim] for dim in data.sizes}
-    empty = {name: _EMPTY[values.dtype.kind] for name, values in data.data_vars.items()}
-    return numbered.reindex(every, fill_value=empty).drop_vars(counted)
+def _apart(stages: Sequence[xr.Dataset]) -> list[Hashable]:
+    """Dimensions along which numbers of the stages differ."""
+    dims = dict.fromkeys(dim for data in stages for dim in data.sizes)
+    return [
+        dim
+        for dim in dims
+        if len({_numbers(data, dim) for data in stages if dim in data.sizes}) > 1
+    ]
+
+
+def _numbers(data: xr.Dataset, dim: Hashable) -> tuple[float, ...]:
+    """Numbers along a dimension; none where it has no coordinate, or texts."""
+    plain = dim not in data.coords or data[dim].dtype.kind in "UO"
+    return () if plain else tuple(data[dim].values.tolist())
+
+
+def _longest(dim: Hashable, stages: Sequence[xr.Dataset]) -> xr.Variable:
+    """The coordinate that all stages have which have its dimension."""
+    return next(data.variables[dim] for data in stages if dim in data.sizes)
+
+
+def _sizes(stages: Sequence[xr.Dataset], labels: Labels) -> dict[Hashable, int]:
+    """Length of each dimension with room for all stages."""
+    dims = dict.fromkeys(dim for data in stages for dim in data.sizes)
+    longest = {dim: max(data.sizes.get(dim, 0) for data in stages) for dim in dims}
+    return longest | {dim: len(texts) for dim, texts in labels.items()}
+
+
+def _stacked(
+    each: Sequence[xr.Variable | None],
+    sizes: Mapping[Hashable, int],
+    labels: Labels,
+    stages: Sequence[xr.Dataset],
+) -> tuple[tuple[Hashable, ...], np.ndarray, dict[Any, Any]]:
+    """Dimensions, values and attributes of a variable of all stages; a stage may not have it."""
+    there = [variable for variable in each if variable is not None]
+    dims, shape = there[0].dims, tuple(sizes[dim] for dim in there[0].dims)
+    kinds = np.result_type(*(variable.dtype for variable in there))
+    full = len(there) == len(each) and all(variable.shape == shape for variable in there)
+    empty = _EMPTY.get(kinds.kind, np.nan)
+    kinds = kinds if full or kinds.kind in _EMPTY else np.result_type(kinds, float)
+    rows = np.full((len(each), *shape), empty if not full else kinds.type(), kinds)
+    for number, (variable, data) in enumerate(zip(each, stages, strict=True)):
+        if variable is not None:
+            own = _texts([data])
+            places = [_places(dim, data.sizes[dim], own, labels) for dim in dims]
+            rows[(np.array(number).reshape((1,) * len(dims)), *np.ix_(*places))] = variable.values
+    return dims, rows, dict(there[0].attrs)
+
+
+def _places(dim: Hashable, size: int, own: Labels, labels: Labels) -> list[int]:
+    """Where entries of a stage along a dimension stand among those of all."""
+    return [labels[dim].index(text) for text in own[dim]] if dim in own else [*range(size)]
 
 
 def _worst(solves: Sequence[Mapping[str, Any]]) -> Mapping[str, Any]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pitchpoint.cases.document import read, variants
-from pitchpoint.cases.height_maps import MEMBERS, digest_of
+from pitchpoint.cases.height_maps import digest_of
 from pitchpoint.cases.library import as_text, find, path_of
 from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record, is_result
 from pitchpoint.cases.variant import Variant
@@ -89,22 +89,27 @@ def _recorded(path: Path, own: ChosenLaws, settings: Mapping[str, Any]) -> Varia
 
 def _other_heights(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
     """That files hold other heights than when the record was made, those that settings replace left out."""
-    if any(key.split(".")[:2] in (["film"], ["film", "heights"]) for key in settings):
-        return
-    for which in MEMBERS:
-        yield from _other_file(record, "film", f"heights.{which}.", "heights")
+    for key in _by_key(record):
+        film, _, which = key.partition(".heights.")
+        replaced = any(one == film or one.startswith(f"{film}.heights") for one in settings)
+        if which.endswith(".digest") and not replaced:
+            yield from _other_file(record, key.removesuffix("digest"), "heights")
 
 
 def _other_wear(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
     """That a file holds other worn flanks than when the record was made, unless settings name one."""
     if not any(key.split(".")[0] == "worn" for key in settings):
-        yield from _other_file(record, "worn", "", "worn flanks")
+        yield from _other_file(record, "worn.", "worn flanks")
 
 
-def _other_file(record: Manifest, table: str, place: str, what: str) -> Iterator[str]:
-    """That a file that a table names at a place holds something else than when the record was made."""
-    rows = {row.key: row.value for row in record.inputs if row.table == table}
-    file, then = (rows.get(f"{place}{key}") for key in ("file", "digest"))
+def _by_key(record: Manifest) -> dict[str, Any]:
+    """Inputs by dotted key."""
+    return {f"{row.table}.{row.key}": row.value for row in record.inputs}
+
+
+def _other_file(record: Manifest, place: str, what: str) -> Iterator[str]:
+    """That a file that stands at a place holds something else than when the record was made."""
+    file, then = (_by_key(record).get(f"{place}{key}") for key in ("file", "digest"))
     now = digest_of(file) if isinstance(file, str) and then else ""
     if now and now != then:
         name = visible(shorten(os.path.basename(str(file))))

@@ -585,7 +585,8 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
 
 def _names_file(row: Mapping[str, Any]) -> bool:
     """True for the name of a file: what it holds counts, see `_held`, not where it lies."""
-    return row["table"] in ("film", "worn") and row["key"].split(".")[-1] == "file"
+    *above, last = f"{row['table']}.{row['key']}".split(".")
+    return last == "file" and bool({"film", "worn"} & {*above})
 
 
 def _held(manifest: Mapping[str, Any]) -> list[str]:

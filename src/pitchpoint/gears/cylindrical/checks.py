@@ -1022,9 +1022,10 @@ def _undercut_warning(pair: _Pair, gear: _Gear) -> Doubt:
         if lost > 0.0
         else ("loses no contact ratio", f"{circle} lies below the path of contact")
     )
+    thinned = "with teeth thinned for the backlash " if pair.thinned else ""
     return Doubt(
-        f"The undercut of {gear.name} {loses}; its profile shift {gear.profile_shift:.4g} is below the limit "
-        f"{gear.undercut_limit:.4g}, and {ends}.",
+        f"The undercut of {gear.name} {loses}; {thinned}its profile shift {gear.profile_shift:.4g} is below "
+        f"the limit {gear.undercut_limit:.4g}, and {ends}.",
         moves=max(lost / float(pair.contact_ratio), REMARKED),
         brief=f"The undercut of {gear.name} {loses}.",
     )

@@ -413,16 +413,17 @@ def of_grid(
 def _finer(off: float, grid: tuple[int, ...], most: int, falls: float) -> tuple[str, str]:
     """What to do about films that are off by so much, and the same in few words."""
     nodes, *cells = grid
-    room = int(log2((most - 1) / max(nodes - 1, *cells, 1)))
-    doubled = min(ceil(log(off / COARSE) / log(1.0 / falls)), room)
-    if not room:
-        return f"{most} nodes are the most", "no finer one"
+    possible = int(log2((most - 1) / max(nodes - 1, *cells, 1)))
+    doubled = min(ceil(log(off / COARSE) / log(1.0 / falls)), possible)
+    if not possible:
+        which = "cells" if cells and cells[0] > nodes - 1 else "nodes"
+        return f"{most - (which == 'cells')} {which} are the most", "no finer one"
     enough = f"{2**doubled * (nodes - 1) + 1} nodes"
     whole = enough + "".join(f" and {2**doubled * number} cells" for number in cells)
     left = off * falls**doubled
     if left <= COARSE:
         return f"{whole} bring that below {100.0 * COARSE:g} %", f"take {enough}"
-    return f"{whole}, the most, leave {100.0 * left:.2g} % of it at worst", f"take {enough}"
+    return f"{whole}, the most, leave {100.0 * left:.2g} % at worst", f"take {enough}"
 
 
 def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[Doubt]:

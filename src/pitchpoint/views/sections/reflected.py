@@ -38,7 +38,14 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
 
 
 def _nominal(data: xr.Dataset) -> Iterator[str]:
-    """Stages without tolerances."""
+    """Stages without tolerances, or without a backlash by their teeth."""
+    unknown = json.loads(data.attrs["without_backlash"])
+    if unknown:
+        listed = " and ".join(map(str, unknown))
+        yield (
+            f"No backlash at the output: that of stage {listed} does not follow from the thickness of teeth; "
+            "what plays without load stands under torsion."
+        )
     numbers = json.loads(data.attrs["without_tolerances"])
     if numbers and "output_backlash" in data:
         listed = " and ".join(map(str, numbers))
