@@ -890,7 +890,7 @@ def bad_stages() -> Iterator[Bad]:
         ),
         ("gears too", ("gears",), BASE["gears"], ("was given with [[stages]]",), "gears: "),
         ("dynamics", ("dynamics",), {}, ("computed for one mesh",), "dynamics: "),
-        ("film", ("film",), {"solver": "line"}, ("solved for one mesh",), "film: "),
+        ("film", ("film",), {"solver": "line"}, ("films are those of a mesh; give a stage",), "film: "),
         (
             "left",
             (*second, "flank"),
@@ -1037,7 +1037,7 @@ def bad_drives() -> Iterator[Bad]:
 
 def bad_loss_sets() -> Iterator[Bad]:
     for name, given, words in [
-        ("misspelt", "strain_wave_componet", ("did you mean strain_wave_component?",)),
+        ("misspelt", "strain_wave_componet", ("did you mean strain_wave_component",)),
         ("a number", 3, ("3 is not the name of a set of losses", "strain_wave_component")),
         ("a list", LIST, ("is not the name of a set of losses",)),
     ]:
