@@ -252,6 +252,7 @@ def allowance_for(
 
     Example:
         >>> from math import radians
+        >>> from pitchpoint.gears.cylindrical.inspection import Toothing
         >>> gear = Toothing(20, 1e-3, radians(20.0), 0.0, 0.0)
         >>> round(1e6 * allowance_for(gear, gear, 0.02, 70e-6), 3)
         -35.0
@@ -267,6 +268,7 @@ def distance_without_backlash(first: Toothing, second: Toothing) -> float:
 
     Example:
         >>> from math import radians
+        >>> from pitchpoint.gears.cylindrical.inspection import Toothing
         >>> gear = Toothing(20, 1e-3, radians(20.0), 0.0, 0.0)
         >>> round(distance_without_backlash(gear, gear), 9)
         0.02
