@@ -99,6 +99,7 @@ def test_a_slow_line_whose_crown_leaves_nearly_sharp_ends_is_solved_from_anywher
     spacing = found.film.x[1] - found.film.x[0]
     carried = float(area @ np.sum(found.film.pressure, axis=1)) * spacing
     assert carried == pytest.approx(float(slow.load), rel=1e-6)
+    assert any("with bounds on what flows" in text for text in found.warnings)
     row = found.film.pressure.shape[0] // 2
     rolling = {
         "radius": 0.046,

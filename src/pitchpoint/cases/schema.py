@@ -2241,8 +2241,10 @@ def _quoted(options: str) -> list[str]:
 def _meant(place: Sequence[str], known: Collection[str], model: type[BaseModel]) -> str:
     """End of a sentence on a key that its table does not have: its neighbours, or the tables that have it."""
     key = place[-1]
+    if place[0] == STAGES and len(place) > 2:
+        return _meant(place[2:], known, StageTable)
     tables = [
-        f"[{name}]"
+        f"[[{name}]]" if name == STAGES else f"[{name}]"
         for name, info in model.model_fields.items()
         if name not in ("formulas", *place[:-1])
         and any(key in form.model_fields for form in forms(info.annotation))

@@ -565,6 +565,14 @@ def _warnings(
     errors = np.array([[ended.grid], [ended.grid_minimum]])
     yield from of_patches(errors, (nodes, rows), line=contact.length is not None)
     yield from _of_end(contact, film)
+    if layout.bounded:
+        yield Doubt(
+            "the film was found with bounds on what flows where it begins or ends within a cell, and without "
+            "them not: rolling resistance may be off by some 20 %; more nodes may do without them",
+            "bounded",
+            1.0,
+            brief="film found with bounds at its ends: take more nodes",
+        )
     if film.heat is not None:
         peclet = np.array([[film.heat.peclet_a], [film.heat.peclet_b]])
         slowest = [[np.min(np.abs(one))] for one in (contact.speed_a, contact.speed_b)]
