@@ -568,7 +568,7 @@ def _warnings(
     if layout.bounded:
         yield Doubt(
             "the film was found with bounds on what flows where it begins or ends within a cell, and without "
-            "them not: rolling resistance may be off by some 20 %; more nodes may do without them",
+            "them not: of a ball that has both films they moved rolling by 16 %; more nodes may do without",
             "bounded",
             1.0,
             brief="film found with bounds at its ends: take more nodes",
