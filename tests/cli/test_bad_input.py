@@ -890,7 +890,13 @@ def bad_stages() -> Iterator[Bad]:
         ),
         ("gears too", ("gears",), BASE["gears"], ("was given with [[stages]]",), "gears: "),
         ("dynamics", ("dynamics",), {}, ("computed for one mesh",), "dynamics: "),
-        ("film", ("film",), {"solver": "line"}, ("films are those of a mesh; give a stage",), "film: "),
+        (
+            "film",
+            ("film",),
+            {"solver": "line"},
+            ("films are those of a mesh; give a stage",),
+            "film: ",
+        ),
         (
             "left",
             (*second, "flank"),
