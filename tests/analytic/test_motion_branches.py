@@ -173,6 +173,7 @@ def test_films_of_a_motion_are_those_of_its_forces_and_speeds():
 # ---- modes
 
 
+@pytest.mark.whole
 def test_modes_of_a_pair_on_bearings_are_those_of_springs_in_line():
     """Frequencies and damping by the roots of the whole system; across the line of action in closed form."""
     masses, spring, brake = (2.0, 4.0), 2e8, 400.0

@@ -234,6 +234,7 @@ def test_a_coefficient_of_ones_own_does_away_with_the_free_volume():
     )
 
 
+@pytest.mark.whole
 def test_slope_of_the_viscosity_against_differences():
     oil = lubricants.find("pao-vg-100").build()
     T = np.array([300.0, 330.0, 370.0])
@@ -241,6 +242,7 @@ def test_slope_of_the_viscosity_against_differences():
     assert np.asarray(oil.viscosity_slope(T)) == pytest.approx((behind - ahead) / 2e-3, rel=1e-8)
 
 
+@pytest.mark.whole
 def test_an_oil_of_the_catalogue_under_pressure():
     oil = lubricants.find("mineral-vg-100").build()
     T = np.array([313.15, 353.15])
