@@ -9,6 +9,7 @@ and cells to the same tolerance, with splines and springs that it is given or co
 pair. Seconds are of the processor; compile time is told apart. Both find the same depths.
 """
 
+import dataclasses
 import statistics
 import time
 from collections.abc import Callable
@@ -31,7 +32,7 @@ from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
-from pitchpoint.wear.history import WearModel, as_new, one_turn
+from pitchpoint.wear.history import Cells, WearModel, as_new, one_turn
 from pitchpoint.wear.laws import archard_1953
 from pitchpoint.wear.march import Limit, Rate, after
 from pitchpoint.wear.march import as_new as unworn
@@ -117,15 +118,21 @@ def as_rival(given: Given) -> rival.Pair:
     )
 
 
+def alone(cells: Cells) -> Cells:
+    """Cells without places under the contacts, whose depths the rival does not hold."""
+    return dataclasses.replace(cells, places=0, nearest=None)
+
+
 def curve(given: Given) -> np.ndarray:
-    """Depths of one drive over its life, step by step as a case does."""
+    """Depths of one drive over its life, step by step as a case does but for places under its contacts."""
     design, operation, wear = given
     start, cells = as_new(design, operation, MODELS, parts=PARTS, count=CELLS)
+    cells = alone(cells)
 
     def rate(depth: np.ndarray) -> Rate:
         return Rate.of(one_turn(design, operation, MODELS, wear, cells, start, array(depth)))
 
-    state = unworn(rate, (2, cells.count, cells.strips))
+    state = unworn(rate, cells.shape)
     first = state.rate.pressure
     while not state.end:
         state = after(state, rate, Limit(TURNS), start=first, tolerance=TOLERANCE)
@@ -144,6 +151,7 @@ def main() -> None:
     given = drives(count)
     pairs = [as_rival(of(given, number)) for number in range(count)]
     _, cells = as_new(*of(given, 0)[:2], MODELS, parts=PARTS, count=CELLS)
+    cells = alone(cells)
     limits = jnp.full(count, TURNS), jnp.full(count, jnp.inf), array(TOLERANCE)
 
     def together() -> Any:
