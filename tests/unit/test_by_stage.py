@@ -66,3 +66,11 @@ def test_numbers_that_all_stages_have_stay_a_coordinate() -> None:
     assert whole["phase"].dims == ("phase",)
     assert whole["load"].dims == ("stage", "phase", "case")
     assert whole["steps"].dtype.kind == "i"
+
+
+def test_a_dimension_of_one_stage_alone_stays_its_own() -> None:
+    more = stage([0.5], ["nominal"], share=(("order",), [0.2, 0.8])).assign_coords(order=[1.0, 2.0])
+    whole = by_stage({1: stage([0.5], ["nominal"]), 2: more})
+    assert whole["order"].values.tolist() == [1.0, 2.0]
+    assert of_stage(whole, 2).drop_attrs().identical(more.drop_attrs())
+    assert "share" not in of_stage(whole, 1)

@@ -38,13 +38,12 @@ def by_stage(each: Mapping[int, xr.Dataset]) -> xr.Dataset:
     stages have the same ones. What a stage has less is not a number, no text or false.
     """
     stages = [*each.values()]
-    labels, apart = _texts(stages), _apart(stages)
+    labels, apart, own_texts = _texts(stages), _apart(stages), [_texts([one]) for one in stages]
+    sizes = _sizes(stages, labels)
     names = dict.fromkeys(name for data in stages for name in data.variables if name not in labels)
-    indices = [name for name in names if name in stages[0].dims and name not in apart]
+    indices = [name for name in names if name in sizes and name not in apart]
     stacked = {
-        name: _stacked(
-            [data.variables.get(name) for data in stages], _sizes(stages, labels), labels, stages
-        )
+        name: _stacked([data.variables.get(name) for data in stages], sizes, labels, own_texts)
         for name in names
         if name not in indices
     }
@@ -105,7 +104,7 @@ def _of_its_own(data: xr.Dataset) -> dict[str, Any]:
     """What a stage has of its own."""
     return {
         "sizes": dict(data.sizes),
-        "texts": {dim: texts[dim] for texts in [_texts([data])] for dim in texts},
+        "texts": _texts([data]),
         "variables": {
             name: (
                 values.dims,
@@ -147,7 +146,7 @@ def _numbers(data: xr.Dataset, dim: Hashable) -> tuple[float, ...]:
 
 def _longest(dim: Hashable, stages: Sequence[xr.Dataset]) -> xr.Variable:
     """The coordinate that all stages have which have its dimension."""
-    return next(data.variables[dim] for data in stages if dim in data.sizes)
+    return next(data.variables[dim] for data in stages if dim in data.variables)
 
 
 def _sizes(stages: Sequence[xr.Dataset], labels: Labels) -> dict[Hashable, int]:
@@ -161,7 +160,7 @@ def _stacked(
     each: Sequence[xr.Variable | None],
     sizes: Mapping[Hashable, int],
     labels: Labels,
-    stages: Sequence[xr.Dataset],
+    own_texts: Sequence[Labels],
 ) -> tuple[tuple[Hashable, ...], np.ndarray, dict[Any, Any]]:
     """Dimensions, values and attributes of a variable of all stages; a stage may not have it."""
     there = [variable for variable in each if variable is not None]
@@ -171,10 +170,9 @@ def _stacked(
     empty = _EMPTY.get(kinds.kind, np.nan)
     kinds = kinds if full or kinds.kind in _EMPTY else np.result_type(kinds, float)
     rows = np.full((len(each), *shape), empty if not full else kinds.type(), kinds)
-    for number, (variable, data) in enumerate(zip(each, stages, strict=True)):
+    for number, (variable, texts) in enumerate(zip(each, own_texts, strict=True)):
         if variable is not None:
-            own = _texts([data])
-            places = [_places(dim, data.sizes[dim], own, labels) for dim in dims]
+            places = [_places(dim, variable.sizes[dim], texts, labels) for dim in dims]
             rows[(np.array(number).reshape((1,) * len(dims)), *np.ix_(*places))] = variable.values
     return dims, rows, dict(there[0].attrs)
 
