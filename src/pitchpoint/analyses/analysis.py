@@ -24,6 +24,7 @@ __all__ = [
     "Several",
     "Subject",
     "Unasked",
+    "has_key",
     "of_gears_with",
     "of_stages",
     "silent",
@@ -51,6 +52,11 @@ class Unasked(str):
     """A reason why a part does not exist that lies in what the case file asks for, not in its gears."""
 
 
+def has_key(built: Built, key: str) -> bool:
+    """True if the table `[gears]` of a mesh has a key, given or not."""
+    return key in type(built.case.gears).model_fields
+
+
 def of_gears_with(key: str, told: str) -> Callable[[Built], str | None]:
     """What an analysis lacks that is for gears whose table `[gears]` has a key, given or not.
 
@@ -60,7 +66,7 @@ def of_gears_with(key: str, told: str) -> Callable[[Built], str | None]:
     """
 
     def lacks(built: Built) -> str | None:
-        return None if key in type(built.case.gears).model_fields else Unasked(told)
+        return None if has_key(built, key) else Unasked(told)
 
     return lacks
 

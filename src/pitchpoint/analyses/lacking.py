@@ -1,6 +1,6 @@
 """Why a part of a result does not exist for a case; asked of every case, so that nothing is computed here."""
 
-from pitchpoint.analyses.analysis import Unasked
+from pitchpoint.analyses.analysis import Unasked, has_key
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.loading.registry import LOAD_SHARING
@@ -106,6 +106,6 @@ def no_deviations(built: Built) -> str | None:
         return None
     if not built.transmits:
         return "a test rig has no teeth"
-    if "deviations" not in type(built.case.gears).model_fields:
+    if not has_key(built, "deviations"):
         return "deviations of the teeth of these gears are not among the keys of a case"
     return Unasked("the teeth have no deviations around their gears")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Piece, Progress, silent
+from pitchpoint.analyses.analysis import Piece, Progress, has_key, silent
 from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.inspection import CASES, inspection_part
 from pitchpoint.cases.build import Built
@@ -46,7 +46,9 @@ def reflected_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
         built: the case.
     """
     numbered = dict(zip(built.numbers, built.meshes, strict=True))
-    inspected = {n: inspection_part(mesh) for n, mesh in numbered.items() if _cylindrical(mesh)}
+    inspected = {
+        n: inspection_part(mesh) for n, mesh in numbered.items() if has_key(mesh, "inspection")
+    }
     bodies = [
         body
         for (number, mesh), entering in zip(numbered.items(), built.motion[:-1], strict=True)
@@ -74,11 +76,6 @@ def reflected_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
         without_backlash=[n for n in numbered if n not in inspected],
         without_tolerances=[n for n, data in inspected.items() if data.sizes["case"] == 1],
     )
-
-
-def _cylindrical(mesh: Built) -> bool:
-    """True if the teeth of a mesh are inspected."""
-    return "inspection" in type(mesh.case.gears).model_fields
 
 
 def _bodies(number: int, mesh: Built, entering: float, inspected: Inspections) -> list[_Moving]:

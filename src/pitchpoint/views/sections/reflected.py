@@ -34,10 +34,10 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
         row = (f"turn of the output, the input held [{unit}]", *cells)
         yield Table(heads, [row], compact=True)
     yield Table(_heads(data), _rows(data), compact=True)
-    yield Paragraph(" ".join([_ASSUMED, *_nominal(data)]), "note")
+    yield Paragraph(" ".join([_ASSUMED, *_of_backlash(data)]), "note")
 
 
-def _nominal(data: xr.Dataset) -> Iterator[str]:
+def _of_backlash(data: xr.Dataset) -> Iterator[str]:
     """Stages without tolerances, or without a backlash by their teeth."""
     unknown = json.loads(data.attrs["without_backlash"])
     if unknown:
