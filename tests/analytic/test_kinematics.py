@@ -2,50 +2,17 @@
 
 import re
 from fractions import Fraction
-from functools import cache
 
-import equinox as eqx
 import numpy as np
 import pytest
+from trains import link, planetary, three_k
 
-from pitchpoint._jax import jnp
-from pitchpoint.drive.kinematics import HOUSING, Ends, Link, body_rates
+from pitchpoint.drive.kinematics import Ends, Link, body_rates
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 
 SEED = 20261126
-
-
-@cache
-def external():
-    return build_cylindrical_pair(
-        teeth=(24, 30), module=2e-3, pressure_angle=np.deg2rad(20.0), face_width=0.02
-    )
-
-
-def pair(first, second):
-    """A pair of which the tooth numbers alone count here; rings have a negative one."""
-    return eqx.tree_at(lambda mesh: mesh.teeth, external(), jnp.asarray([first, second], float))
-
-
-def link(first, second, bodies, carrier=HOUSING):
-    return Link(pair(first, second), bodies, carrier)
-
-
-def planetary(sun, planet, ring):
-    return [
-        link(sun, planet, ("sun", "planet"), "carrier"),
-        link(planet, -ring, ("planet", "ring"), "carrier"),
-    ]
-
-
-def three_k(sun, planet, ring, second_planet, second_ring):
-    return [
-        *planetary(sun, planet, ring),
-        link(second_planet, -second_ring, ("planet", "output ring"), "carrier"),
-    ]
 
 
 def ratio_of_three_k(sun, planet, ring, second_planet, second_ring):

@@ -97,7 +97,7 @@ class Design(eqx.Module):
         *,
         load: Lanes,
         nominal_load: Each,
-        rates: Float[Array, "dof *b"] | None = None,
+        rates: Float[Array, "dof *#b"] | None = None,
     ) -> Conditions:
         """Conditions at the contacts, for laws of friction and film.
 

@@ -542,6 +542,27 @@ class InvolutePair(Mesh):
             shape=self.shape,
         )
 
+    def tooth_angles(self, phase: Float[Array, "*b"]) -> Float[Array, "2 *b"]:
+        """Angle about its axis of the middle of a tooth of each gear whose flanks touch [rad].
+
+        In the middle of the face, counter-clockwise from the direction in which the pitch point lies from the
+        axis of gear 1, and from that in which it lies from the axis of gear 2.
+
+        Args:
+            phase: of the mesh [periods].
+
+        From the involutes that begin where the line of action unwinds from the base circles.
+        """
+        line = self.line
+        path = line.limits[0] + (phase - line.overlap_ratio / 2.0) * line.base_pitch
+        rolled = path / line.base_radii[0], (line.tangent_length - path) / line.base_radii[1]
+        return self._side * jnp.stack(
+            [
+                roll - self.working_pressure_angle - gear.side * gear.half_thickness_angle(base)
+                for roll, gear, base in zip(rolled, self.gears, line.base_radii, strict=True)
+            ]
+        )
+
     @property
     def other_flanks(self) -> Self:
         """The same gears on their other flanks, which lie back by the backlash."""

@@ -1,0 +1,110 @@
+"""How planets stand between their mates: phases of their meshes, and whether they fit in."""
+
+from collections.abc import Sequence
+from math import pi
+
+import numpy as np
+from jaxtyping import Float
+
+from pitchpoint._jax import array
+from pitchpoint.drive.kinematics import Link
+from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
+
+__all__ = ["equal_angles", "planet_phases"]
+
+FITS = 1e-6
+"""Part of a pitch by which a planet may miss a tooth space: that of rounding, not of play."""
+
+Body = tuple[str, int]
+"""A body by name and number."""
+
+Teeth = tuple[float, float]
+"""Angle of the middle of a tooth against the carrier, and pitch with the sense of its turning [rad]."""
+
+
+def equal_angles(count: int) -> Float[np.ndarray, " copy"]:
+    """Angles of planets that stand all around, the first one at zero [rad]."""
+    return 2.0 * pi * np.arange(count) / count
+
+
+def planet_phases(
+    links: Sequence[Link], planets: Sequence[str], angles: Float[np.ndarray, " copy"]
+) -> list[Float[np.ndarray, " copy"]]:
+    """Phases of all meshes of planets, where the first planet enters its first mesh.
+
+    Gears of a stepped planet have the middle of a tooth in one line.
+
+    Args:
+        links: pairs of involute gears, of which one is on a planet and the other one central; each has a body
+            in common with those before it.
+        planets: bodies of which there are several.
+        angles: at which they stand about the axis of their carrier [rad].
+
+    Returns:
+        Phases of the copies of each mesh [periods].
+
+    Raises:
+        InputError: planets do not fit in at these angles; a mesh that is not of a planet and a central gear.
+
+    From the positions of all teeth against the carrier: what one mesh tells of a body holds in the next.
+    """
+    settled: dict[Body, Teeth] = {}
+    found = []
+    for link in links:
+        phases = [_fitted(link, planets, one, settled) for one in enumerate(angles.tolist())]
+        found.append(np.array(phases) % 1.0)
+    return found
+
+
+def _fitted(
+    link: Link, planets: Sequence[str], place: tuple[int, float], settled: dict[Body, Teeth]
+) -> float:
+    """Phase of the mesh of one planet, whose bodies stand as is settled; those that are not, are so by it."""
+    copy, angle = place
+    keys = [(body, copy if body in planets else 0) for body in link.bodies]
+    every = dict(zip(keys, _teeth(link, planets, angle), strict=True))
+    standing = [key for key in keys if key in settled]
+    if settled and not standing:
+        raise InputError(
+            f"the mesh of {' and '.join(link.bodies)} has no body in common with those before it"
+        )
+    phase = missed = 0.0
+    if standing:
+        # A planet can be put in by any of its teeth; with a second gear of other teeth that counts.
+        first = min(standing, key=lambda key: key[0] not in planets)
+        (start, turn), (at, pitch) = every[first], settled[first]
+        ways = round(2.0 * pi / abs(pitch)) if abs(abs(pitch) - abs(turn)) > FITS else 1
+        phases = (at + np.arange(ways) * pitch - start) / turn
+        apart = np.zeros(ways)
+        for key in standing[1:] if first == standing[0] else standing[:1]:
+            off = (every[key][0] + every[key][1] * phases - settled[key][0]) / settled[key][1]
+            apart = np.abs(off - np.round(off))
+        best = int(np.argmin(apart))
+        phase, missed = float(phases[best]), float(apart[best])
+        settled[first] = at + best * pitch, pitch
+    if missed > FITS:
+        (central,) = (body for body in link.bodies if body not in planets)
+        raise InputError(
+            f"the planets do not fit in at these angles: number {copy + 1} misses the teeth of the {central} "
+            f"by {missed:.3g} of a pitch"
+        )
+    for key, (start, turn) in every.items():
+        settled.setdefault(key, (start + turn * phase, turn))
+    return phase
+
+
+def _teeth(link: Link, planets: Sequence[str], angle: float) -> list[Teeth]:
+    """Angle of a tooth of each body of a mesh at phase zero, and how far it turns in a period."""
+    mesh = link.mesh
+    if not isinstance(mesh, InvolutePair) or sum(body in planets for body in link.bodies) != 1:
+        raise InputError(
+            f"the mesh of {' and '.join(link.bodies)} is not one of a planet and a central gear with "
+            "involute teeth"
+        )
+    start, end = (np.asarray(mesh.tooth_angles(array(phase))) for phase in (0.0, 1.0))
+    # A planet sees the pitch point towards the axis, unless its mate is a ring.
+    seen = [angle + pi * (body in planets and not mesh.internal) for body in link.bodies]
+    return [
+        (float(at + view), float(to - at)) for at, to, view in zip(start, end, seen, strict=True)
+    ]

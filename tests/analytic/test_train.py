@@ -1,0 +1,219 @@
+"""Planetary trains by their contacts: independent numbers, phases, equilibrium, one pair as the smallest."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from pitchpoint._jax import jnp
+from pitchpoint.drive.assembly import equal_angles, planet_phases
+from pitchpoint.drive.kinematics import Ends, Link
+from pitchpoint.drive.torques import train_torques
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.efficiency.train import gear_train, train_cycle
+from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
+
+STEEL = solids.find("steel").build()
+OIL = lubricants.find("pao-vg-220").build()
+POINT = Operation(*map(jnp.asarray, (100.0, 150.0, 330.0)))
+TO_CARRIER = Ends({"sun": 1.0}, ("ring",), "carrier")
+
+
+def models(law, rolling="none", **own):
+    (chosen,) = (one for one in LAWS if one.name == law)
+    values = {law: {name: jnp.asarray(value) for name, value in own.items()}} if own else {}
+    return Models(
+        (chosen,), jnp.asarray(0), values, LOAD_SHARING["equal"], ROLLING_RESISTANCE[rolling]
+    )
+
+
+def constant(mu):
+    return models("constant", coefficient=mu)
+
+
+@cache
+def design(teeth, shift=(0.0, 0.0), *, right=False, module=2e-3, distance=None):
+    pair = build_cylindrical_pair(
+        teeth=teeth,
+        module=module,
+        pressure_angle=np.deg2rad(20.0),
+        face_width=0.02,
+        profile_shift=shift,
+        tip_alteration=(0.0, 0.0),
+        centre_distance=distance,
+        right_flank=right,
+    )
+    return Design(pair, (STEEL, STEEL), OIL, Roughness.from_composite_rq(0.4e-6))
+
+
+def meshes(sun, planet, ring, shift=0.0, *, turned=False):
+    """Designs and links of a planetary; the sun pushes one flank of a planet, and the ring the other one."""
+    designs = [
+        design((sun, planet), (0.0, shift), right=turned),
+        design((planet, -ring), (shift, 0.0), right=not turned),
+    ]
+    links = [
+        Link(designs[0].mesh, ("sun", "planet"), "carrier"),
+        Link(designs[1].mesh, ("planet", "ring"), "carrier"),
+    ]
+    return designs, links
+
+
+def planetary(teeth, angles, ends=TO_CARRIER, *, turned=False):
+    designs, links = meshes(*teeth, turned=turned)
+    phases = planet_phases(links, ("planet",), angles)
+    return gear_train(links, designs, ends, planets=("planet",), phases=phases)
+
+
+def solved(train, mu, point=POINT):
+    return train_cycle(train, point, [constant(mu)] * len(train.meshes))
+
+
+@pytest.mark.parametrize(("mu", "asked"), [(0.05, 0.99114646), (0.1, 0.98239193)])
+def test_a_planetary_has_the_efficiency_of_a_computation_tooth_by_tooth(mu, asked):
+    found = solved(planetary((24, 30, 84), equal_angles(3)), mu)
+    assert float(found.mean_efficiency) == pytest.approx(asked, rel=3e-6)
+    assert not bool(found.locked)
+
+
+@pytest.mark.parametrize(("teeth", "ripple"), [((24, 30, 84), 0.972), ((25, 29, 83), 0.247)])
+def test_phases_of_the_planets_make_the_ripple(teeth, ripple):
+    found = solved(planetary(teeth, equal_angles(3)), 0.05)
+    assert 100.0 * float(found.ripple / found.mean(found.input_torque)) == pytest.approx(
+        ripple, rel=0.03
+    )
+
+
+def order(found, number):
+    """Part of an order of the mesh frequency in the torque of the sun, of its mean."""
+    angle = 2.0 * jnp.pi * number * found.phase
+    parts = [found.mean(found.input_torque * wave(angle)) for wave in (jnp.cos, jnp.sin)]
+    return float(jnp.hypot(*parts) / found.mean(found.input_torque))
+
+
+def test_orders_that_phases_cancel_do_not_reach_the_sun():
+    """25 teeth are no multiple of 3: orders whose number is none either cancel (Parker 2000)."""
+    found = solved(planetary((25, 29, 83), equal_angles(3)), 0.05)
+    assert max(order(found, number) for number in (1, 2, 4, 5)) < 1e-8
+    assert min(order(found, number) for number in (3, 6)) > 1e-5
+
+
+def test_torques_are_in_equilibrium_and_power_is_lost_in_contacts():
+    found = solved(planetary((25, 29, 83), equal_angles(3)), 0.1)
+    torques = np.array([*found.torques.values()])
+    np.testing.assert_allclose(torques.sum(0), 0.0, atol=1e-12 * np.abs(torques).max())
+    np.testing.assert_allclose(
+        found.input_power - found.output_power, found.loss, rtol=1e-9, atol=1e-9
+    )
+    assert set(found.torques) == {"sun", "carrier", "ring"}
+
+
+def test_numbers_of_planets_and_the_way_round_change_nothing():
+    angles = equal_angles(3)
+    found = solved(planetary((25, 29, 83), angles), 0.05)
+    other = solved(planetary((25, 29, 83), angles[[0, 2, 1]]), 0.05)
+    assert float(other.mean_efficiency) == pytest.approx(float(found.mean_efficiency), rel=1e-13)
+    assert float(other.ripple) == pytest.approx(float(found.ripple), rel=1e-9)
+    # Seen from behind all turns the other way, and the other flanks touch.
+    back = Ends({"sun": -1.0}, ("ring",), "carrier")
+    turned = solved(planetary((25, 29, 83), angles, back, turned=True), 0.05)
+    assert float(turned.mean_efficiency) == pytest.approx(float(found.mean_efficiency), rel=1e-13)
+    assert float(turned.ripple) == pytest.approx(float(found.ripple), rel=1e-9)
+
+
+def test_meshes_of_one_planet_stand_half_a_pitch_apart_where_its_teeth_are_even():
+    """At their pitch points (pi - s/r) z/2 pi: 1/2 for even, 0 for odd numbers of teeth without shift."""
+    for teeth, asked in (((24, 30, 84), 0.5), ((25, 29, 83), 0.0)):
+        designs, links = meshes(*teeth)
+        sun, ring = planet_phases(links, ("planet",), equal_angles(1))
+        paths = [float(one.mesh.line.pitch_path) for one in designs]
+        apart = ring[0] - paths[1] - (sun[0] - paths[0])
+        assert np.cos(2.0 * np.pi * (apart - asked)) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_mesh_of_its_own_is_the_cycle_of_its_pair():
+    pair = design((23, 61))
+    law = models("xu_2007", "wu_cheng_1991")
+    train = gear_train([Link(pair.mesh, ("in", "out"))], [pair], Ends({"in": 1.0}, loaded="out"))
+    found, asked = train_cycle(train, POINT, [law], 12), cycle(pair, POINT, law, 12)
+    assert float(found.mean_efficiency) == pytest.approx(float(asked.mean_efficiency), rel=1e-12)
+    assert float(found.ripple) == pytest.approx(float(asked.ripple), rel=1e-9)
+    assert float(found.mean(found.loss)) == pytest.approx(float(asked.mean_loss), rel=1e-11)
+    assert int(found.status.iterations) > 3
+
+
+def test_a_carrier_at_rest_is_a_chain_of_two_pairs():
+    """Willis with the mean efficiencies of its meshes: low by order mu squared, as a chain of means is."""
+    ends = Ends({"sun": 1.0}, ("carrier",), "ring")
+    train = planetary((24, 30, 84), equal_angles(3), ends)
+    found = solved(train, 0.05)
+    point = Operation(jnp.asarray(1.0), POINT.speed, POINT.temperature)
+    each = [cycle(one.design, point, constant(0.05)) for one in train.meshes]
+    product = float(np.prod([float(one.mean_efficiency) for one in each]))
+    assert float(found.mean_efficiency) == pytest.approx(product, abs=2e-5)
+    links = meshes(24, 30, 84)[1]
+    willis = train_torques(links, TO_CARRIER, 1.0, [float(one.mean_efficiency) for one in each])
+    lost = 1.0 - float(solved(planetary((24, 30, 84), equal_angles(3)), 0.05).mean_efficiency)
+    assert 1.0 - willis.efficiency == pytest.approx(lost, rel=0.01)
+
+
+@cache
+def three_k(turned, loaded, rate):
+    """18/36/90/34/88: its second ring turns on, as the sun does, and is driven by the first one's way."""
+    pushed = (False, True, False)
+    designs = [
+        design(teeth, right=right)
+        for teeth, right in zip(((18, 36), (36, -90), (34, -88)), pushed, strict=True)
+    ]
+    bodies = (("sun", "planet"), ("planet", "ring"), ("planet", "output ring"))
+    links = [Link(one.mesh, body, "carrier") for one, body in zip(designs, bodies, strict=True)]
+    phases = planet_phases(links, ("planet",), equal_angles(2))
+    ends = Ends({turned: rate}, ("ring",), loaded)
+    return links, gear_train(links, designs, ends, planets=("planet",), phases=phases)
+
+
+@pytest.mark.whole
+def test_a_3k_agrees_with_free_bodies_and_locks_where_they_do():
+    """Free bodies with mean efficiencies of the meshes are low by order mu squared."""
+    _, train = three_k("sun", "output ring", 1.0)
+    links, back = three_k("output ring", "sun", -1.0)
+    for mu, locks in ((0.02, False), (0.05, False), (0.6, True)):
+        there, returned = solved(train, mu), solved(back, mu)
+        each = [
+            float(cycle(one.design, POINT, constant(mu)).mean_efficiency) for one in train.meshes
+        ]
+        for found, (turned, loaded) in (
+            (there, ("sun", "output ring")),
+            (returned, ("output ring", "sun")),
+        ):
+            asked = train_torques(links, Ends({turned: 1.0}, ("ring",), loaded), 1.0, each)
+            assert bool(found.locked) == asked.locked == (locks and turned != "sun")
+            if not asked.locked:
+                lost = 1.0 - asked.efficiency
+                assert 1.0 - float(found.mean_efficiency) == pytest.approx(lost, rel=2.0 * mu)
+
+
+def test_planets_that_do_not_fit_in_are_refused_with_what_they_miss():
+    _, links = meshes(24, 30, 84)
+    planet_phases(links, ("planet",), equal_angles(4))
+    with pytest.raises(
+        InputError,
+        match=r"number 2 misses the teeth of the ring by 0\.4 of a pitch",
+    ):
+        planet_phases(links, ("planet",), equal_angles(5))
+    # Steps of 2 pi over the teeth of sun and ring together fit wherever they end.
+    steps = 2.0 * np.pi / 108.0
+    planet_phases(links, ("planet",), steps * np.array([0.0, 22.0, 43.0, 65.0, 86.0]))
+
+
+def test_other_flanks_and_losses_beside_teeth_are_refused():
+    designs, links = meshes(24, 30, 84, turned=True)
+    with pytest.raises(InputError, match="mesh of sun and planet presses its other flanks"):
+        gear_train(links, designs, TO_CARRIER)
+    with pytest.raises(InputError, match="2 bodies are turned"):
+        gear_train(links, designs, Ends({"sun": 1.0, "ring": 0.2}, (), "carrier"))
