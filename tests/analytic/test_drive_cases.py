@@ -12,7 +12,7 @@ from pitchpoint.analyses.analysis import Subject
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
 from pitchpoint.analyses.registry import ANALYSES, FOUR_QUADRANTS, INSPECTION, REFLECTED, TORSION
-from pitchpoint.cases.stages import BuiltDrive
+from pitchpoint.cases.built_drive import BuiltDrive
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.drive import drive_cycle
 from pitchpoint.efficiency.drive_summary import together

@@ -26,7 +26,7 @@ from pitchpoint.analyses.four_quadrants import (
 from pitchpoint.analyses.loss_map import maps
 from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.analyses.running import BANDS, RUNNING, from_rest
-from pitchpoint.cases.stages import Ready
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError

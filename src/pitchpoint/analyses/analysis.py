@@ -8,8 +8,8 @@ from typing import Any, Literal, Protocol
 import xarray as xr
 
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.cases.schema import Study
-from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import Doubt, doubts_of, stored
 from pitchpoint.registry import Deferred

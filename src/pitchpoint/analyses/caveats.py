@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import SPEED, TEMPERATURE
-from pitchpoint.cases.stages import Ready
 from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, fails, reworded
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh

@@ -11,7 +11,7 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, silent
 from pitchpoint.analyses.studies import more_of
 from pitchpoint.analyses.summaries import joined, summaries
-from pitchpoint.cases.stages import Ready
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError
 

@@ -16,8 +16,8 @@ from pitchpoint.analyses.figures import ERRORS, HOLDING, HOLDING_BANDS
 from pitchpoint.analyses.finer_map import finer_map
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
 from pitchpoint.analyses.running import creeping_speed, from_rest, has_spread, held_otherwise
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.schema import LossMap
-from pitchpoint.cases.stages import Ready
 from pitchpoint.doubts import Doubt, doubts_of
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.results.rounding import ROUNDING

@@ -12,7 +12,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.lacking import untransmitted, without_films
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.doubts import Doubt, doubts_of
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.film_map import FilmMap, film_map

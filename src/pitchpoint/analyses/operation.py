@@ -22,7 +22,7 @@ from pitchpoint.analyses.lacking import untransmitted
 from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.doubts import FELT, GUESSED, Doubt, doubts_of, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.results.store import without_nan
@@ -46,9 +46,10 @@ def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
 
 def _rated_below(built: BuiltDrive, data: xr.Dataset) -> list[str]:
     """Stages that carry more than what they are rated for, since those behind them lose power."""
-    # What a stage carries is what drives the one behind it, under the law that asks for most.
-    carried = data["stage_input_torque"].max(("law", "point")).values[1:].tolist()
-    stages = zip(built.numbers, built.stages, carried, strict=False)
+    names = ("stage_input_torque", "stage_efficiency")
+    worst = int(data["stage_input_torque"].sum("stage").isel(point=0).argmax("law"))
+    carried = built.carried_by_meshes({n: data[n].values[worst, 0] for n in names}).tolist()
+    stages = zip(built.numbers, built.stages, carried, strict=True)
     return [
         in_stage(number, doubt)
         for number, stage, torque in stages

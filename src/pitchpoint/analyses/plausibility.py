@@ -16,8 +16,8 @@ import xarray as xr
 from pitchpoint.analyses.caveats import conformal, rolling_share
 from pitchpoint.analyses.figures import holding, why_not
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.solids import SolidInUse
-from pitchpoint.cases.stages import Ready
 from pitchpoint.contact.contacts import Shape
 from pitchpoint.doubts import Doubt, fails, reworded
 from pitchpoint.input.quantities import Quantity

@@ -11,7 +11,7 @@ from pitchpoint.analyses.analysis import Piece, Progress, has_key, silent
 from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.inspection import CASES, inspection_part
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.stages import BuiltDrive
+from pitchpoint.cases.built_drive import BuiltDrive
 from pitchpoint.doubts import Doubt
 from pitchpoint.results.store import dataset
 

@@ -12,8 +12,8 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.lacking import untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.cases.schema import TEMPERATURE, Loss
-from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.doubts import Doubt
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive_summary import drive_figures
@@ -225,16 +225,9 @@ def _held(torques: np.ndarray) -> np.ndarray:
     return locked_or_lost(np.isnan(torques))
 
 
-def _places(built: Ready) -> tuple[Drag, ...]:
-    """Losses beside the teeth, of a drive those of its stages too."""
-    stages = built.design.stages if isinstance(built, BuiltDrive) else ()
-    return (*built.design.drag, *(drag for one in stages for drag in one.design.drag))
-
-
 def _unloaded(built: Ready) -> list[str]:
     """Starting torques without what mostly makes them."""
-    drags = _places(built)
-    if any(float(drag.preload) or drag.holds for drag in drags):
+    if any(float(drag.preload) or drag.holds for drag in built.drags):
         return []
     return [
         Doubt(
@@ -270,7 +263,7 @@ def _with(values: np.ndarray, one: float) -> np.ndarray:
 
 
 def _free(built: Ready) -> str | None:
-    told = None if _places(built) else Unasked("the case has no [losses] beside its teeth")
+    told = None if built.drags else Unasked("the case has no [losses] beside its teeth")
     return untransmitted(built) or told or without_formula(built)
 
 

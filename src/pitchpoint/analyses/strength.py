@@ -13,7 +13,7 @@ from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.doubts import Doubt, fails, in_stage
 from pitchpoint.efficiency.summary import in_chunks, in_groups
 from pitchpoint.gears.mesh import Mesh

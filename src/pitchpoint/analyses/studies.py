@@ -13,9 +13,9 @@ from pitchpoint.analyses.figures import by_law, json_figures
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import beside, joined, summaries
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.schema import Study, Sweep, quantity_at
-from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import Complaints, InputError, shorten
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown

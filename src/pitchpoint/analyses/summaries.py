@@ -17,7 +17,7 @@ from pitchpoint.analyses.caveats import (
     why_not_at,
 )
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.stages import Acting, BuiltDrive, Ready
+from pitchpoint.cases.built_drive import Acting, BuiltDrive, Ready
 from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, doubts_of, stored
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.profile import FINE, profile

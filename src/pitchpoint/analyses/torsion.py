@@ -14,7 +14,7 @@ from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.doubts import Doubt, in_stage
 from pitchpoint.efficiency.drag import at_rest, bearing_loads
@@ -60,17 +60,18 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
     Each adds its rotation times the ratio between it and the output, and carries the load times the
     same ratio. Of the phases the worst meeting counts.
     """
-    steps = np.abs(built.motion[-1] / np.array(built.motion[1:]))
+    steps, copies = built.steps, np.array(built.copies)
     unloaded = np.zeros(len(built.models))
     each = [
-        _torsion(one, torques * step, unloaded)
-        for one, step in zip(built.stages, steps, strict=True)
+        _torsion(one, torques * step / count, unloaded)
+        for one, step, count in zip(built.stages, steps, copies, strict=True)
     ]
 
     def at_output(name: str) -> np.ndarray:
         return np.stack([step * found[name] for step, found in zip(steps, each, strict=True)], -1)
 
-    slopes = np.stack([found["tangent_torsional_stiffness"] for found in each], -1) / steps**2
+    slopes = np.stack([found["tangent_torsional_stiffness"] for found in each], -1)
+    slopes *= copies / steps**2
     slope, turned = 1.0 / np.sum(1.0 / slopes, axis=-1), at_output("wind_up")
     told_parts = (one.design.mesh.yielding for one in built.stages)
     yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))

@@ -262,6 +262,26 @@ class Built:
         return [*self.case.losses]
 
     @property
+    def explored(self) -> tuple[str, Any]:
+        """Table of gears by which an explorer changes the case, with its key."""
+        return "gears", self.case.gears
+
+    @property
+    def averaging(self) -> str:
+        """What averages run over."""
+        return self.case.models.averaging
+
+    @property
+    def stage_bodies(self) -> list[str]:
+        """Bodies of each stage in words; none of one mesh."""
+        return []
+
+    @property
+    def drags(self) -> tuple[Drag, ...]:
+        """Places beside the teeth where power is lost."""
+        return self.design.drag
+
+    @property
     def applicable(self) -> list[FrictionLaw]:
         """Fitted friction laws of the library that hold for these contacts."""
         return [law for law in LAWS if law.sources and applies(law, self.design.mesh) is None]

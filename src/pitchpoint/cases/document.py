@@ -458,16 +458,18 @@ def _tables_merged(base: Tree, overlay: Tree) -> Tree:
     }
 
 
-def _of_gear(pair: Any, gear: str, value: Any) -> Any:
-    if gear not in ("1", "2"):
-        raise InputError(f"there is no gear {shorten(gear)}; use 1 or 2")
-    if isinstance(pair, dict):
-        pair = pair.get("value")
-    if pair is None:
+def _of_gear(values: Any, gear: str, value: Any) -> Any:
+    """Values of two gears, or of all of a set, with that of one of them replaced."""
+    if isinstance(values, dict):
+        values = values.get("value")
+    each = list(values) if isinstance(values, list | tuple) and len(values) > 1 else [values] * 2
+    known = [str(number) for number in range(1, len(each) + 1)]
+    if gear not in known:
+        raise InputError(f"there is no gear {shorten(gear)}; use {' or '.join(known)}")
+    if values is None:
         raise InputError(
             "is the value of one gear, and there is none for the other; give both as a list"
         )
     mark = value if isinstance(value, dict) else {"value": value}
-    both = list(pair) if isinstance(pair, list | tuple) and len(pair) == 2 else [pair, pair]
-    both[int(gear) - 1] = mark["value"]
-    return {**mark, "value": both}
+    each[int(gear) - 1] = mark["value"]
+    return {**mark, "value": each}

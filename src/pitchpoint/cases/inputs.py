@@ -9,12 +9,19 @@ from pydantic import BaseModel
 
 from pitchpoint._jax import array
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
 from pitchpoint.cases.height_maps import MEMBERS, digest_of
 from pitchpoint.cases.loss_sets import SET, marks_of
 from pitchpoint.cases.record import OUTPUT
-from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quantity_at
-from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.cases.schema import (
+    Case,
+    DriveCase,
+    FrictionChoice,
+    Study,
+    quantity_at,
+    with_meshes,
+)
 from pitchpoint.gears.family import Followed
 from pitchpoint.gears.table import SmallerOfTwo
 from pitchpoint.input.quantities import Quantity
@@ -163,19 +170,23 @@ def _mark(found: Followed) -> Provenance:
 
 def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
     """Rows of the stages, then those of the tables that they share."""
+    short = built.case.gears is not None  # for which the stages stand
+    document = with_meshes(document)
     for number, one, inside in zip(built.numbers, built.stages, built.documents, strict=True):
         own = document.tree[STAGES][str(number)]
         following = {"gears": one.following, "film": _of_films(one)}
         for table in ("gears", *(key for key in _OF_STAGE if key in own)):
             for row in _rows(one.case, inside, table, following.get(table)):
-                yield _in_stage(row, number, given=_holds(own, table, row["key"]))
+                holds = not short and _holds(own, table, row["key"])
+                follows = {"status": "derived"} if short and row["status"] == "given" else {}
+                yield _in_stage({**row, **follows}, number, given=holds)
         yield from (_in_stage(row, number, given=False) for row in _digests(one))
-        for key in ("driver", "place", "turn"):
-            if key in own:
+        for key in ("bodies", "driver", "place", "turn"):
+            if key in own and not short:
                 path, value = f"{number}.{key}", getattr(built.case.stages[str(number)], key)
                 mark = document.provenance.get(f"{STAGES}.{path}", Provenance())
                 yield _row(STAGES, path, value, _kind(f"{STAGES}.{path}", value), mark, given=True)
-    for table in _TABLES:
+    for table in _TABLES if short else ("train", *_TABLES):
         if table == "models":
             yield from _models(built, document)
         elif hasattr(built.case, table):

@@ -226,6 +226,7 @@ class Manifest(_Kept):
         own: name of a friction law of the user's own that took the place of those of the case, or empty.
         implausible: sentences on what cannot be, above every number.
         members: body of each coordinate.
+        of_stages: bodies of each stage in words, where stages are meshes of a train.
         motion: nominal rate of each coordinate for one radian of the driver.
         period: driver angle after which the mesh repeats [rad].
         pitch: what a period is.
@@ -251,6 +252,7 @@ class Manifest(_Kept):
     driver: str
     loaded: str
     members: list[str]
+    of_stages: list[str] = []
     motion: list[float]
     period: float
     pitch: str = "period"

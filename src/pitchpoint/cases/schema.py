@@ -1,6 +1,7 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import count, pairwise
 from math import inf, pi
@@ -34,6 +35,7 @@ from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import CollectedInputError, Complaints, InputError, shorten
 from pitchpoint.gears.families import Gears
+from pitchpoint.gears.planetary import PLANETARY, PLANETS, PlanetaryGears
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
@@ -1551,6 +1553,8 @@ class StageTable(Table):
     """Gears of the stage; their family decides what keys the table has."""
     driver: Text = ""
     """Member that the stage before drives; the first one that is not fixed unless given."""
+    bodies: Annotated[tuple[Text, ...], Field(max_length=3)] = ()
+    """Bodies of a [train] that its members are, in their order; a stage of a chain has none."""
     materials: Materials = Materials()
     """Materials of its gears; those of the drive unless given."""
     lubricant: Oil | None = None
@@ -1571,6 +1575,11 @@ class StageTable(Table):
     """Place of the middle of its face along the shafts."""
     turn: Annotated[float, TURN] = 0.0
     """Angle of its line of centres about the shafts, counter-clockwise."""
+
+
+def _listed(value: Any) -> Any:
+    """One text as a list of it."""
+    return [value] if isinstance(value, str) else value
 
 
 class _Numbered:
@@ -1599,6 +1608,27 @@ def _no_stage(key: str, given: Mapping[str, Any]) -> InputError:
     return InputError(f"there is no stage {before}{shown(key)}; use {allowed}")
 
 
+class TrainTable(Table):
+    """Which bodies of a train of meshes are turned, loaded and held, and where its planets are.
+
+    Every stage then names the `bodies` that it joins. Those that are on the planets have as many copies as
+    there are planets, at equal angles on the carrier.
+    """
+
+    input: Text
+    """Body that drives."""
+    output: Text
+    """Body that takes the load."""
+    held: Annotated[tuple[Text, ...], BeforeValidator(_listed), Field(max_length=4)] = ()
+    """Bodies that stand still, one or a list."""
+    carrier: Text = "carrier"
+    """Body that carries the axes of the planets."""
+    planet: Text = "planet"
+    """Body that the planets are."""
+    planets: Annotated[float, PLANETS] = 3.0
+    """Number of planets."""
+
+
 class DriveCase(Table):
     """A case file of a drive of several meshes on common shafts.
 
@@ -1612,8 +1642,12 @@ class DriveCase(Table):
     """What the case is, in a sentence or two."""
     source: Source = ""
     """Key of the publication that the case is from, in the bibliography."""
+    gears: PlanetaryGears | None = None
+    """Gears of a planetary set, in the place of the stages and the train that follow from them."""
     stages: Annotated[dict[str, StageTable], BeforeValidator(_stages), _Numbered()]
     """Meshes from the input to the output, each a table [[stages]]; at most 5."""
+    train: TrainTable | None = None
+    """Bodies of a train whose meshes turn together; stages follow each other unless given."""
     materials: Materials = Materials()
     """Materials of both gears; steel unless given."""
     lubricant: Oil
@@ -1643,7 +1677,10 @@ class DriveCase(Table):
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """Shafts from the input to the output; the last one may travel."""
+        """Shafts from the input to the output, of which the last one may travel; bodies of a train."""
+        if self.train is not None:
+            named = (body for one in self.stages.values() for body in one.bodies)
+            return tuple(dict.fromkeys((*named, self.train.carrier)))
         return tuple(f"shaft {number}" for number in range(1, len(self.stages) + 2))
 
     @property
@@ -1655,6 +1692,7 @@ class DriveCase(Table):
     def _whole(self) -> "DriveCase":
         wrong = Complaints()
         wrong.tried(_check_passing, self.stages)
+        wrong.tried(_check_train, self)
         if not wrong:  # what the drive carries, and what turns, follows from its stages
             travels = self.last.load == "force"
             turning = self.bodies[: len(self.bodies) - travels]
@@ -1675,6 +1713,36 @@ class DriveCase(Table):
         wrong.tried(_check_aims, self.targets, self.studies, self.source)
         wrong.demand_none()
         return self
+
+
+def _check_train(case: DriveCase) -> None:
+    """InputError unless stages name their bodies just where there is a train, and it its own among them."""
+    train, wrong = case.train, Complaints()
+    for number, stage in case.stages.items():
+        key, members = f"stages.{number}.bodies", len(stage.gears.members)
+        if train is None and stage.bodies:
+            told = "was given without a table [train], which says who is turned, loaded and held"
+            wrong.add(InputError(told, key=key))
+        if train is not None and len(stage.bodies) != members:
+            given = f"{shown([*stage.bodies])} was given" if stage.bodies else "is missing"
+            told = f"{given}; name the {members} bodies that {', '.join(stage.gears.members)} are"
+            wrong.add(InputError(told, key=key))
+    wrong.demand_none()
+    if train is None:
+        return
+    ends = {"input": [train.input], "output": [train.output], "held": train.held}
+    for key, bodies in ends.items():
+        for body in bodies:
+            if body not in case.bodies:
+                told = f"{shown(body)} is no body of this train{nearest(body, case.bodies)}"
+                wrong.add(InputError(told, key=f"train.{key}"))
+    if len(case.stages) > 1 and train.planet not in case.bodies:
+        told = f"no stage has a body {shown(train.planet)}{nearest(train.planet, case.bodies)}"
+        wrong.add(InputError(told, key="train.planet"))
+    if case.losses:
+        told = "losses beside the teeth are not among those of a train; leave this table out"
+        wrong.add(InputError(told, key="losses"))
+    wrong.demand_none()
 
 
 def _check_passing(stages: Mapping[str, StageTable]) -> None:
@@ -1904,12 +1972,24 @@ def validate(document: Document) -> Case | DriveCase:
         InputError: what is wrong, with file, key, value and what is allowed; a
             `CollectedInputError` of several things.
     """
+    document = with_meshes(document)
     if STAGES not in document.tree:
         return validated(Case, document)
     for key, why in _OF_ONE_MESH.items():
-        if key in document.tree:
+        if key in document.tree and not (key == "gears" and is_planetary(document.tree)):
             raise InputError(why, file=document.name, key=key)
     return validated(DriveCase, document)
+
+
+def is_planetary(tree: Mapping[str, Any]) -> bool:
+    """True if the gears of a case are a planetary set."""
+    gears = tree.get("gears")
+    return isinstance(gears, Mapping) and gears.get("family") == PLANETARY
+
+
+def form_of(tree: Mapping[str, Any]) -> "type[Case] | type[DriveCase]":
+    """The tables that a case has, of one mesh or of several."""
+    return DriveCase if STAGES in tree or is_planetary(tree) else Case
 
 
 _OF_ONE_MESH = {
@@ -1919,6 +1999,46 @@ _OF_ONE_MESH = {
     "wear": "wear is that of a mesh; give a stage the table, wear = { ... } under its [[stages]]",
     "worn": "worn flanks belong to one mesh; give the stage a file of its own",
 }
+
+
+def planetary_of(document: Document) -> PlanetaryGears:
+    """Table [gears] of a planetary set out of a document; InputError as from `validate`."""
+    gears = document.tree["gears"]
+    try:
+        return PlanetaryGears.model_validate(gears)
+    except ValidationError as error:
+        wrong = Complaints(document.name)
+        wrong.under("gears").add(_complaint(error, Document(document.name, gears), PlanetaryGears))
+        raise wrong.error from None
+
+
+class _Followed(dict[str, Any]):
+    """A table that follows from another one."""
+
+
+def with_meshes(document: Document) -> Document:
+    """The same with the stages and the train for which a planetary set stands; any other as it is.
+
+    Raises:
+        InputError: what is wrong with the set, or stages given beside it.
+    """
+    tree = document.tree
+    if not is_planetary(tree) or isinstance(tree.get("train"), _Followed):
+        return document
+    for key in (STAGES, "train"):
+        if key in tree:
+            raise InputError(
+                'was given with gears of the family "planetary", which have their own; leave one of them out',
+                file=document.name,
+                key=key,
+            )
+    gears = planetary_of(document)
+    train = {"input": gears.input, "output": gears.output, "held": gears.held}
+    stages = {str(number): one for number, one in enumerate(gears.meshes(), 1)}
+    return replace(
+        document,
+        tree={**tree, STAGES: stages, "train": _Followed(train, planets=gears.planets)},
+    )
 
 
 Whole = TypeVar("Whole", Case, DriveCase)
@@ -1947,7 +2067,7 @@ def in_form(document: Document) -> dict[str, Any]:
 
 def _without_former(tree: dict[str, Any], above: list[str], document: Document) -> dict[str, Any]:
     """Copy in which one table has lost the keys that its form does not have, unless they were set too."""
-    model: type[BaseModel] = DriveCase if STAGES in tree else Case
+    model: type[BaseModel] = form_of(tree)
     copied = table = dict(tree)
     for part in above:
         if part.isdecimal() and isinstance(table.get(part), dict):
@@ -1979,7 +2099,7 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
     if not isinstance(tree, Mapping):
         return _quantity_anywhere(key)
     _check_stage(key, tree.get(STAGES))
-    return _quantity(key, tree, [DriveCase if STAGES in tree else Case])
+    return _quantity(key, tree, [form_of(tree)])
 
 
 @cache
@@ -2025,7 +2145,7 @@ def usual_at(key: str, tree: Mapping[str, Any]) -> Any:
         key: in a case file.
         tree: values of the case, which decide what form a table has.
     """
-    models: list[type[BaseModel]] = [DriveCase if STAGES in tree else Case]
+    models: list[type[BaseModel]] = [form_of(tree)]
     info: FieldInfo | None = None
     node: Any = tree
     for part in key.split("."):

@@ -1,8 +1,8 @@
 """From a validated case of several meshes to one built case a stage, and the drive that they make."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from math import gcd, pi
 from typing import Any, TypeVar
@@ -10,34 +10,27 @@ from typing import Any, TypeVar
 import numpy as np
 
 from pitchpoint._jax import array
-from pitchpoint.brief import brief
 from pitchpoint.cases.build import (
-    BEARING_FREE,
-    TEETH_ALONE,
     Built,
     build,
-    covered,
     drags,
     gears_of,
     operation_at,
     without_bearing,
 )
+from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready, ends_of
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, StageTable, validated
 from pitchpoint.cases.strength import UNRATED
-from pitchpoint.doubts import in_stage
-from pitchpoint.drive.kinematics import Ends, Link, body_rates
+from pitchpoint.cases.trains import about_trains, train_of, turning_together
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
-from pitchpoint.efficiency.drive_summary import drive_figures
-from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.input.quantities import Quantity, SIValue
-from pitchpoint.lubrication.registry import ChosenLaws, FrictionLaw
-from pitchpoint.results.variable import End
+from pitchpoint.input.quantities import SIValue
+from pitchpoint.lubrication.registry import ChosenLaws
 
-__all__ = ["Acting", "BuiltDrive", "Ready", "ready"]
+__all__ = ["ready"]
 
 T = TypeVar("T")
 
@@ -48,228 +41,6 @@ _OF_STAGE = ("lubricant", "roughness", "housing")
 
 SEVERAL_MEETINGS = 10
 """Meshes of one gear of a shaft, over the common divisor, from which on nearly all phases meet."""
-
-
-@dataclass(frozen=True)
-class Acting:
-    """Laws that act together in all stages, under one friction law of the case.
-
-    Attributes:
-        law: friction law by which it is named: that of the case, or those of the stages.
-        stages: models of each stage.
-    """
-
-    law: FrictionLaw
-    stages: tuple[Models, ...]
-
-    def __repr__(self) -> str:
-        return brief(self)
-
-
-@dataclass(frozen=True, eq=False)
-class BuiltDrive:
-    """A case of several meshes ready to compute.
-
-    Attributes:
-        case: as validated.
-        stages: each built as a case of its own, at the load and speed that it has without losses.
-        numbers: of the stages in the file, in the order of the power.
-        documents: each stage came from, in the same order.
-        design: the drive.
-        operation: torque at the output, speed of the input.
-        told: sentences about the drive.
-    """
-
-    case: DriveCase
-    stages: tuple[Built, ...]
-    numbers: tuple[int, ...]
-    documents: tuple[Document, ...]
-    design: Drive
-    operation: Operation
-    told: tuple[str, ...]
-
-    def __repr__(self) -> str:
-        return brief(self)
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Sentences about the drive, and about each of its stages."""
-        of_stages = (
-            in_stage(number, text)
-            for number, one in zip(self.numbers, self.stages, strict=True)
-            for text in one.warnings
-            if text not in (TEETH_ALONE, BEARING_FREE)
-        )
-        return (*self.told, *of_stages)
-
-    @property
-    def heated(self) -> list[str]:
-        """Sentences on teeth that their own loss warms, by stage."""
-        each = zip(self.numbers, self.stages, strict=True)
-        return [in_stage(number, text) for number, one in each for text in one.heated]
-
-    @cached_property
-    def models(self) -> tuple[Acting, ...]:
-        """Laws that act together, once under each friction law of the case."""
-        count = max(len(one.models) for one in self.stages)
-        each = [one.models * count if len(one.models) == 1 else one.models for one in self.stages]
-        return tuple(self._acting(models) for models in zip(*each, strict=True))
-
-    def under(self, laws: Sequence[FrictionLaw]) -> tuple[Acting, ...]:
-        """The models of the case under other friction laws; stages with one of their own keep it."""
-        each = [
-            one.models[:1] * len(laws) if own else one.under(laws)
-            for one, own in zip(self.stages, self.own_friction, strict=True)
-        ]
-        return tuple(self._acting(models) for models in zip(*each, strict=True))
-
-    def _acting(self, models: Sequence[Models]) -> Acting:
-        own = self.own_friction
-        each = sorted(zip(self.numbers, models, own, strict=True), key=lambda one: one[0])
-        free = [one.law for _, one, mine in each if all(own) or not mine]
-        named = list(dict.fromkeys(free))
-        if len(named) == 1:
-            return Acting(named[0], tuple(models))
-        name, title = (" + ".join(getattr(law, key) for law in named) for key in ("name", "title"))
-        sources = tuple(dict.fromkeys(key for law in named for key in law.sources))
-        joined = replace(named[0], name=name, title=title, sources=sources)
-        return Acting(joined, tuple(models))
-
-    @property
-    def own_friction(self) -> tuple[bool, ...]:
-        """For each stage whether it has a friction law of its own."""
-        tables = (self.case.stages[str(number)].models for number in self.numbers)
-        return tuple("friction" in table.model_fields_set for table in tables)
-
-    @property
-    def laws(self) -> list[FrictionLaw]:
-        """Friction laws of the case, in order."""
-        return [models.law for models in self.models]
-
-    @property
-    def law_names(self) -> list[str]:
-        """Names of the friction laws."""
-        return [law.name for law in self.laws]
-
-    @property
-    def applicable(self) -> list[FrictionLaw]:
-        """Fitted friction laws of the library that hold for all stages without one of their own."""
-        pairs = zip(self.stages, self.own_friction, strict=True)
-        each = [one.applicable for one, own in pairs if not own]
-        return [law for law in (each[0] if each else []) if all(law in other for other in each)]
-
-    @property
-    def temperatures(self) -> tuple[float, float]:
-        """Lowest and highest temperature of all oils [K]."""
-        low, high = zip(*(one.temperatures for one in self.stages), strict=True)
-        return max(low), min(high)
-
-    @property
-    def meshes(self) -> tuple[Built, ...]:
-        """Meshes that the case has: its stages."""
-        return self.stages
-
-    @property
-    def travels(self) -> frozenset[End]:
-        """Those of driver and loaded shaft that travel in place of turning."""
-        ends: dict[End, Built] = {"driver": self.stages[0], "loaded": self.stages[-1]}
-        return frozenset(end for end, one in ends.items() if end in one.travels)
-
-    @property
-    def carried(self) -> Quantity:
-        """What the output takes, torque or force."""
-        return self.stages[-1].carried
-
-    @property
-    def driver(self) -> str:
-        """Name of the shaft that drives."""
-        return f"shaft {self.design.links[0][0] + 1}"
-
-    @property
-    def loaded(self) -> str:
-        """Name of the shaft that carries the load."""
-        return f"shaft {self.design.links[-1][1] + 1}"
-
-    @property
-    def transmits(self) -> bool:
-        """True: power goes through every drive."""
-        return True
-
-    @property
-    def covers(self) -> dict[str, str]:
-        """What the efficiency is of, see `Built.covers`."""
-        return covered(self.places, lacks_bearing=self.lacks_bearing)
-
-    @property
-    def lacks_bearing(self) -> bool:
-        """True where no loss stands for a bearing inside one of the stages, see `Built.lacks_bearing`."""
-        between_shafts = any("housing" not in loss.between for loss in self.case.losses.values())
-        return not between_shafts and any(one.lacks_bearing for one in self.stages)
-
-    @property
-    def places(self) -> list[str]:
-        """Names of the places beside the teeth where power is lost: of the drive, then of its stages."""
-        own = [
-            f"stage {number} {name}"
-            for number, one in zip(self.numbers, self.stages, strict=True)
-            for name in one.case.losses
-        ]
-        return [*self.case.losses, *own]
-
-    @cached_property
-    def at_work(self) -> tuple[Built, ...]:
-        """Meshes under the mean torques that they carry with all losses, by the first friction law.
-
-        Where friction locks the drive they are those without losses.
-        """
-        figures = drive_figures([(self.design, self.operation)], self.models[0].stages)
-        driving = figures["stage_input_torque"][0]
-        if np.isnan(driving).any():
-            return self.stages
-        pairs = zip(self.stages[:-1], driving[1:].tolist(), strict=True)
-        return (*(mesh.carrying(torque) for mesh, torque in pairs), self.stages[-1])
-
-    @cached_property
-    def motion(self) -> list[float]:
-        """Rates of the shafts for a radian of the input."""
-        shafts = [
-            f"shaft {number + 1}" for first, last in self.design.links for number in (first, last)
-        ]
-        links = [
-            Link(stage.design.mesh, tuple(f"shaft {number + 1}" for number in stage.shafts))
-            for stage in self.design.stages
-        ]
-        held = {body for link in links for body in link.bodies} - {*shafts}
-        rates = body_rates(
-            links, Ends({shafts[0]: _ends(self.stages[0].design.mesh)[0]}, tuple(held))
-        )
-        return [rates[shaft] for shaft in dict.fromkeys(shafts)]
-
-    @cached_property
-    def backwards(self) -> "BuiltDrive":
-        """The same drive with its output driving, see `Built.backwards`."""
-        step = float(np.abs(self.motion[-1] / self.motion[0]))
-        point = self.case.operation
-        stages = tuple(one.backwards for one in reversed(self.stages))
-        load = {"torque": None, "force": None, stages[-1].carried.kind: point.load * step}
-        changed = point.model_copy(update={**load, "speed": point.speed * step})
-        turned = self.design.driven_backwards()
-        warm = [
-            replace(place, design=replace(place.design, solids=one.design.solids))
-            for place, one in zip(turned.stages, stages, strict=True)
-        ]
-        return replace(
-            self,
-            case=self.case.model_copy(update={"operation": changed}),
-            stages=stages,
-            numbers=self.numbers[::-1],
-            documents=self.documents[::-1],
-            design=replace(turned, stages=tuple(warm)),
-            operation=operation_at(changed),
-        )
-
-
-Ready = Built | BuiltDrive
 
 
 def ready(case: Case | DriveCase, document: Document, own: ChosenLaws = ()) -> Ready:
@@ -309,26 +80,31 @@ def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
     wrong.demand_none()
     _check_laws(alone)
     _check_rated(case, alone)
-    alone = _following(alone, document)
-    points = _points(case.operation, alone, document)
+    meshes = [_mesh(one, number, document) for number, one in zip(numbers, alone, strict=True)]
+    if case.train is None:
+        alone = _following(alone, document)
+        points = _points(case.operation, alone, document)
+    else:
+        alone, points = turning_together(case, alone, meshes)
     built: list[Built] = []
     for number, one, point in zip(numbers, alone, points, strict=True):
         loaded = one.model_copy(update={"operation": point})
         warmed = partial(_warm, loaded, documents[number - 1], own)
         built += filter(None, [wrong.tried(_in_stage, document, number, warmed)])
     wrong.demand_none()
-    drive = _drive(case, built)
-    made = BuiltDrive(
-        case,
-        tuple(built),
-        tuple(numbers),
-        tuple(documents),
-        drive,
-        operation_at(case.operation),
-        (*_few_meetings(built), *_adding_thrusts(built)),
-    )
+    made = _together(case, built, documents)
     _check_map(made)
     return replace(made, told=(*made.told, *without_bearing(made)))
+
+
+def _together(case: DriveCase, built: Sequence[Built], documents: Sequence[Document]) -> BuiltDrive:
+    """The meshes of a case as one drive."""
+    numbers, point = tuple(range(1, len(built) + 1)), operation_at(case.operation)
+    parts = case, tuple(built), numbers, tuple(documents)
+    if case.train is not None:
+        return BuiltTrain(*parts, train_of(case, built), point, about_trains(case))
+    told = (*_few_meetings(built), *_adding_thrusts(built))
+    return BuiltDrive(*parts, _drive(case, built), point, told)
 
 
 def _check_map(made: BuiltDrive) -> None:
@@ -435,8 +211,8 @@ def _following(alone: Sequence[Case], document: Document) -> list[Case]:
     """
     found: list[Case] = []
     for number, one in enumerate(alone, 1):
-        first, _ = _ends(_mesh(one, number, document))
-        last = _ends(_mesh(found[-1], number - 1, document))[1] if found else first
+        first, _ = ends_of(_mesh(one, number, document))
+        last = ends_of(_mesh(found[-1], number - 1, document))[1] if found else first
         if first * last < 0.0:
             if _open(one):
                 one = _turned(one)
@@ -483,15 +259,9 @@ def _mesh_alone(one: Case) -> Mesh:
     return gears[0]
 
 
-def _ends(mesh: Mesh) -> tuple[float, float]:
-    """Rates of the driver and of the loaded member."""
-    motion = np.asarray(mesh.motion)
-    return float(np.asarray(mesh.driver) @ motion), float(np.asarray(mesh.loaded) @ motion)
-
-
 def _points(point: Operating, alone: Sequence[Case], document: Document) -> list[Operating]:
     """Operating point of each stage where nothing is lost."""
-    ends = [_ends(_mesh(one, number, document)) for number, one in enumerate(alone, 1)]
+    ends = [ends_of(_mesh(one, number, document)) for number, one in enumerate(alone, 1)]
     steps = np.array([abs(last / first) for first, last in ends])
     speeds = point.speed * np.cumprod([1.0, *steps[:-1]])
     loads = point.load * np.cumprod([1.0, *steps[:0:-1]])[::-1]

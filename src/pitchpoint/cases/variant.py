@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 from pitchpoint.cases.build import check_alone
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import Document, resolve
-from pitchpoint.cases.schema import Case, DriveCase, usual_at, validate
-from pitchpoint.cases.stages import Ready, ready
+from pitchpoint.cases.schema import Case, DriveCase, usual_at, validate, with_meshes
+from pitchpoint.cases.stages import ready
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.families import build_together
 from pitchpoint.lubrication.registry import ChosenLaws
@@ -90,7 +91,7 @@ class Variant:
         """Case with some values changed, and the document that it is from."""
         document = (self.computed if changes else self).document(**changes)
         try:
-            return validate(document), document
+            return validate(document), with_meshes(document)
         except InputError as error:
             wrong = Complaints(document.name)
             wrong.add(error)

@@ -21,6 +21,8 @@ from pitchpoint.efficiency.quasi_static import (
 )
 from pitchpoint.efficiency.rows import CHUNK, NODES
 from pitchpoint.efficiency.summary import engaged, mean_friction
+from pitchpoint.efficiency.train import Train
+from pitchpoint.efficiency.train_summary import train_figures
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.registry import LoadSharing
@@ -88,23 +90,27 @@ def _sizes(mesh: Mesh, sharing: LoadSharing, nodes: int) -> tuple[Array, Array]:
 
 
 def drive_figures(
-    points: Sequence[Point],
+    points: Sequence[tuple[Drive | Train, Operation]],
     models: Sequence[Models],
     progress: Callable[[int], None] | None = None,
 ) -> dict[str, np.ndarray]:
     """Figures of many points, each quantity [point], [point, place] or [point, stage].
 
     Args:
-        points: drives and operating points of equal static structure.
+        points: drives or trains and operating points of equal static structure.
         models: laws of each stage.
         progress: told the number of finished points after each chunk.
 
     From the states of `drive_cycle`, means and extremes over all meetings of their phases.
     """
+    trains = [(drive, operation) for drive, operation in points if isinstance(drive, Train)]
+    if trains:
+        return train_figures(trains, models, progress)
+    chains = [(drive, operation) for drive, operation in points if isinstance(drive, Drive)]
     parts: list[dict[str, np.ndarray]] = []
     done = 0
-    size = together(points[0][0], models)
-    for drive, operations in _of_one_drive(points, models):
+    size = together(chains[0][0], models)
+    for drive, operations in _of_one_drive(chains, models):
         for start in range(0, len(operations), size):
             some = operations[start : start + size]
             parts.append(_chunk(drive, some, models, size))

@@ -84,7 +84,7 @@ class Train(eqx.Module):
         rates: of the bodies for a unit speed of the one that is turned, from the housing.
         turned: body that drives; static.
         loaded: body that takes the power; static.
-        free: other bodies that nothing holds; static.
+        held: bodies that do not move, beside the housing; static.
         planets: bodies of which there are as many as copies of their meshes; static.
     """
 
@@ -92,7 +92,7 @@ class Train(eqx.Module):
     rates: Mapping[str, Float[Array, ""]]
     turned: str = eqx.field(static=True)
     loaded: str = eqx.field(static=True)
-    free: tuple[str, ...] = eqx.field(static=True)
+    held: tuple[str, ...] = eqx.field(static=True)
     planets: tuple[str, ...] = eqx.field(static=True)
 
     def __repr__(self) -> str:
@@ -111,6 +111,27 @@ class Train(eqx.Module):
         """Sense in which the phase of a mesh runs: one, or minus one."""
         own = mesh.design.mesh
         return own.onward * jnp.sign((own.driver @ own.motion) * (own.driver @ self.motion(mesh)))
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """Bodies that nothing turns, loads or holds."""
+        others = {HOUSING, self.turned, self.loaded, *self.held}
+        return tuple(body for body in self.rates if body not in others)
+
+    def driven_backwards(self, designs: Sequence[Design] = ()) -> "Train":
+        """The same train with its output driving; the same flanks touch.
+
+        Args:
+            designs: of the meshes, driven backwards; by default as they are.
+        """
+        designs = designs or [one.design for one in self.meshes]
+        links = [
+            Link(design.mesh, one.bodies, one.carrier)
+            for design, one in zip(designs, self.meshes, strict=True)
+        ]
+        backwards = Ends({self.loaded: -float(self.rates[self.loaded])}, self.held, self.turned)
+        phases = [np.asarray(one.phases) for one in self.meshes]
+        return gear_train(links, designs, backwards, planets=self.planets, phases=phases)
 
     def rows(self) -> list[tuple[str, int]]:
         """Bodies in equilibrium, planets by their number."""
@@ -159,12 +180,12 @@ def gear_train(
         _periods(links, ideal.rates),
         strict=True,
     ):
-        mesh = link.mesh.driven_by(0)
+        mesh = design.mesh
         torque = np.array([share[body] for body in link.bodies])
         _check_mesh(link, design, float(mesh.driver @ torque) * float(mesh.driver @ mesh.motion))
         meshes.append(
             TrainMesh(
-                replace(design, mesh=mesh),
+                design,
                 array(starts),
                 array(abs(float(mesh.loaded @ torque))),
                 link.bodies,
@@ -172,13 +193,12 @@ def gear_train(
                 periods,
             )
         )
-    still = {HOUSING, turned, ends.loaded, *ends.held}
     return Train(
         tuple(meshes),
         {body: array(one) for body, one in ideal.rates.items()},
         turned,
         ends.loaded,
-        tuple(body for body in ideal.rates if body not in still),
+        tuple(ends.held),
         tuple(planets),
     )
 
@@ -199,7 +219,7 @@ def _periods(links: Sequence[Link], rates: Mapping[str, float]) -> list[int]:
     """Periods of each mesh in which all come together again."""
     each = []
     for link in links:
-        mesh = link.mesh.driven_by(0)
+        mesh = link.mesh
         against = [rates[body] - rates[link.carrier] for body in link.bodies]
         each.append(abs(float(mesh.driver @ np.array(against)) / float(mesh.period)))
     fastest = max(each)
@@ -222,7 +242,9 @@ class MeshState(eqx.Module):
         conditions: at the contacts of all copies.
         friction: coefficient at each slice.
         sliding_loss, rolling_loss: power lost at each slice [W].
-        force: normal force of each copy [N].
+        force, nominal: normal force of each copy, and without friction, equal for all [N].
+        input_torque: torque on the driving member of the mesh in its sense of motion, of all copies [N m].
+        speed: of that member against the carrier [rad/s].
     """
 
     conditions: Conditions
@@ -230,6 +252,9 @@ class MeshState(eqx.Module):
     sliding_loss: Lanes
     rolling_loss: Lanes
     force: Copies
+    nominal: Copies
+    input_torque: Nodes
+    speed: Float[Array, ""]
 
     @property
     def loss(self) -> Nodes:
@@ -246,6 +271,8 @@ class TrainCycle(eqx.Module):
         meshes: states of the meshes at the nodes.
         torques: from outside on every body that is not free, by name [N m or N].
         input_power, output_power: at the nodes [W].
+        levers: of a unit of normal force in each mesh on each body in equilibrium, all planets as one: of its
+            normal part, and of its friction for a coefficient of one.
         status: of the search for forces at each node.
         nodes: static, nodes in each segment between events.
     """
@@ -257,6 +284,7 @@ class TrainCycle(eqx.Module):
     input_torque: Nodes
     input_power: Nodes
     output_power: Nodes
+    levers: Float[Array, "2 node body mesh"]
     status: Status
     nodes: int = eqx.field(static=True)
 
@@ -344,6 +372,7 @@ def train_cycle(
         known(driving),
         known(driving * operation.speed),
         known(jnp.broadcast_to(power_out, driving.shape)),
+        _levers(train, every),
         Status(solved.code, solved.residual, solved.steps),
         nodes,
     )
@@ -381,6 +410,7 @@ class _Meshing:
         self.contacts: Contacts = mesh.contacts(one.phases[:, None] + turned)
         motion = train.motion(one)
         speed = jnp.abs(mesh.driver @ motion) * operation.speed
+        self.driving = mesh.driver * jnp.sign(mesh.driver @ motion)
         self.operation = Operation(
             one.carried / one.copies * operation.load, speed, operation.temperature
         )
@@ -412,30 +442,45 @@ class _Meshing:
         resistance = evaluate(self.models.rolling, at) * self.contacts.weight
         return coefficient, jnp.where(loaded, resistance, 0.0)
 
-    def of_force(self, coefficient: Lanes) -> dict[str, Copies]:
-        """Torques from outside that a unit of normal force on each copy asks for, by body."""
+    def torques(self, coefficient: Lanes) -> Float[Array, "dof copy node"]:
+        """Torques from outside on the coordinates that a unit of normal force on each copy asks for."""
         slip, mu = self.contacts.slip_arm, coefficient * self.sense
-        arms = [
-            total(self.share * (n + mu * t))
-            for n, t in zip(self.contacts.normal, slip, strict=True)
-        ]
-        return self.one.arms(jnp.stack(arms))
+        each = zip(self.contacts.normal, slip, strict=True)
+        return jnp.stack([total(self.share * (n + mu * t)) for n, t in each])
+
+    def turned(self, resistance: Lanes) -> Float[Array, "dof copy node"]:
+        """Torques from outside on the coordinates that rolling resistance asks for."""
+        return jnp.stack([total(resistance * self.turn * arm) for arm in self.contacts.roll_arm])
+
+    def of_force(self, coefficient: Lanes) -> dict[str, Copies]:
+        """Torques of a unit of force, by body."""
+        return self.one.arms(self.torques(coefficient))
 
     def of_rolling(self, resistance: Lanes) -> dict[str, Copies]:
-        """Torques from outside that rolling resistance asks for, by body."""
-        turned = [total(resistance * self.turn * arm) for arm in self.contacts.roll_arm]
-        return self.one.arms(jnp.stack(turned))
+        """Torques of rolling resistance, by body."""
+        return self.one.arms(self.turned(resistance))
 
     def state(self, force: Copies) -> MeshState:
         """What follows from the forces of the copies."""
         coefficient, resistance = self.laws(force)
         at = replace(self.unloaded, load=self.share * force)
+        driver = self.driving @ jnp.stack(
+            [
+                jnp.sum(arm * force + rolling, axis=0)
+                for arm, rolling in zip(
+                    self.torques(coefficient), self.turned(resistance), strict=True
+                )
+            ]
+        )
         return MeshState(
             at,
             coefficient,
             at.load * coefficient * as_array(at.sliding),
             2.0 * resistance * as_array(at.entrainment),
             force,
+            self.nominal,
+            driver,
+            self.operation.speed,
         )
 
 
@@ -473,6 +518,22 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _So
     pulled = jnp.any(forces < 0.0, axis=-1)
     code = jnp.where(residual <= UNSOLVED, int(Code.SOLVED), int(Code.NOT_CONVERGED))
     return _Solved(forces, residual, steps, jnp.where(pulled, int(Code.LOCKED), code))
+
+
+def _levers(train: Train, every: Sequence[_Meshing]) -> Float[Array, "2 node body mesh"]:
+    """See `TrainCycle.levers`."""
+
+    def on_bodies(one: _Meshing, coefficient: float) -> Float[Array, "body node"]:
+        arms = one.of_force(jnp.where(one.carrying, coefficient, 0.0))
+        nothing = jnp.zeros(one.nominal.shape)
+        each = (arms.get(body, nothing) for body in (train.loaded, *train.free))
+        return jnp.stack([jnp.mean(arm, axis=0) for arm in each])
+
+    normal, whole = (
+        jnp.stack([on_bodies(one, coefficient) for one in every], axis=-1)
+        for coefficient in (0.0, 1.0)
+    )
+    return jnp.moveaxis(jnp.stack([normal, whole - normal]), 2, 1)
 
 
 def _arms(train: Train, every: Sequence[Mapping[str, Copies]]) -> Arms:

@@ -14,9 +14,8 @@ from pitchpoint.analyses.analysis import Analysis
 from pitchpoint.analyses.figures import main_figures
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import sweep_values
-from pitchpoint.cases.document import STAGES
+from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.cases.schema import Sweep, quantity_at
-from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError
 from pitchpoint.input.quantities import Quantity
@@ -168,15 +167,14 @@ def usual(variant: Variant) -> Iterator[Axis]:
 
 
 def _of_gears(built: Ready, count: int) -> Iterator[Axis]:
-    """The key that the table of the gears of the first stage names; none where its value is left open."""
-    first = built.meshes[0]
-    if (named := first.case.gears.explored) is None:
+    """The key that the table of the gears, of the first stage, names; none where its value is left open."""
+    table, gears = built.explored
+    if gears.explored is None:
         return
-    inside, reach = named
-    table = f"{STAGES}.{built.numbers[0]}." if isinstance(built, BuiltDrive) else ""
-    key = f"{table}gears.{inside}"
+    inside, reach = gears.explored
+    key = f"{table}.{inside}"
     quantity = quantity_at(key)
-    own: Any = reduce(_at, inside.split("."), first.case.gears)
+    own: Any = reduce(_at, inside.split("."), gears)
     if quantity is None or own is None:
         return
     values = np.clip(own + reach * np.linspace(-1.0, 1.0, count), quantity.low, quantity.high)

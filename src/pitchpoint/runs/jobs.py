@@ -8,8 +8,8 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject, silent
 from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.schema import Study
-from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import Complaints, InputError, shorten
 from pitchpoint.input.quantities import shown

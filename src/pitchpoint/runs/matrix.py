@@ -10,7 +10,7 @@ from typing import Any
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.build import FILM_SOLVERS, Built
-from pitchpoint.cases.stages import Ready
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.tables import tag
 from pitchpoint.runs.run import load_case

@@ -22,13 +22,13 @@ from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.handed_over import FILES, hand_over
 from pitchpoint.cases.library import names
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import CASE, MANIFEST, OUTPUT, RUN, Manifest, Record, is_record
 from pitchpoint.cases.schema import Loss, Study, validate
-from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
 from pitchpoint.doubts import apart, concerns, doubts_of
@@ -69,7 +69,6 @@ if TYPE_CHECKING:
     from pitchpoint.lubrication.ehl.model import FilmModel
 
 __all__ = [
-    "MEETINGS",
     "FrictionChoice",
     "Outcome",
     "Progress",
@@ -85,9 +84,6 @@ __all__ = [
 
 FrictionChoice = Callable[..., Any] | Sequence[str | Callable[..., Any]]
 """A friction law of the user's own, or several laws, of one's own and by name."""
-
-MEETINGS = "all meetings of phases"
-"""Over what figures of several meshes are averaged."""
 
 
 LONGEST_LIST = 400
@@ -747,13 +743,14 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
         "driver": built.driver,
         "loaded": built.loaded,
         "members": list(case.bodies),
+        "of_stages": built.stage_bodies,
         "motion": built.motion,
         "period": float(meshes[0].nominal["period"]),
         "pitch": way.pitch,
         "against": way.against.format(first.driver) if backwards else "",
         "travels": sorted(built.travels),
         "lacks": {},
-        "averaging": MEETINGS if len(meshes) > 1 else case.models.averaging,
+        "averaging": built.averaging,
         "plastic": any(used.plastic for used in solids),
         "oil": ", ".join(
             dict.fromkeys(mesh.lubricant.title or mesh.lubricant.name for mesh in meshes)

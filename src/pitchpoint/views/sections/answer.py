@@ -18,9 +18,10 @@ from pitchpoint.analyses.figures import (
     of_contact,
     why_not,
 )
+from pitchpoint.cases.built_drive import MEETINGS, TRAIN_PERIOD
 from pitchpoint.cases.inputs import OIL
 from pitchpoint.results.variables import VARIABLES
-from pitchpoint.runs.run import MEETINGS, Outcome
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
@@ -44,6 +45,7 @@ __all__ = [
 AVERAGES = {
     "base_pitch": "Averages run over one {pitch}, after which the state repeats.",
     MEETINGS: "Averages run over all meetings of the phases of the stages.",
+    TRAIN_PERIOD: "Averages run over the motion in which all meshes come together again.",
     "path": "Averages run over the path of one pair, so double contact counts twice, as published.",
 }
 

@@ -1,6 +1,7 @@
 """Stages of a drive: what each loses, and how far it lets the output turn."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -34,7 +35,7 @@ def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
         return []
     names = [name for name in FIGURES if name in data and np.any(data[name])]
     return [
-        {"friction law": law, "stage": str(stage)}
+        {"friction law": law, "stage": _named(outcome, at, stage)}
         | {
             head(name, data): shown(name, float(data[name].values[k, 0, at]), data)
             for name in names
@@ -42,6 +43,12 @@ def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
         for k, law in enumerate(laws(data))
         for at, stage in enumerate(data["stage"].values)
     ]
+
+
+def _named(outcome: Outcome, at: int, stage: Any) -> str:
+    """Number of a stage, with its bodies where it is a mesh of a train."""
+    bodies = outcome.manifest.get("of_stages") or []
+    return f"{stage}: {bodies[at]}" if bodies else str(stage)
 
 
 def _card(outcome: Outcome, law: str) -> Iterator[tuple[str, str]]:
@@ -55,7 +62,7 @@ def _card(outcome: Outcome, law: str) -> Iterator[tuple[str, str]]:
             show.quantity(name, float(data[name].values[position, 0, at]), of=data)
             for name in ("stage_loss", "stage_efficiency")
         )
-        yield f"stage {stage}", f"{efficiency}, {loss} lost"
+        yield f"stage {_named(outcome, at, stage)}", f"{efficiency}, {loss} lost"
 
 
 def _blocks(page: Page) -> Iterator[Block]:
@@ -66,7 +73,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         names = [name for name in FIGURES if name in data]
         rows = [
             (
-                str(stage),
+                _named(outcome, at, stage),
                 law,
                 *(show.quantity(n, float(data[n].values[k, 0, at]), of=data) for n in names),
             )

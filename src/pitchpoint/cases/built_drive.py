@@ -1,0 +1,378 @@
+"""A case of several meshes ready to compute: stages one behind the other, or a train that turns together."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from pitchpoint.brief import brief
+from pitchpoint.cases.build import BEARING_FREE, TEETH_ALONE, Built, covered, operation_at
+from pitchpoint.cases.document import STAGES, Document
+from pitchpoint.cases.schema import DriveCase
+from pitchpoint.doubts import in_stage
+from pitchpoint.drive.kinematics import Ends, Link, body_rates
+from pitchpoint.efficiency.drag import Drag
+from pitchpoint.efficiency.drive import Drive
+from pitchpoint.efficiency.drive_summary import drive_figures
+from pitchpoint.efficiency.quasi_static import Models, Operation
+from pitchpoint.efficiency.train import Train
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.input.quantities import Quantity
+from pitchpoint.lubrication.registry import FrictionLaw
+from pitchpoint.results.variable import End
+
+__all__ = ["MEETINGS", "TRAIN_PERIOD", "Acting", "BuiltDrive", "BuiltTrain", "Ready", "ends_of"]
+
+MEETINGS, TRAIN_PERIOD = "all meetings of phases", "period of the train"
+"""What averages run over where there are several meshes: stages in a row, or a train."""
+
+
+@dataclass(frozen=True)
+class Acting:
+    """Laws that act together in all stages, under one friction law of the case.
+
+    Attributes:
+        law: friction law by which it is named: that of the case, or those of the stages.
+        stages: models of each stage.
+    """
+
+    law: FrictionLaw
+    stages: tuple[Models, ...]
+
+    def __repr__(self) -> str:
+        return brief(self)
+
+
+@dataclass(frozen=True, eq=False)
+class BuiltDrive:
+    """A case of several meshes ready to compute.
+
+    Attributes:
+        case: as validated.
+        stages: each built as a case of its own, at the load and speed that it has without losses.
+        numbers: of the stages in the file, in the order of the power.
+        documents: each stage came from, in the same order.
+        design: the drive.
+        operation: torque at the output, speed of the input.
+        told: sentences about the drive.
+    """
+
+    case: DriveCase
+    stages: tuple[Built, ...]
+    numbers: tuple[int, ...]
+    documents: tuple[Document, ...]
+    design: Drive
+    operation: Operation
+    told: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return brief(self)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences about the drive, and about each of its stages."""
+        of_stages = (
+            in_stage(number, text)
+            for number, one in zip(self.numbers, self.stages, strict=True)
+            for text in one.warnings
+            if text not in (TEETH_ALONE, BEARING_FREE)
+        )
+        return (*self.told, *of_stages)
+
+    @property
+    def heated(self) -> list[str]:
+        """Sentences on teeth that their own loss warms, by stage."""
+        each = zip(self.numbers, self.stages, strict=True)
+        return [in_stage(number, text) for number, one in each for text in one.heated]
+
+    @cached_property
+    def models(self) -> tuple[Acting, ...]:
+        """Laws that act together, once under each friction law of the case."""
+        count = max(len(one.models) for one in self.stages)
+        each = [one.models * count if len(one.models) == 1 else one.models for one in self.stages]
+        return tuple(self._acting(models) for models in zip(*each, strict=True))
+
+    def under(self, laws: Sequence[FrictionLaw]) -> tuple[Acting, ...]:
+        """The models of the case under other friction laws; stages with one of their own keep it."""
+        each = [
+            one.models[:1] * len(laws) if own else one.under(laws)
+            for one, own in zip(self.stages, self.own_friction, strict=True)
+        ]
+        return tuple(self._acting(models) for models in zip(*each, strict=True))
+
+    def _acting(self, models: Sequence[Models]) -> Acting:
+        own = self.own_friction
+        each = sorted(zip(self.numbers, models, own, strict=True), key=lambda one: one[0])
+        free = [one.law for _, one, mine in each if all(own) or not mine]
+        named = list(dict.fromkeys(free))
+        if len(named) == 1:
+            return Acting(named[0], tuple(models))
+        name, title = (" + ".join(getattr(law, key) for law in named) for key in ("name", "title"))
+        sources = tuple(dict.fromkeys(key for law in named for key in law.sources))
+        joined = replace(named[0], name=name, title=title, sources=sources)
+        return Acting(joined, tuple(models))
+
+    @property
+    def own_friction(self) -> tuple[bool, ...]:
+        """For each stage whether it has a friction law of its own."""
+        tables = (self.case.stages[str(number)].models for number in self.numbers)
+        return tuple("friction" in table.model_fields_set for table in tables)
+
+    @property
+    def laws(self) -> list[FrictionLaw]:
+        """Friction laws of the case, in order."""
+        return [models.law for models in self.models]
+
+    @property
+    def law_names(self) -> list[str]:
+        """Names of the friction laws."""
+        return [law.name for law in self.laws]
+
+    @property
+    def applicable(self) -> list[FrictionLaw]:
+        """Fitted friction laws of the library that hold for all stages without one of their own."""
+        pairs = zip(self.stages, self.own_friction, strict=True)
+        each = [one.applicable for one, own in pairs if not own]
+        return [law for law in (each[0] if each else []) if all(law in other for other in each)]
+
+    @property
+    def temperatures(self) -> tuple[float, float]:
+        """Lowest and highest temperature of all oils [K]."""
+        low, high = zip(*(one.temperatures for one in self.stages), strict=True)
+        return max(low), min(high)
+
+    @property
+    def meshes(self) -> tuple[Built, ...]:
+        """Meshes that the case has: its stages."""
+        return self.stages
+
+    @property
+    def travels(self) -> frozenset[End]:
+        """Those of driver and loaded shaft that travel in place of turning."""
+        ends: dict[End, Built] = {"driver": self.stages[0], "loaded": self.stages[-1]}
+        return frozenset(end for end, one in ends.items() if end in one.travels)
+
+    @property
+    def carried(self) -> Quantity:
+        """What the output takes, torque or force."""
+        return self.stages[-1].carried
+
+    @property
+    def driver(self) -> str:
+        """Name of the shaft that drives."""
+        return f"shaft {self.design.links[0][0] + 1}"
+
+    @property
+    def loaded(self) -> str:
+        """Name of the shaft that carries the load."""
+        return f"shaft {self.design.links[-1][1] + 1}"
+
+    @property
+    def transmits(self) -> bool:
+        """True: power goes through every drive."""
+        return True
+
+    @property
+    def covers(self) -> dict[str, str]:
+        """What the efficiency is of, see `Built.covers`."""
+        return covered(self.places, lacks_bearing=self.lacks_bearing)
+
+    @property
+    def lacks_bearing(self) -> bool:
+        """True where no loss stands for a bearing inside one of the stages, see `Built.lacks_bearing`."""
+        between_shafts = any("housing" not in loss.between for loss in self.case.losses.values())
+        return not between_shafts and any(one.lacks_bearing for one in self.stages)
+
+    @property
+    def places(self) -> list[str]:
+        """Names of the places beside the teeth where power is lost: of the drive, then of its stages."""
+        own = [
+            f"stage {number} {name}"
+            for number, one in zip(self.numbers, self.stages, strict=True)
+            for name in one.case.losses
+        ]
+        return [*self.case.losses, *own]
+
+    @property
+    def explored(self) -> tuple[str, Any]:
+        """Table of gears by which an explorer changes the case, with its key: of the first stage."""
+        return f"{STAGES}.{self.numbers[0]}.gears", self.stages[0].case.gears
+
+    @property
+    def averaging(self) -> str:
+        """What averages run over."""
+        return MEETINGS
+
+    @property
+    def stage_bodies(self) -> list[str]:
+        """Bodies of each stage in words, where stages are meshes of a train; none of stages in a row."""
+        named = (self.case.stages[str(number)].bodies for number in self.numbers)
+        return [" and ".join(bodies) for bodies in named if bodies]
+
+    @property
+    def drags(self) -> tuple[Drag, ...]:
+        """Places beside the teeth where power is lost: of the drive, then of its stages."""
+        stages = (drag for one in self.design.stages for drag in one.design.drag)
+        return (*self.design.drag, *stages)
+
+    @property
+    def copies(self) -> tuple[int, ...]:
+        """How many there are of each mesh."""
+        return (1,) * len(self.stages)
+
+    @property
+    def steps(self) -> np.ndarray:
+        """Torque on the loaded member of each mesh, all its copies together, for a unit at the output.
+
+        Without losses; the output turns as much for a unit turn of that member alone.
+        """
+        return np.asarray(np.abs(self.motion[-1] / np.array(self.motion[1:])))
+
+    @cached_property
+    def at_work(self) -> tuple[Built, ...]:
+        """Meshes under the mean torques that they carry with all losses, by the first friction law.
+
+        Where friction locks the drive they are those without losses.
+        """
+        figures = drive_figures([(self.design, self.operation)], self.models[0].stages)
+        carried = self.carried_by_meshes({name: values[0] for name, values in figures.items()})
+        if np.isnan(carried).any():
+            return self.stages
+        pairs = zip(self.stages, carried.tolist(), strict=True)
+        return tuple(
+            mesh if mesh.case.operation.load == torque else mesh.carrying(torque)
+            for mesh, torque in pairs
+        )
+
+    def carried_by_meshes(self, figures: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Torque on the loaded member of each mesh with all losses: what drives the stage behind it.
+
+        Args:
+            figures: `stage_input_torque` and `stage_efficiency` at one operating point [stage].
+        """
+        last = self.stages[-1].case.operation.load
+        return np.append(figures["stage_input_torque"][1:], last)
+
+    @cached_property
+    def motion(self) -> list[float]:
+        """Rates of the shafts for a radian of the input."""
+        shafts = [
+            f"shaft {number + 1}" for first, last in self.design.links for number in (first, last)
+        ]
+        links = [
+            Link(stage.design.mesh, tuple(f"shaft {number + 1}" for number in stage.shafts))
+            for stage in self.design.stages
+        ]
+        held = {body for link in links for body in link.bodies} - {*shafts}
+        rates = body_rates(
+            links, Ends({shafts[0]: ends_of(self.stages[0].design.mesh)[0]}, tuple(held))
+        )
+        return [rates[shaft] for shaft in dict.fromkeys(shafts)]
+
+    @cached_property
+    def backwards(self) -> "BuiltDrive":
+        """The same drive with its output driving, see `Built.backwards`."""
+        step = float(np.abs(self.motion[-1] / self.motion[0]))
+        point = self.case.operation
+        stages = tuple(one.backwards for one in reversed(self.stages))
+        load = {"torque": None, "force": None, stages[-1].carried.kind: point.load * step}
+        changed = point.model_copy(update={**load, "speed": point.speed * step})
+        turned = self.design.driven_backwards()
+        warm = [
+            replace(place, design=replace(place.design, solids=one.design.solids))
+            for place, one in zip(turned.stages, stages, strict=True)
+        ]
+        return replace(
+            self,
+            case=self.case.model_copy(update={"operation": changed}),
+            stages=stages,
+            numbers=self.numbers[::-1],
+            documents=self.documents[::-1],
+            design=replace(turned, stages=tuple(warm)),
+            operation=operation_at(changed),
+        )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BuiltTrain(BuiltDrive):
+    """A case of meshes that turn together, as a planetary set.
+
+    Each mesh is a stage, built at the load of one of its copies and at the speed against its carrier.
+    """
+
+    design: Train  # type: ignore[assignment]
+
+    @property
+    def driver(self) -> str:
+        """Name of the body that drives."""
+        return self.design.turned
+
+    @property
+    def loaded(self) -> str:
+        """Name of the body that carries the load."""
+        return self.design.loaded
+
+    @property
+    def explored(self) -> tuple[str, Any]:
+        """Table of gears by which an explorer changes the case, with its key: of the set, if it is one."""
+        return super().explored if self.case.gears is None else ("gears", self.case.gears)
+
+    @property
+    def averaging(self) -> str:
+        """What averages run over."""
+        return TRAIN_PERIOD
+
+    @property
+    def drags(self) -> tuple[Drag, ...]:
+        """None: a train has its teeth alone."""
+        return ()
+
+    @property
+    def copies(self) -> tuple[int, ...]:
+        """How many there are of each mesh."""
+        return tuple(one.copies for one in self.design.meshes)
+
+    @property
+    def steps(self) -> np.ndarray:
+        """Torque on the driven member of each mesh, all its copies together, for a unit at the output."""
+        return np.array([float(one.carried) for one in self.design.meshes])
+
+    def carried_by_meshes(self, figures: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Torque on the driven member of one copy of each mesh with all losses, see `BuiltDrive`."""
+        ends = np.array([np.abs(ends_of(one.design.mesh)) for one in self.stages])
+        driving = (
+            figures["stage_input_torque"] * figures["stage_efficiency"] / np.array(self.copies)
+        )
+        return np.asarray(driving * ends[:, 0] / ends[:, 1])
+
+    @cached_property
+    def motion(self) -> list[float]:
+        """Rates of the bodies for a radian of the one that drives."""
+        rates = {body: float(rate) for body, rate in self.design.rates.items()}
+        return [rates[body] / rates[self.driver] for body in self.case.bodies]
+
+    @cached_property
+    def backwards(self) -> "BuiltTrain":
+        """The same train with its output driving, see `Built.backwards`."""
+        step = 1.0 / abs(float(self.design.ratio))
+        point = self.case.operation
+        changed = point.model_copy(
+            update={"torque": point.load * step, "speed": point.speed * step}
+        )
+        stages = tuple(one.backwards for one in self.stages)
+        turned = self.design.driven_backwards([one.design for one in stages])
+        case = self.case.model_copy(update={"operation": changed})
+        return replace(
+            self, case=case, stages=stages, design=turned, operation=operation_at(changed)
+        )
+
+
+Ready = Built | BuiltDrive
+
+
+def ends_of(mesh: Mesh) -> tuple[float, float]:
+    """Rates of the driver and of the loaded member of a mesh."""
+    motion = np.asarray(mesh.motion)
+    return float(np.asarray(mesh.driver) @ motion), float(np.asarray(mesh.loaded) @ motion)

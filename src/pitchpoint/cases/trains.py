@@ -1,0 +1,130 @@
+"""From a case of meshes that turn together, as a planetary set, to their flanks, loads and phases."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.document import STAGES
+from pitchpoint.cases.schema import Case, DriveCase, Operating, TrainTable
+from pitchpoint.doubts import GUESSED, Doubt
+from pitchpoint.drive.assembly import equal_angles, planet_phases
+from pitchpoint.drive.kinematics import HOUSING, Ends, Link
+from pitchpoint.drive.torques import train_torques
+from pitchpoint.efficiency.train import Train, gear_train
+from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
+
+__all__ = ["about_trains", "train_of", "turning_together"]
+
+
+def _links(case: DriveCase, train: TrainTable, meshes: Sequence[Mesh]) -> list[Link]:
+    """Meshes with their bodies; the axes of those of planets sit on the carrier."""
+    each = zip(meshes, case.stages.values(), strict=True)
+    return [
+        Link(mesh, stage.bodies, train.carrier if train.planet in stage.bodies else HOUSING)
+        for mesh, stage in each
+    ]
+
+
+def _ends(case: DriveCase, train: TrainTable) -> Ends:
+    return Ends({train.input: case.operation.speed or 1.0}, train.held, train.output)
+
+
+def turning_together(
+    case: DriveCase, alone: Sequence[Case], meshes: Sequence[Mesh]
+) -> tuple[list[Case], list[Operating]]:
+    """Meshes of a train with the flanks that they press, and the operating point of one copy of each.
+
+    Args:
+        case: of the train.
+        alone: each of its meshes as a case.
+        meshes: of these.
+
+    Raises:
+        InputError: see `train_torques`; flanks that were given are not those that touch.
+
+    From torques without losses.
+    """
+    train = case.train
+    assert train is not None
+    links = _links(case, train, meshes)
+    try:
+        found = train_torques(links, _ends(case, train), 1.0, [1.0] * len(links))
+    except InputError as error:
+        raise error.at(key=error.key or "train") from None
+    turned, points = [], []
+    for number, (one, link, torques) in enumerate(zip(alone, links, found.shares, strict=True), 1):
+        torque = np.array([torques[body] for body in link.bodies])
+        rates = np.array([found.rates[body] - found.rates[link.carrier] for body in link.bodies])
+        driver = link.bodies.index(found.driving[number - 1])
+        mesh, first = link.mesh, np.asarray(link.mesh.driver)
+        if float(first @ torque) * float(first @ np.asarray(mesh.motion)) < 0.0:
+            one = _on_other_flanks(one, number)
+        copies = train.planets if train.planet in link.bodies else 1.0
+        carried = abs(torque[1 - driver]) / copies * case.operation.load
+        changes = {
+            one.gears.load: float(carried),
+            "speed": float(abs(rates[driver])),
+            "driver": one.gears.members[driver],
+        }
+        points.append(one.operation.model_copy(update=changes))
+        turned.append(one)
+    return turned, points
+
+
+def _on_other_flanks(one: Case, number: int) -> Case:
+    """A mesh pressing its other flanks, where they are open."""
+    if one.gears.opposed is None or "flank" in one.gears.model_fields_set:
+        raise InputError(
+            "these flanks do not touch when the train is driven so; leave flank out, or take the others",
+            key=f"{STAGES}.{number}.gears.flank",
+        )
+    return one.model_copy(update={"gears": one.gears.opposed})
+
+
+def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
+    """The train of a case.
+
+    Args:
+        case: of the train.
+        built: its meshes.
+
+    Raises:
+        InputError: planets that do not fit in at equal angles; see `gear_train`.
+    """
+    train = case.train
+    assert train is not None
+    designs = [one.design for one in built]
+    links = _links(case, train, [one.mesh for one in designs])
+    of_planets = [link for link in links if link.carrier != HOUSING]
+    try:
+        fitted = planet_phases(of_planets, (train.planet,), equal_angles(round(train.planets)))
+        every = iter(fitted)
+        phases = [next(every) if link in of_planets else np.zeros(1) for link in links]
+        return gear_train(
+            links, designs, _ends(case, train), planets=(train.planet,), phases=phases
+        )
+    except InputError as error:
+        raise error.at(key=error.key or "train.planets") from None
+
+
+def about_trains(case: DriveCase) -> tuple[str, ...]:
+    """Sentences on what the meshes of a train are, and on what is not in its efficiency."""
+    train = case.train
+    assert train is not None
+    return (
+        Doubt(
+            "The efficiency is that of the teeth: bearings of planets, seals and churning are not in it.",
+            moves=GUESSED,
+            about=("mean_efficiency",),
+            brief="The efficiency is that of the teeth: planet bearings are not in it.",
+        ),
+        Doubt(
+            "Stresses and safeties of a mesh are those of one planet with an equal share of the load, and of "
+            "teeth loaded in one direction; planets bear on both flanks, and sun and ring meet every planet "
+            "in a turn.",
+            about=("root_stress", "contact_stress"),
+            brief="Safeties: planets loaded one way, equal shares, one mesh a turn.",
+        ),
+    )

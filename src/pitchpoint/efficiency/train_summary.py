@@ -1,0 +1,127 @@
+"""Figures of gear trains over their period, by one program for many operating points."""
+
+from collections.abc import Callable, Sequence
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import total
+from pitchpoint.efficiency.quasi_static import Models, Operation
+from pitchpoint.efficiency.summary import in_chunks
+from pitchpoint.efficiency.train import MeshState, Train, TrainCycle, train_cycle
+from pitchpoint.programs import program
+
+__all__ = ["train_figures"]
+
+NODES = 6
+"""Nodes in each segment between events, of which planets out of phase make many."""
+
+
+def train_figures(
+    points: Sequence[tuple[Train, Operation]],
+    models: Sequence[Models],
+    progress: Callable[[int], None] | None = None,
+) -> dict[str, np.ndarray]:
+    """Figures of many points, each quantity [point] or [point, stage]; the stages are the meshes.
+
+    Args:
+        points: trains and operating points of equal static structure.
+        models: laws of each mesh.
+        progress: told the number of finished points after each chunk.
+
+    From the states of `train_cycle` over the period of the train.
+    """
+    laws = tuple(models)
+    found = in_chunks(lambda chunk: _figures(chunk[0], chunk[1], laws), points, progress=progress)
+    limit = jamming_coefficients(found.pop("levers"))
+    at = np.argmin(limit, axis=-1)[:, None]
+    nearest = np.take_along_axis(limit, at, -1)[:, 0]
+    friction = np.take_along_axis(found.pop("largest_friction"), at, -1)[:, 0]
+    return {
+        **found,
+        "jamming_coefficient": nearest,
+        "nearest_jamming_coefficient": nearest,
+        "nearest_friction": friction,
+    }
+
+
+def jamming_coefficients(
+    levers: Float[np.ndarray, "point 2 node body mesh"],
+) -> Float[np.ndarray, "point node"]:
+    """Smallest coefficient of friction, the same at all contacts, from which on a train is locked.
+
+    Args:
+        levers: of the forces, see `TrainCycle.levers`.
+
+    Returns:
+        At each node; infinite where friction pushes on.
+
+    From the smallest positive root of det(A + mu B), an eigenvalue of A^-1 B.
+    """
+    roots = np.linalg.eigvals(-np.linalg.solve(levers[:, 0], levers[:, 1]))
+    real = np.where(np.abs(roots.imag) <= 1e-9 * np.abs(roots.real), roots.real, 0.0)
+    largest = np.max(real, axis=-1)
+    infinite = np.full(largest.shape, np.inf)
+    return np.asarray(np.divide(1.0, largest, out=infinite, where=largest > 0.0))
+
+
+@program
+def _figures(trains: Train, operations: Operation, models: tuple[Models, ...]) -> dict[str, Array]:
+    def figures(train: Train, operation: Operation) -> dict[str, Array]:
+        found = train_cycle.function(train, operation, models, NODES)
+        return {**_of_train(found), **_of_meshes(found)}
+
+    result: dict[str, Array] = eqx.filter_vmap(figures)(trains, operations)
+    return result
+
+
+def _of_train(found: TrainCycle) -> dict[str, Array]:
+    efficiency = found.output_power / found.input_power
+    low, high = found.extremes(efficiency)
+    torque_low, torque_high = found.extremes(found.input_torque)
+    friction = jnp.stack([jnp.max(one.friction, axis=(0, 1, 2)) for one in found.meshes])
+    ratios = [jnp.max(one.force / one.nominal) for one in found.meshes]
+    return {
+        "mean_loss": found.mean(found.loss),
+        "mean_drag_loss": jnp.zeros(()),
+        "mean_efficiency": found.mean_efficiency,
+        "min_efficiency": low,
+        # Between the nodes the interpolation may overshoot; no state is better than free of loss.
+        "max_efficiency": jnp.minimum(high, jnp.maximum(1.0, jnp.max(efficiency))),
+        "mean_input_torque": found.mean(found.input_torque),
+        "min_input_torque": torque_low,
+        "max_input_torque": torque_high,
+        "mean_friction": found.mean(_mean_friction(found.meshes)),
+        "residual": jnp.max(found.status.residual),
+        "iterations": found.status.iterations,
+        "locked": found.locked,
+        "largest_contact_force_ratio": jnp.max(jnp.stack(ratios)),
+        "largest_friction": jnp.max(friction, axis=0),
+        "levers": found.levers,
+    }
+
+
+def _mean_friction(meshes: Sequence[MeshState]) -> Float[Array, " node"]:
+    """Coefficient weighted with the load of all contacts."""
+    loads = [jnp.sum(total(one.conditions.load), axis=0) for one in meshes]
+    rubbing = [jnp.sum(total(one.conditions.load * one.friction), axis=0) for one in meshes]
+    whole = sum(loads[1:], loads[0])
+    return sum(rubbing[1:], rubbing[0]) / jnp.where(whole > 0.0, whole, 1.0)
+
+
+def _of_meshes(found: TrainCycle) -> dict[str, Array]:
+    """Figures of each mesh, of all its copies, with speeds against its carrier [stage]."""
+    losses = [found.mean(one.loss) for one in found.meshes]
+    driving = [found.mean(one.input_torque) for one in found.meshes]
+    speeds = [one.speed for one in found.meshes]
+    powers = [torque * speed for torque, speed in zip(driving, speeds, strict=True)]
+    return {
+        "stage_loss": jnp.stack(losses),
+        "stage_drag_loss": jnp.zeros(len(losses)),
+        "stage_efficiency": 1.0 - jnp.stack(losses) / jnp.stack(powers),
+        "stage_friction": jnp.stack([found.mean(_mean_friction([one])) for one in found.meshes]),
+        "stage_input_torque": jnp.stack(driving),
+        "stage_speed": jnp.stack(speeds),
+    }

@@ -1,0 +1,205 @@
+"""The table [gears] of a planetary gear set: the meshes for which its numbers stand."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isfinite, isnan, nan, pi
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import GetJsonSchemaHandler, model_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
+
+from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.inspection import (
+    Toothing,
+    distance_without_backlash,
+    profile_shift_sum,
+)
+from pitchpoint.gears.cylindrical.table import (
+    FROM_CENTRE_DISTANCE,
+    LEAST_TIP,
+    TIP,
+)
+from pitchpoint.gears.table import ANGLE, DISTANCE, FILLET, HELIX, MODULE, RACK, SHIFT, WIDTH
+from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
+from pitchpoint.input.tables import Table
+
+__all__ = ["BODIES", "PLANETARY", "PLANETS", "PlanetaryGears"]
+
+PLANETARY = "planetary"
+"""The family by name."""
+
+BODIES = ("sun", "carrier", "ring")
+"""Bodies that may be turned, loaded or held."""
+
+MOST_PLANETS = 24
+
+TEETH = Quantity("dimensionless", 5, 2_000, whole=True)
+PLANETS = Quantity("dimensionless", 1, MOST_PLANETS, whole=True)
+
+Three = tuple[float, float, float]
+Tree = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class OfThree(Pair):
+    """A value for each of sun, planet and ring, or one for all; that of the ring may follow from the rest."""
+
+    follows: bool = False
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """What editors know of the values."""
+        each = self.each.json_schema
+        item = {"anyOf": [each, {"const": FROM_CENTRE_DISTANCE}]} if self.follows else each
+        every = {"type": "array", "items": item, "minItems": 3, "maxItems": 3}
+        return {"anyOf": [each, every], "description": self.told}
+
+    @property
+    def told(self) -> str:
+        """Kind, range and units in words."""
+        open_ring = f'; "{FROM_CENTRE_DISTANCE}" for the ring' if self.follows else ""
+        return f"{self.each.told}; a list of sun, planet and ring, or one value for all{open_ring}"
+
+    def read(self, value: Any) -> Any:
+        """SI values of sun, planet and ring; NaN where that of the ring is to follow."""
+        every = list(value) if isinstance(value, list | tuple) else [value] * 3
+        if len(every) != 3:
+            raise InputError(
+                f"{shown(value)} has {len(every)} values; give those of sun, planet and ring, or one for "
+                f"all; {self.each.allowed}"
+            )
+        usual = isinstance(every[2], float) and isnan(every[2])  # what stands there unless given
+        follows = self.follows and (usual or every[2] == FROM_CENTRE_DISTANCE)
+        ring = nan if follows else self.each.read(every[2])
+        return self.each.read(every[0]), self.each.read(every[1]), ring
+
+
+class PlanetaryGears(Table):
+    """A planetary gear set: a sun, planets on a carrier, and a ring around them, of one module.
+
+    One of sun, carrier and ring is turned, one takes the load, one is held. All planets are alike and stand
+    at equal angles. Meshes of sun and planet, and of planet and ring, have the same centre distance.
+    """
+
+    explored: ClassVar[tuple[str, float]] = ("profile_shift.2", 0.2)
+
+    family: Literal["planetary"]
+    """Family of these gears: a planetary set."""
+    teeth: Annotated[Three, OfThree(TEETH)]
+    """Numbers of teeth of sun, planet and ring, all positive."""
+    planets: Annotated[float, PLANETS] = 3.0
+    """Number of planets."""
+    module: Annotated[float, MODULE]
+    """Normal module m_n of all gears."""
+    face_width: Annotated[Three, OfThree(WIDTH)]
+    """Face widths of sun, planet and ring; of two in mesh the smaller one counts."""
+    pressure_angle: Annotated[float, ANGLE] = pi / 9
+    """Normal pressure angle α_n of the basic racks."""
+    helix_angle: Annotated[float, HELIX] = 0.0
+    """Helix angle β on the reference cylinders; 0 for spur gears."""
+    profile_shift: Annotated[Three, OfThree(SHIFT, follows=True)] = (0.0, 0.0, nan)
+    """Profile shift coefficients of sun, planet and ring; that of the ring as follows unless given."""
+    addendum: Annotated[Three, OfThree(RACK)] = (1.0, 1.0, 1.0)
+    """Addendum of the basic racks, in modules."""
+    dedendum: Annotated[Three, OfThree(RACK)] | None = None
+    """Dedendum of the basic racks, in modules; addendum of the mate + 0.25 unless given."""
+    fillet_radius: Annotated[Three, OfThree(FILLET)] = (0.38, 0.2, 0.2)
+    """Fillet radius ρ_fP of the racks in modules; 0.38 of the sun, 0.2 where a ring meshes, unless given."""
+    tip_alteration: Annotated[Three, OfThree(TIP)] | None = None
+    """Tip alteration coefficients; those that keep the tip clearance of each mesh unless given."""
+    least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
+    """Tip thickness that shortening keeps, in modules; helical 0.25, spur 0, unless given."""
+    centre_distance: Annotated[float, DISTANCE] | None = None
+    """Centre distance of both meshes; that of sun and planet without backlash unless given."""
+    input: Literal["sun", "carrier", "ring"] = "sun"
+    """Body that drives."""
+    output: Literal["sun", "carrier", "ring"] = "carrier"
+    """Body that takes the load."""
+    held: Literal["sun", "carrier", "ring"] = "ring"
+    """Body that stands still."""
+
+    @model_validator(mode="after")
+    def _whole(self) -> "PlanetaryGears":
+        roles = {"input": self.input, "output": self.output, "held": self.held}
+        missing = [body for body in BODIES if body not in roles.values()]
+        if missing:
+            wrong = [name for name in roles if name in self.model_fields_set]
+            raise InputError(
+                f"{', '.join(f'{name} = {body}' for name, body in roles.items())}: input, output and held "
+                f"are three different ones of {', '.join(BODIES)}, and the {missing[0]} is none of them",
+                key=wrong[-1],
+            )
+        sun, planet, ring = self.teeth
+        if ring <= planet:
+            raise InputError(
+                f"a ring of {ring:.0f} teeth is not around a planet of {planet:.0f}; with a sun of {sun:.0f} "
+                f"teeth it has some {sun + 2.0 * planet:.0f}",
+                key="teeth",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _shift_of_ring(self) -> "PlanetaryGears":
+        """The shift of the ring that leaves no backlash at the centre distance of sun and planet."""
+        sun, planet, ring = self.profile_shift
+        if not isnan(ring) or not isfinite(self.distance):
+            return self
+        both = profile_shift_sum(
+            teeth=(self.teeth[1], -self.teeth[2]),
+            module=self.module,
+            pressure_angle=self.pressure_angle,
+            helix_angle=self.helix_angle,
+            centre_distance=self.distance,
+        )
+        shifts = sun, planet, round(both - planet, 12) + 0.0
+        return self.model_copy(update={"profile_shift": shifts})
+
+    @property
+    def distance(self) -> float:
+        """Centre distance of both meshes [m]; NaN where there is none without backlash."""
+        if self.centre_distance is not None:
+            return self.centre_distance
+        gears = [
+            Toothing(teeth, self.module, self.pressure_angle, self.helix_angle, shift)
+            for teeth, shift in [*zip(self.teeth, self.profile_shift, strict=True)][:2]
+        ]
+        return distance_without_backlash(*gears)
+
+    def meshes(self) -> list[Tree]:
+        """Tables [[stages]] of sun and planet, and of planet and ring."""
+        sun, planet, ring = self.teeth
+        return [
+            {"bodies": ["sun", "planet"], "gears": self._pair(0, [sun, planet])},
+            {"bodies": ["planet", "ring"], "gears": self._pair(1, [planet, -ring])},
+        ]
+
+    def _pair(self, first: int, teeth: Sequence[float]) -> Tree:
+        """Table [gears] of two neighbours among sun, planet and ring."""
+
+        def both(values: Three) -> list[float]:
+            return [*values[first : first + 2]]
+
+        lists = ("profile_shift", "addendum", "dedendum", "fillet_radius", "tip_alteration")
+        pairs = {name: getattr(self, name) for name in lists}
+        found: Tree = {
+            "teeth": [*map(SIValue, teeth)],
+            "face_width": SIValue(min(both(self.face_width))),
+            "profile_shift": _open(both(self.profile_shift)),
+            **{
+                name: _open(both(values))
+                for name, values in pairs.items()
+                if values is not None and name != "profile_shift"
+            },
+        }
+        for name in ("module", "pressure_angle", "helix_angle", "least_tip_thickness"):
+            if (value := getattr(self, name)) is not None:
+                found[name] = SIValue(value)
+        if self.centre_distance is not None or first:
+            found["centre_distance"] = SIValue(self.distance)
+        return found
+
+
+def _open(values: Sequence[float]) -> list[Any]:
+    return [FROM_CENTRE_DISTANCE if isnan(value) else SIValue(value) for value in values]
