@@ -13,7 +13,15 @@ import pitchpoint
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import MARKS, STATUSES
 from pitchpoint.cases.loss_sets import SET, SET_TOLD
-from pitchpoint.cases.schema import Case, DriveCase, StageTable, quantity_of, usual_words
+from pitchpoint.cases.schema import (
+    Case,
+    DriveCase,
+    StageTable,
+    TrainTable,
+    quantity_of,
+    usual_words,
+)
+from pitchpoint.gears.planetary import PlanetaryGears
 from pitchpoint.input.tables import alternatives, sentences
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.strength import EXTREMES, STRENGTH
@@ -51,6 +59,9 @@ def _keys_by_table() -> dict[str, list[str]]:
         pages[name] = pages[name] + parts if name in pages else [parts[0][1:], *parts[1:]]
     pages["file"] += _of_table("A file of several stages", DriveCase)
     pages["file"] += _of_table("`[[stages]]`", StageTable)
+    pages["file"] += _of_table("`[train]`", TrainTable)
+    first, *others = _of_table("`[gears (planetary)]`", PlanetaryGears)
+    pages["gears_planetary"] = [first[1:], *others]
     return {**pages, "marks": _marks()}
 
 

@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 
+from pitchpoint._jax import array
 from pitchpoint.drive.kinematics import HOUSING, Link
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 
@@ -20,7 +21,7 @@ def _external():
 
 def pair(first, second):
     """A pair of which the tooth numbers alone count here; rings have a negative one."""
-    return replace(_external(), teeth=np.array([first, second], float))
+    return replace(_external(), teeth=array(np.array([first, second], float)))
 
 
 def link(first, second, bodies, carrier=HOUSING):

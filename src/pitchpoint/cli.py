@@ -697,7 +697,8 @@ def new(
         str,
         typer.Argument(
             metavar="FAMILY",
-            help="spur, helical, strain_wave, rack_and_pinion, torus, ball_on_disc or two_stages.",
+            help="spur, helical, strain_wave, rack_and_pinion, torus, ball_on_disc, two_stages "
+            "or planetary.",
             autocompletion=_families_from,
         ),
     ],

@@ -68,6 +68,7 @@ def of_willis(basic, eta, turned, held, loaded, rates):
     return nan
 
 
+@pytest.mark.whole
 def test_random_sets_of_two_central_gears_agree_with_willis():
     random = np.random.default_rng(SEED)
     bodies = ["first", "second", "carrier"]
@@ -112,6 +113,7 @@ def of_3k(first, second, sun, ring, output, backwards):
     return over / ((e_s + e_1 * first) * (second - 1)) if over > 0.0 else nan
 
 
+@pytest.mark.whole
 def test_random_3k_trains_agree_with_their_closed_forms():
     random = np.random.default_rng(SEED)
     locked = above = 0

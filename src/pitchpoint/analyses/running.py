@@ -9,7 +9,7 @@ import xarray as xr
 
 from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
-from pitchpoint.analyses.lacking import untransmitted, without_formula
+from pitchpoint.analyses.lacking import of_teeth_alone, untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
@@ -264,7 +264,7 @@ def _with(values: np.ndarray, one: float) -> np.ndarray:
 
 def _free(built: Ready) -> str | None:
     told = None if built.drags else Unasked("the case has no [losses] beside its teeth")
-    return untransmitted(built) or told or without_formula(built)
+    return untransmitted(built) or of_teeth_alone(built) or told or without_formula(built)
 
 
 def _computed(built: Ready, _: Piece, __: Progress) -> xr.Dataset:

@@ -1701,7 +1701,9 @@ class DriveCase(Table):
             wrong.tried(_check_losses, self.losses, turning, self.bodies)
         if self.operation.driver:
             told = (
-                "the first stage drives; the member that drives a stage is its own key, "
+                "that is the input of the train, a key beside its held and output"
+                if self.train is not None
+                else "the first stage drives; the member that drives a stage is its own key, "
                 'driver = "gear 2" under [[stages]]'
             )
             wrong.add(InputError(told, key="operation.driver"))

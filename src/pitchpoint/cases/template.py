@@ -17,6 +17,7 @@ from pitchpoint.cases.schema import Case, DriveCase, quantity_of
 from pitchpoint.cases.wishes import no_family
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import TABLES, sample_of
+from pitchpoint.gears.planetary import PLANETARY
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import alternatives, forms, sentences, tag
 from pitchpoint.registry import known_as
@@ -35,13 +36,17 @@ _MORE: Mapping[str, Tree] = {
 }
 """What a case to begin with has beside the sample of its family, such as all that loses and yields."""
 
-_STAGES = "two_stages"
+_DRIVES = {"two_stages": "stages.toml", PLANETARY: "planetary.toml"}
+"""Samples of drives of several meshes, by name."""
 
-FAMILIES = (*(tag(table) for table in TABLES), *_CYLINDRICAL, _STAGES)
+FAMILIES = (*(tag(table) for table in TABLES), *_CYLINDRICAL, *_DRIVES)
 """What a case file may begin with."""
 
 _MEANT = ("gears", STAGES, "lubricant", "roughness", "operation", "models")
 """Tables that stand in it; all others are remarks."""
+
+_ARRANGING = ("gears", STAGES, "train")
+"""Tables on how gears stand together, of which a case has the ones or the others."""
 
 _LEFT_OUT = ("title", "summary", "source", "targets", "issues", "formulas", "studies")
 _WIDTH = 100
@@ -77,8 +82,8 @@ def template(family: str) -> str:
 
 def _sample(family: str) -> tuple[type[BaseModel], Tree]:
     """Sound tables of a family, from the sample beside it."""
-    if family == _STAGES:
-        path = resources.files("pitchpoint.cases") / "stages.toml"
+    if family in _DRIVES:
+        path = resources.files("pitchpoint.cases") / _DRIVES[family]
         return DriveCase, tomllib.loads(path.read_text("utf-8"))
     name = "cylindrical" if family in _CYLINDRICAL else family
     table = next(table for table in TABLES if tag(table) == name)
@@ -90,7 +95,7 @@ def _sample(family: str) -> tuple[type[BaseModel], Tree]:
 
 def _of_table(model: type[BaseModel], key: str, tree: Tree) -> Iterator[str]:
     """Lines of a table at the top of the file."""
-    if key in _LEFT_OUT:
+    if key in _LEFT_OUT or (key in _ARRANGING and key not in tree):
         return
     info, given = model.model_fields[key], tree.get(key)
     if key == STAGES:
@@ -204,7 +209,8 @@ def _pair(info: FieldInfo) -> bool:
 def _of_quantity(quantity: Quantity, usual: Any) -> Any:
     """The usual value in the unit in which it is shown, or one in its range."""
     if isinstance(usual, tuple) and usual and isinstance(usual[0], float):
-        each = [_read(quantity.show(value)) for value in usual]
+        words = [value if isinstance(value, str) else quantity.show(value) for value in usual]
+        each = [*map(_read, words)]
         return each[0] if len(set(map(str, each))) == 1 else each
     if isinstance(usual, float):
         return _read(quantity.show(usual))

@@ -1,6 +1,6 @@
 """From a case of meshes that turn together, as a planetary set, to their flanks, loads and phases."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES
 from pitchpoint.cases.schema import Case, DriveCase, Operating, TrainTable
 from pitchpoint.doubts import GUESSED, Doubt
-from pitchpoint.drive.assembly import equal_angles, planet_phases
+from pitchpoint.drive.assembly import check_neighbours, equal_angles, planet_phases
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.train import Train, gear_train
@@ -99,7 +99,7 @@ def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
     links = _links(case, train, [one.mesh for one in designs])
     of_planets = [link for link in links if link.carrier != HOUSING]
     try:
-        fitted = planet_phases(of_planets, (train.planet,), equal_angles(round(train.planets)))
+        fitted = _fitted(of_planets, train)
         every = iter(fitted)
         phases = [next(every) if link in of_planets else np.zeros(1) for link in links]
         return gear_train(
@@ -107,6 +107,41 @@ def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
         )
     except InputError as error:
         raise error.at(key=error.key or "train.planets") from None
+
+
+MOST_FITTED = 8
+"""Planets up to which it is told how many fit in."""
+
+
+def _fitted(links: Sequence[Link], train: TrainTable) -> list[np.ndarray]:
+    """Phases of the meshes of planets that stand at equal angles.
+
+    Raises:
+        InputError: they do not fit in; with the numbers of planets that do.
+    """
+
+    def phases(count: int) -> list[np.ndarray]:
+        angles = equal_angles(count)
+        found = planet_phases(links, (train.planet,), angles)
+        check_neighbours(links, (train.planet,), angles)
+        return found
+
+    try:
+        return phases(round(train.planets))
+    except InputError as error:
+        fitting = [count for count in range(1, MOST_FITTED + 1) if _fits(phases, count)]
+        counts = (
+            f"; of 1 to {MOST_FITTED} planets fit {', '.join(map(str, fitting))}" if fitting else ""
+        )
+        raise InputError(f"{error.message}{counts}", key="train.planets") from None
+
+
+def _fits(phases: Callable[[int], list[np.ndarray]], count: int) -> bool:
+    try:
+        phases(count)
+    except InputError:
+        return False
+    return True
 
 
 def about_trains(case: DriveCase) -> tuple[str, ...]:

@@ -9,10 +9,19 @@ from typing import Any, ParamSpec, TypeVar
 from pitchpoint.cases.build import check_alone
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import Document, resolve
-from pitchpoint.cases.schema import Case, DriveCase, usual_at, validate, with_meshes
+from pitchpoint.cases.schema import (
+    Case,
+    DriveCase,
+    is_planetary,
+    planetary_of,
+    usual_at,
+    validate,
+    with_meshes,
+)
 from pitchpoint.cases.stages import ready
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.families import build_together
+from pitchpoint.gears.planetary import in_words_of_set
 from pitchpoint.lubrication.registry import ChosenLaws
 
 __all__ = [
@@ -94,13 +103,31 @@ class Variant:
             return validate(document), with_meshes(document)
         except InputError as error:
             wrong = Complaints(document.name)
-            wrong.add(error)
+            wrong.add(_as_spelt(error, document))
             if not changes:
                 check_alone(document, wrong)
             raise wrong.error from None
 
     def _ready(self, case: Case | DriveCase, document: Document) -> Ready:
-        return ready(case, document, self.own)
+        try:
+            return ready(case, document, self.own)
+        except InputError as error:
+            raise _as_spelt(error, document) from None
+
+
+def _as_spelt(error: InputError, document: Document) -> InputError:
+    """An error with the keys that the file has, where a planetary set stands for its meshes."""
+    if not is_planetary(document.tree):
+        return error
+    try:
+        gears = planetary_of(document)
+    except InputError:  # which is the error itself
+        return error
+    wrong = Complaints()
+    for one in error.every:
+        if isinstance(one, InputError):
+            wrong.add(in_words_of_set(one, gears))
+    return wrong.error if wrong else error
 
 
 def _or_error(make: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | InputError:

@@ -100,7 +100,6 @@ def no_family(name: str, known: Collection[str]) -> str:
 
 _NO_FAMILIES = {
     *(
-        "planetary",
         "epicyclic",
         "bevel",
         "hypoid",
@@ -501,15 +500,15 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
         Wish(
             ("planets", "number_of_planets", "planet_count"),
             (),
-            "a planetary gear is not a family; sun with planet and planet with ring are pairs of their own, "
-            "each at its share of the torque",
+            'planets are those of gears with family = "planetary", teeth of sun, planet and ring; a pair of '
+            "them alone is at its share of the torque",
             _share_of_planets,
         ),
         Wish(
             ("sun", "ring", "planet", "carrier", "sun_teeth", "planet_teeth", "ring_teeth"),
             (),
-            "a planetary gear is not a family; write sun with planet, or planet with ring, as a pair, "
-            "a ring with its number of teeth negative",
+            'a planetary set is family = "planetary", with teeth = [sun, planet, ring]; a pair of them alone '
+            "has the number of teeth of a ring negative",
         ),
         Wish(
             ("hand", "hand_of_helix", "helix_hand", "helix_direction", "handedness"),

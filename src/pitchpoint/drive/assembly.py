@@ -11,7 +11,7 @@ from pitchpoint.drive.kinematics import Link
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
 
-__all__ = ["equal_angles", "planet_phases"]
+__all__ = ["check_neighbours", "equal_angles", "planet_phases"]
 
 FITS = 1e-6
 """Part of a pitch by which a planet may miss a tooth space: that of rounding, not of play."""
@@ -26,6 +26,36 @@ Teeth = tuple[float, float]
 def equal_angles(count: int) -> Float[np.ndarray, " copy"]:
     """Angles of planets that stand all around, the first one at zero [rad]."""
     return 2.0 * pi * np.arange(count) / count
+
+
+def check_neighbours(
+    links: Sequence[Link], planets: Sequence[str], angles: Float[np.ndarray, " copy"]
+) -> None:
+    """Raise InputError where planets that stand beside each other would touch.
+
+    Args:
+        links: see `planet_phases`.
+        planets: bodies of which there are several.
+        angles: at which they stand about the axis of their carrier [rad].
+
+    From the distance of neighbours, 2 a sin(half the angle between them), against the tip circles.
+    """
+    if angles.size < 2:
+        return
+    around = np.sort(np.mod(angles, 2.0 * pi))
+    closest = float(np.min(np.diff([*around, around[0] + 2.0 * pi])))
+    for link in links:
+        mesh = link.mesh
+        if not isinstance(mesh, InvolutePair):
+            continue
+        number = next(k for k, body in enumerate(link.bodies) if body in planets)
+        apart = 2.0 * float(mesh.centre_distance) * np.sin(closest / 2.0)
+        tips = 2.0 * abs(float(mesh.tip_radii[number]))
+        if apart <= tips:
+            raise InputError(
+                f"the planets run into each other: {1e3 * apart:.5g} mm apart, and their tip circles measure "
+                f"{1e3 * tips:.5g} mm"
+            )
 
 
 def planet_phases(

@@ -120,8 +120,16 @@ def _of_meshes(found: TrainCycle) -> dict[str, Array]:
     return {
         "stage_loss": jnp.stack(losses),
         "stage_drag_loss": jnp.zeros(len(losses)),
-        "stage_efficiency": 1.0 - jnp.stack(losses) / jnp.stack(powers),
+        "stage_efficiency": _of_powers(jnp.stack(powers), jnp.stack(losses)),
         "stage_friction": jnp.stack([found.mean(_mean_friction([one])) for one in found.meshes]),
         "stage_input_torque": jnp.stack(driving),
         "stage_speed": jnp.stack(speeds),
     }
+
+
+def _of_powers(
+    driving: Float[Array, " mesh"], lost: Float[Array, " mesh"]
+) -> Float[Array, " mesh"]:
+    """Efficiency of meshes by the power of their driving members, negative where these are driven."""
+    power_in = jnp.where(driving > 0.0, driving, lost - driving)
+    return 1.0 - lost / jnp.where(power_in > 0.0, power_in, jnp.nan)

@@ -1,5 +1,6 @@
 """The table [gears] of a planetary gear set: the meshes for which its numbers stand."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite, isnan, nan, pi
@@ -24,7 +25,7 @@ from pitchpoint.gears.table import ANGLE, DISTANCE, FILLET, HELIX, MODULE, RACK,
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.input.tables import Table
 
-__all__ = ["BODIES", "PLANETARY", "PLANETS", "PlanetaryGears"]
+__all__ = ["BODIES", "PLANETARY", "PLANETS", "PlanetaryGears", "in_words_of_set"]
 
 PLANETARY = "planetary"
 """The family by name."""
@@ -36,6 +37,9 @@ MOST_PLANETS = 24
 
 TEETH = Quantity("dimensionless", 5, 2_000, whole=True)
 PLANETS = Quantity("dimensionless", 1, MOST_PLANETS, whole=True)
+
+_LISTS = ("teeth", "profile_shift", "addendum", "dedendum", "fillet_radius", "tip_alteration")
+"""Keys that hold a value for each of sun, planet and ring."""
 
 Three = tuple[float, float, float]
 Tree = dict[str, Any]
@@ -70,10 +74,13 @@ class OfThree(Pair):
                 f"{shown(value)} has {len(every)} values; give those of sun, planet and ring, or one for "
                 f"all; {self.each.allowed}"
             )
-        usual = isinstance(every[2], float) and isnan(every[2])  # what stands there unless given
-        follows = self.follows and (usual or every[2] == FROM_CENTRE_DISTANCE)
+        follows = self.follows and every[2] == FROM_CENTRE_DISTANCE
         ring = nan if follows else self.each.read(every[2])
         return self.each.read(every[0]), self.each.read(every[1]), ring
+
+
+_USUAL_SHIFTS: Any = 0.0, 0.0, FROM_CENTRE_DISTANCE
+"""None of sun and planet; that of the ring follows."""
 
 
 class PlanetaryGears(Table):
@@ -99,7 +106,7 @@ class PlanetaryGears(Table):
     """Normal pressure angle α_n of the basic racks."""
     helix_angle: Annotated[float, HELIX] = 0.0
     """Helix angle β on the reference cylinders; 0 for spur gears."""
-    profile_shift: Annotated[Three, OfThree(SHIFT, follows=True)] = (0.0, 0.0, nan)
+    profile_shift: Annotated[Three, OfThree(SHIFT, follows=True)] = _USUAL_SHIFTS
     """Profile shift coefficients of sun, planet and ring; that of the ring as follows unless given."""
     addendum: Annotated[Three, OfThree(RACK)] = (1.0, 1.0, 1.0)
     """Addendum of the basic racks, in modules."""
@@ -144,7 +151,7 @@ class PlanetaryGears(Table):
     def _shift_of_ring(self) -> "PlanetaryGears":
         """The shift of the ring that leaves no backlash at the centre distance of sun and planet."""
         sun, planet, ring = self.profile_shift
-        if not isnan(ring) or not isfinite(self.distance):
+        if not _is_open(ring) or not isfinite(self.distance):
             return self
         both = profile_shift_sum(
             teeth=(self.teeth[1], -self.teeth[2]),
@@ -181,17 +188,12 @@ class PlanetaryGears(Table):
         def both(values: Three) -> list[float]:
             return [*values[first : first + 2]]
 
-        lists = ("profile_shift", "addendum", "dedendum", "fillet_radius", "tip_alteration")
-        pairs = {name: getattr(self, name) for name in lists}
+        pairs = {name: getattr(self, name) for name in _LISTS[2:]}
         found: Tree = {
             "teeth": [*map(SIValue, teeth)],
             "face_width": SIValue(min(both(self.face_width))),
             "profile_shift": _open(both(self.profile_shift)),
-            **{
-                name: _open(both(values))
-                for name, values in pairs.items()
-                if values is not None and name != "profile_shift"
-            },
+            **{name: _open(both(values)) for name, values in pairs.items() if values is not None},
         }
         for name in ("module", "pressure_angle", "helix_angle", "least_tip_thickness"):
             if (value := getattr(self, name)) is not None:
@@ -202,4 +204,53 @@ class PlanetaryGears(Table):
 
 
 def _open(values: Sequence[float]) -> list[Any]:
-    return [FROM_CENTRE_DISTANCE if isnan(value) else SIValue(value) for value in values]
+    return [FROM_CENTRE_DISTANCE if _is_open(value) else SIValue(value) for value in values]
+
+
+def _is_open(value: Any) -> bool:
+    """True for a shift that is to follow: text where it is the usual one, not a number as read."""
+    return value == FROM_CENTRE_DISTANCE or isnan(value)
+
+
+_TWO = re.compile(r"\b(\w+) = \[([^,\]]+), ([^,\]]+)\]")
+
+
+def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:
+    """An error of a mesh, or of the train, with the key that it has in the table of the set.
+
+    Args:
+        error: with a key of [[stages]] or [train].
+        gears: for which these stand.
+    """
+    table, _, inside = (error.key or "").partition(".")
+    if table == "train":
+        return error.at(key=f"gears.{inside}")
+    number, _, key = inside.partition(".")
+    if table != "stages" or number not in ("1", "2"):
+        return error
+    first = int(number) - 1
+
+    def of_three(found: re.Match[str]) -> str:
+        name, *pair = found.groups()
+        if name not in _LISTS:
+            return found[0]
+        given = getattr(gears, name) or ("",) * 3
+        rest = (
+            f"{given[2 - 2 * first]:g}"
+            if isinstance(given[2 - 2 * first], float)
+            else pair[1 - first]
+        )
+        every = [*pair, rest] if first == 0 else [rest, *pair]
+        return f"{name} = [{', '.join(every)}]"
+
+    message = error.message
+    both = f'profile_shift = "{FROM_CENTRE_DISTANCE}"'
+    open_ring = [*(f"{value:g}" for value in gears.profile_shift[:2]), f'"{FROM_CENTRE_DISTANCE}"']
+    message = (
+        message.replace(both, f"profile_shift = [{', '.join(open_ring)}]") if first else message
+    )
+    named = ("sun", "planet", "ring")[first : first + 2]
+    told = (
+        f"in the mesh of {named[0]} (gear 1) and {named[1]} (gear 2): {_TWO.sub(of_three, message)}"
+    )
+    return InputError(told, file=error.file, key=key or None, value=error.value)

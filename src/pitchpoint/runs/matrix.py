@@ -11,18 +11,23 @@ from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.build import FILM_SOLVERS, Built
 from pitchpoint.cases.built_drive import Ready
+from pitchpoint.cases.document import Document
+from pitchpoint.cases.schema import with_meshes
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.tables import tag
 from pitchpoint.runs.run import load_case
 
 __all__ = ["matrix", "page"]
 
-_SEVERAL = resources.files("pitchpoint.cases") / "stages.toml"
+_SEVERAL, _PLANETARY = (
+    resources.files("pitchpoint.cases") / f"{name}.toml" for name in ("stages", "planetary")
+)
 
 _PAGE = """# Families and analyses
 
-What is computed for a case of each family, and for a drive of several stages, that holds every table which
-analyses ask for, with every solver of films: ✓, or – with the number of the sentence below that says why not.
+What is computed for a case of each family, for a drive of several stages, and for a planetary set, that holds
+every table which analyses ask for, with every solver of films: ✓, or – with the number of the sentence below
+that says why not.
 `pitchpoint models --matrix` prints it with its sentences, from the registries of families and analyses.
 
 """
@@ -37,6 +42,7 @@ def matrix() -> list[dict[str, str]]:
     asked: list[Mapping[str, Any]] = [*map(_films, FILM_SOLVERS["line"]), _WEAR]
     drives = [_drive(sample_of(table)) for table in turning]
     samples["several stages"] = drives + [_drive(sample_of(turning[0]), one) for one in asked]
+    samples["planetary"] = [load_case(str(_PLANETARY)), *map(_train, ({}, *asked))]
     return [
         {"analysis": analysis.name, "title": analysis.title}
         | {name: _why_not(analysis, cases) for name, cases in samples.items()}
@@ -50,6 +56,15 @@ def _drive(sample: Path, settings: Mapping[str, Any] = MappingProxyType({})) -> 
     tree["stages"][1] |= {"gears": gears["gears"]}
     inside = {f"stages.2.{key}": value for key, value in settings.items()}
     return load_case(tree, settings=_OF_OUTPUT | inside)
+
+
+def _train(settings: Mapping[str, Any]) -> Ready:
+    """The meshes of a planetary set as stages of a train, the first of them with tables by these settings."""
+    tree = tomllib.loads(_PLANETARY.read_text("utf-8"))
+    document = with_meshes(Document("planetary.toml", tree))
+    spelt = {key: table for key, table in document.tree.items() if key != "gears"}
+    inside = {f"stages.1.{key}": value for key, value in settings.items()}
+    return load_case(spelt, settings=_OF_OUTPUT | inside)
 
 
 def _asking(sample: str) -> list[Ready]:

@@ -1,0 +1,187 @@
+"""Case files of planetary sets and other trains: what they compute, what they say of a wrong number."""
+
+import numpy as np
+import pytest
+
+from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.efficiency.drive_summary import drive_figures
+from pitchpoint.errors import InputError
+from pitchpoint.runs.run import load_case
+
+TABLES = {
+    "lubricant": {"name": "pao-vg-150"},
+    "roughness": {"ra": "0.4 um"},
+    "operation": {"torque": "60 N m", "speed": "3000 rpm", "temperature": "60 degC"},
+    "models": {"friction": {"name": "constant", "coefficient": 0.05}},
+}
+SET = {
+    "family": "planetary",
+    "teeth": [24, 30, 84],
+    "planets": 3,
+    "module": "1 mm",
+    "face_width": "12 mm",
+}
+PLANETARY = {"gears": SET, **TABLES}
+
+
+def gears(teeth, **more):
+    return {"teeth": teeth, "module": "1 mm", "face_width": "10 mm", "fillet_radius": 0.2, **more}
+
+
+THREE_K = {
+    "stages": [
+        {"bodies": ["sun", "planet"], "gears": gears([18, 36])},
+        {"bodies": ["planet", "ring"], "gears": gears([36, -90])},
+        {"bodies": ["planet", "output ring"], "gears": gears([34, -88])},
+    ],
+    "train": {"input": "sun", "output": "output ring", "held": "ring", "planets": 3},
+    **TABLES,
+}
+
+
+def figures(tree, **settings):
+    built = load_case(tree, settings={key.replace("__", "."): v for key, v in settings.items()})
+    found = drive_figures([(built.design, built.operation)], built.models[0].stages)
+    return built, {name: values[0] for name, values in found.items()}
+
+
+def test_a_set_from_its_tooth_numbers():
+    """The efficiency is that of an independent computation tooth by tooth, torque and speeds are Willis'."""
+    built, found = figures(PLANETARY)
+    assert found["mean_efficiency"] == pytest.approx(0.99114646, rel=3e-6)
+    assert dict(zip(built.case.bodies, built.motion, strict=True)) == pytest.approx(
+        {"sun": 1.0, "planet": -0.4, "ring": 0.0, "carrier": 24 / 108}
+    )
+    sun, ring = built.stages
+    against = 84 / 108  # of the speed of the sun, that against the carrier
+    assert sun.case.operation.speed == pytest.approx(np.pi * 100 * against)
+    assert ring.case.operation.speed == pytest.approx(np.pi * 100 * against * 24 / 30)
+    assert ring.case.operation.torque == pytest.approx(60 * 84 / 108 / 3)
+    assert found["stage_loss"].sum() == pytest.approx(found["mean_loss"], rel=1e-12)
+
+
+def test_meshes_carry_more_by_the_losses_behind_them():
+    built, found = figures(PLANETARY)
+    without, work = (
+        [one.case.operation.torque for one in every] for every in (built.stages, built.at_work)
+    )
+    assert without[0] < work[0] < without[0] / found["mean_efficiency"]
+    # What the ring holds and what the sun puts in is what the carrier gives.
+    held = 3 * work[1]
+    assert held + found["mean_input_torque"] == pytest.approx(60.0, rel=1e-9)
+
+
+def test_a_set_is_the_train_of_its_meshes():
+    built, found = figures(PLANETARY)
+    table = {"teeth": [24, 30], "module": "1 mm", "face_width": "12 mm"}
+    table |= {"fillet_radius": [0.38, 0.2]}
+    ring = table | {"teeth": [30, -84], "fillet_radius": 0.2}
+    spelt = {
+        "stages": [
+            {"bodies": ["sun", "planet"], "gears": table},
+            {"bodies": ["planet", "ring"], "gears": ring},
+        ],
+        "train": {"input": "sun", "output": "carrier", "held": "ring", "planets": 3},
+        **TABLES,
+    }
+    assert figures(spelt)[1]["mean_efficiency"] == pytest.approx(
+        found["mean_efficiency"], rel=1e-13
+    )
+    back = drive_figures(
+        [(built.backwards.design, built.backwards.operation)], built.models[0].stages
+    )
+    assert back["mean_efficiency"][0] == pytest.approx(found["mean_efficiency"], abs=1e-4)
+
+
+@pytest.mark.whole
+def test_a_3k_by_its_meshes():
+    """Free bodies with efficiencies of .9967 to .9990 give .917 forwards: low by order mu squared."""
+    built, found = figures(THREE_K, models__friction={"name": "constant", "coefficient": 0.02})
+    assert built.design.ratio == pytest.approx(176.0)
+    assert found["mean_efficiency"] == pytest.approx(0.94, abs=2e-3)
+    assert [one.periods for one in built.design.meshes] == [18, 18, 17]
+
+
+def test_stiffness_at_the_output_is_that_of_the_springs_of_all_planets():
+    """By energy: the wind-up of the carrier is the sum of those of the meshes by the torques they carry."""
+    one = load_case(PLANETARY, settings={"models.load_sharing": "from_stiffness"})
+    data = ANALYSES["torsion"].compute(one, {}, lambda *_: None)
+    stiff = data["stage_torsional_stiffness"].values[12]
+    assert data["torsional_stiffness"].values[12] == pytest.approx(
+        1.0 / np.sum(1.0 / stiff), rel=1e-9
+    )
+    # A planet more, under as much load, is a spring more beside those that are there.
+    settings = {"gears.planets": 4, "operation.torque": "80 N m"}
+    more = load_case(PLANETARY, settings={"models.load_sharing": "from_stiffness", **settings})
+    other = ANALYSES["torsion"].compute(more, {}, lambda *_: None)["tangent_torsional_stiffness"]
+    rise = other.values[-1] / data["tangent_torsional_stiffness"].values[-1]
+    assert rise == pytest.approx(4 / 3, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"gears.planets": 5}, r"gears.planets: .* misses the teeth of the ring by 0.4 of a pitch"),
+        ({"gears.planets": 5}, r"of 1 to 8 planets fit 1, 2, 3, 4$"),
+        (
+            {"gears.planets": 6},
+            r"run into each other: 27 mm apart, and their tip circles measure 32",
+        ),
+        ({"gears.planets": 0}, r"gears.planets: 0 is out of range; allowed is 1 to 24"),
+        ({"gears.held": "sun"}, r"gears.held: .* the ring is none of them"),
+        ({"gears.input": "carrier"}, r"gears.input: .* the sun is none of them"),
+        ({"gears.teeth": [24, 30, 20]}, r"20 teeth is not around a planet of 30; .* some 84"),
+        ({"gears.teeth": [24, 30]}, r"has 2 values; give those of sun, planet and ring"),
+        ({"gears.modul": 3}, r"gears.modul: is not a known key; did you mean module"),
+        ({"gears.fillet_radius": 0.38}, r"addendum = \[1, 1, 0.9\d*\], or with fillet_radius = \["),
+        ({"operation.driver": "ring"}, r"that is the input of the train"),
+        ({"losses.seal.seal_torque": "1 N m"}, r"losses"),
+    ],
+)
+def test_a_wrong_number_gets_a_sentence_in_the_words_of_the_set(settings, words):
+    with pytest.raises(InputError, match=words):
+        load_case(PLANETARY, settings=settings)
+
+
+@pytest.mark.parametrize(
+    ("settings"),
+    [
+        {"gears.fillet_radius": [0.38, 0.22, 0.38]},
+        {"gears.profile_shift": [0.3, 0.1, "from centre distance"]},
+        {"gears.profile_shift.2": 0.1},
+        {"gears.planets": 4},
+        {"gears.input": "ring", "gears.held": "sun"},
+        {"gears.output": "ring", "gears.held": "carrier"},
+        {"gears.helix_angle": "20 deg"},
+    ],
+)
+def test_advice_that_is_followed_and_other_sets_run(settings):
+    built = load_case(PLANETARY, settings=settings)
+    distances = {round(float(one.design.mesh.centre_distance), 12) for one in built.stages}
+    assert len(distances) == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"train": None}, r"stages.1.bodies: was given without a table \[train\]"),
+        ({"train": THREE_K["train"] | {"input": "arm"}}, r'train.input: "arm" is no body of this'),
+        ({"train": THREE_K["train"] | {"held": []}}, r"train: the motion is not settled by sun"),
+        ({"train": THREE_K["train"] | {"held": ["ring", "carrier"]}}, r"this train cannot move"),
+        (
+            {"train": THREE_K["train"] | {"output": "ring"}},
+            r"train: ring is held and takes no power",
+        ),
+        ({"gears": SET}, r"stages: was given with gears of the family"),
+    ],
+)
+def test_a_train_that_cannot_run_is_refused_in_a_sentence(changes, words):
+    tree = {key: table for key, table in (THREE_K | changes).items() if table is not None}
+    with pytest.raises(InputError, match=words):
+        load_case(tree)
+
+
+def test_stages_of_a_train_name_their_bodies():
+    stages = [{key: one[key] for key in ("gears",)} for one in THREE_K["stages"]]
+    with pytest.raises(InputError, match=r"stages.1.bodies: is missing; name the 2 bodies"):
+        load_case(THREE_K | {"stages": stages})
