@@ -14,7 +14,7 @@ from sound import PAIR
 from stopped import stopped_and_gone_on
 
 from pitchpoint.analyses import film as solved
-from pitchpoint.analyses.film_contacts import film_model_of
+from pitchpoint.analyses.film_contacts import film_model_of, patch_grid_of
 from pitchpoint.analyses.film_contacts import states as states_of
 from pitchpoint.analyses.film_cycle import _of_pieces, _of_summits
 from pitchpoint.analyses.films import FILM
@@ -45,6 +45,7 @@ solver = "line"
 phases = 9
 nodes = 33
 """
+BALL = str(Path(__file__).parents[2] / "examples" / "ball_on_disc_film.toml")
 TORUS = str(Path(__file__).parents[2] / "examples" / "torus.toml")
 PHASES = ("film_loss", "minimum_film", "profile_pressure")
 
@@ -207,6 +208,28 @@ def test_nodes_that_are_left_open_are_twice_as_many_beyond_a_load_parameter_of_1
     bound = 100.0 * (parameter / 100.0) ** 2
     assert [film_model_of(at(part * bound)).nodes for part in (0.99, 1.01)] == [257, 129]
     assert film_model_of(at(0.5 * bound, CASE)).nodes == 33
+    patch = CASE.replace('solver = "line"', 'solver = "finite_line"')
+    grids = [
+        patch_grid_of(at(part * bound, patch.replace("nodes = 33\n", ""))) for part in (0.99, 1.01)
+    ]
+    assert grids == [(129, 128), (65, 64)] and patch_grid_of(at(0.5 * bound, patch)) == (33, 32)
+
+
+def test_ellipses_beyond_a_load_parameter_of_100_have_twice_as_many_nodes() -> None:
+    """That of a line with the pressure of Hertz's ball, p^3 = 6 F (E'/2)^2/(pi^3 R^2)."""
+    built = load_case(BALL)
+    design, lanes, radius = built.design, states_of(built), 9.525e-3
+    oil = FilmModel().fluid(design.lubricant, float(built.operation.temperature))
+    modulus, speeds = float(design.modulus), float(np.max(lanes["speed_a"] + lanes["speed_b"]))
+    pressure = (6.0 * 20.0 * (0.5 * modulus) ** 2 / (np.pi**3 * radius**2)) ** (1.0 / 3.0)
+    stiff = modulus * radius / (float(oil.viscosity) * speeds)
+    parameter = 2.0 * np.pi * (pressure / modulus) ** 2 * np.sqrt(stiff)
+    bound = 120.0 * (parameter / 100.0) ** 2
+    grids = [
+        patch_grid_of(load_case(BALL, settings={"operation.speed": f"{part * bound} rpm"}))
+        for part in (0.99, 1.01)
+    ]
+    assert grids == [(129, 128), (65, 64)]
 
 
 @pytest.mark.whole

@@ -6,10 +6,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from pitchpoint.analyses.film_contacts import asked
+from pitchpoint.analyses.film_contacts import asked, patch_grid_of
 from pitchpoint.analyses.whole_contacts import SPAN, Wholes, one_contact, wholes
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.films import course_grid, course_moments, patch_grid
+from pitchpoint.cases.films import course_grid, course_moments
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, laid_out
@@ -77,7 +77,7 @@ def check_heights(built: Built) -> None:
     loads = np.where(given.states["loaded"], given.states["load"], 0.0)
     if loads.any():
         at = np.unravel_index(np.argmax(loads), loads.shape)
-        _check_maps(one_contact(built, given.numbers[at]), patch_grid(asked(built))[1])
+        _check_maps(one_contact(built, given.numbers[at]), patch_grid_of(built)[1])
 
 
 def _check_travel(course: PairCourse) -> None:

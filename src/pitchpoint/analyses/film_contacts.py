@@ -10,6 +10,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.films import PATCH_NODES, patch_grid
 from pitchpoint.cases.schema import FilmTable
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.efficiency.in_turns import balance_under
@@ -40,6 +41,7 @@ __all__ = [
     "film_laws",
     "film_model_of",
     "known",
+    "patch_grid_of",
     "states",
 ]
 
@@ -69,13 +71,25 @@ def film_model_of(built: Built) -> FilmModel:
     return replace(model, nodes=usual_nodes(_heaviest(built, model)))
 
 
+@lru_cache(maxsize=2)
+def patch_grid_of(built: Built) -> tuple[int, int]:
+    """Nodes along the patches of a case and cells across; open ones are usual for its heaviest contact."""
+    model, table = built.film_model, asked(built)
+    assert model is not None
+    if table.nodes is not None:
+        return patch_grid(table)
+    return patch_grid(table, usual_nodes(_heaviest(built, model), PATCH_NODES))
+
+
 def _heaviest(built: Built, model: FilmModel) -> float:
-    """Largest load parameter M of the contact lines over the cycle; none without load."""
-    loaded = states(built)["loaded"]
-    names = ("line_load", "radius", "speed_a", "speed_b")
-    load, radius, *speeds = (states(built)[name][loaded] for name in names)
+    """Largest load parameter M over the cycle, of ellipses that of lines as narrow; none without load."""
+    loaded, modulus = states(built)["loaded"], float(built.design.modulus)
+    names = ("line_load", "pressure", "radius", "speed_a", "speed_b")
+    load, pressure, radius, *speeds = (states(built)[name][loaded] for name in names)
+    if built.design.mesh.shape == "ellipse":
+        load = 2.0 * np.pi * (pressure / modulus) ** 2 * modulus * radius
     oil = model.fluid(built.design.lubricant, float(built.operation.temperature))
-    given = float(oil.viscosity), radius, float(built.design.modulus)
+    given = float(oil.viscosity), radius, modulus
     return float(np.max(load_parameter(load, 0.5 * sum(speeds), *given), initial=0.0))
 
 

@@ -17,11 +17,10 @@ from pitchpoint.analyses.film import (
     over_rough,
     values_of_lines,
 )
-from pitchpoint.analyses.film_contacts import alike, asked, film_model_of, states
+from pitchpoint.analyses.film_contacts import alike, asked, film_model_of, patch_grid_of, states
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
 from pitchpoint.cases.build import Built, tooth_size
-from pitchpoint.cases.films import patch_grid
 from pitchpoint.doubts import WITHHELD, Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import GRID, UNKNOWN_GRID
@@ -128,7 +127,7 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
             **_kept(built, films, lanes, values, load),
         },
         {},
-        warnings=[*_told(films), *of_patches(errors, patch_grid(asked(built)), line=line)],
+        warnings=[*_told(films), *of_patches(errors, patch_grid_of(built), line=line)],
         residual=max((one.ended.reynolds for one in found), default=0.0),
         iterations=max((one.steps for one in ended), default=0),
     )
@@ -167,7 +166,7 @@ def _solved(
         def step(number: int, residual: float, k: int = k, told: str = told) -> None:
             done(k, len(where), f"{told}, Newton step {number}, residual {residual:.0e}")
 
-        films.append(_one(built, one, patch_grid(asked(built)), step, before))
+        films.append(_one(built, one, patch_grid_of(built), step, before))
         done(k + 1, len(where))
     return films, back
 
@@ -358,7 +357,7 @@ def _kept(
     load: np.ndarray,
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
     """Fields of the contact that carries most and of that with the thinnest film, and where they are."""
-    nodes, cells = patch_grid(asked(built))
+    nodes, cells = patch_grid_of(built)
     film = values["minimum_film"]
     solved = np.isfinite(film)
     places = {"kept_x": nodes, "kept_y": cells}
@@ -412,7 +411,7 @@ def _fields(
 
 def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
     """Values of the kept contacts on the next coarser grid; not a number without one."""
-    nodes, cells = patch_grid(asked(built))
+    nodes, cells = patch_grid_of(built)
     dims = {"near_ends": ("kept", "end", "distance")}
     shapes = {"near_ends": (2, END_DISTANCES.size)}
     found = {name: np.full((len(at), *shapes.get(name, ())), np.nan) for name in _COARSE}
@@ -457,7 +456,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         "kept": (("kept",), np.array(KINDS)),
     }
     table = asked(built)
-    nodes, cells = patch_grid(table)
+    nodes, cells = patch_grid_of(built)
 
     def again(lane: tuple[int, ...], eta_beta_sigma: float) -> tuple[float, float]:
         model = replace(film_model_of(built), eta_beta_sigma=eta_beta_sigma)

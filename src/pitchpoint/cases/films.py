@@ -17,6 +17,7 @@ from pitchpoint.materials.solids import SolidRecord
 
 __all__ = [
     "CHOICE_NOTES",
+    "PATCH_NODES",
     "SUMMIT_CONSTANTS",
     "USUAL_ENDS",
     "course_grid",
@@ -28,8 +29,8 @@ __all__ = [
 ]
 
 PATCH_NODES: Final = 65
-"""Usual nodes along a patch over a mesh cycle, with one cell less across: grids with twice as many take about
-five times as long."""
+"""Usual nodes along a patch up to a load parameter M of 100, with one cell less across: grids with twice as
+many take about five times as long."""
 
 CHOICE_NOTES: Final[Mapping[str, str]] = {
     "eta_beta_sigma": "summits per area times their radius times Rq, of the set: assumed",
@@ -90,13 +91,14 @@ def film_model(table: FilmTable, solids: Sequence[SolidRecord], size: float | No
     return model if model.thermal == ISOTHERMAL else replace(model, members=_members(solids))
 
 
-def patch_grid(table: FilmTable) -> tuple[int, int]:
+def patch_grid(table: FilmTable, usual: int = PATCH_NODES) -> tuple[int, int]:
     """Nodes along the patch of a contact, and cells across it.
 
     Args:
         table: as validated.
+        usual: nodes unless it names them.
     """
-    nodes = int(table.nodes or PATCH_NODES)
+    nodes = int(table.nodes or usual)
     return nodes, int(table.cells or nodes - 1)
 
 
@@ -166,13 +168,15 @@ def film_choices(model: FilmModel, table: FilmTable | None = None) -> dict[str, 
 def _grid_choices(model: FilmModel, table: FilmTable | None) -> dict[str, Any]:
     if table is None:
         return {"nodes": float(model.nodes)}
-    if not table.over_patch:  # nodes that are left open follow from the contacts
+    if not table.over_patch:
         return {}
-    nodes, cells = patch_grid(table)
+    grid = {}
+    if table.nodes is not None:  # those that are left open follow from the contacts
+        grid = dict(zip(("nodes", "cells"), map(float, patch_grid(table)), strict=True))
     ends = {"ends": table.ends or USUAL_ENDS} if table.solver == "finite_line" else {}
     course = {"moments": float(course_moments(table))} if table.squeezes else {}
     time = table.time or USUAL_TIME
-    return {"nodes": float(nodes), "cells": float(cells), "time": time, **course, **ends}
+    return {**grid, "time": time, **course, **ends}
 
 
 def _members(solids: Sequence[SolidRecord]) -> tuple[Conductor, Conductor]:

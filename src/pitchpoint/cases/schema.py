@@ -829,7 +829,7 @@ class FilmTable(Table):
     in_series: Annotated[bool, BeforeValidator(_flag)] = False
     """Whether to tell what films in series take from the torsional stiffness."""
     nodes: Annotated[float, FILM_NODES, AfterValidator(_nodes)] | None = None
-    """Nodes along the motion: 33, 65, ...; 65 over patches, 129 of lines, 257 above M = 100, unless given."""
+    """Nodes along the motion: 33, 65, ...; unless given 129, or 65 over patches, doubled above M = 100."""
     cells: Annotated[float, FILM_CELLS, AfterValidator(_cells)] | None = None
     """Cells across the motion: 32, 64, 128 or 256; one less than nodes unless given."""
     time: Literal["steady", "squeeze"] | None = None

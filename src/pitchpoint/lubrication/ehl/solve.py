@@ -225,13 +225,14 @@ def _taken(tree: Tree, which: NDArray[np.int_]) -> Tree:
     return found
 
 
-def usual_nodes(load: float) -> int:
-    """Nodes on which lines are solved unless asked otherwise.
+def usual_nodes(load: float, light: int = NODES) -> int:
+    """Nodes on which contacts are solved unless asked otherwise.
 
     Args:
         load: largest load parameter M of Moes among them.
+        light: nodes for loads up to M = 100.
     """
-    return 2 * NODES - 1 if load > HEAVY else NODES
+    return 2 * light - 1 if load > HEAVY else light
 
 
 def _ladder(nodes: int, ends: Ends) -> tuple[Grid, ...]:
