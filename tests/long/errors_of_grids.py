@@ -6,6 +6,8 @@ Lines without ends are drawn as in `many_line_films.py`; ellipses and finite lin
 of each, as in `many_patch_films.py`, those with a load parameter M of 5 to 1000. Ends with an error unless
 nine in ten films of each kind, in the middle and smallest ones, are off by less than was estimated, and half
 by more than a third of that. Counts contacts without a film on one of the grids, and without an estimate.
+Estimates over patches are chosen in view of seeds 11 and 77. Films up to M = 100, for which 65 nodes are
+usual, are printed once more by themselves.
 """
 
 import sys
@@ -24,7 +26,7 @@ from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.layout import laid_out
-from pitchpoint.lubrication.ehl.solve import Films, solve_lines
+from pitchpoint.lubrication.ehl.solve import HEAVY, Films, solve_lines
 from pitchpoint.materials.fluid import Fluid
 
 BELOW, ABOVE = 0.9, 0.5
@@ -65,9 +67,11 @@ def true_errors(coarse: Films | PatchFilms, fine: Films | PatchFilms) -> np.ndar
     )
 
 
-def patches(kind: int, count: int, nodes: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """The same of finite lines, kind 0, or ellipses, kind 1."""
-    estimated, true, lost = [], [], 0
+def patches(
+    kind: int, count: int, nodes: int, seed: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same of finite lines, kind 0, or ellipses, kind 1, and their load parameters."""
+    estimated, true, loads, lost = [], [], [], 0
     for contact in _smooth(kind, count, seed):
         films = [_solved(contact, number) for number in (nodes, 2 * nodes - 1)]
         if any(one is None for one in films):
@@ -75,12 +79,13 @@ def patches(kind: int, count: int, nodes: int, seed: int) -> tuple[np.ndarray, n
             continue
         estimated.append([films[0].ended.grid, films[0].ended.grid_minimum])
         true.append(true_errors(*films))
+        loads.append(_load(contact))
     told, off = np.array(estimated).T, np.array(true).T
     known = np.isfinite(told).all(axis=0) & np.isfinite(off).all(axis=0)
     print(
         f"{lost} of {count} without a film on one of the grids, {np.sum(~known)} without an estimate"
     )
-    return told[:, known], off[:, known]
+    return told[:, known], off[:, known], np.array(loads)[known]
 
 
 def _smooth(kind: int, count: int, seed: int) -> Iterator[PatchContact]:
@@ -131,7 +136,11 @@ def main(count: int = 60, more: int = 20, nodes: int = 65, seed: int = 21) -> in
     with pitchpoint.double_precision():
         right = [judged("lines without ends", *lines(count))] if count else []
         for kind, name in enumerate(("finite lines", "ellipses")) if more else ():
-            right.append(judged(name, *patches(kind, more // 2, nodes, seed)))
+            told, off, loads = patches(kind, more // 2, nodes, seed)
+            right.append(judged(name, told, off))
+            light = loads <= HEAVY
+            if light.any():
+                judged(f"{name} up to M = {HEAVY:g}", told[:, light], off[:, light])
     return int(not all(right))
 
 
