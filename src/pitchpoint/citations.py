@@ -101,7 +101,7 @@ def cite(key: str) -> str:
     """
     entry = reference(key)
     parts = (f"{_names(entry)} ({entry.year}). {entry.title}", _where(entry), _doi(entry))
-    return ". ".join(part for part in parts if part) + "."
+    return ". ".join(part.rstrip(".") for part in parts if part) + "."
 
 
 def bibtex(key: str) -> str:

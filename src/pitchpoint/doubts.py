@@ -24,6 +24,7 @@ __all__ = [
     "of_designs",
     "reworded",
     "stored",
+    "without_repeats",
     "worst_of_kinds",
 ]
 
@@ -201,8 +202,7 @@ def apart(sentences: Iterable[str]) -> dict[str, list[str]]:
         >>> apart([*tips, fails("teeth melt."), grid, Doubt("a trifle.", moves=1e-4)])["warnings"]
         ['the grid is off by 20 %.', 'the teeth of gear 1 (gear 2 alike) are pointed.']
     """
-    of_stages = _merged(sentences, _STAGE, _stages)
-    every = _merged(of_stages, _GEAR, _gears)
+    every = without_repeats(sentences)
     failing: list[str] = [text for text in every if text.startswith(_FAILS)]
     felt: Iterable[str] = (
         text
@@ -213,6 +213,16 @@ def apart(sentences: Iterable[str]) -> dict[str, list[str]]:
     )
     ranked: list[str] = sorted(felt, key=moves, reverse=True)
     return {"implausible": failing, "warnings": ranked}
+
+
+def without_repeats(sentences: Iterable[str]) -> list[Doubt]:
+    """Sentences that differ by their stage or gear alone as one.
+
+    Example:
+        >>> without_repeats(["Stage 1: K_A = 1.", "Stage 2: K_A = 1.", "Stage 2: Z_W = 1."])
+        ['Stages 1 and 2: K_A = 1.', 'Stage 2: Z_W = 1.']
+    """
+    return _merged(_merged(sentences, _STAGE, _stages), _GEAR, _gears)
 
 
 def stored(sentences: Iterable[str]) -> dict[str, str]:

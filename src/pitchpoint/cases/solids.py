@@ -11,7 +11,7 @@ from pitchpoint._jax import array
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import Case, Materials, SolidValues
-from pitchpoint.doubts import GUESSED, Doubt, fails
+from pitchpoint.doubts import GUESSED, LEFT_OUT, REMARKED, Doubt, fails
 from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.efficiency.warm_teeth import Heated
@@ -278,16 +278,19 @@ def _warm(case: Case, mesh: Mesh, used: Used, gear: int, found: Mapping[str, flo
     root, flank = float(temperature.root), float(temperature.flank)
     record = used[gear].record
     warm = _in_use(record, _KEYS[gear], root)
+    modulus = f"modulus {float(warm.solid.young) / 1e9:.3g} GPa"
     told = (
         f"The teeth of gear {gear + 1} reach {celsius(flank)} at the flank and {celsius(root)} at the "
-        f"root; modulus {float(warm.solid.young) / 1e9:.3g} GPa."
+        f"root; {modulus}."
     )
-    if heat_failure(record, max(flank, root)):
-        return replace(warm, told=told, flank=flank)
-    told += f" {_upper(modulus_at(record, root).status)}."
-    if record.young_at and flank > record.young_at[-1].temperature:
-        told += f" No modulus is known at the temperature of the flank of gear {gear + 1}."
-    return replace(warm, told=told, flank=flank)
+    brief, moved = f"Gear {gear + 1} is warm: root at {celsius(root)}, {modulus}.", REMARKED
+    if not heat_failure(record, max(flank, root)):
+        told += f" {_upper(modulus_at(record, root).status)}."
+        if record.young_at and flank > record.young_at[-1].temperature:
+            told += f" No modulus is known at the temperature of the flank of gear {gear + 1}."
+            brief = f"Gear {gear + 1}: no modulus is known at the {celsius(flank)} of its flank."
+            moved = LEFT_OUT
+    return replace(warm, told=Doubt(told, moves=moved, brief=brief), flank=flank)
 
 
 def _upper(text: str) -> str:

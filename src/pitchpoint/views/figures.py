@@ -23,6 +23,7 @@ __all__ = [
     "GREY",
     "INK",
     "NO_POWER",
+    "OVER_COLOURS",
     "PALETTE",
     "Choice",
     "Curve",
@@ -58,6 +59,9 @@ Curves = Mapping[tuple[str, str], "Curve"]
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#B07C00", "#56B4E9", "#5A5A5A")
 DASHES = ("solid", "dash", "dot", "dashdot")
 INK, GREY = "#24303a", "#7b8791"
+OVER_COLOURS = "rgb(36, 48, 58)"
+"""Ink on a map of a named colour scale, as light on dark paper: pages turn only colours written with #."""
+
 GRID = "#e6eaed"
 NO_POWER = "Undefined here: no power is transmitted."
 

@@ -155,8 +155,10 @@ def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
         if room < 0:  # words in place of a number
             lines.append(show.first_clauses(f"{name:<{name_width}}  {value}", width))
             continue
-        detail = show.first_clauses(figure.detail.lstrip(",; "), room, 0.0) if figure.detail else ""
-        lines.append(f"{begin}{detail if len(detail) > _LEAST_DETAIL else ''}".rstrip())
+        whole = show.one_line(figure.detail.lstrip(",; "))
+        detail = show.first_clauses(whole, room, 0.0) if whole else ""
+        says = detail == whole or len(detail) > _LEAST_DETAIL
+        lines.append(f"{begin}{detail if says else ''}".rstrip())
     return [Line(text, "figure") for text in lines]
 
 

@@ -111,7 +111,6 @@ STIFFNESS = Section(
     main_figure="stiffness0_phase",
     blocks="pitchpoint.views.sections.stiffness:stiffness_blocks",
     answer=of_part("stiffness", "pitchpoint.views.sections.stiffness:stiffness_facts"),
-    warns=of_part("stiffness", "pitchpoint.views.sections.stiffness:stiffness_warnings"),
 )
 LOAD_LIMITS = Section(
     name="load_limits",

@@ -337,7 +337,6 @@ class Section:
         answer: main figures of one variant.
         card: the same for one friction law, by name.
         closing: blocks at the end of the answer.
-        warns: warnings that stand in the section, not at the top.
         screen: what the command line prints of one variant.
         sums_up: tables of the gears and sentences on what is assumed, for the page that sums up one outcome.
         main_figure: name of the figure that may stand on that page; empty without one.
@@ -356,7 +355,6 @@ class Section:
     answer: Callable[[Outcome], Iterable[KeyFigure]] = lambda outcome: ()
     card: Callable[[Outcome, str], Iterable[tuple[str, str]]] = lambda outcome, law: ()
     closing: Callable[[Page], Iterable[Block]] = lambda page: ()
-    warns: Callable[[Outcome], Iterable[str]] = lambda outcome: ()
     screen: Callable[[Outcome], Iterable[Printed]] = lambda outcome: ()
     sums_up: Callable[[Outcome], Iterable[Table | Paragraph]] = lambda outcome: ()
     main_figure: str = ""

@@ -262,15 +262,9 @@ def _warned(page: Page) -> dict[str, list[str]]:
     """Sentences above every number, each with the variants that it is about."""
     found: dict[str, list[str]] = {}
     for name, outcome in page.outcomes.items():
-        for text in _warnings(page, outcome):
+        for text in outcome.manifest["warnings"]:
             found.setdefault(text, []).append(name)
     return found
-
-
-def _warnings(page: Page, outcome: Outcome) -> list[str]:
-    """Sentences of a variant but for those that a section tells itself."""
-    elsewhere = {text for section in page.sections for text in section.warns(outcome)}
-    return [text for text in outcome.manifest["warnings"] if text not in elsewhere]
 
 
 def _drag(data: xr.Dataset, law: int) -> str:

@@ -11,6 +11,7 @@ from pitchpoint.views import show
 from pitchpoint.views.figures import (
     GREY,
     INK,
+    OVER_COLOURS,
     PALETTE,
     Figure,
     Key,
@@ -192,7 +193,7 @@ def _outline(data: xr.Dataset, kept: int, heat: Trace) -> Trace:
         "y": heat["y"],
         "z": rounded(dry / np.max(dry), 3),
         "contours": {"start": _EDGE, "end": _EDGE, "size": 1.0, "coloring": "none"},
-        "line": {"color": INK, "width": 1.2, "dash": "dot"},
+        "line": {"color": OVER_COLOURS, "width": 1.2, "dash": "dot"},
         "showscale": False,
         "hoverinfo": "skip",
     }

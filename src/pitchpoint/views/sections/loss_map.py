@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.figures import covered, why_not
-from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -36,6 +35,9 @@ from pitchpoint.views.point import operating_point
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section
 
 __all__ = ["LOSS_MAP", "Chart", "efficiency_panel", "map_panel"]
+
+_SEEN = 1e-4
+"""Difference, over the larger of two values, that four digits tell."""
 
 _LINES = 7
 """Steps between contour lines that a map has about."""
@@ -110,6 +112,8 @@ def _scale(name: str, outcomes: Mapping[str, Outcome], chart: Chart) -> dict[str
     maps = inside if sum(map(len, inside)) else [data[name].values for data in every.values()]
     low, high = _ends(np.concatenate([display(name, values).ravel() for values in maps]))
     low, high = (-max(-low, high), max(-low, high)) if name == _SIGNED else (low, high)
+    if not high > low:  # as one colour, not its last digits over the whole scale
+        low, high = low - _SEEN * abs(low), low + _SEEN * abs(low)
     return {"zmin": low, "zmax": high} if high > low else {}
 
 
@@ -119,17 +123,18 @@ def _holds(outcome: Outcome, data: xr.Dataset) -> np.ndarray:
 
 
 def _ends(values: np.ndarray) -> tuple[float, float]:
-    """Smallest and largest value, equal where rounding alone makes them differ, or nothing is known."""
+    """Smallest and largest value, equal where four digits do not tell them apart, or nothing is known."""
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
-    return (low, high) if high - low > ROUNDING * max(abs(low), abs(high)) else (low, low)
+    return (low, high) if high - low > _SEEN * max(abs(low), abs(high)) else (low, low)
 
 
 def _contours(values: Any) -> dict[str, Any]:
     """Lines of a map at round values, some `_LINES` between the ends of what it shows itself."""
     low, high = _ends(np.array(values, float))
     if not high > low:
-        return {"contours.start": low, "contours.end": low, "contours.size": 1.0}
+        above = 2.0 * abs(low) + 1.0
+        return {"contours.start": above, "contours.end": above, "contours.size": 1.0}
     wanted = (high - low) / _LINES
     decade = 10.0 ** floor(log10(wanted))
     size = decade * min((1.0, 2.0, 2.5, 5.0, 10.0), key=lambda step: abs(step - wanted / decade))
@@ -233,8 +238,14 @@ def _figure(
         titled(name, data),
         [heat, point],
         layout(show.axis_title(across, data), show.axis_title(up, data)),
-        f"The cross marks the operating point.{_beginning(name, data, chart, shown)}",
+        f"The cross marks the operating point.{_beginning(name, data, chart, shown)}{_same(name, data)}",
     )
+
+
+def _same(name: str, data: xr.Dataset) -> str:
+    """That a map is of one colour, whatever is chosen; empty for others."""
+    low, high = _ends(data[name].values)
+    return "" if high > low else " The same throughout, to four digits."
 
 
 def _beginning(name: str, data: xr.Dataset, chart: Chart, shown: Mapping[str, Any]) -> str:

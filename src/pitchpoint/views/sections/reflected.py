@@ -29,12 +29,19 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts["reflected"]
     if "output_backlash" in data:
         unit = show.unit_of("output_backlash")
-        cells = [_cell("output_backlash", float(v)) for v in data["output_backlash"].values]
-        heads = ["backlash", *map(str, data["case"].values)]
+        backlash = zip(data["case"].values, data["output_backlash"].values, strict=True)
+        known = [(str(case), _cell("output_backlash", float(value))) for case, value in backlash]
+        heads, cells = zip(*(known if _by_tolerances(data) else known[:1]), strict=True)
         row = (f"turn of the output, the input held [{unit}]", *cells)
-        yield Table(heads, [row], compact=True)
+        yield Table(["backlash", *heads], [row], compact=True)
     yield Table(_heads(data), _rows(data), compact=True)
     yield Paragraph(" ".join([_ASSUMED, *_of_backlash(data)]), "note")
+
+
+def _by_tolerances(data: xr.Dataset) -> bool:
+    """True where a tolerance makes the backlash at the output differ."""
+    _, least, _, largest = data["output_backlash"].values
+    return bool(largest > least)
 
 
 def _of_backlash(data: xr.Dataset) -> Iterator[str]:
@@ -60,14 +67,13 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     data = outcome.parts["reflected"]
     if "output_backlash" in data:
         nominal, least, _, largest = (float(v) for v in data["output_backlash"].values)
-        by_tolerances = largest > least
-        ends = [least, largest] if by_tolerances else [nominal]
+        ends = [least, largest] if _by_tolerances(data) else [nominal]
         value = " to ".join(_cell("output_backlash", end) for end in ends)
         yield KeyFigure(
             59.0,
             "Backlash at the output",
             f"{value} {show.unit_of('output_backlash')}",
-            "by tolerances, the input held" if by_tolerances else "nominal, the input held",
+            f"{'by tolerances' if _by_tolerances(data) else 'nominal'}, the input held",
         )
     inertias = zip(data["end"].values, data["reflected_inertia"].values, strict=True)
     known = [

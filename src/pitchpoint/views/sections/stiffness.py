@@ -34,7 +34,6 @@ __all__ = [
     "stiffness_blocks",
     "stiffness_facts",
     "stiffness_panels",
-    "stiffness_warnings",
 ]
 
 _ROWS = ("mean_stiffness", "stiffness_variation", "standard_stiffness", "standard_single_stiffness")
@@ -195,9 +194,3 @@ def stiffness_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     other = _of_publication(outcome.manifest.get("source", ""))
     title = "Mesh stiffness of the library, not of the motion" if other else "Mesh stiffness"
     yield key_figure(72.0, title, stiffness_answer(outcome), " in the mean")
-
-
-def stiffness_warnings(outcome: Outcome) -> list[str]:
-    """What the standard's estimate does not cover stands beside that estimate."""
-    data = outcome.parts.get("stiffness")
-    return [] if data is None else _outside_standard(data)

@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 import xarray as xr
 
-from pitchpoint.doubts import apart, doubts_of
+from pitchpoint.doubts import apart, doubts_of, without_repeats
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.screen import head, shown
@@ -124,7 +124,7 @@ def _cell(data: xr.Dataset, name: str, gear: int) -> str:
 
 
 def _told(data: xr.Dataset, name: str) -> list[str]:
-    return [str(text) for text in json.loads(data.attrs[name])]
+    return [str(text) for text in without_repeats(json.loads(data.attrs[name]))]
 
 
 def _doubts(data: xr.Dataset) -> dict[str, list[str]]:
@@ -252,9 +252,6 @@ STRENGTH = Section(
     parts=("strength",),
     blocks=_blocks,
     answer=_answer,
-    warns=lambda one: (
-        chain(*_doubts(one.parts["strength"]).values()) if "strength" in one.parts else ()
-    ),
     screen=_screen,
     sums_up=_sums_up,
 )
