@@ -25,5 +25,6 @@ def faults_of_the_screen(outcomes: Mapping[str, Outcome], width: int = 80) -> It
     for line in lines:
         if len(line) > width:
             yield f"{len(line)} characters: {line}"
-        if cut := {*NUMBER.findall(line)} - whole:
+        counted = line.endswith("in the report.")  # wider lines leave room for more of a kind
+        if not counted and (cut := {*NUMBER.findall(line)} - whole):
             yield f"{', '.join(cut)} is a part of a number: {line}"

@@ -19,10 +19,11 @@ from pitchpoint.views import show
 from pitchpoint.views.columns import fitted
 from pitchpoint.views.first_screen import (
     FEW_LINES,
+    _aligned,
     beside_each_other,
 )
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import key_figures
+from pitchpoint.views.section import KeyFigure, key_figures
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -55,6 +56,14 @@ def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:
     assert {"Loss", "Stress of flanks", "Stress of roots", "Backlash"} <= {*by_name}
     assert f"Report: {REPORT}" in figures
     assert figures[-1] == "Tables by --full: answer, strength"  # it has no other tables
+
+
+def test_a_short_detail_is_whole() -> None:
+    figures = [KeyFigure(0.0, "Inertia", "3.644 kg cm²", "pinion"), KeyFigure(1.0, "Loss", "2 W")]
+    assert [line.text for line in _aligned(figures, 80)] == [
+        "Inertia  3.644 kg cm²  pinion",
+        "Loss     2 W",
+    ]
 
 
 @pytest.mark.whole

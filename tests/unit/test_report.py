@@ -20,6 +20,7 @@ from records import entries
 from sound import quick_first
 
 from pitchpoint.cases.build import ALONE
+from pitchpoint.doubts import stored
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.family import Family
@@ -339,6 +340,36 @@ def test_maps_share_one_scale_and_have_lines_with_labels(page: str, published: O
         r'<select data-menu="map_mean_loss" data-step="(\d)">(.*?)</select>', page, re.S
     )
     assert [(int(step), entries.count("<option")) for step, entries in menus] == [(3, 3), (1, 3)]
+
+
+def test_a_map_that_four_digits_do_not_tell_apart_has_one_colour(published: Outcomes) -> None:
+    outcome = published["physical"]
+    whole = outcome.parts["loss_map"]
+    efficiency = (
+        0.98 + 1e-9 * whole["mean_efficiency"].rank("torque") + 0.0 * whole["mean_efficiency"]
+    )
+    even = whole.assign(mean_efficiency=efficiency)
+    alike = {"physical": replace(outcome, parts={**outcome.parts, "loss_map": even})}
+    loss, map_of_efficiency = map_panel(alike, curves(alike)).figures
+    heat = map_of_efficiency.data[0]
+    values = [value for row in heat["z"] for value in row if value is not None]
+    assert values
+    assert max(values) - min(values) < 1e-2 * (heat["zmax"] - heat["zmin"])
+    assert heat["contours"]["start"] > max(values)
+    assert "The same throughout" in map_of_efficiency.remarks
+    assert "The same throughout" not in loss.remarks
+
+
+def test_what_is_doubtful_of_a_part_counts_at_the_top(published: Outcomes) -> None:
+    outcome = published["physical"]
+    told = "the flank stress leaves out a point"
+    strength = outcome.parts["strength"].assign_attrs(stored([told]))
+    doubtful = replace(
+        outcome,
+        parts={**outcome.parts, "strength": strength},
+        manifest={**outcome.manifest, "warnings": [told, "tips are thin"]},
+    )
+    assert "2 doubtful; first:" in render({"physical": doubtful})
 
 
 def test_the_scale_of_maps_is_that_of_laws_in_their_range(published: Outcomes) -> None:

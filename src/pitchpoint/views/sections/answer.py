@@ -468,8 +468,9 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
             yield figure(10.0 + 0.1 * place, VARIABLES[name].long_name, name)
         return
     yield from _efficiencies(figure, outcome, data)
-    yield figure(20.0, "Input", "mean_input_torque", _ripple(data))
-    yield figure(25.0, "Loss", "mean_loss", _drag(data, 0))
+    without = ["without it"] if _lacks(data) else []
+    yield figure(20.0, "Input", "mean_input_torque", _clauses(*without, _ripple(data)))
+    yield figure(25.0, "Loss", "mean_loss", _clauses(*without, _drag(data, 0)))
     law = str(data["law"].values[0])
     if law in laws(outcome.parts["operation"]):
         position = laws(outcome.parts["operation"]).index(law)
@@ -496,8 +497,7 @@ def _efficiencies(
     figure: Callable[[float, str, str, str], KeyFigure], outcome: Outcome, data: xr.Dataset
 ) -> Iterator[KeyFigure]:
     """The efficiency; where a drive lacks a part that loses, that first, and below it what is known."""
-    lacks = str(data["mean_efficiency"].attrs.get("lacks", ""))
-    if lacks:
+    if lacks := _lacks(data):
         yield KeyFigure(10.0, "Efficiency", "not known", f"losses has none of the {lacks}")
     place, name = (26.0, "Efficiency without it") if lacks else (10.0, "Efficiency")
     yield figure(place, name, "mean_efficiency", _certainty(outcome, data))
@@ -514,7 +514,16 @@ def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
     else:
         over = _range(data, "efficiency", lambda name: float(data[name].values[0, 0]))
         told = [scope, f"over the cycle {over}"]
-    return "; ".join(filter(None, [*_by_other_laws(outcome, data), *told]))
+    return _clauses(*_by_other_laws(outcome, data), *told)
+
+
+def _lacks(data: xr.Dataset) -> str:
+    """What of the drive loses and is not in its numbers; empty where nothing is known to be left out."""
+    return str(data["mean_efficiency"].attrs.get("lacks", ""))
+
+
+def _clauses(*words: str) -> str:
+    return "; ".join(filter(None, words))
 
 
 def _by_other_laws(outcome: Outcome, data: xr.Dataset) -> Iterator[str]:

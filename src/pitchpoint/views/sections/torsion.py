@@ -466,7 +466,7 @@ def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     words, data = torsion_answer(outcome), outcome.parts["torsion"]
     figure = key_figure(70.0, _words(data).stiffness, words, " at the operating point")
     slopes = _slopes(data)
-    yield replace(figure, detail="; ".join(filter(None, (slopes, figure.detail))))
+    yield replace(figure, detail=f", {slopes}; {figure.detail}" if slopes else figure.detail)
     if "catalogue_lost_motion" in data:
         values = data["catalogue_lost_motion"].values
         shown = dict.fromkeys(show.quantity("catalogue_lost_motion", float(v)) for v in values)
