@@ -9,7 +9,7 @@ from typing import Any
 import bank
 import numpy as np
 import pytest
-from pages import opened
+from pages import opened, payload
 from sound import PAIR
 from stopped import stopped_and_gone_on
 
@@ -283,13 +283,18 @@ def test_films_with_their_heat_have_temperatures_beside_those_of_lines(
 
 @pytest.mark.whole
 def test_a_report_has_the_temperatures_and_no_word_of_isothermal_films(warm: Outcome) -> None:
-    page = opened(render({"default": warm}))
+    report = render({"default": warm})
+    page = opened(report)
     assert "films are isothermal" not in page.lower() and "With heat (mean film)" in page
     for words in ("Temperature above the inlet, in the warmest row", "patch0_0_rise"):
         assert words in page
     told = next(iter(SECTION.answer(warm))).words
     assert "warmer than their inlet" in told
     assert figures(warm)["finite_film"]["largest_flash_rise"] > 0.0
+    drawn = [figure["data"] for figure in payload(report)["figures"].values()]
+    over = [one for heat, *rest in drawn if isinstance(heat.get("colorscale"), str) for one in rest]
+    assert over
+    assert not any(one["line"]["color"].startswith("#") for one in over)  # dark pages would turn it
 
 
 @pytest.mark.whole
