@@ -43,6 +43,7 @@ from pitchpoint.views.report import _failing, render, write_report
 from pitchpoint.views.section import KeyFigure, Paragraph, naming
 from pitchpoint.views.sections import compared as comparison
 from pitchpoint.views.sections.answer import ANSWER, summary
+from pitchpoint.views.sections.cycle import _mean_friction
 from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.path import loss_places, loss_sentence
 from pitchpoint.views.sections.sliding import specific_sliding
@@ -353,8 +354,19 @@ def test_a_map_that_four_digits_do_not_tell_apart_has_one_colour(published: Outc
     assert values
     assert max(values) - min(values) < 1e-2 * (heat["zmax"] - heat["zmin"])
     assert heat["contours"]["start"] > max(values)
-    assert "The same throughout" in map_of_efficiency.remarks
-    assert "The same throughout" not in loss.remarks
+    assert "98 % throughout, to four digits." in map_of_efficiency.remarks
+    assert (heat["showscale"], loss.data[0]["showscale"]) == (False, True)
+    assert "throughout" not in loss.remarks
+
+
+def test_a_pair_that_carries_nothing_has_no_friction() -> None:
+    load = np.array([[[[2.0, 1.0], [0.0, 0.0]], [[0.0, 3.0], [1.0, 0.0]]]])
+    friction = np.where(load > 0.0, [0.03, 0.06], 0.0)
+    dims = "law", "node", "pair", "slice"
+    cycle = xr.Dataset({"load": (dims, load), "friction": (dims, friction)})
+    np.testing.assert_allclose(_mean_friction(cycle, 0), [[0.04, np.nan], [0.06, 0.03]])
+    idle = cycle.assign(load=0.0 * cycle["load"], friction=0.0 * cycle["friction"] + 0.05)
+    np.testing.assert_allclose(_mean_friction(idle, 0), 0.05)
 
 
 def test_what_is_doubtful_of_a_part_counts_at_the_top(published: Outcomes) -> None:

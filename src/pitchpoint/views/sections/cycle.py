@@ -212,13 +212,15 @@ def _count(seen: Timed) -> Figure:
 
 
 def _mean_friction(data: xr.Dataset, law: int) -> np.ndarray:
-    """Friction coefficient of each contact line [node, pair], slices weighted by their load."""
+    """Friction coefficient of each contact line [node, pair], slices weighted by their load.
+
+    NaN where a line carries nothing while others do.
+    """
     friction, load = (data[name].values[law] for name in ("friction", "load"))
     total = load.sum(axis=-1)
-    even = friction.mean(axis=-1)
-    return np.asarray(
-        np.where(total > 0.0, (friction * load).sum(axis=-1) / np.where(total, total, 1.0), even)
-    )
+    carries = total > 0.0
+    mean = (friction * load).sum(axis=-1) / np.where(carries, total, 1.0)
+    return np.where(carries, mean, np.nan if carries.any() else friction.mean(axis=-1))
 
 
 def _ago(pair: int) -> str:

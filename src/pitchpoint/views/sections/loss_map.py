@@ -204,7 +204,7 @@ def _figure(
     data, fact, (across, up) = outcome.parts[chart.part], operating_point(outcome), chart.axes
     unit, units = show.unit_of(name, data), [show.unit_of(one, data) for one in chart.axes]
     speed = fact.speed * float(data.attrs.get("speed_ratio", 1.0))
-    shown = _heat(name, data, chart, law, temperature)
+    shown, same = _heat(name, data, chart, law, temperature), _same(name, data)
     lines = {key.partition(".")[2]: value for key, value in _contours(shown["z"]).items()}
     heat = {
         "type": "contour",
@@ -213,6 +213,7 @@ def _figure(
         "hoverongaps": False,
         **scale,
         "zauto": not scale,
+        "showscale": not same,
         "autocontour": False,
         "contours": {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11}, **lines},
         "line": {"color": INK, "width": 0.7},
@@ -238,14 +239,14 @@ def _figure(
         titled(name, data),
         [heat, point],
         layout(show.axis_title(across, data), show.axis_title(up, data)),
-        f"The cross marks the operating point.{_beginning(name, data, chart, shown)}{_same(name, data)}",
+        f"The cross marks the operating point.{_beginning(name, data, chart, shown)}{same}",
     )
 
 
 def _same(name: str, data: xr.Dataset) -> str:
-    """That a map is of one colour, whatever is chosen; empty for others."""
+    """Value of a map that is of one colour, whatever is chosen; empty for others."""
     low, high = _ends(data[name].values)
-    return "" if high > low else " The same throughout, to four digits."
+    return "" if high > low else f" {show.quantity(name, low, of=data)} throughout, to four digits."
 
 
 def _beginning(name: str, data: xr.Dataset, chart: Chart, shown: Mapping[str, Any]) -> str:
