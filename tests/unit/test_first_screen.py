@@ -17,6 +17,7 @@ from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.columns import fitted
+from pitchpoint.views.film_courses import film_key_figure
 from pitchpoint.views.first_screen import (
     FEW_LINES,
     _aligned,
@@ -56,6 +57,19 @@ def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:
     assert {"Loss", "Stress of flanks", "Stress of roots", "Backlash"} <= {*by_name}
     assert f"Report: {REPORT}" in figures
     assert figures[-1] == "Tables by --full: answer, strength"  # it has no other tables
+
+
+def test_films_that_are_solved_stand_before_what_follows_from_the_speeds_of_a_rig() -> None:
+    (rig,) = bank.outcomes(EXAMPLES / "ball_on_disc.toml").values()
+    place = {figure.name: figure.order for figure in key_figures(in_order(), rig)}
+    solved = film_key_figure("Films of finite contacts", "0.205 µm at least").order
+    assert [*place][:3] == [
+        "film thickness",
+        "film thickness over composite Rq",
+        "largest Hertz pressure",
+    ]
+    assert place["largest Hertz pressure"] < solved < place["mean friction coefficient"]
+    assert place["mean input torque"] < place["entrainment velocity"]
 
 
 def test_a_short_detail_is_whole() -> None:

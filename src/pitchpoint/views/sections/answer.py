@@ -465,7 +465,8 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
 
     if of_contact(data):
         for place, name in enumerate(CONTACT):
-            yield figure(10.0 + 0.1 * place, VARIABLES[name].long_name, name)
+            order = 10.0 if name in _OF_FILM else 34.0 if name in _GIVEN_BY_SPEEDS else 33.0
+            yield figure(order + 0.1 * place, VARIABLES[name].long_name, name)
         return
     yield from _efficiencies(figure, outcome, data)
     without = ["without it"] if _lacks(data) else []
@@ -483,6 +484,10 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
                 detail = ", ".join(filter(None, ("of the same power carried back", detail)))
             yield KeyFigure(77.0, "Back-driving", value, detail)
 
+
+_OF_FILM = ("film_thickness", "lambda_ratio", "pressure")
+_GIVEN_BY_SPEEDS = ("entrainment", "sliding_velocity")
+"""Figures of a test rig that stand before films which are solved, and behind all others."""
 
 _BRIEFLY = {
     VARIABLES["pressure"].long_name: "Hertz pressure",
