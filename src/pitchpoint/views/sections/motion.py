@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import CAMPBELL
+from pitchpoint.analyses.figures import CAMPBELL, headline
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.campbell import campbell
@@ -20,6 +20,8 @@ from pitchpoint.views.figures import (
     Trace,
     continued,
     display,
+    law_title,
+    laws,
     layout,
     pair_key,
     plain,
@@ -541,5 +543,8 @@ def _frequencies(data: xr.Dataset) -> str:
 
 
 def motion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
-    """Efficiency and transmission error in motion."""
-    yield key_figure(34.0, "In motion", motion_answer(outcome), " of the teeth with")
+    """Efficiency and transmission error in motion, with its law where the efficiency is by another one."""
+    figure = key_figure(34.0, "In motion", motion_answer(outcome), " of the teeth with")
+    law, parts = str(outcome.parts["motion"].attrs["law"]), outcome.parts
+    stands_by = law_title(outcome, laws(headline(parts))[0]) if "operation" in parts else law
+    yield figure if stands_by == law else replace(figure, detail=f"by {law}; {figure.detail}")
