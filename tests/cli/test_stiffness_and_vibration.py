@@ -17,6 +17,7 @@ from pitchpoint.analyses.vibration import _excited, stiffness_part, vibrating_of
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
+from pitchpoint.doubts import BRIEF, as_doubt
 from pitchpoint.dynamics.excitation import Course, Excitation
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.errors import InputError
@@ -303,6 +304,8 @@ def test_warm_wheel_is_softer_and_says_so(file: Callable[[str], str]) -> None:
     (sentence,) = (text for text in manifest["warnings"] if text.startswith("The teeth of gear 2"))
     assert f"{warm.solids[1].temperature - 273.15:.1f}".rstrip("0").rstrip(".") in sentence
     assert "POM-H: its modulus is known from -40 degC to 100 degC, interpolated" in sentence
+    brief = as_doubt(sentence).brief
+    assert brief.startswith("Gear 2 is warm: root at ") and len(brief) <= BRIEF
     notes = {row["key"]: row["note"] for row in input_rows(manifest)}
     assert notes["gear 2, Young's modulus"] == sentence
     (manifest,) = describe(path, settings=WARM)
