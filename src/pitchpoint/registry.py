@@ -175,10 +175,15 @@ _OTHERWISE = {
 """What things are called elsewhere, by letters and figures; steels by their class in ISO 6336-5."""
 
 
-def alike(name: str, known: Iterable[str]) -> list[str]:
+def alike(name: str, known: Iterable[str], likeness: float = 0.6) -> list[str]:
     """At most three known names spelled like another, whatever its case, spaces and hyphens.
 
     A grade, "VG 220", is a part of up to six names.
+
+    Args:
+        name: that was written.
+        known: names that there are.
+        likeness: least part of both names that has to agree; 1 for the same letters.
 
     Example:
         >>> alike("PAO VG 150", ["pao-vg-150", "pao-vg-100"])
@@ -193,7 +198,7 @@ def alike(name: str, known: Iterable[str]) -> list[str]:
     grade = wanted.removeprefix("iso")
     if _GRADE.fullmatch(grade) and (of_it := [plain[one] for one in plain if grade in one]):
         return of_it[:6]
-    return [plain[one] for one in difflib.get_close_matches(wanted, plain, n=3, cutoff=0.6)]
+    return [plain[one] for one in difflib.get_close_matches(wanted, plain, n=3, cutoff=likeness)]
 
 
 def unknown_name(name: str, allowed: Iterable[str], *, what: str) -> InputError:

@@ -19,7 +19,7 @@ MODELS = '[models]\nfriction = ["iso_tr_14179_2", "xu_2007"]\n'
 ABSURD = [
     (
         ["operation.torque=50 kN m"],
-        "the Hertz pressure reaches 18.3 GPa, allowed 2.5 GPa",
+        "the Hertz pressure reaches 18.3 GPa, the material bears 2.5 GPa",
     ),
     (["gears.face_width=0.1 mm"], "the Hertz pressure reaches"),
     (["operation.speed=0.01 rpm"], "nm, less than an atom: flanks touch"),
@@ -34,7 +34,7 @@ ABSURD = [
     ),
     (
         ["materials.gear_1={young='206 GPa', poisson=0.3, hardness='20 HV'}"],
-        "reaches 582 MPa, allowed 250 MPa",
+        "reaches 582 MPa, by hardness borne 250 MPa",
     ),
     (
         ["models.friction=[{name='constant', coefficient=0.6}]"],

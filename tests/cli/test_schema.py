@@ -3,6 +3,7 @@
 import json
 import sys
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +17,11 @@ from pitchpoint.cases.document import resolve
 from pitchpoint.cases.handed_over import as_toml
 from pitchpoint.cases.json_schema import case_schema
 from pitchpoint.cases.library import find, names, path_of
-from pitchpoint.cases.schema import Case, DriveCase
+from pitchpoint.cases.schema import Case, DriveCase, quantity_of
 from pitchpoint.gears.families import TABLES, sample_of
+from pitchpoint.input.quantities import Quantity
 from pitchpoint.input.tables import alternatives, sentences
+from pitchpoint.units import plain
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FILES = [*sorted(EXAMPLES.glob("*.toml")), *map(path_of, names()), *map(sample_of, TABLES)]
@@ -116,6 +119,25 @@ def test_editors_show_units_ranges_and_usual_values(schema: dict[str, Any]) -> N
     oils = schema["$defs"]["Oil"]["properties"]["name"]["anyOf"][0]
     assert "pao-vg-150" in oils["enum"]
     assert "null" not in json.dumps(schema)
+
+
+def measured(table: type[BaseModel]) -> Iterator[tuple[str, Quantity]]:
+    """Keys of a table, and of all in it, that hold a quantity."""
+    for name, info in table.model_fields.items():
+        if (quantity := quantity_of(info)) is not None:
+            yield f"{table.__name__}.{name}", quantity
+        for inner in alternatives(info.annotation).values():
+            yield from measured(inner)
+
+
+def test_what_a_key_is_told_to_be_written_as_is_in_its_range() -> None:
+    every = dict(measured(Case))
+    assert len(every) > 150
+    for quantity in every.values():
+        quantity.read(quantity.example.strip('"'))
+        assert quantity.example.startswith('"') != plain(quantity.kind)
+    assert every["WearTable.cycles"].example == "1e6"
+    assert every["CylindricalGears.teeth"].example == "20"
 
 
 def test_the_command(

@@ -83,7 +83,7 @@ def test_with_a_case_the_keys_are_those_of_its_family() -> None:
     for tree, wrong, known in [
         (DRIVE, "gears.helix_angle", "backlash"),
         (PAIR, "gears.fixed", "centre_distance"),
-        (DRIVE, "gears.tooth.pressure_angle", "convex_radius"),
+        (DRIVE, "gears.tooth.pressure_angle", "circular_spline"),
     ]:
         with pytest.raises(InputError, match=f"there is no such key.*{known}"):
             quantity_at(wrong, tree)

@@ -150,6 +150,51 @@ def test_a_backlash_along_the_normal_is_answered_with_that_on_the_pitch_circles(
     assert on_circles * cos(radians(helix)) * cos(radians(20.0)) == pytest.approx(100.0, rel=1e-5)
 
 
+@pytest.mark.parametrize("distance", ["20 mm", "200 mm"])
+def test_a_backlash_that_no_teeth_have_gets_no_number(distance):
+    """Base circles that reach beyond the distance, and teeth that do not reach one another."""
+    told = refused(asked("gears.j_bn", "0.1 mm", centre_distance=distance))
+    assert told.endswith("not along the normal; the key is backlash")
+    told = refused(
+        BASE | {"gears": BASE["gears"] | {"backlash": "0.1 mm", "centre_distance": "200 mm"}}
+    )
+    assert told.endswith("have more; give a centre distance nearer to 60 mm")
+
+
+ELSEWHERE = {
+    "module": "[gears] has that key",
+    "force": "[operation] and [loss_map] have that key",
+    "seal_torque": "[losses.NAME] has that key",
+    "gears.span_teeth": "[gears.inspection] has that key",
+    "operation.temperatures": "did you mean temperature?",
+}
+
+
+@pytest.mark.parametrize("key", ELSEWHERE)
+def test_a_key_of_another_table_is_no_misspelt_neighbour(key):
+    tree = copy.deepcopy(BASE)
+    *above, name = key.split(".")
+    (tree[above[0]] if above else tree)[name] = 2
+    assert refused(tree) == f"case: {key}: is not a known key; {ELSEWHERE[key]}"
+
+
+def test_keys_of_the_gears_of_a_stage_are_sent_there():
+    tree = {**BASE, "stages": [{"gears": BASE["gears"], "module": 2}, {"gears": BASE["gears"]}]}
+    del tree["gears"]
+    assert refused(tree) == (
+        "case: stages.1.module: is not a known key; [stages.1.gears] has that key"
+    )
+    del tree["stages"][0]["module"]
+    tree["teeth"] = 20
+    assert refused(tree) == "case: teeth: is not a known key; [stages.1.gears] has that key"
+
+
+def test_a_key_in_the_place_of_a_named_table_is_sent_into_one():
+    told = refused(BASE | {"losses": {"breakaway_spread": 2}})
+    assert told.endswith("a key of each table in [losses], such as losses.NAME.breakaway_spread")
+    assert refused(BASE | {"losses": {"seal": 2}}).endswith("was given where a table belongs")
+
+
 def test_tip_alterations_for_tip_diameters_make_them():
     tree = asked("gears.tip_diameter", ["44.3 mm", "116.2 mm"], teeth=[20, -60])
     alteration = tomllib.loads(refused(tree).partition("; write ")[2])["tip_alteration"]

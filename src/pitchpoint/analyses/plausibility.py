@@ -147,20 +147,22 @@ def hertz_pressure(at: AtWork) -> str | None:
     )
     if weakest is None or largest <= weakest[0]:
         return None
-    brief = f"the Hertz pressure reaches {_pressure(largest)}, allowed {_pressure(weakest[0])}"
-    return Doubt(f"the Hertz pressure reaches {_pressure(largest)}; {weakest[1]}", brief=brief)
+    limit, why, bears = weakest
+    brief = f"the Hertz pressure reaches {_pressure(largest)}, {bears} {_pressure(limit)}"
+    return Doubt(f"the Hertz pressure reaches {_pressure(largest)}; {why}", brief=brief)
 
 
-def _bears(used: SolidInUse, shape: Shape) -> Iterator[tuple[float, str]]:
-    """Largest Hertz pressures of a material, and what happens there."""
+def _bears(used: SolidInUse, shape: Shape) -> Iterator[tuple[float, str, str]]:
+    """Largest Hertz pressures of a material, what happens there, and words before them in a brief."""
     name, hardness = used.record.name, used.record.hardness
     if (limit := used.bears) is not None:
         told = f"{name} bears about {_pressure(limit.value)}, and that a few times only"
-        yield limit.value, told
+        yield limit.value, told, "the material bears"
     if hardness is not None:
         most = hardness.value / MEAN_PRESSURE[shape]
         told = f"from {_pressure(most)} on its mean is more than the hardness of {name}"
-        yield most, f"{told}, {_pressure(hardness.value)}, by which it is indented"
+        why = f"{told}, {_pressure(hardness.value)}, by which it is indented"
+        yield most, why, "by hardness borne"
 
 
 def contact_strain(at: AtWork) -> str | None:

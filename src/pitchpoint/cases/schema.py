@@ -2111,7 +2111,7 @@ def _quantity_anywhere(key: str) -> Quantity | None:
 
 def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | None:
     parts = [part for part in key.split(".") if not part.isdigit()]
-    named, root = False, models[0]
+    named, root, whole = False, models[0], tree
     for position, part in enumerate(parts):
         if named:  # a name of the user's own
             named = False
@@ -2125,7 +2125,7 @@ def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | 
             from pitchpoint.cases.wishes import answer
 
             told = answer(parts[: position + 1], None, {}, known) or _meant(
-                parts[: position + 1], known, root
+                parts[: position + 1], known, root, whole
             )
             raise InputError(f"there is no such key{told}", key=key)
         if position == len(parts) - 1:
@@ -2337,8 +2337,11 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
         what, fields = "table" if isinstance(given, dict) else "key", _fields(detail["loc"], model)
         from pitchpoint.cases.wishes import answer
 
-        told = answer(_place_of(detail, document), given, document.tree, fields)
-        return f"is not a known {what}{told or _meant([*map(str, detail['loc'])], fields, model)}"
+        place = _place_of(detail, document)
+        told = answer(place, given, document.tree, fields) or _meant(
+            place, fields, model, document.tree
+        )
+        return f"is not a known {what}{told}"
     if kind == "literal_error":
         allowed = _options(detail["loc"], model) or context["expected"]
         if detail["loc"][-1] == "family" and isinstance(given, str):
@@ -2347,7 +2350,7 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
             return f"{shown(given)} is no family of gears{no_family(given, _quoted(allowed))}"
         return f"{shown(given)} is not allowed; use {allowed}"
     if kind in ("model_type", "model_attributes_type", "dict_type"):
-        return f"{shown(given)} was given where a table belongs"
+        return f"{shown(given)} was given where a table belongs{_inner(detail['loc'], model)}"
     if kind in ("tuple_type", "list_type"):
         return f"{shown(given)} was given where a list belongs"
     if kind == "too_long":
@@ -2355,27 +2358,85 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
     return f"{shown(given)} is not allowed: {detail['msg'].lower()}"
 
 
+def _inner(location: tuple[Any, ...], model: type[BaseModel]) -> str:
+    """End of a sentence on a value in the place of a table of the user's own: where it belongs."""
+    *above, key = map(str, location)
+    if key in _fields((*location, ""), model):
+        table = ".".join(above)
+        return f"; {key} is a key of each table in [{table}], such as {table}.{_ANY_NAME}.{key}"
+    return ""
+
+
 def _quoted(options: str) -> list[str]:
     """Names between the quotation marks of a list in words."""
     return options.split("'")[1::2]
 
 
-def _meant(place: Sequence[str], known: Collection[str], model: type[BaseModel]) -> str:
-    """End of a sentence on a key that its table does not have: its neighbours, or the tables that have it."""
+def _of_stage(place: Sequence[str]) -> tuple[str, Sequence[str]]:
+    """Beginning of the keys of the stage of a place, and the place in it; nothing of other places."""
+    if place[0] != STAGES:
+        return "", ()
+    numbered = len(place) > 1 and place[1].isdigit()
+    return ".".join(place[: 1 + numbered]) + ".", place[1 + numbered :]
+
+
+_SLIP = 0.8
+"""Likeness of two spellings of one key: "temperatures" and "temperature" agree by 0.96."""
+
+
+def _meant(place: Sequence[str], known: Collection[str], model: type[BaseModel], tree: Any) -> str:
+    """End of a sentence on a key that its table does not have: its neighbours, or the tables that have it.
+
+    Only a slip of the pen comes before a table that has the very key: "force" is not "source".
+    """
     key = place[-1]
-    if place[0] == STAGES and len(place) > 2:
-        return _meant(place[2:], known, StageTable)
-    tables = [
-        f"[[{name}]]" if name == STAGES else f"[{name}]"
-        for name, info in model.model_fields.items()
-        if name not in ("formulas", *place[:-1])
-        and any(key in form.model_fields for form in forms(info.annotation))
-    ]
+    stage, inside = _of_stage(place)
+    if inside:
+        tree = _inside(_inside(tree, STAGES), place[1])
+        place, model = inside, StageTable
+    every = [*_holding(key, model, tree)]
+    if STAGES in model.model_fields:
+        of_stage = _holding(key, StageTable, _inside(_inside(tree, STAGES), "1"))
+        every += [f"{STAGES}.1.{name}" for name in of_stage if name not in every]
+    above = ".".join(place[:-1])
+    every = [name for name in every if name != above]  # of another family
+    near = [name for name in every if above and name.startswith(f"{above}.")]
+    flat = [name for name in every if "." not in name.removeprefix(f"{STAGES}.1.")]
+    tables = [f"[{stage}{name}]" for name in (near or flat or every)[:_FEW_TABLES]]
     if key in model.model_fields and forms(model.model_fields[key].annotation):
         return f"; [{key}] is a table of its own"
-    if alike(key, known) or not tables:
+    if alike(key, known, _SLIP) or not tables:
         return nearest(key, known)
     return f"; {' and '.join(tables)} {'has' if len(tables) == 1 else 'have'} that key"
+
+
+_FEW_TABLES = 3
+"""Tables that a sentence names of those that have a key."""
+
+
+def _inside(tree: Any, key: str) -> Any:
+    """What stands at a key of a table; None where nothing does, or the table is none."""
+    return tree.get(key) if isinstance(tree, Mapping) else None
+
+
+def _holding(key: str, model: type[BaseModel], tree: Any, above: str = "") -> Iterator[str]:
+    """Dotted names of the tables in a table that have a key, those nearest to it first.
+
+    Of a table with several forms only the form that the tree has counts, or all where it has none.
+    """
+    inner = [
+        (f"{above}{name}" + f".{_ANY_NAME}" * _named_tables(info), form, _inside(tree, name))
+        for name, info in model.model_fields.items()
+        if name not in ("formulas", STAGES)
+        for form in forms(info.annotation, _inside(tree, name))
+    ]
+    names = [name for name, form, _ in inner if key in form.model_fields]
+    deeper = (name for at, form, node in inner for name in _holding(key, form, node, f"{at}."))
+    yield from dict.fromkeys((*names, *deeper))
+
+
+_ANY_NAME = "NAME"
+"""Stands for a name of the user's own in the key of a table."""
 
 
 def _options(location: tuple[Any, ...], model: type[BaseModel]) -> str:

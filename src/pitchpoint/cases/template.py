@@ -214,15 +214,7 @@ def _of_quantity(quantity: Quantity, usual: Any) -> Any:
         return each[0] if len(set(map(str, each))) == 1 else each
     if isinstance(usual, float):
         return _read(quantity.show(usual))
-    number = quantity.example.strip('"').partition(" ")[0]
-    written = "" if quantity.unit == "1" else f" {quantity.unit}"
-    for text in (f"{number}{written}", quantity.show(quantity.low), quantity.show(quantity.high)):
-        try:
-            quantity.read(_read(text))
-        except InputError:
-            continue
-        return _read(text)
-    return _read(quantity.show(quantity.low))
+    return _read(quantity.example.strip('"'))
 
 
 def _read(text: str) -> str | float:

@@ -243,12 +243,15 @@ def _by_working_angle(value: Any, table: Tree, tree: Tree) -> str:
 
 
 def _by_normal_backlash(value: Any, table: Tree, tree: Tree) -> str:
-    """The backlash on the pitch circles of one along the normal."""
+    """The backlash on the pitch circles of one along the normal; an error where the gears cannot have it."""
     known = {key: table[key] for key in table if key in CylindricalGears.model_fields}
     gears = CylindricalGears.model_validate(known)
-    cosine = min(_base_radii(table) / gears.operating_distance, 1.0)
-    slope = cosine * cos(gears.toothings[0].base_helix_angle)
-    return _said("backlash", DEVIATION, DEVIATION.read(value) / slope)
+    slope = _base_radii(table) / gears.operating_distance
+    if not slope < 1.0:
+        raise ValueError("the base circles reach beyond the centre distance")
+    on_circles = DEVIATION.read(value) / (slope * cos(gears.toothings[0].base_helix_angle))
+    CylindricalGears.model_validate(known | {"backlash": DEVIATION.show(on_circles)})
+    return _said("backlash", DEVIATION, on_circles)
 
 
 def _in_modules(key: str, quantity: Quantity) -> Write:

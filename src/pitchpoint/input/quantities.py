@@ -118,8 +118,26 @@ class Quantity:
 
     @property
     def example(self) -> str:
-        """How a value is written."""
-        return self.show(max(self.low, 2.0)) if self.whole else units.example(self.kind)
+        """A value of the range as it is written, in the unit in which it is shown."""
+        plain = units.plain(self.kind)
+        if self.whole:
+            return self.show(_TEETH if self.low < 0.0 else max(self.low, 2.0))
+        number = units.example(self.kind).strip('"').partition(" ")[0]
+        many = plain and _MANY <= self.high < math.inf
+        written = "1e6" if many else number if self.unit == "1" else f"{number} {self.unit}"
+        inside = (
+            text for text in (written, *map(self.show, (self.low, self.high))) if self._reads(text)
+        )
+        text = next(inside, written)
+        return text if plain else f'"{text}"'
+
+    def _reads(self, text: str) -> bool:
+        """True for a text that the range takes."""
+        try:
+            self.read(text)
+        except InputError:
+            return False
+        return True
 
     def show(self, number: float) -> str:
         """Number in the unit in which it is shown."""
@@ -142,6 +160,13 @@ class Quantity:
             if self.whole and self._outside(20.0):
                 message = message.replace('like "20"', f'like "{self.example}"')
             raise InputError(f"{message}; {self.allowed}", value=value) from None
+
+
+_TEETH = 20.0
+"""Example of a whole number that may be negative, which numbers of teeth alone may."""
+
+_MANY = 1e9
+"""Bound from which on a plain number counts turns, not parts of one."""
 
 
 @dataclass(frozen=True)

@@ -474,11 +474,11 @@ class CylindricalGears(GearsTable):
         allowance = allowance_for(first, second, distance, self.backlash)
         if allowance > _ROUNDED * self.module:
             least = ceil(1e7 * backlash(first, second, distance).circumferential) * 1e-7
+            more = f"{DEVIATION.show(least)} or more, or " if least <= self.module / 2.0 else ""
             raise InputError(
                 f"was given {DEVIATION.show(self.backlash)}, and at the centre distance "
-                f"{DISTANCE.show(distance)} teeth that are not thinned have more; give "
-                f"{DEVIATION.show(least)} or more, or a centre distance nearer to "
-                f"{DISTANCE.show(distance_without_backlash(first, second))}",
+                f"{DISTANCE.show(distance)} teeth that are not thinned have more; give {more}a centre "
+                f"distance nearer to {DISTANCE.show(distance_without_backlash(first, second))}",
                 key="backlash",
             )
         return first.infeed(allowance), second.infeed(allowance)
