@@ -55,6 +55,7 @@ def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:
     assert f"{show.number(100 * efficiency)} %" in by_name["Efficiency"]
     assert f"{ripple:.4g} N m peak to peak" in by_name["Input"]
     assert {"Loss", "Stress of flanks", "Stress of roots", "Backlash"} <= {*by_name}
+    assert "no safety: materials.gear_1 has no limits" in by_name["Stress of flanks"]
     assert f"Report: {REPORT}" in figures
     assert figures[-1] == "Tables by --full: answer, strength"  # it has no other tables
 
@@ -78,6 +79,15 @@ def test_a_short_detail_is_whole() -> None:
         "Inertia  3.644 kg cm²  pinion",
         "Loss     2 W",
     ]
+
+
+def test_a_law_in_the_place_of_that_of_the_case_is_told() -> None:
+    """At this speed the film is too thin for the only law of the case, and one of the library answers."""
+    only = {"models.friction": "xu_2007", "operation.speed": "600 rpm", "roughness.ra": "0.8 um"}
+    lines = shown(bank.outcomes(EXAMPLES / "pair_23_61.toml", settings=only))
+    (efficiency,) = [line for line in lines if line.startswith("Efficiency")]
+    assert "friction iso_tr_14179_2" in lines[1]
+    assert "% by xu_2007 of the case, out of its range" in efficiency
 
 
 @pytest.mark.whole

@@ -1027,7 +1027,9 @@ def _undercut_warning(pair: _Pair, gear: _Gear) -> Doubt:
         f"The undercut of {gear.name} {loses}; {thinned}its profile shift {gear.profile_shift:.4g} is below "
         f"the limit {gear.undercut_limit:.4g}, and {ends}.",
         moves=max(lost / float(pair.contact_ratio), REMARKED),
-        brief=f"The undercut of {gear.name} {loses}.",
+        brief=f"The undercut of {gear.name} {loses}."
+        if lost > 0.0
+        else f"{gear.name.capitalize()} is undercut: no contact ratio lost, a thinner root.",
     )
 
 

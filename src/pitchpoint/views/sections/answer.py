@@ -536,7 +536,10 @@ def _by_other_laws(outcome: Outcome, data: xr.Dataset) -> Iterator[str]:
     operation, outside = outcome.parts["operation"], why_not(outcome.parts)
     for law, value in zip(laws(operation), operation["mean_efficiency"].values[:, 0], strict=True):
         if law != laws(data)[0]:
-            apart = ", out of its range" if law in outside and any(holding(outcome.parts)) else ""
+            of_case = "" if any(holding(outcome.parts)) else " of the case"
+            apart = (
+                f"{of_case}, out of its range" if law in outside and data is not operation else ""
+            )
             yield f"{show.quantity('mean_efficiency', float(value))} by {law}{apart}"
 
 

@@ -187,9 +187,9 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
     data = outcome.parts.get("strength")
     if data is None:
         return
-    for order, where, part, stress in (
-        (40.0, "flanks", "flank", "contact_stress"),
-        (41.0, "roots", "root", "root_stress"),
+    for order, where, part, stress, limit in (
+        (40.0, "flanks", "flank", "contact_stress", "hlim"),
+        (41.0, "roots", "root", "root_stress", "flim"),
     ):
         known = data[f"{part}_safety"].where(np.isfinite(data[f"{part}_safety"]))
         if not known.isnull().all():
@@ -198,9 +198,14 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
             duty = f"{_place(least)}; {_duty(data, at, f'{part}_cycles')}"
             yield KeyFigure(order, f"Safety of {where}", show.number(float(least)), f"at {duty}")
         elif data[stress].notnull().any():
-            most = data[stress].isel(data[stress].argmax([*data[stress].dims]))
+            place = data[stress].argmax([*data[stress].dims])
+            most = data[stress].isel(place)
             value = show.quantity(stress, float(most), of=data)
-            detail = f"at {_place(most)}; no safety: its material has no limits"
+            key = f"materials.gear_{int(place['gear']) + 1}"
+            detail = (
+                f"no safety: {key} has no limits; largest at {_place(most)}; name one that has them, or give "
+                f"strength.sigma_{limit}"
+            )
             yield KeyFigure(order, f"Stress of {where}", value, detail)
 
 
