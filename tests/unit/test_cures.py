@@ -65,14 +65,36 @@ SLOW: list[tuple[dict[str, Any], list[set[str]]]] = [
         [{"profile_shift"}, {"centre_distance"}],
     ),
     ({"teeth": [18, 36], "centre_distance": "60 mm"}, [{"centre_distance"}]),
-    ({"teeth": [30, 60], "addendum": 1.2, "dedendum": 1.1}, [{"dedendum"}]),
-    ({"teeth": [40, 80], "addendum": [1.2, 1.0], "dedendum": 1.1}, [{"dedendum"}]),
+    ({"teeth": [30, 60], "addendum": 1.2, "dedendum": 1.1}, [{"dedendum"}, {"addendum"}]),
+    (
+        {"teeth": [40, 80], "addendum": [1.2, 1.0], "dedendum": 1.1},
+        [{"dedendum"}, {"addendum"}],
+    ),
+    ({"teeth": [14, -24]}, [{"addendum"}]),
     (
         {"teeth": [30, -60], "fillet_radius": [0.38, 0.5], "addendum": [1.0, 0.8]},
         [{"fillet_radius"}],
     ),
     ({"teeth": [14, 14], "pressure_angle": "14.5 deg"}, [{"profile_shift"}, {"pressure_angle"}]),
 ]
+
+
+def test_what_is_wrong_with_both_gears_is_told_as_it_was_given() -> None:
+    """It was told of a change that had been tried of gear 1 alone, and none of both was tried."""
+    error = refusal(pair(teeth=[21, 35], fillet_radius=0.4722, pressure_angle="28 deg"), {})
+    assert "the fillet radius of gear 1 is 0.4722 modules" in error.message
+    assert error.cures == ({"gears.fillet_radius": [0.2, 0.2]},)
+
+
+@pytest.mark.whole
+def test_the_last_of_several_sentences_has_the_change_that_mends_all() -> None:
+    variant = pair(teeth=[22, 35], addendum=[1.971, 0.999])
+    error = refusal(variant, {})
+    assert isinstance(error, CollectedInputError)
+    assert [one.key for one in error.errors] == ["gears.addendum", "gears.dedendum"]
+    (cure,) = error.errors[-1].cures
+    assert [*cure] == ["gears.addendum"]
+    variant.built(cure)
 
 
 def refusal(variant: Variant, settings: dict[str, Any]) -> InputError:

@@ -200,7 +200,7 @@ def runs_well(pair: CylindricalPair, *, least_backlash: float = nan) -> bool:
     whole, gears = _measure(pair)
     try:
         _told(dataclasses.replace(whole, least_backlash=least_backlash), gears)
-    except UnsoundPairError:
+    except InputError:  # of one gear, or of each of both
         return False
     clear = all(
         gear.fillet_overlap <= _TOLD_IN_FILLET and not _small_clearance(gear) for gear in gears
@@ -633,6 +633,7 @@ def _check_tool(gear: _Gear) -> Faults:
             gear.dedendum,
             f"the rack that cuts {gear.name} has no tip left at the dedendum {gear.dedendum:.4g} "
             f"{gear.modules}; it may be {gear.deepest_dedendum:.4g} {gear.modules} at most",
+            Remedy("dedendum", -1.0, (gear.number - 1,)),
         ),
     )
     yield from _check_fillet_radius(gear, "the tip of its rack has")
@@ -743,6 +744,8 @@ def _check_ring_tip(gear: _Gear) -> Faults:
             gear.addendum,
             f"{_tip_circle(gear)} lies inside its base circle ({_mm(gear.base_diameter)}), where "
             "there is no involute; it must be larger",
+            Remedy("addendum", -1.0, (gear.number - 1,)),
+            Remedy("pressure_angle", 1.0),
         ),
     )
 
@@ -776,6 +779,7 @@ def _check_meeting(pair: _Pair, gear: _Gear) -> Faults:
             Remedy("addendum", -1.0, (2 - gear.number,)),
             Remedy("fillet_radius", -1.0, (gear.number - 1,)),
             Remedy("profile_shift", 1.0, (gear.number - 1,)),
+            Remedy("pressure_angle", 1.0),
         ),
     )
     yield (

@@ -66,6 +66,8 @@ def cures(
 ) -> tuple[Cure, ...]:
     """Changes of different keys after which gears run, each the least of its kind; two at most.
 
+    Where a change of one gear is not enough the same of both is tried.
+
     Args:
         gears: that cannot run.
         remedies: kinds of changes, the better one first.
@@ -86,7 +88,8 @@ def cures(
         return None if high is None else changed(_least(changed, high - steps.coarse, high))
 
     found: dict[str, Cure] = {}
-    for remedy in remedies:
+    of_both = (remedy._replace(members=(0, 1)) for remedy in remedies if len(remedy.members) == 1)
+    for remedy in dict.fromkeys((*remedies, *of_both)):
         if len(found) < MOST_CURES and remedy.key not in found:
             change = cure(remedy)
             found |= {} if change is None else {remedy.key: change}

@@ -11,7 +11,7 @@ import numpy as np
 
 from pitchpoint._jax import array, jax
 from pitchpoint.contact.surface import Surfaces
-from pitchpoint.errors import InputError
+from pitchpoint.errors import CollectedInputError, InputError
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.cylindrical.checks import (
     UnsoundPairError,
@@ -50,21 +50,25 @@ def _cylindrical(gears: CylindricalGears, driver: str, slices: int) -> Made:
         pair = with_bores(pair, gears.bore_diameter)
         _check_field(pair, gears)
         told = check_cylindrical(pair, least_backlash=_least_backlash(gears, pair))
-    except UnsoundPairError as error:
+    except (UnsoundPairError, CollectedInputError) as error:
         raise _with_cures(error, gears, driver) from None
     return _made(pair, gears, slices, told)
 
 
-def _with_cures(error: UnsoundPairError, gears: CylindricalGears, driver: str) -> InputError:
-    """A refusal with changes of the table after which it runs."""
+def _with_cures(error: InputError, gears: CylindricalGears, driver: str) -> InputError:
+    """A refusal with changes of the table after which it runs, behind the last of several sentences."""
     from pitchpoint.gears.cylindrical.cures import cures, told_with_cures  # few gears are refused
 
     values = _given(gears, driver)
     values["least_tip_thickness"] = values["least_tip"]
-    changes = cures(gears, error.remedies, values, partial(_running, driver=driver))
-    told = copy(error)
-    told.message, told.cures = told_with_cures(error.message, changes), changes
-    return told
+    every = error.errors if isinstance(error, CollectedInputError) else (error,)
+    remedies = [
+        one for each in every if isinstance(each, UnsoundPairError) for one in each.remedies
+    ]
+    changes = cures(gears, remedies, values, partial(_running, driver=driver))
+    told = copy(every[-1])
+    told.message, told.cures = told_with_cures(told.message, changes), changes
+    return told if len(every) == 1 else CollectedInputError([*every[:-1], told])
 
 
 def _running(gears: CylindricalGears, driver: str) -> CylindricalPair | None:
