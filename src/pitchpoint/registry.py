@@ -178,7 +178,7 @@ _OTHERWISE = {
 def alike(name: str, known: Iterable[str], likeness: float = 0.6) -> list[str]:
     """At most three known names spelled like another, whatever its case, spaces and hyphens.
 
-    A grade, "VG 220", is a part of up to six names.
+    A grade, "VG 220", is a part of up to six names, as is that at the end of a maker's name.
 
     Args:
         name: that was written.
@@ -187,6 +187,8 @@ def alike(name: str, known: Iterable[str], likeness: float = 0.6) -> list[str]:
 
     Example:
         >>> alike("PAO VG 150", ["pao-vg-150", "pao-vg-100"])
+        ['pao-vg-150']
+        >>> alike("Shell Omala S2 150", ["pao-vg-150", "pao-vg-100"])
         ['pao-vg-150']
     """
     plain = {letters(one): one for one in known}
@@ -198,7 +200,11 @@ def alike(name: str, known: Iterable[str], likeness: float = 0.6) -> list[str]:
     grade = wanted.removeprefix("iso")
     if _GRADE.fullmatch(grade) and (of_it := [plain[one] for one in plain if grade in one]):
         return of_it[:6]
-    return [plain[one] for one in difflib.get_close_matches(wanted, plain, n=3, cutoff=likeness)]
+    near = [plain[one] for one in difflib.get_close_matches(wanted, plain, n=3, cutoff=likeness)]
+    viscosity = re.search("[0-9]{2,4}$", wanted)
+    if near or viscosity is None:
+        return near
+    return [name for one, name in plain.items() if one.endswith(f"vg{viscosity[0]}")][:6]
 
 
 def unknown_name(name: str, allowed: Iterable[str], *, what: str) -> InputError:

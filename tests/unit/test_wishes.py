@@ -266,3 +266,29 @@ def test_no_wish_is_a_key_and_none_stands_twice(table):
         assert taken <= {
             "backlash"
         }  # a key of cylindrical pairs and strain wave gears, and of no others
+
+
+UNITS_LEFT_OUT = {
+    ("roughness", "ra", 0.4): 'write "0.4 um" or use one of m',  # 0.4 mm is out of the range
+    ("operation", "speed", 1200): 'write "1200 rpm" or',
+    ("strength", "life", 20000): 'write "20000 h" or use one of s',
+    ("materials", "hardness", 200): 'write "200 HV" or',  # 200 GPa is out of the range
+    ("gears", "pressure_angle", 20): 'write "20 deg" or "20 rad" or',
+}
+
+
+@pytest.mark.parametrize("place", UNITS_LEFT_OUT)
+def test_a_missing_unit_is_the_one_of_the_key(place):
+    table, key, value = place
+    solid = {"young": "206 GPa", "poisson": 0.3, key: value}
+    inside = {"gear_1": solid} if table == "materials" else BASE.get(table, {}) | {key: value}
+    assert UNITS_LEFT_OUT[place] in refused(BASE | {table: inside})
+
+
+def test_what_a_wish_is_told_to_write_has_its_unit():
+    assert refused(asked("gears.beta", 15)).endswith("cylinders; the key is helix_angle")
+
+
+def test_an_oil_of_a_maker_is_answered_with_its_grade():
+    told = refused(BASE | {"lubricant": {"name": "Mobil SHC 220"}})
+    assert told.endswith("did you mean mineral-vg-220 or pao-vg-220 or pag-vg-220?")

@@ -4,6 +4,7 @@ A name that is spelled like a key may mean something else: "input_torque" is no 
 asked for often stands here, and is answered before any neighbour is offered.
 """
 
+import tomllib
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import atan, cos, inf, pi, tan
@@ -12,6 +13,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from pitchpoint import units
+from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.inspection import Toothing
 from pitchpoint.gears.cylindrical.table import TIP, CylindricalGears
 from pitchpoint.gears.families import Gears
@@ -130,9 +132,31 @@ def _line(wish: Wish, place: Sequence[str], value: Any, tree: Tree) -> str:
     try:
         for part in place[:-1]:
             table = table[part]
-        return "" if wish.write is None else wish.write(value, table, tree)
+        line = "" if wish.write is None else wish.write(value, table, tree)
     except (ArithmeticError, LookupError, TypeError, ValueError):
         return ""
+    return line if _taken(place[:-1], line, tree) else ""
+
+
+def _taken(table: Sequence[str], line: str, tree: Tree) -> bool:
+    """False for a line whose value its key would refuse, such as a number without its unit."""
+    from pitchpoint.cases.schema import quantity_at  # asks this module for wishes
+
+    try:
+        ((key, value),) = tomllib.loads(line).items()
+        quantity = quantity_at(".".join((*table, key)), tree)
+    except (
+        InputError,
+        ValueError,
+    ):  # a remark stands behind the line, or its key takes no quantity
+        return True
+    try:
+        for one in value if isinstance(value, list) else [value]:
+            if quantity is not None:
+                quantity.read(one)
+    except InputError:
+        return False
+    return True
 
 
 def _said(key: str, quantity: Quantity, *values: float) -> str:

@@ -1,6 +1,7 @@
 """Values of a case file with kind and allowed range, as pydantic types."""
 
 import math
+import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from datetime import date, time
@@ -156,10 +157,24 @@ class Quantity:
         try:
             return units.parse(value, "count" if self.whole else self.kind)
         except InputError as error:
-            message = error.message
-            if self.whole and self._outside(20.0):
-                message = message.replace('like "20"', f'like "{self.example}"')
-            raise InputError(f"{message}; {self.allowed}", value=value) from None
+            told = self._in_own_unit(error.message)
+            raise InputError(f"{told}; {self.allowed}", value=value) from None
+
+    def _in_own_unit(self, message: str) -> str:
+        """A refusal whose example is in the range, and whose missing unit is the one that is shown.
+
+        A roughness of 0.4 is not one of 0.4 mm.
+        """
+        usual = units.example("count" if self.whole else self.kind).strip('"')
+        message = message.replace(f'like "{usual}"', f'like "{self.example.strip(chr(34))}"')
+        if self.unit == "1" or units.plain(self.kind):
+            return message
+        unit = re.escape(usual.partition(" ")[2])
+        missing = re.search(rf'write "([^" ]+) {unit}"', message)
+        meant = f"{missing[1]} {self.unit}" if missing else ""
+        if missing is None or not self._reads(meant):
+            return message
+        return message.replace(f' or "{meant}"', "").replace(missing[0], f'write "{meant}"')
 
 
 _TEETH = 20.0
