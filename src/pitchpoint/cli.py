@@ -917,13 +917,15 @@ def _rows(rows: "list[Row]") -> None:
     shown = [
         {
             "quantity": row.quantity,
-            "place": row.where,
+            "verdict": row.verdict,
             "printed": f"{row.bound}{row.printed:g} {row.unit if row.unit != '1' else ''}",
             "computed": "" if row.computed is None else number(row.computed),
-            "deviation": "" if row.deviation is None else f"{row.deviation:+.2g}",
+            "deviation": ""
+            if row.deviation is None
+            else f"{'+' * (row.deviation > 0.0)}{number(row.deviation, 2)}",
             "tolerance": "" if row.bound else f"{row.tolerance:g}",
             "kind": row.kind,
-            "verdict": row.verdict,
+            "place": row.where,
         }
         for row in rows
     ]

@@ -444,7 +444,12 @@ def test_compare(pitchpoint: Callable[..., Told], monkeypatch: pytest.MonkeyPatc
         assert row["reason"] or row["verdict"] == "pass"
     table = pitchpoint("compare", "tian2024")
     assert table.status == 0
-    assert "deviation" in table.out
+    head, *lines = table.out.splitlines()
+    assert head.split()[:7] == (
+        ["quantity", "verdict", "printed", "computed", "deviation", "tolerance", "kind"]
+    )
+    row = next(line for line in lines if line.startswith("contact ratio"))
+    assert row.split()[2:8] == ["pass", "1.611", "1.611", "+1.1e−4", "0.0005", "calibrated"]
 
 
 def test_a_rougher_flank_is_noticed(pitchpoint: Callable[..., Told], tmp_path: Path) -> None:

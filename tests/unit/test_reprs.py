@@ -10,6 +10,7 @@ from sound import quick_first
 import pitchpoint as pp
 from pitchpoint.cases.library import names
 from pitchpoint.materials.lubricants import find
+from pitchpoint.notebook.figures import Plots
 
 MOST = 1000
 
@@ -30,6 +31,11 @@ def test_reprs_of_a_result_are_short(result):
         assert len(repr(one)) < MOST, type(one)
         assert repr(one).count("\n") < 12
     assert "'Tian" in repr(result["physical"]) and "parts cycle" in repr(result["physical"])
+
+
+def test_a_result_without_figures_says_so(monkeypatch):
+    monkeypatch.setattr("pitchpoint.notebook.figures._sections", lambda _: [])
+    assert repr(Plots({})) == "Plots of no section: no part that was computed has figures"
 
 
 @pytest.mark.parametrize("name", quick_first(names(), 2))

@@ -42,7 +42,8 @@ class Plots:
         return [*self._sections]
 
     def __repr__(self) -> str:
-        return f"Plots of {', '.join(f'{name} ({len(dir(one))})' for name, one in self._sections.items())}"
+        every = ", ".join(f"{name} ({len(dir(one))})" for name, one in self._sections.items())
+        return f"Plots of {every or 'no section: no part that was computed has figures'}"
 
     def _near(self, name: str) -> str:
         return nearest(name, self._sections)
