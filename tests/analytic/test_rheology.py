@@ -14,6 +14,7 @@ from pitchpoint.materials import lubricants
 from pitchpoint.materials.fluid import Fluid
 from pitchpoint.materials.registry import DENSITY, LEAST_PRESSURE, SHEAR_STRESS, VISCOSITY
 from pitchpoint.materials.rheology import (
+    bair_2015,
     bair_winer_1979,
     carreau_1972,
     limiting_shear_stress,
@@ -192,7 +193,48 @@ def test_free_volume_as_printed_and_as_an_oil_carries_it():
     slope = (logarithm_of(1e4, 353.15) - logarithm_of(0.0, 353.15)) / 1e4
     assert float(oil.pressure_viscosity(353.15)) == pytest.approx(slope, rel=1e-4)
     with pytest.raises(InputError, match="'volume' is no parameter of 'roelands_1966' or 'tait"):
-        Fluid(**PLAIN, density_law="tait_1888", volume_parameters={"volume": 1.0})
+        Fluid(**PLAIN, density_law="tait_1888", pressure_parameters={"volume": 1.0})
+
+
+GEAR_OIL = {"viscosity_law": "bair_2015", "density_law": "tait_1888"}
+
+
+def test_the_hybrid_of_mcewen_and_paluch_as_one_gear_oil_has_it():
+    """Its constants are fitted to the other correlation at 60 degC, and elsewhere as far off as is said."""
+    pressure = np.array([0.0, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0])
+    oil = lubricants.find("sae-80w-90").build()
+
+    def off(inlet):
+        risen = yasutomi(pressure, inlet) / yasutomi(0.0, inlet)
+        fluid = Fluid.of(oil, inlet, **GEAR_OIL)
+        return viscosity_of(fluid, pressure * 1e9) / float(fluid.viscosity) / risen
+
+    assert off(333.15) == pytest.approx(np.ones(7), abs=0.02)
+    at_half = [np.interp(0.5, pressure, off(inlet)) for inlet in (323.15, 353.15)]
+    assert at_half == pytest.approx([0.66, 1.96], abs=0.02)
+
+
+def test_mcewen_alone_is_a_power_and_constants_as_printed_are_those_of_both_terms():
+    a, q, c, p1, p = 14e-9, 4.0, 30.0, 4e9, 0.7e9
+    alpha = a + c / p1
+    oil = {**OIL, "pressure_viscosity": alpha, "pressure": p, "temperature_rise": 0.0}
+    both = {"mcewen_exponent": q, "paluch_share": c / (alpha * p1), "divergence_pressure": p1}
+    expected = 0.04 * (1.0 + a * p / q) ** q * math.exp(c * p / (p1 - p))
+    assert float(value_of(bair_2015, **oil, **both)) == pytest.approx(expected, rel=1e-12)
+    alone = value_of(bair_2015, **oil, mcewen_exponent=q, paluch_share=0.0)
+    assert float(alone) == pytest.approx(0.04 * (1.0 + alpha * p / q) ** q, rel=1e-12)
+
+
+def test_constants_of_the_hybrid_are_said_to_be_assumed_unless_they_are_given():
+    oil = lubricants.find("sae-80w-90").build()
+    assert Fluid.of(oil, 333.15, **GEAR_OIL).assumed == (
+        "how the viscosity of this oil rises under pressure is not known: 'bair_2015' takes constants of one "
+        "gear oil at 60 degC"
+    )
+    given = {"mcewen_exponent": 4.0, "paluch_share": 0.3, "divergence_pressure": 4e9}
+    assert Fluid.of(oil, 333.15, **GEAR_OIL, viscosity_parameters=given).assumed is None
+    with pytest.raises(InputError, match="is no parameter of 'roelands_1966' or 'dowson"):
+        Fluid.of(oil, 333.15, viscosity_parameters=given)
 
 
 def test_squalane_scales_as_it_was_measured():

@@ -323,6 +323,7 @@ def test_without_load_there_is_no_film(case: str) -> None:
             "leave out it or one of them",
         ),
         ({"film.limiting_stress": "2 MPa"}, "is no parameter of ree_eyring_1955"),
+        ({"film.mcewen_exponent": 4.0}, "is no parameter of roelands_1966; it has none"),
         ({"film.asperities": "none", "film.pattern": 2.0}, "was given without asperities"),
     ],
 )

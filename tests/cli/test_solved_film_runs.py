@@ -104,6 +104,10 @@ def test_what_decides_about_films_is_among_the_inputs():
     assert smooth["shear_law"] == ("newtonian", "given")
     assert smooth["viscosity_law"] == ("roelands_1966", "default")
     assert not {"eyring_stress", "pattern", "boundary_friction"} & smooth.keys()
+    hybrid = 'solver = "line"\nviscosity_law = "bair_2015"\npaluch_share = 0.2'
+    printed = film_rows(f"{FILE}\n[film]\n{hybrid}\n")
+    assert printed["paluch_share"] == (0.2, "given")
+    assert printed["mcewen_exponent"] == (3.0, "default")
     warm = film_rows(f'{FILE}\n[film]\nsolver = "line"\nthermal = "mean_film"\n')
     assert warm.keys() - by_law.keys() == {"solver", "phases", "in_series"}
     assert film_rows(PAIR) == {}

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any, Final
 
-from pitchpoint.cases.schema import FilmTable
+from pitchpoint.cases.schema import OF_VISCOSITY, FilmTable
 from pitchpoint.contact.registry import END_PROFILES
 from pitchpoint.contact.surface import Surface
 from pitchpoint.errors import InputError
@@ -12,7 +12,7 @@ from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH
 from pitchpoint.lubrication.flash_temperature import Conductor
-from pitchpoint.materials.registry import SHEAR_STRESS
+from pitchpoint.materials.registry import SHEAR_STRESS, VISCOSITY
 from pitchpoint.materials.solids import SolidRecord
 
 __all__ = [
@@ -87,7 +87,11 @@ def film_model(table: FilmTable, solids: Sequence[SolidRecord], size: float | No
         chosen.setdefault("inlet", size)
     for name in SUMMIT_CONSTANTS:
         chosen.setdefault(name, getattr(table.set_of_summits, name))
-    model = FilmModel(**chosen, shear_parameters=table.shear_parameters)
+    model = FilmModel(
+        **chosen,
+        shear_parameters=table.shear_parameters,
+        viscosity_parameters=table.viscosity_parameters,
+    )
     return model if model.thermal == ISOTHERMAL else replace(model, members=_members(solids))
 
 
@@ -153,10 +157,14 @@ def film_choices(model: FilmModel, table: FilmTable | None = None) -> dict[str, 
     """
     laws = {name: getattr(model, name) for name in _LAWS}
     shear = {**SHEAR_STRESS[model.shear_law].parameters, **model.shear_parameters}
+    usual = VISCOSITY[model.viscosity_law].parameters
+    viscosity = {name: usual[name] for name in OF_VISCOSITY if name in usual}
     rough = () if model.asperities == SMOOTH else _OF_ASPERITIES
     return {
         **_grid_choices(model, table),
         **laws,
+        **viscosity,
+        **model.viscosity_parameters,
         **shear,
         "asperities": model.asperities,
         **{name: getattr(model, name) for name in rough},

@@ -55,7 +55,7 @@ from pitchpoint.lubrication.registry import (
 )
 from pitchpoint.materials.data import base_names, oil_names, solid_names
 from pitchpoint.materials.registry import DENSITY as LAWS_OF_DENSITY
-from pitchpoint.materials.registry import SHEAR_STRESS, USUAL_SHEAR_STRESS
+from pitchpoint.materials.registry import SHEAR_STRESS, USUAL_SHEAR_STRESS, USUAL_VISCOSITY
 from pitchpoint.materials.registry import VISCOSITY as LAWS_OF_VISCOSITY
 from pitchpoint.published.atanasiu2011.table import PairInMotion
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
@@ -141,6 +141,9 @@ END_ANGLE = Quantity("angle", 0.0, pi / 2.0, "deg", open_low=True)
 LINE_LOAD = Quantity("line load", 0.0, 1e9, "N/mm", open_low=True)
 FILM_PHASES = Quantity("dimensionless", 3, 400, whole=True)
 STRESS = Quantity("pressure", 1e3, 1e10, "MPa")
+MCEWEN_EXPONENT = Quantity("dimensionless", 0.0, 1000.0, open_low=True)
+PALUCH_SHARE = Quantity("dimensionless", 0.0, 1.0)
+DIVERGENCE = Quantity("pressure", 1e8, 1e12, "GPa")
 REFRACTIVE_INDEX = Quantity("dimensionless", 1.0, 2.0, open_low=True)
 OF_SUMMITS = Quantity("dimensionless", 0.0, 10.0, open_low=True)
 PATTERN = Quantity("dimensionless", 1 / 9, 9.0)
@@ -872,6 +875,12 @@ class FilmTable(Table):
         Annotated[str, BeforeValidator(named(SHEAR_STRESS.keys, "law of shear stress"))] | None
     ) = None
     """Law of the shear stress; ree_eyring_1955 unless given."""
+    mcewen_exponent: Annotated[float, MCEWEN_EXPONENT] | None = None
+    """Exponent q of bair_2015; 3 unless given, assumed."""
+    paluch_share: Annotated[float, PALUCH_SHARE] | None = None
+    """Part of the pressure-viscosity coefficient by the Paluch term of bair_2015; 0.36 unless given."""
+    divergence_pressure: Annotated[float, DIVERGENCE] | None = None
+    """Pressure at which that term goes to infinity; 4.7 GPa unless given, assumed."""
     eyring_stress: Annotated[float, STRESS] | None = None
     """Eyring stress of ree_eyring_1955; 5 MPa unless given, assumed."""
     critical_stress: Annotated[float, STRESS] | None = None
@@ -910,8 +919,16 @@ class FilmTable(Table):
     @property
     def shear_parameters(self) -> dict[str, float]:
         """Parameters of the shear law that were given, by name [SI]."""
-        given = {name: getattr(self, name) for name in _OF_SHEAR}
-        return {name: value for name, value in given.items() if value is not None}
+        return self._named(_OF_SHEAR)
+
+    @property
+    def viscosity_parameters(self) -> dict[str, float]:
+        """Parameters of the law of viscosity that were given, by name [SI]."""
+        return self._named(OF_VISCOSITY)
+
+    def _named(self, names: tuple[str, ...]) -> dict[str, float]:
+        values = {name: getattr(self, name) for name in names}
+        return {name: value for name, value in values.items() if value is not None}
 
     @property
     def set_of_summits(self) -> SummitConstants:
@@ -973,11 +990,15 @@ class FilmTable(Table):
 
     @model_validator(mode="after")
     def _own(self) -> "FilmTable":
-        law = SHEAR_STRESS[self.shear_law or USUAL_SHEAR_STRESS]
-        for key in self.shear_parameters:
-            if key not in law.parameters:
-                has = ", ".join(law.parameters) or "none"
-                raise InputError(f"is no parameter of {law.name}; it has {has}", key=key)
+        laws = (
+            (SHEAR_STRESS[self.shear_law or USUAL_SHEAR_STRESS], self.shear_parameters),
+            (LAWS_OF_VISCOSITY[self.viscosity_law or USUAL_VISCOSITY], self.viscosity_parameters),
+        )
+        for law, named_here in laws:
+            has = [name for name in law.parameters if name in FilmTable.model_fields]
+            for key in named_here.keys() - {*has}:
+                told = f"is no parameter of {law.name}; it has {', '.join(has) or 'none'}"
+                raise InputError(told, key=key)
         for key in _OF_ROUGH if self.asperities == SMOOTH else ():
             if getattr(self, key) is not None:
                 told = "was given without asperities, to which it belongs"
@@ -996,6 +1017,8 @@ _OF_SHEAR = (
     "limiting_stress",
     "limiting_fall",
 )
+OF_VISCOSITY = ("mcewen_exponent", "paluch_share", "divergence_pressure")
+"""Keys of `[film]` that are parameters of a law of viscosity under pressure."""
 _OF_ROUGH = ("summits", "eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction")
 _OF_ENDS = ("end_length", "end_radius", "end_angle", "end_line_load", "end_drop")
 

@@ -43,8 +43,7 @@ class Fluid(eqx.Module):
         density_law: name in `DENSITY`; static.
         shear_law: name in `SHEAR_STRESS`; static.
         shear_parameters: those of the shear law that differ from its defaults, by name [SI].
-        volume_parameters: likewise of the laws of viscosity and density, where they rest on the volume of
-            the oil.
+        pressure_parameters: likewise of the laws of viscosity and density.
 
     Raises:
         InputError: there is no law of a name, or no parameter of one; the message has the nearest ones.
@@ -61,7 +60,7 @@ class Fluid(eqx.Module):
     temperature: Float[Array, "..."]
     density: Float[Array, "..."]
     shear_parameters: dict[str, Float[Array, "..."]]
-    volume_parameters: dict[str, Float[Array, "..."]]
+    pressure_parameters: dict[str, Float[Array, "..."]]
     viscosity_law: str = eqx.field(static=True)
     density_law: str = eqx.field(static=True)
     shear_law: str = eqx.field(static=True)
@@ -78,7 +77,7 @@ class Fluid(eqx.Module):
         density_law: str = USUAL_DENSITY,
         shear_law: str = USUAL_SHEAR_STRESS,
         shear_parameters: Mapping[str, ArrayLike] | None = None,
-        volume_parameters: Mapping[str, ArrayLike] | None = None,
+        pressure_parameters: Mapping[str, ArrayLike] | None = None,
     ) -> None:
         self.viscosity, self.density = as_array(viscosity), as_array(density)
         self.pressure_viscosity = as_array(pressure_viscosity)
@@ -88,7 +87,7 @@ class Fluid(eqx.Module):
         self.density_law = DENSITY[density_law].name
         self.shear_law = SHEAR_STRESS[shear_law].name
         self.shear_parameters = _own(shear_parameters or {}, SHEAR_STRESS[shear_law])
-        self.volume_parameters = _own(volume_parameters or {}, *self._of_volume)
+        self.pressure_parameters = _own(pressure_parameters or {}, *self._under_pressure)
 
     @classmethod
     def of(
@@ -100,6 +99,7 @@ class Fluid(eqx.Module):
         density_law: str = USUAL_DENSITY,
         shear_law: str = USUAL_SHEAR_STRESS,
         shear_parameters: Mapping[str, ArrayLike] | None = None,
+        viscosity_parameters: Mapping[str, ArrayLike] | None = None,
     ) -> Fluid:
         """An oil of the catalogue, or one by value, at a temperature.
 
@@ -110,6 +110,7 @@ class Fluid(eqx.Module):
             density_law: name in `DENSITY`.
             shear_law: name in `SHEAR_STRESS`.
             shear_parameters: those of the shear law that differ from its defaults, by name [SI].
+            viscosity_parameters: those of the law of viscosity, likewise, before what is known of the oil.
         """
         return cls(
             viscosity=oil.viscosity(temperature),
@@ -121,11 +122,14 @@ class Fluid(eqx.Module):
             density_law=density_law,
             shear_law=shear_law,
             shear_parameters=shear_parameters,
-            volume_parameters=_volume(oil, temperature, viscosity_law, density_law),
+            pressure_parameters={
+                **_volume(oil, temperature, viscosity_law, density_law),
+                **(viscosity_parameters or {}),
+            },
         )
 
     @property
-    def _of_volume(self) -> tuple[RheologyLaw, RheologyLaw]:
+    def _under_pressure(self) -> tuple[RheologyLaw, RheologyLaw]:
         """Laws of viscosity and density."""
         return VISCOSITY[self.viscosity_law], DENSITY[self.density_law]
 
@@ -136,7 +140,7 @@ class Fluid(eqx.Module):
             pressure: above ambient [Pa].
             temperature_rise: above `temperature` [K].
         """
-        law, _ = self._of_volume
+        law, _ = self._under_pressure
         return law.function(
             pressure=pressure,
             temperature_rise=temperature_rise,
@@ -144,7 +148,7 @@ class Fluid(eqx.Module):
             pressure_viscosity=self.pressure_viscosity,
             temperature=self.temperature,
             viscosity_slope=self.viscosity_slope,
-            **_known_to(law, self.volume_parameters),
+            **_known_to(law, self.pressure_parameters),
         )
 
     def density_ratio(self, pressure: Each, temperature_rise: Each | float = 0.0) -> Each:
@@ -154,11 +158,11 @@ class Fluid(eqx.Module):
             pressure: above ambient [Pa].
             temperature_rise: above `temperature` [K].
         """
-        _, law = self._of_volume
+        _, law = self._under_pressure
         return law.function(
             pressure=pressure,
             temperature_rise=temperature_rise,
-            **_known_to(law, self.volume_parameters),
+            **_known_to(law, self.pressure_parameters),
         )
 
     def shear_stress(
@@ -186,18 +190,22 @@ class Fluid(eqx.Module):
 
     @property
     def assumed(self) -> str | None:
-        """None unless a law rests on a volume that is not known of this oil, else that, without its stop.
+        """None unless a law rests on what is not known of this oil, else that, without its stop.
 
         Example:
             >>> Fluid(viscosity=0.04, pressure_viscosity=2.2e-8, density_law="tait_1888").assumed
             "the volume of this oil is not known: 'tait_1888' takes constants between those of a few others"
         """
-        laws = [law for law in self._of_volume if law.parameters]
-        if self.volume_parameters or not laws:
-            return None
-        names = " and ".join(f"'{law.name}'" for law in laws)
-        take = "takes" if len(laws) == 1 else "take"
-        return f"the volume of this oil is not known: {names} {take} constants between those of a few others"
+        known = {*self.pressure_parameters}
+        lacking: dict[tuple[str, str], list[str]] = {}
+        for law in self._under_pressure:
+            if law.parameters.keys() - known:
+                lacking.setdefault(law.unknown, []).append(f"'{law.name}'")
+        sentences = [
+            f"{what}: {' and '.join(names)} {'takes' if len(names) == 1 else 'take'} {taken}"
+            for (what, taken), names in lacking.items()
+        ]
+        return "; ".join(sentences) or None
 
     def outside(self, pressure: ArrayLike) -> str | None:
         """None if the laws hold up to a pressure, else why not, in one sentence without its stop.
@@ -210,7 +218,7 @@ class Fluid(eqx.Module):
             "a pressure of 1.6 GPa is outside the range of 'roelands_1966', up to 1 GPa"
         """
         values = {"pressure": pressure, "index": np.asarray(self.index)}
-        told = (law.outside(**values) for law in self._of_volume)
+        told = (law.outside(**values) for law in self._under_pressure)
         return next((one for one in told if one is not None), None)
 
 

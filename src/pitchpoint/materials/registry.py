@@ -47,6 +47,8 @@ class RheologyLaw:
         check: arguments in SI, and the value worked out by hand.
         range: where it holds, as a sentence.
         ranges: limits of quantities in SI, where a range is known; `index` is that of `roelands_index`.
+        unknown: what of an oil its own parameters are, where a catalogue does not have them, and what they
+            are taken as.
         note: what else is to be known.
     """
 
@@ -57,6 +59,10 @@ class RheologyLaw:
     check: tuple[dict[str, float], float] | None = None
     range: str = ""
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    unknown: tuple[str, str] = (
+        "the volume of this oil is not known",
+        "constants between those of a few others",
+    )
     note: str = ""
 
     @property
@@ -149,6 +155,21 @@ VISCOSITY = Registry(
         "Oils whose free volume is in the catalogue, up to about 1 GPa; of every other oil occupied volume "
         "and equation of state are assumed, and so is its viscosity in the middle of a contact.",
         {"pressure": (LEAST_PRESSURE, 1e9)},
+        note=_NO_CURVE,
+    ),
+    RheologyLaw(
+        "bair_2015",
+        "Bair, hybrid of McEwen and Paluch",
+        "pitchpoint.materials.rheology:bair_2015",
+        ("bair_2015", "mcewen_1952", "bair_2019"),
+        ({**_OIL, "pressure": 0.5e9, "temperature_rise": 20.0}, 56.62480971447568),
+        "Oils whose three constants are known at the temperature of the inlet, up to about 1 GPa; no set of "
+        "constants is in the catalogue, and those of one gear oil at 60 degC are assumed unless given.",
+        {"pressure": (LEAST_PRESSURE, 1e9)},
+        unknown=(
+            "how the viscosity of this oil rises under pressure is not known",
+            "constants of one gear oil at 60 degC",
+        ),
         note=_NO_CURVE,
     ),
 )

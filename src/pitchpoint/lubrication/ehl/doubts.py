@@ -55,7 +55,7 @@ WEAK: Final = 1e4
 THICK: Final = 20e-6
 """Film [m] above which a value may be in another unit: bodies with a radius of 5 m have 4 to 12 um."""
 
-FREE: Final = ("limiting_fall", "expansion", "modulus_slope")
+FREE: Final = ("limiting_fall", "expansion", "modulus_slope", "paluch_share")
 """Parameters of an oil that may be zero."""
 
 NEWTONIAN: Final = "newtonian"
@@ -93,7 +93,7 @@ def check(contact: LineContact) -> None:
         ),
         "inlet": (contact.inlet, "a distance at which oil begins", 1e3, "mm"),
     }
-    for name, value in {**fluid.shear_parameters, **fluid.volume_parameters}.items():
+    for name, value in {**fluid.shear_parameters, **fluid.pressure_parameters}.items():
         if name not in FREE:
             positive[name] = (value, f"a parameter {name} of the oil", 1.0, "in SI units")
     if texture is not None:
@@ -255,7 +255,7 @@ def extrapolated_pressure(pressure: float) -> str:
 def of_volume(fluid: Fluid) -> Iterator[Doubt]:
     """That viscosity or density under pressure rest on assumed constants."""
     if fluid.assumed is not None:
-        brief = "the volume of this oil under pressure is assumed"
+        brief = "constants of this oil under pressure are assumed"
         yield Doubt(fluid.assumed, "volume of the oil", moves=GUESSED, brief=brief)
 
 

@@ -38,6 +38,7 @@ class FilmModel:
         density_law: name in `DENSITY`.
         shear_law: name in `SHEAR_STRESS`.
         shear_parameters: those of the shear law that differ from its defaults, by name [SI].
+        viscosity_parameters: those of the law of viscosity, likewise.
         asperities: name in `ASPERITIES`, or `SMOOTH`.
         eta_beta_sigma: summits per area times their radius times Rq.
         sigma_over_beta: Rq over the radius of the summits.
@@ -54,6 +55,7 @@ class FilmModel:
     density_law: str = USUAL_DENSITY
     shear_law: str = USUAL_SHEAR_STRESS
     shear_parameters: Mapping[str, float] = field(default_factory=dict)
+    viscosity_parameters: Mapping[str, float] = field(default_factory=dict)
     asperities: str = USUAL_ASPERITIES
     eta_beta_sigma: float = ETA_BETA_SIGMA
     sigma_over_beta: float = SIGMA_OVER_BETA
@@ -126,6 +128,7 @@ class FilmModel:
             density_law=self.density_law,
             shear_law=self.shear_law,
             shear_parameters=self.shear_parameters,
+            viscosity_parameters=self.viscosity_parameters,
         )
 
     def texture(self, roughness_rq: ArrayLike, modulus: ArrayLike) -> Rough | None:
