@@ -312,7 +312,17 @@ def test_both_ends_of_what_holds_a_load_have_the_band_that_was_given(
         ends = data[f"least_holding_torque_{least}"], data[f"largest_holding_torque_{largest}"]
         for end, sign in zip(ends, (-1.0, 1.0), strict=True):
             np.testing.assert_allclose(*xr.broadcast(end, step * load + sign * seals), rtol=1e-9)
-    every = moving[1].parts["four_quadrants"]
+    table, every = table_of(moving[1].parts["four_quadrants"]), moving[1].parts["four_quadrants"]
+    at_load = table.at_rest(30.0, 50.0, "frictionless")
+    expected = {
+        f"{end}_{side}": step * 30.0 + sign * (0.1 + step * (2.0 + held))
+        for end, sign, sides in (
+            ("lowest", -1.0, ("high", "low")),
+            ("highest", 1.0, ("low", "high")),
+        )
+        for side, held in zip(sides, (0.5, 2.0), strict=True)
+    }
+    assert {name: getattr(at_load, name) for name in expected} == pytest.approx(expected, rel=1e-9)
     for name, ends in HOLDING_BANDS.items():
         assert (every[ends[0]] < every[name]).all()
         assert (every[name] < every[ends[1]]).all()
@@ -351,7 +361,8 @@ def test_a_drive_that_friction_locks(locking: tuple[Ready, Outcome]) -> None:
     assert not table.at(1.0, 3.0, 50.0).locked
     rest = table.at_rest(1.0, 50.0)
     assert rest.locked
-    assert np.isnan(rest.lowest)
+    assert np.isnan([rest.lowest, rest.lowest_low, rest.lowest_high]).all()
+    assert rest.highest_low == rest.highest == rest.highest_high  # no spread was given
     assert rest.highest > table.speed_ratio
 
 
@@ -431,7 +442,7 @@ def test_the_module_has_the_nodes_to_the_last_digit(
         )
     assert not values[:, 4].any()
     assert rest == [*table_of(data).at_rest(7.0, 50.0)]
-    assert rest[2:] == [False, False]
+    assert rest[2:4] == [False, False]
     assert beyond[3] is True
 
 
@@ -510,7 +521,8 @@ int main(void) {
         struct loss_table_rest r = loss_table_at_rest(torque, temperature, law);
         loss_table_at_many(1, &torque, &speed, &temperature, law, &p);
         printf("%.17g %.17g %.17g %d %d ", p.loss, p.efficiency, p.input_torque, p.locked, p.outside);
-        printf("%.17g %.17g %d %d\\n", r.lowest, r.highest, r.locked, r.outside);
+        printf("%.17g %.17g %d %d ", r.lowest, r.highest, r.locked, r.outside);
+        printf("%.17g %.17g %.17g %.17g\\n", r.lowest_low, r.lowest_high, r.highest_low, r.highest_high);
     }
     return loss_table_law("frictionless") == 1 && loss_table_law("no") == -1 ? 0 : 1;
 }

@@ -486,13 +486,29 @@ def table_of(data: xr.Dataset) -> LossTable:
     lost = moves["mean_loss"].values / speeds[speeds > 0.0][:, None]
     lost = np.where(moves["locked"].values, LOCKED, lost)
     held = data.transpose(*_HELD, ...)
-    rest = held["largest_holding_torque"].values / ratio - data["output_torque"].values[:, None]
-    rest = np.where(held["self_locking"].values[:, ::-1], LOCKED, np.maximum(rest, 0.0))
+    stuck = held["self_locking"].values[:, ::-1]
+
+    def at_rest(name: str) -> np.ndarray:
+        rest = held[name].values / ratio - data["output_torque"].values[:, None]
+        return np.where(stuck, LOCKED, np.maximum(rest, 0.0))[:, :, None]
+
     units = [
         data[name].attrs["units"] for name in ("output_torque", "output_speed", "mean_input_torque")
     ]
-    made = _table(data, np.concatenate([rest[:, :, None], lost], axis=2), ratio)
-    return made._replace(units=units)
+    made = _table(data, np.concatenate([at_rest("largest_holding_torque"), lost], axis=2), ratio)
+    made = made._replace(units=units)
+    if _BAND[0] not in data:
+        return made
+    bounds = [
+        _table(data, np.concatenate([at_rest(name), lost], axis=2), ratio).loss_torques
+        for name in _BAND
+    ]
+    return made._replace(
+        rest_bounds={
+            law: [[column[0] for column in bound[law]] for bound in bounds]
+            for law in made.loss_torques
+        }
+    )
 
 
 def _table(axes: Mapping[Any, Any], lost: Values, ratio: float) -> LossTable:

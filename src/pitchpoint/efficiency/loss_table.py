@@ -43,12 +43,20 @@ class Rest(NamedTuple):
         highest: above it the output begins to move forwards; likewise.
         locked: True where friction locks the drive against a load at its output: it holds without a driver.
         outside: True beyond the table; friction is that of the nearest point in it.
+        lowest_low: the lowest with as much as the spread gives of what holds bearings and seals at rest.
+        lowest_high: the lowest with as little; from there to `highest_low` the drive surely holds.
+        highest_low: the highest with as little.
+        highest_high: the highest with as much. Without a spread these are the lowest and the highest.
     """
 
     lowest: float
     highest: float
     locked: bool
     outside: bool
+    lowest_low: float
+    lowest_high: float
+    highest_low: float
+    highest_high: float
 
 
 class LossTable(NamedTuple):
@@ -63,6 +71,8 @@ class LossTable(NamedTuple):
             or NaN where there is none.
         speed_ratio: speed of the output over that of the driver, positive.
         units: of torque and speed of the output, and of torque of the driver.
+        rest_bounds: torques that are lost at rest with as little and as much as the spread gives of what
+            holds bearings and seals there, by law over torque and temperature; None without a spread.
 
     Example:
         >>> lost = {"own": (((0.0,), (-1.0,)), ((0.25,), (0.125,)), ((0.5,), (0.25,)))}
@@ -71,8 +81,8 @@ class LossTable(NamedTuple):
         Point(loss=0.9375, efficiency=0.8421052631578947, input_torque=0.1484375, locked=False, outside=False)
         >>> table.at(1.0, -5.0, 40.0).locked, table.at(3.0, 5.0, 40.0).outside
         (True, True)
-        >>> table.at_rest(2.0, 40.0)
-        Rest(lowest=0.25, highest=0.3125, locked=False, outside=False)
+        >>> table.at_rest(2.0, 40.0)[:4]
+        (0.25, 0.3125, False, False)
     """
 
     torques: Sequence[float]
@@ -81,6 +91,7 @@ class LossTable(NamedTuple):
     loss_torques: Mapping[str, Sequence[Sequence[Sequence[float]]]]
     speed_ratio: float
     units: Sequence[str] = ("N m", "rad/s", "N m")
+    rest_bounds: "Mapping[str, Sequence[Sequence[Sequence[float]]]] | None" = None
 
     def at(self, torque: float, speed: float, temperature: float, law: str = "") -> Point:
         """Loss, efficiency and torque of the driver.
@@ -151,11 +162,31 @@ class LossTable(NamedTuple):
         Raises:
             ValueError: there is no such law.
         """
-        forwards, back = (self.lost(one, 0.0, temperature, law) for one in (torque, -torque))
+        values = _named(self.loss_torques, law)
+        usual = [column[0] for column in values]
+        bounds = (usual, usual) if self.rest_bounds is None else _named(self.rest_bounds, law)
         outside = any(self._outside(one, 0.0, temperature) for one in (torque, -torque))
+        lowest, highest, locked = self._held(usual, torque, temperature)
+        least, most = (self._held(one, torque, temperature) for one in bounds)
+        return Rest(lowest, highest, locked, outside, most[0], least[0], least[1], most[1])
+
+    def _held(
+        self, lost: "Sequence[Sequence[float]]", torque: float, temperature: float
+    ) -> "tuple[float, float, bool]":
+        """Band that holds a load, by losses over torque and temperature, and whether friction locks."""
+        cold, warm, warmer = _cell(self.temperatures, temperature)
+        cells = (_cell(self.torques, one) for one in (torque, -torque))
+        forwards, back = (
+            _mixed(
+                _mixed(lost[few][cold], lost[few][warm], warmer),
+                _mixed(lost[many][cold], lost[many][warm], warmer),
+                more,
+            )
+            for few, many, more in cells
+        )
         highest = math.nan if forwards < 0.0 else (torque + forwards) * self.speed_ratio
         lowest = math.nan if back < 0.0 else (torque - back) * self.speed_ratio
-        return Rest(lowest, highest, forwards < 0.0 or back < 0.0, outside)
+        return lowest, highest, forwards < 0.0 or back < 0.0
 
     def lost(self, torque: float, speed: float, temperature: float, law: str = "") -> float:
         """Torque that is lost at a place of the table, or at the nearest; `LOCKED` beside a node that is.
@@ -167,6 +198,7 @@ class LossTable(NamedTuple):
             law: of friction; the first one by default.
         """
         values = _named(self.loss_torques, law)
+
         few, many, more = _cell(self.torques, torque)
         cold, warm, warmer = _cell(self.temperatures, temperature)
 
@@ -218,6 +250,9 @@ def main(table: LossTable, about: str = "", arguments: "Sequence[str] | None" = 
     if asked.speed == 0.0:
         rest = table.at_rest(asked.torque, asked.temperature, asked.law)
         print("holds from: " + repr(rest.lowest) + " to " + repr(rest.highest) + " " + driver)
+        if table.rest_bounds is not None:
+            surely, most = rest.lowest_high, rest.highest_low
+            print("surely from: " + repr(surely) + " to " + repr(most) + " " + driver)
     return 0
 
 

@@ -45,7 +45,8 @@ BEYOND = (
 AT_REST = (
     "At rest no power is lost, and the torque of the driver may have any value of a band: at_rest gives for "
     "a load the torque below which it moves back and that above which it is moved on, in the mean over the "
-    "phases of the teeth, with what holds bearings and seals at rest, without the spread of it. Where the "
+    "phases of the teeth, with what holds bearings and seals at rest. By the spread of that, lowest_low to "
+    "highest_high is the widest band, and from lowest_high to highest_low the drive surely holds. Where the "
     "band has zero in it the drive holds the load without its driver."
 )
 
@@ -160,12 +161,18 @@ def header(outcome: Outcome, table: LossTable) -> str:
     )
     sizes = "".join(f"#define LOSS_TABLE_{n} {k}\n" for n, k in zip(names, shape, strict=True))
     driver = _inert(table.units[-1])
+    usual = {
+        law: [[column[0] for column in values]] * 2 for law, values in table.loss_torques.items()
+    }
     arrays = {
         "torques[LOSS_TABLE_TORQUES]": table.torques,
         "speeds[LOSS_TABLE_SPEEDS]": table.speeds,
         "temperatures[LOSS_TABLE_TEMPERATURES]": table.temperatures,
         "loss_torques[LOSS_TABLE_LAWS][LOSS_TABLE_TORQUES][LOSS_TABLE_SPEEDS][LOSS_TABLE_TEMPERATURES]": [
             *table.loss_torques.values()
+        ],
+        "rest_bounds[LOSS_TABLE_LAWS][2][LOSS_TABLE_TORQUES][LOSS_TABLE_TEMPERATURES]": [
+            *(table.rest_bounds or usual).values()
         ],
     }
     texts = {**_origin(outcome), "law_names[LOSS_TABLE_LAWS]": [*table.loss_torques]}
@@ -177,7 +184,8 @@ def header(outcome: Outcome, table: LossTable) -> str:
         f"    double loss;         /* W */\n    double efficiency;\n"
         f"    double input_torque; /* {driver} */\n    int locked, outside;\n}};\n"
         "struct loss_table_rest {\n"
-        f"    double lowest, highest; /* {driver} */\n    int locked, outside;\n}};\n\n"
+        f"    double lowest, highest; /* {driver} */\n    int locked, outside;\n"
+        "    double lowest_low, lowest_high, highest_low, highest_high;\n};\n\n"
         + "".join(f"static const char *const loss_table_{n} = {_c(v)};\n" for n, v in texts.items())
         + "".join(f"static const double loss_table_{n} = {_c(v)};\n" for n, v in arrays.items())
         + f"\n{code}"

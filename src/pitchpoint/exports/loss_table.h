@@ -105,10 +105,22 @@ static inline void loss_table_at_many(int count, const double *torque, const dou
         found[k] = loss_table_at(torque[k], speed[k], temperature[k], law);
 }
 
+/* Torque that is lost at rest with as little or as much as the spread gives; negative where friction locks. */
+static double loss_table_bound(double torque, double temperature, int law, int most)
+{
+    const struct loss_table_cell t = loss_table_cell(loss_table_torques, LOSS_TABLE_TORQUES, torque);
+    const struct loss_table_cell oil =
+        loss_table_cell(loss_table_temperatures, LOSS_TABLE_TEMPERATURES, temperature);
+    const double *first = loss_table_rest_bounds[law][most][t.low];
+    const double *second = loss_table_rest_bounds[law][most][t.high];
+    return loss_table_mixed(loss_table_mixed(first[oil.low], first[oil.high], oil.weight),
+                            loss_table_mixed(second[oil.low], second[oil.high], oil.weight), t.weight);
+}
+
 /* Torques of the driver between which the drive stands still with a load; law counts from 0. */
 static inline struct loss_table_rest loss_table_at_rest(double torque, double temperature, int law)
 {
-    struct loss_table_rest found = {NAN, NAN, 0, 0};
+    struct loss_table_rest found = {NAN, NAN, 0, 0, NAN, NAN, NAN, NAN};
     if (law < 0 || law >= LOSS_TABLE_LAWS)
         return found;
     found.outside =
@@ -122,6 +134,14 @@ static inline struct loss_table_rest loss_table_at_rest(double torque, double te
         found.highest = (torque + forwards) * LOSS_TABLE_SPEED_RATIO;
     if (!(back < 0.0))
         found.lowest = (torque - back) * LOSS_TABLE_SPEED_RATIO;
+    for (int most = 0; most < 2; ++most) {
+        const double on = loss_table_bound(torque, temperature, law, most);
+        const double off = loss_table_bound(-torque, temperature, law, most);
+        if (!(on < 0.0))
+            *(most ? &found.highest_high : &found.highest_low) = (torque + on) * LOSS_TABLE_SPEED_RATIO;
+        if (!(off < 0.0))
+            *(most ? &found.lowest_low : &found.lowest_high) = (torque - off) * LOSS_TABLE_SPEED_RATIO;
+    }
     return found;
 }
 
