@@ -699,6 +699,19 @@ def test_flanks_that_conform_are_no_half_spaces():
     assert half == pytest.approx(min(WIDEST / (CURVATURE / 2.0), FLANK), rel=1e-6)
 
 
+def test_contacts_that_are_no_half_spaces_as_new_grow_no_wider():
+    """Wider than the flank as new: a hollow leaves them so, a hump narrows them, and neither ends a march."""
+    places, as_new = np.array([FLANK / 2.0]), 1.25 * FLANK
+    line_load = np.pi * MODULUS * as_new**2 * CURVATURE / 8.0
+    away = np.linspace(-1.0, 1.0, 40)
+    hollow = 0.2 * CURVATURE * (FLANK / 2.0) ** 2 * (1.0 - away**2)
+    for depths, narrowed in ((np.zeros(40), 0.0), (hollow, 0.0), (hollow.max() - hollow, 1.0)):
+        half, wide = pressed_lines(depths, places, line_load)
+        assert not wide.any()
+        assert (half[0] < 0.999 * as_new) == bool(narrowed)
+        assert half[0] <= as_new * (1.0 + 1e-9)
+
+
 def bisected(depth: np.ndarray, place: float, line_load: float) -> float:
     """Half-width in balance, by sums over second differences of the cells, by a parabola of its variance."""
     length = FLANK / depth.size

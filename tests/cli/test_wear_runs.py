@@ -196,6 +196,25 @@ def test_the_march_ends_where_flanks_move_off_their_places(case: str) -> None:
 
 
 @pytest.mark.whole
+def test_a_strain_wave_gear_wears_whose_contacts_are_wide_as_new() -> None:
+    """Its march ended at a nanometre; what half the grid leaves is in the error that is told."""
+    settings = {
+        **{"wear.law": "archard_1953", "wear.coefficient": 1e-7, "wear.hardness": "700 HV"},
+        **{"wear.profile": "kept", "wear.sensitivities": False, "wear.cycles": 1e6},
+        **{"models.load_sharing": "from_stiffness", "wear.cells": 20.0, "wear.phases": 12.0},
+    }
+    case = str(Path(__file__).parents[2] / "examples" / "strain_wave.toml")
+    data = running.run(case, settings=settings)["default"].parts["wear"]
+    assert data.attrs["end"] == "turns"
+    limit = np.array([0.747e-6, 0.314e-6])  # on 160 cells and 96 phases
+    deepest, error = data["deepest_wear"].values[-1], data["wear_error"].values[-1]
+    assert (np.abs(deepest - limit) < error).all()
+    assert (error < 0.6 * limit).all()
+    told = json.loads(data.attrs["warnings"])
+    assert any("of the radius of the sharper flank wide to each side" in one for one in told)
+
+
+@pytest.mark.whole
 def test_a_ball_that_conforms_ends_the_march(folder: Path) -> None:
     ball = Path(__file__).parents[2] / "examples" / "ball_on_disc.toml"
     settings = {

@@ -18,7 +18,7 @@ from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.worn import BRIDGED, WIDEST
 from pitchpoint.doubts import Doubt
-from pitchpoint.efficiency.quasi_static import contacts_at
+from pitchpoint.efficiency.quasi_static import contacts_at, shares_at
 from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh
@@ -26,7 +26,7 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 from pitchpoint.wear.gradients import march_sensitivities
-from pitchpoint.wear.history import ROOM, Cells, Start, WearModel, as_new, one_turn
+from pitchpoint.wear.history import ROOM, Cells, Start, WearModel, as_new, one_turn, travelled
 from pitchpoint.wear.march import FIRST, End, Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
 from pitchpoint.wear.stages import run_in_end, severe_start
@@ -39,6 +39,9 @@ TOLD = 0.03
 
 SLICED = 0.06
 """Error of the depth on helical lines, over it, times their slices: above that of random pairs."""
+
+SAFETY = 1.25
+"""Factor on what half the grid changes, for the error of cells: Roache's, for an order that is known."""
 
 HOLDS = 0.2
 """Depth over the module up to which flanks wear along normals that stay where they are."""
@@ -226,7 +229,8 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     if end == "depth" and deepest[-1].max() >= (1.0 - 1e-9) * _deepest(built):
         end = "module"
     merged = np.stack([course.cells.merged(one) for one in depth])
-    values["wear_error"] += np.abs(deepest - merged[:, :, rows].max(axis=(2, 3)))
+    of_cells = np.abs(deepest - merged[:, :, rows].max(axis=(2, 3)))
+    values["wear_error"] += np.maximum(of_cells, _of_grid(built) * deepest)
     values["wear_error"] += _of_slices(course.start) * deepest
     volumes = [np.asarray(course.cells.volumes(array(one))) for one in depth]
     sensitivities = _sensitivities(built, values)
@@ -276,6 +280,48 @@ def _of_slices(start: Start) -> float:
     """What slices of lines are taken to be off by, over the depth: none on lines of one."""
     slices = start.contacts.active.shape[1]
     return SLICED / slices if start.places is not None and slices > 1 else 0.0
+
+
+def _of_grid(built: Built) -> float:
+    """What the grid is taken to leave of the largest depths, over them: from half as many cells and phases.
+
+    That of the member where it is more, as new, with a factor of safety; none where depths are held at
+    places, whose errors are told step by step. Source: Roache (1994), for convergence of the first order.
+    """
+    course, table = _course(built), asked(built)
+    if course.cells.places:
+        return 0.0
+    design, operation, models = built.design, built.operation, built.models[0]
+    parts, every = max(int(table.phases) // 2, 1), max(int(table.cells) // 2, 1)
+    grids = (
+        (course.start, course.cells),
+        as_new(design, operation, models, parts=parts, count=every),
+    )
+    fine, coarse = (
+        np.asarray(
+            one_turn(
+                design, operation, models, course.model, cells, start, array(np.zeros(cells.shape))
+            ).depth
+        ).max(axis=(1, 2))
+        for start, cells in grids
+    )
+    worn = fine > 0.0
+    apart = np.abs(coarse - fine)[worn] / fine[worn]
+    return SAFETY * float(np.max(np.nan_to_num(apart, nan=1.0), initial=0.0))
+
+
+def _widest(built: Built) -> float:
+    """Largest half-width of contacts of flanks as new, over the radius of the sharper flank."""
+    design, operation, models, start = (
+        built.design,
+        built.operation,
+        built.models[0],
+        _course(built).start,
+    )
+    share = shares_at(design, start.contacts, operation.load, models, start.body)
+    at, _ = travelled(design, operation, models, start.engaged(share))
+    sharper = np.asarray(at.contacts.curvature[:, 0]).max(axis=0)
+    return float(np.max(np.where(at.load > 0.0, at.half_width * sharper, 0.0)))
 
 
 def _where(built: Built, depth: np.ndarray) -> dict[str, Any]:
@@ -483,6 +529,15 @@ def _warnings(
                 f"each side on average, less than {BRIDGED:g} cells of {1e6 * longest:.2g} um, over which "
                 "curvatures are averaged.",
                 brief=f"Wear: contacts span {span / longest:.2g} cells, {BRIDGED:g} are asked: wear.cells.",
+            )
+        )
+    if line and (widest := _widest(built)) > WIDEST:
+        told.append(
+            Doubt(
+                f"Wear: contacts of flanks as new are up to {widest:.2g} of the radius of the sharper flank "
+                f"wide to each side, and both are half spaces up to {WIDEST:g}: pressures there are a guess, "
+                "and these contacts are taken to grow no wider by wear.",
+                brief=f"Wear: contacts as new are {widest:.2g} flank radii wide: pressures are a guess.",
             )
         )
     if end == "outgrown" and line:

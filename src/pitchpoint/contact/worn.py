@@ -170,8 +170,9 @@ def averaged(
 
     Returns:
         Contacts whose relative curvature k has the half-width b that the worn profile g has under this load,
-        and True where b would pass `WIDEST` of the radius of the sharper flank as new, or the length of a
-        flank that wears: b stays there. Where no half-width is found, the curvature is nan.
+        and True where b would grow beyond `WIDEST` of the radius of the sharper flank as new, or the length
+        of a flank that wears: b stays there, or at that of flanks as new where they are wider already. Where
+        no half-width is found, the curvature is nan.
 
     A pressure that falls to zero at both ends of a contact has w = E'/4 int s g'(s) / sqrt(b^2 - s^2) ds. By
     parts this is Hertz's w = pi E' b^2 k / 8 with the mean of g'' by the weight 2/(pi b^2) sqrt(b^2 - s^2) as
@@ -190,7 +191,9 @@ def averaged(
     target = jnp.where(loaded, target, 1.0)
     sharper = jnp.maximum(contacts.curvature[0, 0], contacts.curvature[1, 0])
     flank = jnp.min(jnp.stack([one.flank[1] - one.flank[0] for one in worn]))
-    widest = jnp.minimum(WIDEST / jnp.where(loaded, sharper, 1.0), flank)
+    half_space = jnp.minimum(WIDEST / jnp.where(loaded, sharper, 1.0), flank)
+    as_new = jnp.sqrt(target / jnp.where(loaded, new, 1.0))
+    widest = jnp.maximum(half_space, as_new)
     bends = [
         one.mean_bend(jnp.broadcast_to(place, lanes), contacts.width)
         for one, place in zip(worn, contacts.flank, strict=True)
@@ -205,7 +208,7 @@ def averaged(
     polished = half - jnp.where(wide, 0.0, lack / steep)
     settled = wide | (jnp.abs(lack) < _SETTLED * target)
     felt = jnp.where(loaded, jnp.where(settled, target / polished**2, jnp.nan), new)
-    return replace(contacts, felt=felt), loaded & wide
+    return replace(contacts, felt=felt), loaded & wide & (as_new < half_space)
 
 
 class _Balance(eqx.Module):
