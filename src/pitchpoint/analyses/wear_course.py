@@ -537,7 +537,7 @@ def _warnings(
                 f"Wear: contacts of flanks as new are up to {widest:.2g} of the radius of the sharper flank "
                 f"wide to each side, and both are half spaces up to {WIDEST:g}: pressures there are a guess, "
                 "and these contacts are taken to grow no wider by wear.",
-                brief=f"Wear: contacts as new are {widest:.2g} flank radii wide: pressures are a guess.",
+                brief=f"Wear: contacts as new are {widest:.2g} flank radii wide: a guess.",
             )
         )
     if end == "outgrown" and line:
