@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import sqrt
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
@@ -47,8 +48,9 @@ def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
 def _rated_below(built: BuiltDrive, data: xr.Dataset) -> list[str]:
     """Stages that carry more than what they are rated for, since those behind them lose power."""
     names = ("stage_input_torque", "stage_efficiency")
-    worst = int(data["stage_input_torque"].sum("stage").isel(point=0).argmax("law"))
-    carried = built.carried_by_meshes({n: data[n].values[worst, 0] for n in names}).tolist()
+    laws = range(data.sizes["law"])
+    each = [built.carried_by_meshes({n: data[n].values[k, 0] for n in names}) for k in laws]
+    carried = np.fmax.reduce(each).tolist()  # under the law that asks for most
     stages = zip(built.numbers, built.stages, carried, strict=True)
     return [
         in_stage(number, doubt)

@@ -264,7 +264,7 @@ def _with(values: np.ndarray, one: float) -> np.ndarray:
 
 def _free(built: Ready) -> str | None:
     told = None if built.drags else Unasked("the case has no [losses] beside its teeth")
-    return untransmitted(built) or of_teeth_alone(built) or told or without_formula(built)
+    return untransmitted(built) or told or of_teeth_alone(built) or without_formula(built)
 
 
 def _computed(built: Ready, _: Piece, __: Progress) -> xr.Dataset:

@@ -48,4 +48,4 @@ def _undrawn(built: Built) -> str | None:
     return None if drawing_of(built) else "there are no teeth to draw"
 
 
-TEETH = Analysis(name="teeth", title="teeth", lacks=_undrawn, compute=_teeth)
+TEETH = Analysis(name="teeth", title="teeth", of="mesh", lacks=_undrawn, compute=_teeth)

@@ -272,6 +272,11 @@ class Built:
         return self.case.models.averaging
 
     @property
+    def numbers(self) -> tuple[int, ...]:
+        """Of its only mesh."""
+        return (1,)
+
+    @property
     def stage_bodies(self) -> list[str]:
         """Bodies of each stage in words; none of one mesh."""
         return []

@@ -218,6 +218,30 @@ class PrintedIssue(_Kept):
     verdict: str
 
 
+class StageRecord(_Kept):
+    """What is known of a mesh of a drive.
+
+    Attributes:
+        number: of the stage in the file.
+        bodies: in words, where stages are meshes of a train; else empty.
+        speed: of its driver [rad/s or m/s].
+        load: that its loaded member carries without losses, of one copy [N m or N].
+    """
+
+    number: int
+    bodies: str
+    members: list[str]
+    driver: str
+    loaded: str
+    motion: list[float]
+    speed: float
+    load: float
+    period: float
+    pitch: str
+    against: str
+    travels: list[End]
+
+
 class Manifest(_Kept):
     """What a variant was computed from and with, and how far it got.
 
@@ -226,7 +250,7 @@ class Manifest(_Kept):
         own: name of a friction law of the user's own that took the place of those of the case, or empty.
         implausible: sentences on what cannot be, above every number.
         members: body of each coordinate.
-        of_stages: bodies of each stage in words, where stages are meshes of a train.
+        stages: the same of each mesh of a drive by itself, in the order of the power.
         motion: nominal rate of each coordinate for one radian of the driver.
         period: driver angle after which the mesh repeats [rad].
         pitch: what a period is.
@@ -252,7 +276,7 @@ class Manifest(_Kept):
     driver: str
     loaded: str
     members: list[str]
-    of_stages: list[str] = []
+    stages: list[StageRecord] = []
     motion: list[float]
     period: float
     pitch: str = "period"

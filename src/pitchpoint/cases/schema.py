@@ -34,6 +34,7 @@ from pitchpoint.contact.registry import (
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import CollectedInputError, Complaints, InputError, shorten
+from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.planetary import PLANETARY, PLANETS, PlanetaryGears
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, GearsTable
@@ -1702,8 +1703,9 @@ class DriveCase(Table):
     def bodies(self) -> tuple[str, ...]:
         """Shafts from the input to the output, of which the last one may travel; bodies of a train."""
         if self.train is not None:
-            named = (body for one in self.stages.values() for body in one.bodies)
-            return tuple(dict.fromkeys((*named, self.train.carrier)))
+            named = [body for one in self.stages.values() for body in one.bodies]
+            carrier = [self.train.carrier] * (self.train.planet in named)
+            return tuple(dict.fromkeys((*named, *carrier)))
         return tuple(f"shaft {number}" for number in range(1, len(self.stages) + 2))
 
     @property
@@ -1761,9 +1763,27 @@ def _check_train(case: DriveCase) -> None:
             if body not in case.bodies:
                 told = f"{shown(body)} is no body of this train{nearest(body, case.bodies)}"
                 wrong.add(InputError(told, key=f"train.{key}"))
-    if len(case.stages) > 1 and train.planet not in case.bodies:
-        told = f"no stage has a body {shown(train.planet)}{nearest(train.planet, case.bodies)}"
+    if train.planet not in case.bodies:
+        told = (
+            f"no stage has a body {shown(train.planet)}{nearest(train.planet, case.bodies)}; stages that "
+            "follow each other have no table [train]"
+        )
         wrong.add(InputError(told, key="train.planet"))
+    for key, bodies in ends.items():
+        if train.planet in bodies:
+            told = "planets are neither turned nor loaded nor held; their carrier may be"
+            wrong.add(InputError(told, key=f"train.{key}"))
+    if "housing" in (train.carrier, *case.bodies):
+        told = "the housing is no body of a train; one that stands still is held"
+        wrong.add(InputError(told, key="train.carrier" if train.carrier == "housing" else "stages"))
+    for number, stage in case.stages.items():
+        if not isinstance(stage.gears, CylindricalGears):
+            told = "meshes of a train are pairs of cylindrical gears; others are stages one behind the other"
+            wrong.add(InputError(told, key=f"stages.{number}.gears.family"))
+        for key in ("driver", "place", "turn"):
+            if key in stage.model_fields_set:
+                told = "follows from the train; leave it out"
+                wrong.add(InputError(told, key=f"stages.{number}.{key}"))
     if case.losses:
         told = "losses beside the teeth are not among those of a train; leave this table out"
         wrong.add(InputError(told, key="losses"))
@@ -2002,8 +2022,15 @@ def validate(document: Document) -> Case | DriveCase:
         return validated(Case, document)
     for key, why in _OF_ONE_MESH.items():
         if key in document.tree and not (key == "gears" and is_planetary(document.tree)):
+            why = _OF_SETS if is_planetary(document.tree) else why
             raise InputError(why, file=document.name, key=key)
     return validated(DriveCase, document)
+
+
+_OF_SETS = (
+    "this is computed of one mesh; write the meshes of the set as [[stages]] with a [train], of which each "
+    "may have a table film or wear (pitchpoint docs stages)"
+)
 
 
 def is_planetary(tree: Mapping[str, Any]) -> bool:

@@ -102,7 +102,7 @@ def _together(case: DriveCase, built: Sequence[Built], documents: Sequence[Docum
     numbers, point = tuple(range(1, len(built) + 1)), operation_at(case.operation)
     parts = case, tuple(built), numbers, tuple(documents)
     if case.train is not None:
-        return BuiltTrain(*parts, train_of(case, built), point, about_trains(case))
+        return BuiltTrain(*parts, train_of(case, built), point, about_trains(case, built))
     told = (*_few_meetings(built), *_adding_thrusts(built))
     return BuiltDrive(*parts, _drive(case, built), point, told)
 

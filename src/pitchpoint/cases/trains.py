@@ -1,6 +1,7 @@
 """From a case of meshes that turn together, as a planetary set, to their flanks, loads and phases."""
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from pitchpoint.drive.kinematics import HOUSING, Ends, Link
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.train import Train, gear_train
 from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.mesh import Mesh
 
 __all__ = ["about_trains", "train_of", "turning_together"]
@@ -48,8 +50,8 @@ def turning_together(
     """
     train = case.train
     assert train is not None
-    links = _links(case, train, meshes)
     try:
+        links = _links(case, train, meshes)
         found = train_torques(links, _ends(case, train), 1.0, [1.0] * len(links))
     except InputError as error:
         raise error.at(key=error.key or "train") from None
@@ -97,17 +99,90 @@ def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
     assert train is not None
     designs = [one.design for one in built]
     links = _links(case, train, [one.mesh for one in designs])
-    of_planets = [link for link in links if link.carrier != HOUSING]
+    _check_planets(case, built)
+    phases = iter(_fitted([link for link in links if link.carrier != HOUSING], train))
+    each = [np.zeros(1) if link.carrier == HOUSING else next(phases) for link in links]
     try:
-        fitted = _fitted(of_planets, train)
-        every = iter(fitted)
-        phases = [next(every) if link in of_planets else np.zeros(1) for link in links]
-        return gear_train(
-            links, designs, _ends(case, train), planets=(train.planet,), phases=phases
-        )
+        return gear_train(links, designs, _ends(case, train), planets=(train.planet,), phases=each)
     except InputError as error:
-        raise error.at(key=error.key or "train.planets") from None
+        raise error.at(key=error.key or "train") from None
 
+
+_OF_A_GEAR = ("profile_shift", "addendum", "dedendum", "fillet_radius", "infeed")
+"""What a gear has in every mesh in which it is, beside its material and roughness."""
+
+CLOSES = 1e-6
+"""Relative difference of the centre distances of one planet, that of printed ones."""
+
+
+def _check_planets(case: DriveCase, built: Sequence[Built]) -> None:
+    """InputError where planets are not the same gears in all meshes, or have two centre distances."""
+    train = case.train
+    assert train is not None
+    known: dict[float, tuple[str, dict[str, Any]]] = {}
+    distance: tuple[str, float] | None = None
+    for (number, stage), one in zip(case.stages.items(), built, strict=True):
+        if train.planet not in stage.bodies:
+            continue
+        mesh: Any = one.design.mesh
+        member = stage.bodies.index(train.planet)
+        apart = float(mesh.centre_distance)
+        first = distance = distance or (number, apart)
+        if abs(apart / first[1] - 1.0) > CLOSES:
+            raise InputError(
+                f"the centre distance is {1e3 * apart:.7g} mm, and {1e3 * first[1]:.7g} mm in stage "
+                f"{first[0]}; all meshes of a planet have the same: give it as centre_distance, with "
+                f'profile_shift = "{FROM_CENTRE_DISTANCE}" for the other gear',
+                key=f"{STAGES}.{number}.gears.centre_distance",
+            )
+        teeth = abs(float(mesh.teeth[member]))
+        gear = _of_gear(one, member)
+        before, other = known.setdefault(teeth, (number, gear))
+        different = next((key for key, value in gear.items() if value != other[key]), None)
+        if different is not None:
+            raise InputError(
+                f"{different} of the planet with {teeth:.0f} teeth is {gear[different]} here and "
+                f"{other[different]} in stage {before}; it is one gear{_IN_SETS if case.gears else ''}",
+                key=f"{STAGES}.{number}.gears",
+            )
+
+
+_IN_SETS = (
+    ". Of a set gear 1 is sun and planet, gear 2 planet and ring: give both the same, or write the meshes as "
+    "[[stages]], each with materials and roughness of its own"
+)
+
+
+def _of_gear(built: Built, member: int) -> dict[str, Any]:
+    """What a gear is, by words, of one member of a mesh."""
+    mesh: Any = built.design.mesh
+    rough = built.design.roughness
+    numbers = {name.replace("_", " "): float(getattr(mesh, name)[member]) for name in _OF_A_GEAR}
+    rq = (rough.rq_1, rough.rq_2)[member]
+    return {
+        "material": built.solids[member].record.name,
+        "roughness Rq": f"{1e6 * float(rq):.6g} µm",
+        "module": f"{1e3 * float(mesh.module):.6g} mm",
+        "helix angle": f"{np.degrees(float(mesh.helix_angle)):.6g} deg",
+        **{name: f"{round(value, 9) + 0.0:.6g}" for name, value in numbers.items()},
+    }
+
+
+_ALONE = (
+    Doubt(
+        "Wear is that of a mesh with one planet: sun and ring meet every planet in a turn and wear as many "
+        "times as fast, and planets wear in all of their meshes.",
+        moves=GUESSED,
+        about=("deepest_wear",),
+        brief="Wear is that by one planet alone.",
+    ),
+    Doubt(
+        "Teeth are as warm as the loss of one of their meshes makes them; planets and sun have more of them.",
+        moves=GUESSED,
+        brief="Teeth are warmed by one mesh alone.",
+    ),
+)
+"""On wear, and on teeth that warm up."""
 
 MOST_FITTED = 8
 """Planets up to which it is told how many fit in."""
@@ -144,11 +219,19 @@ def _fits(phases: Callable[[int], list[np.ndarray]], count: int) -> bool:
     return True
 
 
-def about_trains(case: DriveCase) -> tuple[str, ...]:
-    """Sentences on what the meshes of a train are, and on what is not in its efficiency."""
-    train = case.train
-    assert train is not None
+def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
+    """Sentences on what is not in the results of a train.
+
+    Args:
+        case: of the train.
+        built: its meshes.
+    """
+    worn = any(one.wear is not None for one in case.stages.values())
+    warmed = any(one.warming is not None for one in built)
+    wear, warmth = _ALONE
     return (
+        *[wear] * worn,
+        *[warmth] * warmed,
         Doubt(
             "The efficiency is that of the teeth: bearings of planets, seals and churning are not in it.",
             moves=GUESSED,

@@ -150,6 +150,10 @@ def _check_ends(ends: Ends, bodies: Sequence[str]) -> None:
             raise InputError(f"{body} cannot be turned and held at once")
     if ends.loaded in still:
         raise InputError(f"{ends.loaded} is held and takes no power")
+    if ends.loaded in ends.turned:
+        raise InputError(
+            f"{ends.loaded} is turned, and would take its own power; name another output"
+        )
 
 
 def _matrix(links: Sequence[Link], bodies: Sequence[str]) -> Float[np.ndarray, "link body"]:

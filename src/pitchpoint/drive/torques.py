@@ -53,9 +53,10 @@ class TrainTorques:
 
     @property
     def efficiency(self) -> float:
-        """Power at the loaded body over the power put in; not a number where the train is locked.
+        """Power at the loaded body over the same with all losses; not a number where the train is locked.
 
-        From the balance of power: what is lost in the meshes comes in and does not go out.
+        With one body that is turned that is power out over power in. From the balance of power: what is lost
+        in the meshes comes in and does not go out.
         """
         power_out = self.output_power
         return power_out / (power_out + sum(self.losses)) if power_out else nan
@@ -99,6 +100,11 @@ def train_torques(
     _check(links, ends, load, efficiencies)
     rates = body_rates(links, ends)
     unknown = [body for body in rates if body not in {HOUSING, *ends.held, *ends.turned}]
+    if len(links) != len(unknown):
+        raise InputError(
+            f"{len(links)} meshes settle the motion of {len(unknown)} bodies that are free; one of them "
+            "repeats what the others do, and nothing says how they share the load"
+        )
     against = -float(np.sign(rates[ends.loaded])) * load
     carried = np.array([against if body == ends.loaded else 0.0 for body in unknown])
     relations = [link.relation for link in links]

@@ -35,10 +35,13 @@ MOST_STEPS = 60
 """Steps of the search for forces. Friction hangs weakly on them, so that a step leaves a few per cent of the
 error before it; next to locking it leaves more, and the search ends without a solution."""
 
+IDLE = 1e-9
+"""Force over the largest of a train below which a mesh carries nothing: what rounding leaves."""
+
 NEAR = 1e-14
 """Relative change of the forces at which the search ends."""
 
-MOST_PERIODS = 1000
+MOST_PERIODS = 200
 """Periods of a mesh, in the period that a train repeats, up to which its repetition is looked for."""
 
 
@@ -354,10 +357,10 @@ def train_cycle(
         for one, laws in zip(train.meshes, models, strict=True)
     ]
     solved = _solve(train, every, operation)
-    forces = _by_mesh(every, solved.forces)
+    lost = solved.code != int(Code.SOLVED)
+    forces = _by_mesh(every, jnp.where(lost[:, None], jnp.nan, solved.forces))
     states = tuple(one.state(force) for one, force in zip(every, forces, strict=True))
     torques = _torques(train, every, forces)
-    lost = solved.code != int(Code.SOLVED)
 
     def known(values: Nodes) -> Nodes:
         return jnp.where(lost, jnp.nan, values)
@@ -484,14 +487,14 @@ class _Meshing:
         )
 
 
-class _Solved(eqx.Module):
+class _Balanced(eqx.Module):
     forces: Forces
     residual: Nodes
     steps: Int[Array, ""]
     code: Int[Array, " node"]
 
 
-def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Solved:
+def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Balanced:
     """Forces of all copies in equilibrium; friction is that under the forces of the step before."""
     load = -jnp.sign(train.rates[train.loaded]) * operation.load
     asked = jnp.stack([load * (body == train.loaded) for body, _ in train.rows()])
@@ -504,6 +507,8 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _So
         wanted = asked - jnp.sum(_arms(train, taken), axis=-1)
         left = jnp.einsum("nrf,nf->nr", arms, forces) - wanted
         size = jnp.max(jnp.abs(arms) * jnp.abs(forces)[:, None], axis=-1)
+        # A body that idles is in balance within rounding of the forces in the rest of the train.
+        size = jnp.maximum(size, IDLE * jnp.max(size, axis=-1, keepdims=True))
         residual = jnp.max(jnp.abs(left) / jnp.where(size > 0.0, size, 1.0), axis=-1)
         return nominal * _least(arms * nominal[:, None], wanted), residual, steps + 1
 
@@ -512,12 +517,14 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _So
         return (steps < MOST_STEPS) & jnp.any(residual > NEAR)
 
     nominal = jnp.concatenate([one.nominal for one in every]).T
-    nominal = jnp.where(nominal > 0.0, nominal, 1.0)
+    largest = jnp.max(nominal, axis=-1, keepdims=True)
+    nominal = jnp.maximum(nominal, jnp.where(largest > 0.0, IDLE * largest, 1.0))
     first = nominal, jnp.full(nominal.shape[0], jnp.inf), jnp.asarray(0)
     forces, residual, steps = jax.lax.while_loop(goes_on, step, first)
-    pulled = jnp.any(forces < 0.0, axis=-1)
-    code = jnp.where(residual <= UNSOLVED, int(Code.SOLVED), int(Code.NOT_CONVERGED))
-    return _Solved(forces, residual, steps, jnp.where(pulled, int(Code.LOCKED), code))
+    pulled = jnp.any(forces < -IDLE * jnp.max(jnp.abs(forces), axis=-1, keepdims=True), axis=-1)
+    code = jnp.where(pulled, int(Code.LOCKED), int(Code.SOLVED))
+    code = jnp.where(residual <= UNSOLVED, code, int(Code.NOT_CONVERGED))
+    return _Balanced(forces, residual, steps, code)
 
 
 def _levers(train: Train, every: Sequence[_Meshing]) -> Float[Array, "2 node body mesh"]:

@@ -9,11 +9,22 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import total
 from pitchpoint.efficiency.quasi_static import Models, Operation
+from pitchpoint.efficiency.rows import CHUNK
 from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.efficiency.train import MeshState, Train, TrainCycle, train_cycle
+from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.programs import program
+from pitchpoint.status import Code
 
 __all__ = ["train_figures"]
+
+MOST_BYTES = 1e9
+"""Memory that the states of one chunk of points may take [B]."""
+
+OF_A_LANE = 300.0
+"""Memory for each contact at a phase [B], as the compiler tells."""
 
 NODES = 6
 """Nodes in each segment between events, of which planets out of phase make many."""
@@ -34,17 +45,47 @@ def train_figures(
     From the states of `train_cycle` over the period of the train.
     """
     laws = tuple(models)
-    found = in_chunks(lambda chunk: _figures(chunk[0], chunk[1], laws), points, progress=progress)
-    limit = jamming_coefficients(found.pop("levers"))
+    size = min(CHUNK, int(MOST_BYTES // _memory(points[0][0], laws)))
+    if size == 0:
+        raise InputError(
+            "the phases at which the meshes of this train come together would take more than "
+            f"{MOST_BYTES / 1e9:g} GB of memory; take fewer slices of their contact lines with models.slices",
+            key="models.slices",
+        )
+    found = in_chunks(
+        lambda chunk: _figures(chunk[0], chunk[1], laws), points, size=size, progress=progress
+    )
+    limit, acting = jamming_coefficients(found.pop("levers")), found.pop("largest_friction")
+    # Forces run away where friction is beyond what locks the train, whatever they are.
+    held = found.pop("lost") & (acting >= limit)
+    found["locked"] = found["locked"] | held.any(axis=-1)
     at = np.argmin(limit, axis=-1)[:, None]
     nearest = np.take_along_axis(limit, at, -1)[:, 0]
-    friction = np.take_along_axis(found.pop("largest_friction"), at, -1)[:, 0]
+    friction = np.take_along_axis(acting, at, -1)[:, 0]
     return {
         **found,
         "jamming_coefficient": nearest,
         "nearest_jamming_coefficient": nearest,
         "nearest_friction": friction,
     }
+
+
+def _memory(train: Train, models: tuple[Models, ...]) -> float:
+    """Memory for the states of a train at one operating point [B], from that of compiled programs."""
+    nodes, lanes = 0, 0
+    for one, laws in zip(train.meshes, models, strict=True):
+        contacts, phases = eqx.filter_eval_shape(_sizes, one.design.mesh, laws.sharing)
+        nodes += one.periods * one.copies * NODES * phases.size
+        lanes += one.copies * contacts.size
+    return nodes * lanes * OF_A_LANE
+
+
+def _sizes(mesh: Mesh, sharing: LoadSharing) -> tuple[Array, Array]:
+    """Contacts at one phase, and phases at which something begins or ends, of which the shapes count."""
+    events = mesh.events()
+    if sharing.hand_over is not None:
+        events = jnp.concatenate([events, sharing.hand_over(mesh.contact_ratio)])
+    return mesh.contacts(jnp.zeros(())).weight, events
 
 
 def jamming_coefficients(
@@ -82,7 +123,9 @@ def _of_train(found: TrainCycle) -> dict[str, Array]:
     low, high = found.extremes(efficiency)
     torque_low, torque_high = found.extremes(found.input_torque)
     friction = jnp.stack([jnp.max(one.friction, axis=(0, 1, 2)) for one in found.meshes])
-    ratios = [jnp.max(one.force / one.nominal) for one in found.meshes]
+    ratios = [
+        jnp.max(jnp.where(one.nominal > 0.0, one.force / one.nominal, 1.0)) for one in found.meshes
+    ]
     return {
         "mean_loss": found.mean(found.loss),
         "mean_drag_loss": jnp.zeros(()),
@@ -99,6 +142,7 @@ def _of_train(found: TrainCycle) -> dict[str, Array]:
         "locked": found.locked,
         "largest_contact_force_ratio": jnp.max(jnp.stack(ratios)),
         "largest_friction": jnp.max(friction, axis=0),
+        "lost": found.status.code == int(Code.NOT_CONVERGED),
         "levers": found.levers,
     }
 

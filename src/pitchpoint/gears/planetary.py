@@ -151,7 +151,13 @@ class PlanetaryGears(Table):
     def _shift_of_ring(self) -> "PlanetaryGears":
         """The shift of the ring that leaves no backlash at the centre distance of sun and planet."""
         sun, planet, ring = self.profile_shift
-        if not _is_open(ring) or not isfinite(self.distance):
+        if not isfinite(self.distance):
+            raise InputError(
+                f"sun and planet with {sun:g} and {planet:g} always have backlash; give larger ones, or a "
+                "centre distance",
+                key="profile_shift",
+            )
+        if not _is_open(ring):
             return self
         both = profile_shift_sum(
             teeth=(self.teeth[1], -self.teeth[2]),
@@ -161,6 +167,14 @@ class PlanetaryGears(Table):
             centre_distance=self.distance,
         )
         shifts = sun, planet, round(both - planet, 12) + 0.0
+        if not SHIFT.low <= shifts[2] <= SHIFT.high:
+            first, second, last = self.teeth
+            raise InputError(
+                f"a ring of {last:.0f} teeth at the centre distance {1e3 * self.distance:.6g} mm of sun and "
+                f"planet asks for a profile shift of {shifts[2]:.3g}; with {first:.0f} and {second:.0f} "
+                f"teeth it has some {first + 2.0 * second:.0f}",
+                key="teeth",
+            )
         return self.model_copy(update={"profile_shift": shifts})
 
     @property

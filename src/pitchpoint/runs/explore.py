@@ -237,9 +237,14 @@ def _of_stages(variant: Variant, drive: BuiltDrive) -> dict[int, Outcome]:
 
 
 def _there(built: Ready, names: Sequence[str]) -> list[Analysis]:
-    """Analyses among some that a case has."""
+    """Analyses among some that a case has; of a drive none of those of its meshes."""
     every = [ANALYSES[name] for name in names]
-    return [one for one in every if isinstance(one, Analysis) and one.why_not(built) is None]
+    alone = len(built.meshes) == 1
+    return [
+        one
+        for one in every
+        if isinstance(one, Analysis) and one.why_not(built) is None and (alone or one.of != "mesh")
+    ]
 
 
 def _seen(

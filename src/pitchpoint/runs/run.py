@@ -705,6 +705,33 @@ def _rows(built: Ready, variant: Variant, parts: Mapping[str, xr.Dataset]) -> li
     return compare(targets, parts, variant.name)
 
 
+def _stages(built: Ready) -> list[dict[str, Any]]:
+    """What is known of the meshes of a drive; nothing of one mesh alone."""
+    if len(built.meshes) < 2:
+        return []
+    bodies = built.stage_bodies or [""] * len(built.meshes)
+    found = []
+    for number, mesh, named in zip(built.numbers, built.meshes, bodies, strict=True):
+        way, backwards = PATHS[mesh.design.mesh.counts], mesh.nominal["onward"] < 0.0
+        found.append(
+            {
+                "number": number,
+                "bodies": named,
+                "members": list(mesh.case.bodies),
+                "driver": mesh.driver,
+                "loaded": mesh.loaded,
+                "motion": mesh.motion,
+                "speed": mesh.case.operation.speed,
+                "load": mesh.case.operation.load,
+                "period": float(mesh.nominal["period"]),
+                "pitch": way.pitch,
+                "against": way.against.format(mesh.driver) if backwards else "",
+                "travels": sorted(mesh.travels),
+            }
+        )
+    return found
+
+
 def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> dict[str, Any]:
     case, document = built.case, variant.document()
     first = built.meshes[0]
@@ -743,7 +770,7 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
         "driver": built.driver,
         "loaded": built.loaded,
         "members": list(case.bodies),
-        "of_stages": built.stage_bodies,
+        "stages": _stages(built),
         "motion": built.motion,
         "period": float(meshes[0].nominal["period"]),
         "pitch": way.pitch,

@@ -26,6 +26,7 @@ __all__ = [
     "Section",
     "Table",
     "Variants",
+    "by_mesh",
     "by_variant",
     "key_figure",
     "key_figures",
@@ -271,6 +272,49 @@ def of_meshes(outcome: Outcome, *parts: str) -> list[tuple[str, Outcome]]:
 
 def _of_stage(parts: Mapping[str, "xr.Dataset"], number: int) -> dict[str, "xr.Dataset"]:
     return {name: of_stage(d, number) for name, d in parts.items() if number in stages_of(d)}
+
+
+def by_mesh(outcomes: Mapping[str, Outcome], part: str) -> dict[str, Outcome]:
+    """Outcomes as they are, and for that of a drive one of each mesh by itself, under its name.
+
+    Args:
+        outcomes: by variant, that have the part.
+        part: see `Page.having`; of the meshes of a drive those that have it.
+    """
+    found = {}
+    for variant, outcome in outcomes.items():
+        name = part.partition(".")[0]
+        numbers = stages_of(outcome.parts[name])
+        if not numbers:
+            found[variant] = outcome
+        for number in numbers:
+            alone = replace(
+                outcome,
+                parts={name: of_stage(outcome.parts[name], number)},
+                manifest=_manifest_of(outcome.manifest, number),
+            )
+            if _has(alone, part):
+                told = variant if len(outcomes) > 1 else ""
+                found[", ".join(filter(None, [told, f"stage {number}"]))] = alone
+    return found
+
+
+def _manifest_of(manifest: Mapping[str, Any], number: int) -> dict[str, Any]:
+    """Record of a drive as that of one of its meshes: its motion and operating point, its own inputs."""
+    known = next(one for one in manifest["stages"] if one["number"] == number)
+    load = "force" if "loaded" in known["travels"] else "torque"
+    point = {"speed": known["speed"], load: known["load"]}
+    inside = f"{number}."
+    rows = []
+    for row in manifest["inputs"]:
+        table, _, key = row["key"].removeprefix(inside).partition(".")
+        if row["table"] == "stages" and row["key"].startswith(inside):
+            rows.append({**row, "table": table, "key": key})
+        elif row["table"] == "operation" and row["key"] in point:
+            rows.append({**row, "value": point[row["key"]]})
+        elif row["table"] != "gears":
+            rows.append(row)
+    return {**manifest, **known, "inputs": rows}
 
 
 def by_variant(

@@ -51,7 +51,7 @@ _WIDE = 30.0
 
 def _ways(page: Page) -> dict[str, Outcome]:
     """Outcomes whose pairs go a way that is told, and that has no letters."""
-    there, lettered = page.having("teeth", "cycle"), page.having("teeth.points")
+    there, lettered = page.having("teeth", "cycle"), page.having("teeth.points", "cycle")
     return {
         name: one
         for name, one in there.items()

@@ -32,6 +32,7 @@ __all__ = ["CYCLE", "cycle_panel"]
 _FEW = 8
 """Pairs above which the friction of each cannot be told apart."""
 
+_PARTS = ("teeth", "cycle")
 _COURSES = ("efficiency", "input_torque")
 Timed = list[tuple[Curve, xr.Dataset, int, Period]]
 
@@ -39,7 +40,7 @@ _PAIR_DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    there = page.having("teeth")
+    there = page.having(*_PARTS)
     period = period_of(next(iter(there.values())))
     one = f"{_start(page)} one" if _start(page) else "One"
     yield Paragraph(f"{one} period is one {period.pitch}: {_cycle_words(there)}.")
@@ -48,7 +49,7 @@ def _blocks(page: Page) -> Iterator[Block]:
 
 def _start(page: Page) -> str:
     """At which moment a period begins; empty where no point of the way stands out."""
-    paths = [path_of(one) for one in page.having("teeth.points").values()]
+    paths = [path_of(one) for one in page.having("teeth.points", "cycle").values()]
     if not paths:
         return ""
     helical = any(path.helical for path in paths)
@@ -281,7 +282,7 @@ CYCLE = Section(
     title="Over the mesh cycle",
     short="Over the cycle",
     order=200.0,
-    parts=("teeth",),
+    parts=_PARTS,
     blocks=_blocks,
     answer=_key_figures,
     card=_turns,

@@ -19,7 +19,16 @@ from pitchpoint.views import show
 from pitchpoint.views.inputs import words
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import of_geometry, period_of
-from pitchpoint.views.section import Block, Drawn, Moving, Page, Section, Table, naming
+from pitchpoint.views.section import (
+    Block,
+    Drawn,
+    Moving,
+    Page,
+    Section,
+    Table,
+    by_mesh,
+    naming,
+)
 from pitchpoint.views.sections.passing import gap_panel
 from pitchpoint.views.way import place_of
 
@@ -155,8 +164,10 @@ def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
 
 def _sums_up(outcome: Outcome) -> Iterator[Table]:
     """Main dimensions; what both splines share stands in both columns."""
-    rows = [row if len(row) == 3 else (*row, row[1]) for row in wave_dimensions(outcome)]
-    yield Table(["Gears", "flexspline", "circular spline"], rows, caption="Gears")
+    for name, mesh in by_mesh({"": outcome}, *_PARTS).items():
+        rows = [row if len(row) == 3 else (*row, row[1]) for row in wave_dimensions(mesh)]
+        title = ", ".join(filter(None, ["Gears", name]))
+        yield Table([title, "flexspline", "circular spline"], rows, caption=title)
 
 
 def _depth(teeth: xr.Dataset) -> float:
@@ -173,7 +184,8 @@ def _told_arcs(outcome: Outcome) -> str:
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    groups = of_geometry(page.having(*_PARTS), page.several)
+    meshes = by_mesh(page.having(*_PARTS), *_PARTS)
+    groups = of_geometry(meshes, len(meshes) > 1)
     for position, (variants, outcome) in enumerate(groups):
         (gap,) = naming(variants, [gap_panel(outcome, f"drive{position}")])
         values = {

@@ -43,7 +43,7 @@ _MISSING = {
     "film_thickness": "There is no film to compute: nothing is carried.",
     "lambda_ratio": "Without limit: the flanks are smooth, or nothing is carried.",
 }
-_PARTS = ("teeth.points",)
+_PARTS = ("teeth.points", "cycle")
 _WHOLE = ("load_share", "contact_force_ratio", "loss")
 _LINES = {
     "load_share": "Of the whole contact line.",

@@ -47,8 +47,8 @@ def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
 
 def _named(outcome: Outcome, at: int, stage: Any) -> str:
     """Number of a stage, with its bodies where it is a mesh of a train."""
-    bodies = outcome.manifest.get("of_stages") or []
-    return f"{stage}: {bodies[at]}" if bodies else str(stage)
+    bodies = [one["bodies"] for one in outcome.manifest.get("stages", ())][at : at + 1]
+    return f"{stage}: {bodies[0]}" if bodies and bodies[0] else str(stage)
 
 
 def _card(outcome: Outcome, law: str) -> Iterator[tuple[str, str]]:

@@ -14,7 +14,16 @@ from pitchpoint.views.inputs import words
 from pitchpoint.views.path import PathOfContact, path_of
 from pitchpoint.views.picture import picture_of
 from pitchpoint.views.point import of_geometry
-from pitchpoint.views.section import Block, Drawn, Moving, Page, Section, Table, naming
+from pitchpoint.views.section import (
+    Block,
+    Drawn,
+    Moving,
+    Page,
+    Section,
+    Table,
+    by_mesh,
+    naming,
+)
 from pitchpoint.views.sections.plane_of_action import plane_of_action
 from pitchpoint.views.sections.sliding import sliding_figure
 
@@ -27,7 +36,8 @@ PLAIN = Variable("", "", "1")
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    groups = of_geometry(page.having(*_PARTS), page.several)
+    meshes = by_mesh(page.having(*_PARTS), *_PARTS)
+    groups = of_geometry(meshes, len(meshes) > 1)
     for position, (variants, outcome) in enumerate(groups):
         panel = Panel("", [sliding_figure(f"sliding{position}", outcome)])
         (sliding,) = naming(variants, [panel])
@@ -104,9 +114,11 @@ _DETAILS = (
 
 def _sums_up(outcome: Outcome) -> Iterator[Table]:
     """Dimensions that a drawing has; what both gears share stands in both columns."""
-    rows = [row for row in dimensions(outcome) if not row[0].startswith(_DETAILS)]
-    both = [row if len(row) == 3 else (row[0], row[1], row[1]) for row in rows]
-    yield Table(["Gears", *outcome.manifest["members"][:2]], both, caption="Gears")
+    for name, mesh in by_mesh({"": outcome}, *_PARTS).items():
+        rows = [row for row in dimensions(mesh) if not row[0].startswith(_DETAILS)]
+        both = [row if len(row) == 3 else (row[0], row[1], row[1]) for row in rows]
+        title = ", ".join(filter(None, ["Gears", name]))
+        yield Table([title, *mesh.manifest["members"][:2]], both, caption=title)
 
 
 Dimension = tuple[str, float, int, Variable]
