@@ -147,6 +147,10 @@ def test_stiffness_at_the_output_is_that_of_the_springs_of_all_planets():
         ({"gears.input": "carrier"}, r"gears.input: .* the sun is none of them"),
         ({"gears.teeth": [24, 30, 20]}, r"20 teeth is not around a planet of 30; .* some 84"),
         ({"gears.teeth": [24, 30]}, r"has 2 values; give those of sun, planet and ring"),
+        (
+            {"gears.held": "planet"},
+            r"gears.held: 'planet' is not allowed; use|\"planet\" is not allowed",
+        ),
         ({"gears.modul": 3}, r"gears.modul: is not a known key; did you mean module"),
         ({"gears.fillet_radius": 0.38}, r"addendum = \[1, 1, 0.9\d*\], or with fillet_radius = \["),
         ({"operation.driver": "ring"}, r"that is the input of the train"),
@@ -237,6 +241,17 @@ def test_a_train_that_cannot_run_is_refused_in_a_sentence(changes, words):
     tree = {key: table for key, table in (THREE_K | changes).items() if table is not None}
     with pytest.raises(InputError, match=words):
         load_case(tree)
+
+
+def test_what_else_stands_beside_a_set_is_told():
+    stages = [{"gears": gears([23, 61])}, {"gears": SET}]
+    with pytest.raises(InputError, match=r"planetary. is no family .* in a stage: a set stands"):
+        load_case({"stages": stages, **TABLES})
+    torus = {"family": "torus", "teeth": [20, 40], "module": "1 mm", "face_width": "10 mm"}
+    torus |= {"torus_radius": "60 mm"}
+    stages = [*THREE_K["stages"], {"bodies": ["output ring", "out"], "gears": torus}]
+    with pytest.raises(InputError, match=r"stages.4.gears.family: meshes of a train are pairs"):
+        load_case(THREE_K | {"stages": stages})
 
 
 def test_stages_of_a_train_name_their_bodies():

@@ -1750,7 +1750,13 @@ def _check_train(case: DriveCase) -> None:
         if train is None and stage.bodies:
             told = "was given without a table [train], which says who is turned, loaded and held"
             wrong.add(InputError(told, key=key))
-        if train is not None and len(stage.bodies) != members:
+        if train is not None and not isinstance(stage.gears, CylindricalGears):
+            told = (
+                "meshes of a train are pairs of cylindrical gears; gears of another family before or behind "
+                "them are not computed together with them"
+            )
+            wrong.add(InputError(told, key=f"stages.{number}.gears.family"))
+        elif train is not None and len(stage.bodies) != members:
             given = f"{shown([*stage.bodies])} was given" if stage.bodies else "is missing"
             told = f"{given}; name the {members} bodies that {', '.join(stage.gears.members)} are"
             wrong.add(InputError(told, key=key))
@@ -1777,9 +1783,6 @@ def _check_train(case: DriveCase) -> None:
         told = "the housing is no body of a train; one that stands still is held"
         wrong.add(InputError(told, key="train.carrier" if train.carrier == "housing" else "stages"))
     for number, stage in case.stages.items():
-        if not isinstance(stage.gears, CylindricalGears):
-            told = "meshes of a train are pairs of cylindrical gears; others are stages one behind the other"
-            wrong.add(InputError(told, key=f"stages.{number}.gears.family"))
         for key in ("driver", "place", "turn"):
             if key in stage.model_fields_set:
                 told = "follows from the train; leave it out"
@@ -2491,6 +2494,8 @@ _ANY_NAME = "NAME"
 
 def _options(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     """Forms that a deciding key may name, those of all tables that stand there; else nothing."""
+    if len(location) < 2:
+        return ""
     *above, _, key = location
     if key not in DECIDING:
         return ""

@@ -94,6 +94,11 @@ def answer(place: Sequence[str], value: Any, tree: Tree, fields: Collection[str]
 
 def no_family(name: str, known: Collection[str]) -> str:
     """End of a sentence on a family of gears that is not there: the one that is meant, or where to read."""
+    if letters(name) == "planetary":
+        return (
+            " in a stage: a set stands alone under [gears]; with other stages write its meshes with their "
+            "bodies and a [train] (pitchpoint docs stages)"
+        )
     plain = letters(name).removesuffix("s").removesuffix("gear").removesuffix("drive")
     if {plain, letters(name)} & _NO_FAMILIES:
         return " of Pitchpoint; pitchpoint docs not_included says what to use instead"
