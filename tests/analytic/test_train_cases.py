@@ -248,7 +248,7 @@ def test_what_else_stands_beside_a_set_is_told():
     with pytest.raises(InputError, match=r"planetary. is no family .* in a stage: a set stands"):
         load_case({"stages": stages, **TABLES})
     torus = {"family": "torus", "teeth": [20, 40], "module": "1 mm", "face_width": "10 mm"}
-    torus |= {"torus_radius": "60 mm"}
+    torus |= {"torus_radius": ["60 mm", "70 mm"]}
     stages = [*THREE_K["stages"], {"bodies": ["output ring", "out"], "gears": torus}]
     with pytest.raises(InputError, match=r"stages.4.gears.family: meshes of a train are pairs"):
         load_case(THREE_K | {"stages": stages})
