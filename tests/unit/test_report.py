@@ -411,6 +411,15 @@ def test_an_explorer_draws_every_stage_and_turns_each_at_its_speed(
     assert read(drive, {2: drive, 1: second}).drawing == [0, 1]
 
 
+def test_a_drive_draws_the_teeth_of_every_stage() -> None:
+    """Each with its own numbers: gear 2 of stage 1 has 61 teeth, that of stage 2 has 70."""
+    text = render(bank.outcomes(Path(__file__).parents[2] / "examples" / "two_stage.toml"))
+    assert [f'id="mesh{number}-close"' in text for number in range(3)] == [True, True, False]
+    tables = re.findall(r"number of teeth z.*?</tr>", text, re.S)
+    numbers = [re.findall(r">(\d+)<", table) for table in tables]
+    assert numbers[:2] == [["23", "61"], ["19", "70"]]
+
+
 def test_maps_of_the_efficiency_begin_above_rest(page: str) -> None:
     drawn = payload(page)["figures"]["map_mean_efficiency"]["data"][0]
     assert None not in np.ravel(drawn["z"]).tolist()

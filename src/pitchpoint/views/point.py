@@ -91,7 +91,7 @@ def period_of(outcome: Outcome) -> Period:
 
 
 def of_geometry(outcomes: dict[str, Outcome], several: bool) -> list[tuple[str, Outcome]]:
-    """Names of the variants that share their teeth, and one of them; no names if all do.
+    """Names of the variants that share their teeth, and one of them; no names if all do, stages have theirs.
 
     Args:
         outcomes: by variant, whose teeth are there.
@@ -106,7 +106,10 @@ def of_geometry(outcomes: dict[str, Outcome], several: bool) -> list[tuple[str, 
         else:
             groups.append(([variant], outcome))
     told = several and len(groups) > 1
-    return [(", ".join(names) if told else "", outcome) for names, outcome in groups]
+    return [
+        (", ".join(names) if told or "number" in outcome.manifest else "", outcome)
+        for names, outcome in groups
+    ]
 
 
 def _same_geometry(first: Outcome, second: Outcome) -> bool:
