@@ -201,7 +201,7 @@ def alike(name: str, known: Iterable[str], likeness: float = 0.6) -> list[str]:
     if _GRADE.fullmatch(grade) and (of_it := [plain[one] for one in plain if grade in one]):
         return of_it[:6]
     near = [plain[one] for one in difflib.get_close_matches(wanted, plain, n=3, cutoff=likeness)]
-    viscosity = re.search("[0-9]{2,4}$", wanted)
+    viscosity = re.search("[0-9]{2,4}$", name.strip())
     if near or viscosity is None:
         return near
     return [name for one, name in plain.items() if one.endswith(f"vg{viscosity[0]}")][:6]

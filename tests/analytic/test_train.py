@@ -122,6 +122,7 @@ def test_torques_are_in_equilibrium_and_power_is_lost_in_contacts():
     assert set(found.torques) == {"sun", "carrier", "ring"}
 
 
+@pytest.mark.whole
 def test_numbers_of_planets_and_the_way_round_change_nothing():
     angles = equal_angles(3)
     found = figures(planetary((25, 29, 83), angles), 0.05)
@@ -134,6 +135,7 @@ def test_numbers_of_planets_and_the_way_round_change_nothing():
         assert ripple(one) == pytest.approx(ripple(found), rel=1e-9)
 
 
+@pytest.mark.whole
 def test_driven_backwards_it_carries_on_the_same_flanks():
     """The carrier drives and the sun takes what it took before: Willis with the same meshes."""
     train = planetary((24, 30, 84), equal_angles(3))
@@ -156,6 +158,7 @@ def test_meshes_of_one_planet_stand_half_a_pitch_apart_where_its_teeth_are_even(
         assert np.cos(2.0 * np.pi * (apart - asked)) == pytest.approx(1.0, abs=1e-12)
 
 
+@pytest.mark.whole
 def test_a_mesh_of_its_own_is_the_cycle_of_its_pair():
     pair = design((23, 61))
     law = models("xu_2007", "wu_cheng_1991")
@@ -172,6 +175,7 @@ def test_a_mesh_of_its_own_is_the_cycle_of_its_pair():
     assert int(found["iterations"][0]) > 3
 
 
+@pytest.mark.whole
 def test_a_carrier_at_rest_is_a_chain_of_two_pairs():
     """Willis with the mean efficiencies of its meshes: low by order mu squared, as a chain of means is."""
     ends = Ends({"sun": 1.0}, ("carrier",), "ring")

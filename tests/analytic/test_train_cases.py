@@ -62,6 +62,7 @@ def test_a_set_from_its_tooth_numbers():
     assert found["stage_loss"].sum() == pytest.approx(found["mean_loss"], rel=1e-12)
 
 
+@pytest.mark.whole
 def test_meshes_carry_more_by_the_losses_behind_them():
     built, found = figures(PLANETARY)
     without, work = (
@@ -73,6 +74,7 @@ def test_meshes_carry_more_by_the_losses_behind_them():
     assert held + found["mean_input_torque"] == pytest.approx(60.0, rel=1e-9)
 
 
+@pytest.mark.whole
 def test_a_set_is_the_train_of_its_meshes():
     built, found = figures(PLANETARY)
     table = {"teeth": [24, 30], "module": "1 mm", "face_width": "12 mm"}
@@ -112,6 +114,7 @@ def test_a_3k_by_its_meshes():
     assert [one.periods for one in built.design.meshes] == [18, 18, 17]
 
 
+@pytest.mark.whole
 def test_stiffness_at_the_output_is_that_of_the_springs_of_all_planets():
     """By energy: the wind-up of the carrier is the sum of those of the meshes by the torques they carry."""
     one = load_case(PLANETARY, settings={"models.load_sharing": "from_stiffness"})
@@ -166,6 +169,7 @@ def test_a_wrong_number_gets_a_sentence_in_the_words_of_the_set(settings, words)
         load_case(PLANETARY, settings=settings)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("settings"),
     [

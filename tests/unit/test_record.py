@@ -43,6 +43,7 @@ GOOD: dict[str, Any] = {
     "motion": [1.0, -0.5],
     "period": 0.1,
     "pitch": "base pitch",
+    "stages": [],
     "against": "",
     "travels": [],
     "lacks": {},

@@ -411,6 +411,7 @@ def test_an_explorer_draws_every_stage_and_turns_each_at_its_speed(
     assert read(drive, {2: drive, 1: second}).drawing == [0, 1]
 
 
+@pytest.mark.whole
 def test_a_drive_draws_the_teeth_of_every_stage() -> None:
     """Each with its own numbers: gear 2 of stage 1 has 61 teeth, that of stage 2 has 70."""
     text = render(bank.outcomes(Path(__file__).parents[2] / "examples" / "two_stage.toml"))

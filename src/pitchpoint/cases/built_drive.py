@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,11 +17,13 @@ from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Drive
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.quasi_static import Models, Operation
-from pitchpoint.efficiency.train import Train
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.variable import End
+
+if TYPE_CHECKING:
+    from pitchpoint.efficiency.train import Train
 
 __all__ = ["MEETINGS", "TRAIN_PERIOD", "Acting", "BuiltDrive", "BuiltTrain", "Ready", "ends_of"]
 
@@ -302,7 +304,7 @@ class BuiltTrain(BuiltDrive):
     Each mesh is a stage, built at the load of one of its copies and at the speed against its carrier.
     """
 
-    design: Train  # type: ignore[assignment]
+    design: "Train"  # type: ignore[assignment]
 
     @property
     def driver(self) -> str:

@@ -52,6 +52,9 @@ def case_schema() -> dict[str, Any]:
     for model in (Case, DriveCase):
         made = model.model_json_schema(schema_generator=_Names, mode="validation")
         defs |= made.pop(_DEFS)
+        if "gears" not in made["required"]:  # those of a planetary set stand for stages
+            made["required"].remove(STAGES)
+            made["anyOf"] = [{"required": [STAGES]}, {"required": ["gears"]}]
         defs[model.__name__] = made
         wholes.append({"$ref": f"#/{_DEFS}/{model.__name__}"})
     for name, table in defs.items():
@@ -60,6 +63,10 @@ def case_schema() -> dict[str, Any]:
     parts = {f"{name}{_PART}": _partial(table) for name, table in defs.items()}
     for model in (DriveCase, Case):
         properties |= parts[f"{model.__name__}{_PART}"]["properties"]
+    gears = [
+        parts[f"{model.__name__}{_PART}"]["properties"]["gears"] for model in (Case, DriveCase)
+    ]
+    properties["gears"] = {"description": gears[0]["description"], "anyOf": gears}
     variant = {"type": "object", "properties": properties, "additionalProperties": False}
     variants = {
         "type": "object",

@@ -1643,7 +1643,11 @@ class TrainTable(Table):
     """Body that drives."""
     output: Text
     """Body that takes the load."""
-    held: Annotated[tuple[Text, ...], BeforeValidator(_listed), Field(max_length=4)] = ()
+    held: Annotated[
+        tuple[Text, ...],
+        BeforeValidator(_listed, json_schema_input_type=str | tuple[Text, ...]),
+        Field(max_length=4),
+    ] = ()
     """Bodies that stand still, one or a list."""
     carrier: Text = "carrier"
     """Body that carries the axes of the planets."""
@@ -2026,6 +2030,8 @@ def validate(document: Document) -> Case | DriveCase:
     for key, why in _OF_ONE_MESH.items():
         if key in document.tree and not (key == "gears" and is_planetary(document.tree)):
             why = _OF_SETS if is_planetary(document.tree) else why
+            given = document.tree[key]
+            why = why if isinstance(given, Mapping) else f"{shown(given)} {why}"
             raise InputError(why, file=document.name, key=key)
     return validated(DriveCase, document)
 
@@ -2447,7 +2453,9 @@ def _meant(place: Sequence[str], known: Collection[str], model: type[BaseModel],
     if inside:
         tree = _inside(_inside(tree, STAGES), place[1])
         place, model = inside, StageTable
-    every = [*_holding(key, model, tree)]
+    # Gears of a set are in the place of stages, and not offered beside these.
+    beside = {"gears"} if not stage and STAGES in _keys_of(tree) else set()
+    every = [name for name in _holding(key, model, tree) if name not in beside]
     if STAGES in model.model_fields:
         of_stage = _holding(key, StageTable, _inside(_inside(tree, STAGES), "1"))
         every += [f"{STAGES}.1.{name}" for name in of_stage if name not in every]
@@ -2461,6 +2469,11 @@ def _meant(place: Sequence[str], known: Collection[str], model: type[BaseModel],
     if alike(key, known, _SLIP) or not tables:
         return nearest(key, known)
     return f"; {' and '.join(tables)} {'has' if len(tables) == 1 else 'have'} that key"
+
+
+def _keys_of(tree: Any) -> Collection[str]:
+    """Keys of a table; none where nothing is known of one, or it is that of a planetary set."""
+    return tree.keys() if isinstance(tree, Mapping) and not is_planetary(tree) else ()
 
 
 _FEW_TABLES = 3
@@ -2500,7 +2513,9 @@ def _options(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     if key not in DECIDING:
         return ""
     info = _fields(tuple(above), model).get(above[-1]) if above else None
-    return " or ".join(f"'{name}'" for name in alternatives(info.annotation)) if info else ""
+    sets = [PLANETARY] * (above == ["gears"])
+    names = [*alternatives(info.annotation), *sets] if info else []
+    return " or ".join(f"'{name}'" for name in names)
 
 
 def _fields(location: tuple[Any, ...], model: type[BaseModel]) -> Mapping[str, FieldInfo]:

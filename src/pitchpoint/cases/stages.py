@@ -23,7 +23,6 @@ from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, StageTable, validated
 from pitchpoint.cases.strength import UNRATED
-from pitchpoint.cases.trains import about_trains, train_of, turning_together
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
@@ -85,6 +84,9 @@ def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
         alone = _following(alone, document)
         points = _points(case.operation, alone, document)
     else:
+        # Only now: a pair or a chain does not load what trains take.
+        from pitchpoint.cases.trains import turning_together
+
         alone, points = turning_together(case, alone, meshes)
     built: list[Built] = []
     for number, one, point in zip(numbers, alone, points, strict=True):
@@ -102,6 +104,8 @@ def _together(case: DriveCase, built: Sequence[Built], documents: Sequence[Docum
     numbers, point = tuple(range(1, len(built) + 1)), operation_at(case.operation)
     parts = case, tuple(built), numbers, tuple(documents)
     if case.train is not None:
+        from pitchpoint.cases.trains import about_trains, train_of
+
         return BuiltTrain(*parts, train_of(case, built), point, about_trains(case, built))
     told = (*_few_meetings(built), *_adding_thrusts(built))
     return BuiltDrive(*parts, _drive(case, built), point, told)

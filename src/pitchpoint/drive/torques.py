@@ -80,14 +80,14 @@ def train_torques(
         InputError: see `body_rates`; numbers out of range, a train without a loaded body.
 
     Example:
+        >>> from pitchpoint.drive.kinematics import Ends, Link
         >>> from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
-        >>> def pair(*teeth):
-        ...     return build_cylindrical_pair(
-        ...         teeth=teeth, module=1e-3, pressure_angle=0.349, face_width=1e-2
-        ...     )
+        >>> given = {"module": 1e-3, "pressure_angle": 0.349, "face_width": 1e-2}
+        >>> sun = build_cylindrical_pair(teeth=(24, 30), **given)
+        >>> ring = build_cylindrical_pair(teeth=(30, -84), **given)
         >>> links = [
-        ...     Link(pair(24, 30), ("sun", "planet"), "carrier"),
-        ...     Link(pair(30, -84), ("planet", "ring"), "carrier"),
+        ...     Link(sun, ("sun", "planet"), "carrier"),
+        ...     Link(ring, ("planet", "ring"), "carrier"),
         ... ]
         >>> ends = Ends({"sun": 100.0}, held=("ring",), loaded="carrier")
         >>> found = train_torques(links, ends, load=45.0, efficiencies=(0.99, 0.995))
@@ -121,7 +121,7 @@ def train_torques(
         if min(powers) >= 0.0:
             shares = [
                 {body: force * arm for body, arm in row.items()}
-                for force, row in zip(forces.tolist(), rows, strict=True)
+                for force, row in zip(forces, rows, strict=True)
             ]
             torques = {body: sum(share.get(body, 0.0) for share in shares) for body in rates}
             losses = [(1.0 - e) * power for e, power in zip(efficiencies, powers, strict=True)]
@@ -161,10 +161,10 @@ def _row(link: Link, relation: Row, driving: str, efficiency: float) -> Row:
 
 def _forces(
     arms: Float[np.ndarray, "body mesh"], carried: Float[np.ndarray, " body"]
-) -> Float[np.ndarray, " mesh"] | None:
+) -> list[float] | None:
     """Forces that hold all bodies in equilibrium; None where no force does."""
     sizes = np.max(np.abs(arms), axis=0)
     if np.linalg.cond(arms / sizes) > SINGULAR:
         return None
-    solved: np.ndarray = np.linalg.solve(arms / sizes, carried) / sizes
-    return solved
+    found: list[float] = (np.linalg.solve(arms / sizes, carried) / sizes).tolist()
+    return found

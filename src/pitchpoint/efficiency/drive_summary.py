@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -21,12 +21,13 @@ from pitchpoint.efficiency.quasi_static import (
 )
 from pitchpoint.efficiency.rows import CHUNK, NODES
 from pitchpoint.efficiency.summary import engaged, mean_friction
-from pitchpoint.efficiency.train import Train
-from pitchpoint.efficiency.train_summary import train_figures
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.programs import program
+
+if TYPE_CHECKING:
+    from pitchpoint.efficiency.train import Train
 
 __all__ = ["drive_figures", "drive_nodes", "mean_friction_of_drive", "together"]
 
@@ -90,7 +91,7 @@ def _sizes(mesh: Mesh, sharing: LoadSharing, nodes: int) -> tuple[Array, Array]:
 
 
 def drive_figures(
-    points: Sequence[tuple[Drive | Train, Operation]],
+    points: "Sequence[tuple[Drive | Train, Operation]]",
     models: Sequence[Models],
     progress: Callable[[int], None] | None = None,
 ) -> dict[str, np.ndarray]:
@@ -103,10 +104,13 @@ def drive_figures(
 
     From the states of `drive_cycle`, means and extremes over all meetings of their phases.
     """
-    trains = [(drive, operation) for drive, operation in points if isinstance(drive, Train)]
-    if trains:
-        return train_figures(trains, models, progress)
     chains = [(drive, operation) for drive, operation in points if isinstance(drive, Drive)]
+    if not chains:
+        # Only now: a pair or a chain does not load what trains take.
+        from pitchpoint.efficiency.train_summary import train_figures
+
+        trains: Any = points
+        return train_figures(trains, models, progress)
     parts: list[dict[str, np.ndarray]] = []
     done = 0
     size = together(chains[0][0], models)

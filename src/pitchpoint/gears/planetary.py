@@ -25,7 +25,14 @@ from pitchpoint.gears.table import ANGLE, DISTANCE, FILLET, HELIX, MODULE, RACK,
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.input.tables import Table
 
-__all__ = ["BODIES", "PLANETARY", "PLANETS", "PlanetaryGears", "in_words_of_set"]
+__all__ = [
+    "BODIES",
+    "PLANETARY",
+    "PLANETS",
+    "OfThree",
+    "PlanetaryGears",
+    "in_words_of_set",
+]
 
 PLANETARY = "planetary"
 """The family by name."""
@@ -92,7 +99,7 @@ class PlanetaryGears(Table):
 
     explored: ClassVar[tuple[str, float]] = ("profile_shift.2", 0.2)
 
-    family: Literal["planetary"]
+    family: Literal["planetary"] = "planetary"
     """Family of these gears: a planetary set."""
     teeth: Annotated[Three, OfThree(TEETH)]
     """Numbers of teeth of sun, planet and ring, all positive."""
