@@ -46,6 +46,7 @@ count = 2
 temperatures = ["60 degC"]
 """
 PARTS = [
+    "teeth",
     "inspection",
     "reflected",
     "operation",

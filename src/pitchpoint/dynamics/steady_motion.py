@@ -224,9 +224,9 @@ def steady_motion(
         grid: static; elements and nodes at which the motion is kept.
         cycles: static; mesh cycles in a period.
         start: `Motion.state` of a neighbour; the nominal motion where it is none, or not a number.
-        tolerance: largest estimated error of a step, of states of order one. Below 1e-8, to which a period
-            closes: rougher steps leave none that does, or one that is off by a thousand times as much;
-            derivatives where friction reverses ask for 1e-13.
+        tolerance: largest estimated error of a step, of states of order one. 1e-9 or less, below the 1e-8 to
+            which a period closes: rougher steps leave none that does, or by chance one that is off by a
+            thousand times as much; derivatives where friction reverses ask for 1e-13.
 
     Returns:
         The motion; its status says where none was found, and where a linear contact pulls.
