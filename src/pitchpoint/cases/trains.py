@@ -12,7 +12,7 @@ from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.assembly import check_neighbours, equal_angles, planet_phases
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link
 from pitchpoint.drive.torques import train_torques
-from pitchpoint.efficiency.train import Train, gear_train
+from pitchpoint.efficiency.train import Train, gear_train, presses_other_flanks
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.mesh import Mesh
@@ -60,8 +60,7 @@ def turning_together(
         torque = np.array([torques[body] for body in link.bodies])
         rates = np.array([found.rates[body] - found.rates[link.carrier] for body in link.bodies])
         driver = link.bodies.index(found.driving[number - 1])
-        mesh, first = link.mesh, np.asarray(link.mesh.driver)
-        if float(first @ torque) * float(first @ np.asarray(mesh.motion)) < 0.0:
+        if presses_other_flanks(link.mesh, torque):
             one = _on_other_flanks(one, number)
         copies = train.planets if train.planet in link.bodies else 1.0
         carried = abs(torque[1 - driver]) / copies * case.operation.load
@@ -168,21 +167,18 @@ def _of_gear(built: Built, member: int) -> dict[str, Any]:
     }
 
 
-_ALONE = (
-    Doubt(
-        "Wear is that of a mesh with one planet: sun and ring meet every planet in a turn and wear as many "
-        "times as fast, and planets wear in all of their meshes.",
-        moves=GUESSED,
-        about=("deepest_wear",),
-        brief="Wear is that by one planet alone.",
-    ),
-    Doubt(
-        "Teeth are as warm as the loss of one of their meshes makes them; planets and sun have more of them.",
-        moves=GUESSED,
-        brief="Teeth are warmed by one mesh alone.",
-    ),
+_WORN = Doubt(
+    "Wear is that of a mesh with one planet: sun and ring meet every planet in a turn and wear as many "
+    "times as fast, and planets wear in all of their meshes.",
+    moves=GUESSED,
+    about=("deepest_wear",),
+    brief="Wear is that by one planet alone.",
 )
-"""On wear, and on teeth that warm up."""
+_WARMED = Doubt(
+    "Teeth are as warm as the loss of one of their meshes makes them; planets and sun have more of them.",
+    moves=GUESSED,
+    brief="Teeth are warmed by one mesh alone.",
+)
 
 MOST_FITTED = 8
 """Planets up to which it is told how many fit in."""
@@ -228,10 +224,9 @@ def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
     """
     worn = any(one.wear is not None for one in case.stages.values())
     warmed = any(one.warming is not None for one in built)
-    wear, warmth = _ALONE
     return (
-        *[wear] * worn,
-        *[warmth] * warmed,
+        *[_WORN] * worn,
+        *[_WARMED] * warmed,
         Doubt(
             "The efficiency is that of the teeth: bearings of planets, seals and churning are not in it.",
             moves=GUESSED,

@@ -100,7 +100,8 @@ class Variant:
         """Case with some values changed, and the document that it is from."""
         document = (self.computed if changes else self).document(**changes)
         try:
-            return validate(document), with_meshes(document)
+            spelt_out = with_meshes(document)
+            return validate(spelt_out), spelt_out
         except InputError as error:
             wrong = Complaints(document.name)
             wrong.add(_as_spelt(error, document))

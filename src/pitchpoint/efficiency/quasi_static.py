@@ -47,6 +47,7 @@ __all__ = [
     "cycle_of",
     "engagement",
     "engagement_alone",
+    "events_of",
     "extremes",
     "shares_at",
     "state",
@@ -769,8 +770,18 @@ def cycle_nodes(
 
     Source: Abramowitz and Stegun (1964), eq. 25.4.32, Lobatto's formula.
     """
-    events = mesh.events()
-    if sharing.hand_over is not None:
-        events = jnp.concatenate([events, sharing.hand_over(mesh.contact_ratio)])
-    phase, weight = period_nodes(events, nodes)
+    phase, weight = period_nodes(events_of(mesh, sharing), nodes)
     return phase.ravel(), weight.ravel()
+
+
+def events_of(mesh: Mesh, sharing: LoadSharing) -> Float[Array, " event"]:
+    """Phases at which a mesh, or how its pairs share the load, changes its course [periods].
+
+    Args:
+        mesh: any family.
+        sharing: may add hand-overs to the events of the mesh.
+    """
+    events = mesh.events()
+    if sharing.hand_over is None:
+        return events
+    return jnp.concatenate([events, sharing.hand_over(mesh.contact_ratio)])

@@ -14,16 +14,31 @@ from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link
 from pitchpoint.drive.torques import train_torques
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation, extremes
+from pitchpoint.efficiency.quasi_static import (
+    Design,
+    Models,
+    Operation,
+    events_of,
+    extremes,
+)
 from pitchpoint.errors import InputError
 from pitchpoint.factored import as_array
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import UNSOLVED
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
 
-__all__ = ["MeshState", "Train", "TrainCycle", "TrainMesh", "gear_train", "train_cycle"]
+__all__ = [
+    "MeshState",
+    "Train",
+    "TrainCycle",
+    "TrainMesh",
+    "gear_train",
+    "presses_other_flanks",
+    "train_cycle",
+]
 
 Nodes = Float[Array, " node"]
 Copies = Float[Array, "copy node"]
@@ -183,14 +198,13 @@ def gear_train(
         _periods(links, ideal.rates),
         strict=True,
     ):
-        mesh = design.mesh
         torque = np.array([share[body] for body in link.bodies])
-        _check_mesh(link, design, float(mesh.driver @ torque) * float(mesh.driver @ mesh.motion))
+        _check_mesh(link, design, torque)
         meshes.append(
             TrainMesh(
                 design,
                 array(starts),
-                array(abs(float(mesh.loaded @ torque))),
+                array(abs(float(design.mesh.loaded @ torque))),
                 link.bodies,
                 link.carrier,
                 periods,
@@ -206,10 +220,20 @@ def gear_train(
     )
 
 
-def _check_mesh(link: Link, design: Design, pressing: float) -> None:
-    """Raise InputError unless a mesh can stand in a train, pressed so."""
+def presses_other_flanks(mesh: Mesh, torque: Float[np.ndarray, " dof"]) -> bool:
+    """True if torques from outside close the flanks of a mesh that do not touch.
+
+    Args:
+        mesh: any family.
+        torque: on its coordinates [N m or N].
+    """
+    return float(mesh.driver @ torque) * float(mesh.driver @ mesh.motion) < 0.0
+
+
+def _check_mesh(link: Link, design: Design, torque: Float[np.ndarray, " dof"]) -> None:
+    """Raise InputError unless a mesh can stand in a train, under these torques."""
     bodies = " and ".join(link.bodies)
-    if pressing < 0.0:
+    if presses_other_flanks(design.mesh, torque):
         raise InputError(
             f"the mesh of {bodies} presses its other flanks when the train is driven so; build it with "
             "them (right_flank)"
@@ -361,20 +385,16 @@ def train_cycle(
     forces = _by_mesh(every, jnp.where(lost[:, None], jnp.nan, solved.forces))
     states = tuple(one.state(force) for one, force in zip(every, forces, strict=True))
     torques = _torques(train, every, forces)
-
-    def known(values: Nodes) -> Nodes:
-        return jnp.where(lost, jnp.nan, values)
-
     driving = torques[train.turned] * jnp.sign(train.rates[train.turned])
     power_out = operation.load * jnp.abs(train.rates[train.loaded]) * operation.speed
     return TrainCycle(
         phase,
         weight,
         states,
-        {body: known(values) for body, values in torques.items()},
-        known(driving),
-        known(driving * operation.speed),
-        known(jnp.broadcast_to(power_out, driving.shape)),
+        torques,
+        driving,
+        driving * operation.speed,
+        jnp.where(lost, jnp.nan, power_out),
         _levers(train, every),
         Status(solved.code, solved.residual, solved.steps),
         nodes,
@@ -384,10 +404,7 @@ def train_cycle(
 def _events(train: Train, models: Sequence[Models]) -> Iterator[Float[Array, " event"]]:
     """Parts of the period of a train at which anything begins or ends in a mesh."""
     for one, laws in zip(train.meshes, models, strict=True):
-        events = one.design.mesh.events()
-        if laws.sharing.hand_over is not None:
-            ratio = one.design.mesh.contact_ratio
-            events = jnp.concatenate([events, laws.sharing.hand_over(ratio)])
+        events = events_of(one.design.mesh, laws.sharing)
         turns = jnp.arange(one.periods)[:, None, None]
         ahead = (events[:, None] - one.phases) * train.onward(one)
         yield jnp.mod((ahead + turns) / one.periods, 1.0).ravel()

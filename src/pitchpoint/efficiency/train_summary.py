@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import total
-from pitchpoint.efficiency.quasi_static import Models, Operation
+from pitchpoint.efficiency.quasi_static import Models, Operation, events_of
 from pitchpoint.efficiency.rows import CHUNK
 from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.efficiency.train import MeshState, Train, TrainCycle, train_cycle
@@ -82,10 +82,7 @@ def _memory(train: Train, models: tuple[Models, ...]) -> float:
 
 def _sizes(mesh: Mesh, sharing: LoadSharing) -> tuple[Array, Array]:
     """Contacts at one phase, and phases at which something begins or ends, of which the shapes count."""
-    events = mesh.events()
-    if sharing.hand_over is not None:
-        events = jnp.concatenate([events, sharing.hand_over(mesh.contact_ratio)])
-    return mesh.contacts(jnp.zeros(())).weight, events
+    return mesh.contacts(jnp.zeros(())).weight, events_of(mesh, sharing)
 
 
 def jamming_coefficients(

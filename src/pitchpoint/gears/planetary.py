@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite, isnan, nan, pi
+from math import isfinite, pi
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import GetJsonSchemaHandler, model_validator
@@ -74,7 +74,7 @@ class OfThree(Pair):
         return f"{self.each.told}; a list of sun, planet and ring, or one value for all{open_ring}"
 
     def read(self, value: Any) -> Any:
-        """SI values of sun, planet and ring; NaN where that of the ring is to follow."""
+        """SI values of sun, planet and ring; the text where that of the ring is to follow."""
         every = list(value) if isinstance(value, list | tuple) else [value] * 3
         if len(every) != 3:
             raise InputError(
@@ -82,7 +82,7 @@ class OfThree(Pair):
                 f"all; {self.each.allowed}"
             )
         follows = self.follows and every[2] == FROM_CENTRE_DISTANCE
-        ring = nan if follows else self.each.read(every[2])
+        ring = FROM_CENTRE_DISTANCE if follows else self.each.read(every[2])
         return self.each.read(every[0]), self.each.read(every[1]), ring
 
 
@@ -157,14 +157,15 @@ class PlanetaryGears(Table):
     @model_validator(mode="after")
     def _shift_of_ring(self) -> "PlanetaryGears":
         """The shift of the ring that leaves no backlash at the centre distance of sun and planet."""
-        sun, planet, ring = self.profile_shift
+        shifts: Any = self.profile_shift  # that of the ring may be the text still
+        sun, planet, ring = shifts
         if not isfinite(self.distance):
             raise InputError(
                 f"sun and planet with {sun:g} and {planet:g} always have backlash; give larger ones, or a "
                 "centre distance",
                 key="profile_shift",
             )
-        if not _is_open(ring):
+        if ring != FROM_CENTRE_DISTANCE:
             return self
         both = profile_shift_sum(
             teeth=(self.teeth[1], -self.teeth[2]),
@@ -209,12 +210,15 @@ class PlanetaryGears(Table):
         def both(values: Three) -> list[float]:
             return [*values[first : first + 2]]
 
-        pairs = {name: getattr(self, name) for name in _LISTS[2:]}
+        pairs = {name: getattr(self, name) for name in _LISTS[1:]}
         found: Tree = {
             "teeth": [*map(SIValue, teeth)],
             "face_width": SIValue(min(both(self.face_width))),
-            "profile_shift": _open(both(self.profile_shift)),
-            **{name: _open(both(values)) for name, values in pairs.items() if values is not None},
+            **{
+                name: [*map(SIValue, both(values))]
+                for name, values in pairs.items()
+                if values is not None
+            },
         }
         for name in ("module", "pressure_angle", "helix_angle", "least_tip_thickness"):
             if (value := getattr(self, name)) is not None:
@@ -222,15 +226,6 @@ class PlanetaryGears(Table):
         if self.centre_distance is not None or first:
             found["centre_distance"] = SIValue(self.distance)
         return found
-
-
-def _open(values: Sequence[float]) -> list[Any]:
-    return [FROM_CENTRE_DISTANCE if _is_open(value) else SIValue(value) for value in values]
-
-
-def _is_open(value: Any) -> bool:
-    """True for a shift that is to follow: text where it is the usual one, not a number as read."""
-    return value == FROM_CENTRE_DISTANCE or isnan(value)
 
 
 _TWO = re.compile(r"\b(\w+) = \[([^,\]]+), ([^,\]]+)\]")

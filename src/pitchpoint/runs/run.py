@@ -712,7 +712,6 @@ def _stages(built: Ready) -> list[dict[str, Any]]:
     bodies = built.stage_bodies or [""] * len(built.meshes)
     found = []
     for number, mesh, named in zip(built.numbers, built.meshes, bodies, strict=True):
-        way, backwards = PATHS[mesh.design.mesh.counts], mesh.nominal["onward"] < 0.0
         found.append(
             {
                 "number": number,
@@ -723,19 +722,25 @@ def _stages(built: Ready) -> list[dict[str, Any]]:
                 "motion": mesh.motion,
                 "speed": mesh.case.operation.speed,
                 "load": mesh.case.operation.load,
-                "period": float(mesh.nominal["period"]),
-                "pitch": way.pitch,
-                "against": way.against.format(mesh.driver) if backwards else "",
                 "travels": sorted(mesh.travels),
+                **_period(mesh),
             }
         )
     return found
 
 
+def _period(mesh: Built) -> dict[str, Any]:
+    """Period of a mesh, what it is called, and why time runs against its phase, if it does."""
+    way, backwards = PATHS[mesh.design.mesh.counts], mesh.nominal["onward"] < 0.0
+    return {
+        "period": float(mesh.nominal["period"]),
+        "pitch": way.pitch,
+        "against": way.against.format(mesh.driver) if backwards else "",
+    }
+
+
 def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> dict[str, Any]:
     case, document = built.case, variant.document()
-    first = built.meshes[0]
-    way, backwards = PATHS[first.design.mesh.counts], first.nominal["onward"] < 0.0
     laws, others, meshes = built.laws, _models(built), built.meshes
     solids = [used for mesh in meshes for used in mesh.solids]
     keys = [key for law in [*laws, *others.values()] for key in law.sources]
@@ -772,9 +777,7 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
         "members": list(case.bodies),
         "stages": _stages(built),
         "motion": built.motion,
-        "period": float(meshes[0].nominal["period"]),
-        "pitch": way.pitch,
-        "against": way.against.format(first.driver) if backwards else "",
+        **_period(meshes[0]),
         "travels": sorted(built.travels),
         "lacks": {},
         "averaging": built.averaging,

@@ -90,12 +90,11 @@ def period_of(outcome: Outcome) -> Period:
     )
 
 
-def of_geometry(outcomes: dict[str, Outcome], several: bool) -> list[tuple[str, Outcome]]:
+def of_geometry(outcomes: dict[str, Outcome]) -> list[tuple[str, Outcome]]:
     """Names of the variants that share their teeth, and one of them; no names if all do, stages have theirs.
 
     Args:
-        outcomes: by variant, whose teeth are there.
-        several: True if the page has several variants.
+        outcomes: by variant, or by stage, whose teeth are there.
     """
     groups: list[tuple[list[str], Outcome]] = []
     for variant, outcome in outcomes.items():
@@ -105,9 +104,8 @@ def of_geometry(outcomes: dict[str, Outcome], several: bool) -> list[tuple[str, 
                 break
         else:
             groups.append(([variant], outcome))
-    told = several and len(groups) > 1
     return [
-        (", ".join(names) if told or "number" in outcome.manifest else "", outcome)
+        (", ".join(names) if len(groups) > 1 or "number" in outcome.manifest else "", outcome)
         for names, outcome in groups
     ]
 

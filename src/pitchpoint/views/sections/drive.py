@@ -184,9 +184,9 @@ def _told_arcs(outcome: Outcome) -> str:
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    meshes = by_mesh(page.having(*_PARTS), *_PARTS)
-    groups = of_geometry(meshes, len(meshes) > 1)
-    for position, (variants, outcome) in enumerate(groups):
+    for position, (variants, outcome) in enumerate(
+        of_geometry(by_mesh(page.having(*_PARTS), *_PARTS))
+    ):
         (gap,) = naming(variants, [gap_panel(outcome, f"drive{position}")])
         values = {
             "variants": variants,

@@ -36,9 +36,9 @@ PLAIN = Variable("", "", "1")
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    meshes = by_mesh(page.having(*_PARTS), *_PARTS)
-    groups = of_geometry(meshes, len(meshes) > 1)
-    for position, (variants, outcome) in enumerate(groups):
+    for position, (variants, outcome) in enumerate(
+        of_geometry(by_mesh(page.having(*_PARTS), *_PARTS))
+    ):
         panel = Panel("", [sliding_figure(f"sliding{position}", outcome)])
         (sliding,) = naming(variants, [panel])
         values = {
