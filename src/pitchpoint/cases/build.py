@@ -40,7 +40,6 @@ from pitchpoint.cases.solids import (
     solids_in_use,
     surrounded,
 )
-from pitchpoint.cases.strength import Rated, check_strength, rated_case
 from pitchpoint.contact.contacts import TOUCH, Shape
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
@@ -85,6 +84,7 @@ from pitchpoint.results.variable import End
 from pitchpoint.status import Code, Status
 
 if TYPE_CHECKING:
+    from pitchpoint.cases.strength import Rated
     from pitchpoint.lubrication.ehl.model import FilmModel
 
 __all__ = [
@@ -231,8 +231,10 @@ class Built:
         return None if law.name == "none" else law
 
     @property
-    def rated(self) -> Rated:
+    def rated(self) -> "Rated":
         """The case as a rating of its strength takes it."""
+        from pitchpoint.cases.strength import rated_case
+
         return rated_case(self.case, self.solids, self.lubricant, self.design.roughness)
 
     @property
@@ -586,6 +588,9 @@ def _check_parts(
         _check_models(case, mesh, wrong)
     if used is not None:
         wrong.tried(_check_hardness, case, used)
+    if case.strength is not None and used is not None:
+        from pitchpoint.cases.strength import check_strength
+
         wrong.tried(check_strength, case, used)
     if case.film is not None:
         _check_films(case.film, used, wrong)

@@ -72,6 +72,7 @@ from pitchpoint.strength.treatments import TREATMENTS
 from pitchpoint.wear.registry import WEAR_LAWS
 
 __all__ = [
+    "UNRATED",
     "Case",
     "DriveCase",
     "StageTable",
@@ -1349,6 +1350,9 @@ _SHAFT = ("bearing_span", "pinion_offset", "pinion_shaft_diameter")
 def _year(value: Any) -> Any:
     """An edition as text, also of a number."""
     return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+UNRATED = "was given; ISO 6336 rates pairs of cylindrical gears, not these; leave it out"
 
 
 class StrengthTable(Table):

@@ -21,8 +21,15 @@ from pitchpoint.cases.build import (
 from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready, ends_of
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, StageTable, validated
-from pitchpoint.cases.strength import UNRATED
+from pitchpoint.cases.schema import (
+    TEMPERATURE,
+    UNRATED,
+    Case,
+    DriveCase,
+    Operating,
+    StageTable,
+    validated,
+)
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh

@@ -10,7 +10,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import array
 from pitchpoint.cases.remembered import remembering
-from pitchpoint.cases.schema import Case, StrengthTable
+from pitchpoint.cases.schema import UNRATED, Case, StrengthTable
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.errors import InputError
@@ -23,13 +23,12 @@ from pitchpoint.strength.load_factors import CLASSES, running_in_relief
 from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths
 from pitchpoint.strength.treatments import PLASTIC, PLASTIC_CYCLES, TREATMENTS, Treatment
 
-__all__ = ["UNRATED", "Rated", "check_strength", "rated_case"]
+__all__ = ["Rated", "check_strength", "rated_case"]
 
 _EDITIONS = {
     "2006": ("iso_6336_2_2006", "iso_6336_3_2006"),
     "2019": ("iso_6336_2_2019", "iso_6336_3_2019"),
 }
-UNRATED = "was given; ISO 6336 rates pairs of cylindrical gears, not these; leave it out"
 _ASSUMED_CLASS = 7
 _ROOT_ROUGHNESS = 10e-6  # Rz of the test gears [m]
 _RZ_PER_RA = 6.0  # ISO 6336-2:2006, 12.3; IACS UR M56, 2.10 c

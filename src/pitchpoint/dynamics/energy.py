@@ -1,13 +1,17 @@
 """Energy that goes through a mesh: in one steady period, and in a transient."""
 
+from typing import TYPE_CHECKING
+
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.response import Response
-from pitchpoint.dynamics.system import System
 from pitchpoint.factored import Arrays
+
+if TYPE_CHECKING:
+    from pitchpoint.dynamics.response import Response
+    from pitchpoint.dynamics.system import System
 
 __all__ = ["Account", "Energies", "energies", "relative_closure"]
 
@@ -108,7 +112,7 @@ class Account(eqx.Module):
         return relative_closure(self.sum, jnp.stack(jax.tree.leaves(self)))
 
 
-def energies(system: System, response: Response) -> Energies:
+def energies(system: "System", response: "Response") -> Energies:
     """Work of everything that acts on the vibration in one period.
 
     The elastic energy of a pair is k d^2/2 with the stretch d, so its spring takes up F d' from the
