@@ -11,7 +11,8 @@ from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import summarise
-from pitchpoint.efficiency.train import gear_train, train_cycle
+from pitchpoint.efficiency.train import gear_train
+from pitchpoint.efficiency.train_cycle import train_cycle
 from pitchpoint.efficiency.train_summary import train_figures
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair

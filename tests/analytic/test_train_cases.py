@@ -41,6 +41,15 @@ THREE_K = {
 }
 
 
+PIN = {
+    "between": ["planet", "carrier"],
+    "bearing": "palmgren_1959",
+    "mean_diameter": "12 mm",
+    "f0": 4.0,
+    "f1": 0.003,
+}
+
+
 def figures(tree, **settings):
     built = load_case(tree, settings={key.replace("__", "."): v for key, v in settings.items()})
     found = drive_figures([(built.design, built.operation)], built.models[0].stages)
@@ -72,6 +81,32 @@ def test_meshes_carry_more_by_the_losses_behind_them():
     # What the ring holds and what the sun puts in is what the carrier gives.
     held = 3 * work[1]
     assert held + found["mean_input_torque"] == pytest.approx(60.0, rel=1e-9)
+
+
+@pytest.mark.whole
+def test_bearings_of_planets_and_seals_take_their_part():
+    """The pin bears two tangential forces; torques from rest go either way, with the band of what holds."""
+    seal = {"between": ["sun", "housing"], "seal_torque": "0.02 N m"}
+    seal |= {"breakaway_torque": "0.01 N m", "breakaway_spread": 1.5}
+    built, found = figures(PLANETARY | {"losses": {"pin": PIN, "seal": seal}})
+    pin = 60.0 / 3 / 27e-3
+    assert built.places == ["pin", "seal"]
+    # Friction in the teeth and of the pin itself adds some thousandths.
+    assert found["bearing_load"] == pytest.approx([pin, 0.0], rel=5e-3)
+    rate = np.pi * 100.0
+    relative = rate * (24 / 108 + 0.4)
+    by_load = 0.003 * found["bearing_load"][0] * 0.012
+    assert found["mean_drag_loss"] > 0.02 * rate + 3 * by_load * relative
+    data = ANALYSES["running"].compute(built, {}, lambda *_: None)
+    start, low, high = (
+        data[name].sel(temperature=built.case.operation.temperature).item()
+        for name in ("starting_torque", "least_starting_torque", "largest_starting_torque")
+    )
+    assert low < start < high
+    assert high - start == pytest.approx(0.005, rel=0.02)
+    assert start > 0.03
+    back = data["back_driving_torque"].sel(temperature=built.case.operation.temperature).item()
+    assert back > start * 108 / 24
 
 
 @pytest.mark.whole
@@ -201,8 +236,16 @@ def test_advice_that_is_followed_and_other_sets_run(settings):
         ),
         ({"gears": SET}, r"stages: was given with gears of the family"),
         (
-            {"losses": {"seal": {"between": ["sun", "housing"], "seal_torque": "0.1 N m"}}},
-            r"losses beside the teeth are not among those of a train",
+            {"losses": {"seal": {"between": ["sun", "hull"], "seal_torque": "0.1 N m"}}},
+            r'losses.seal.between: "hull" is no body of this drive; did you mean|"hull" is no body',
+        ),
+        (
+            {"losses": {"pin": PIN | {"between": ["sun", "housing"], "position": "3 mm"}}},
+            r"losses.pin.position: was given; a bearing of a train stands for all bearings of its",
+        ),
+        (
+            {"stages": [THREE_K["stages"][0] | {"losses": {"pin": PIN}}, *THREE_K["stages"][1:]]},
+            r"stages.1.losses.pin: losses of a train stand between its bodies; give this one under",
         ),
         ({"train": THREE_K["train"] | {"output": "planet"}}, r"planets are neither turned nor"),
         ({"train": THREE_K["train"] | {"output": "sun"}}, r"sun is turned, and would take its own"),

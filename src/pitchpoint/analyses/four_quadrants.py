@@ -15,7 +15,7 @@ from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.figures import ERRORS, HOLDING, HOLDING_BANDS
 from pitchpoint.analyses.finer_map import finer_map
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
-from pitchpoint.analyses.running import creeping_speed, from_rest, has_spread, held_otherwise
+from pitchpoint.analyses.running import creeping_speed, from_rest, has_spread
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.schema import LossMap
 from pitchpoint.doubts import Doubt, doubts_of
@@ -170,7 +170,7 @@ def quadrants_of(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
     slowest = min(float(quadrant_axes(driven)[1][1]), creeping)
     mean, largest = from_rest(driven, load, slowest, degrees)
     bands = {
-        name: (_AT_REST, from_rest(held_otherwise(driven, way), load, slowest, degrees)[0])
+        name: (_AT_REST, from_rest(driven.held_otherwise(way), load, slowest, degrees)[0])
         for name, way in (zip(_BAND, (-1.0, 1.0), strict=True) if has_spread(built) else ())
     }
     return dataset(

@@ -11,7 +11,6 @@ __all__ = [
     "no_joint",
     "no_quadrants",
     "of_one_mesh",
-    "of_teeth_alone",
     "rigid",
     "untransmitted",
     "without_films",
@@ -96,20 +95,13 @@ def no_joint(built: Built) -> str | None:
     return Unasked("the case has no [dynamics]") if built.case.dynamics is None else None
 
 
-def of_teeth_alone(built: Ready) -> str | None:
-    """Why nothing is computed that hangs on losses beside the teeth."""
-    if not isinstance(built, BuiltTrain):
-        return None
-    return "losses beside the teeth, and torques from rest, are not computed for meshes that turn together"
-
-
 def no_quadrants(built: Ready) -> str | None:
     """Why there is no map of the output."""
     asked = built.case.loss_map
     why_not = untransmitted(built)
     if why_not is None and (asked is None or asked.quadrants != 4):
         return Unasked("loss_map.quadrants = 4 asks for it")
-    return why_not or of_teeth_alone(built) or without_films(built)
+    return why_not or without_films(built)
 
 
 def no_deviations(built: Built) -> str | None:

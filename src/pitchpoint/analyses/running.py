@@ -1,6 +1,6 @@
 """Torque that runs and starts a drive with losses beside its teeth, as a dataset of a case."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -9,20 +9,15 @@ import xarray as xr
 
 from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
-from pitchpoint.analyses.lacking import of_teeth_alone, untransmitted, without_formula
+from pitchpoint.analyses.lacking import untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
-from pitchpoint.cases.schema import TEMPERATURE, Loss
+from pitchpoint.cases.schema import TEMPERATURE
 from pitchpoint.doubts import Doubt
-from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.quasi_static import Engagement, Operation
-from pitchpoint.efficiency.running_torque import (
-    no_load_torque,
-    torques_at_rest,
-    torques_at_rest_of_drive,
-)
+from pitchpoint.efficiency.running_torque import no_load_torque, torques_at_rest
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.results.store import dataset, without_nan
 from pitchpoint.status import locked_or_lost, told
@@ -34,7 +29,6 @@ __all__ = [
     "creeping_speed",
     "from_rest",
     "has_spread",
-    "held_otherwise",
     "running_axes",
     "running_part",
 ]
@@ -80,7 +74,7 @@ def running_part(built: Ready) -> xr.Dataset:
     if has_spread(built):
         for (low, high), one, speed in zip(BANDS, (built, back), (creeping, turned), strict=True):
             for name, way in ((low, -1.0), (high, 1.0)):
-                held = held_otherwise(one, way)
+                held = one.held_otherwise(way)
                 data[name] = (_AT_REST, from_rest(held, 0.0, speed, degrees)[1])
     return dataset(
         data,
@@ -140,8 +134,9 @@ def from_rest(
         *(array(np.broadcast_to(one, degrees.shape)) for one in (load, speed, degrees))
     )
     nothing: Any = (np.full(degrees.shape, np.nan),) * 2
+    each: list[Any]
     if isinstance(built, BuiltDrive):
-        each = [torques_at_rest_of_drive(built.design, points, own.stages) for own in built.models]
+        each = [built.torques_at_rest(points, own) for own in built.models]
     else:
         known = _engaged(built, load)
         each = [
@@ -157,26 +152,6 @@ def has_spread(built: Ready) -> bool:
     stages = built.stages if isinstance(built, BuiltDrive) else ()
     every: tuple[Ready, ...] = built, *stages
     return any(loss.breakaway_spread > 1.0 for one in every for loss in one.case.losses.values())
-
-
-def held_otherwise(built: Ready, way: float) -> Ready:
-    """The drive with what holds it at rest at the upper end (1) or the lower one (-1) of its spread."""
-
-    def scaled(drags: Sequence[Drag], losses: Mapping[str, Loss]) -> tuple[Drag, ...]:
-        pairs = zip(drags, losses.values(), strict=True)
-        return tuple(drag.held_times(loss.breakaway_spread**way) for drag, loss in pairs)
-
-    drive = built.design
-    changed: Any = replace(drive, drag=scaled(drive.drag, built.case.losses))
-    if isinstance(built, BuiltDrive):
-        pairs = zip(built.design.stages, built.stages, strict=True)
-        stages = [
-            replace(one, design=replace(one.design, drag=scaled(one.design.drag, own.case.losses)))
-            for one, own in pairs
-        ]
-        changed = replace(changed, stages=tuple(stages))
-    other: Ready = replace(built, design=changed)
-    return other
 
 
 def _fitted(built: Ready) -> str:
@@ -264,7 +239,7 @@ def _with(values: np.ndarray, one: float) -> np.ndarray:
 
 def _free(built: Ready) -> str | None:
     told = None if built.drags else Unasked("the case has no [losses] beside its teeth")
-    return untransmitted(built) or told or of_teeth_alone(built) or without_formula(built)
+    return untransmitted(built) or told or without_formula(built)
 
 
 def _computed(built: Ready, _: Piece, __: Progress) -> xr.Dataset:

@@ -98,6 +98,7 @@ __all__ = [
     "covered",
     "drags",
     "gears_of",
+    "held_by",
     "operation_at",
     "without_bearing",
 ]
@@ -287,6 +288,11 @@ class Built:
     def drags(self) -> tuple[Drag, ...]:
         """Places beside the teeth where power is lost."""
         return self.design.drag
+
+    def held_otherwise(self, way: float) -> "Built":
+        """The drive with what holds it at rest at the upper end (1) or the lower one (-1) of its spread."""
+        drag = held_by(self.design.drag, self.case.losses, way)
+        return replace(self, design=replace(self.design, drag=drag))
 
     @property
     def applicable(self) -> list[FrictionLaw]:
@@ -988,6 +994,18 @@ def drags(
         inner: pairs of bodies with a bearing between them on which a wave of teeth presses.
     """
     return tuple(_drag(loss, losses, bodies, inner) for loss in losses.values())
+
+
+def held_by(drags: Sequence[Drag], losses: Mapping[str, Loss], way: float) -> tuple[Drag, ...]:
+    """Places with what holds bodies at rest at one end of its spread.
+
+    Args:
+        drags: the places.
+        losses: of which they are, in the same order.
+        way: 1 for the upper end, -1 for the lower one.
+    """
+    pairs = zip(drags, losses.values(), strict=True)
+    return tuple(drag.held_times(loss.breakaway_spread**way) for drag, loss in pairs)
 
 
 def _drag(

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pitchpoint.brief import brief
-from pitchpoint.cases.build import BEARING_FREE, TEETH_ALONE, Built, covered, operation_at
+from pitchpoint.cases.build import (
+    BEARING_FREE,
+    TEETH_ALONE,
+    Built,
+    covered,
+    held_by,
+    operation_at,
+)
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.schema import DriveCase
 from pitchpoint.doubts import in_stage
@@ -17,6 +24,7 @@ from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Drive
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.quasi_static import Models, Operation
+from pitchpoint.efficiency.running_torque import torques_at_rest_of_drive
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.registry import FrictionLaw
@@ -219,6 +227,22 @@ class BuiltDrive:
         stages = (drag for one in self.design.stages for drag in one.design.drag)
         return (*self.design.drag, *stages)
 
+    def held_otherwise(self, way: float) -> "BuiltDrive":
+        """The drive with what holds it at rest at one end of its spread, see `Built.held_otherwise`."""
+        drag = held_by(self.design.drag, self.case.losses, way)
+        pairs = zip(self.design.stages, self.stages, strict=True)
+        each = [held_by(one.design.drag, built.case.losses, way) for one, built in pairs]
+        stages = [
+            replace(one, design=replace(one.design, drag=own))
+            for one, own in zip(self.design.stages, each, strict=True)
+        ]
+        return replace(self, design=replace(self.design, drag=drag, stages=tuple(stages)))
+
+    def torques_at_rest(self, points: Operation, acting: Acting) -> tuple[np.ndarray, np.ndarray]:
+        """Mean and largest torque of the input that starts the drive, see `torques_at_rest_of_drive`."""
+        mean, largest = torques_at_rest_of_drive(self.design, points, acting.stages)
+        return np.asarray(mean), np.asarray(largest)
+
     @property
     def copies(self) -> tuple[int, ...]:
         """How many there are of each mesh."""
@@ -328,8 +352,19 @@ class BuiltTrain(BuiltDrive):
 
     @property
     def drags(self) -> tuple[Drag, ...]:
-        """None: a train has its teeth alone."""
-        return ()
+        """Places beside the teeth where power is lost."""
+        return self.design.drag
+
+    def held_otherwise(self, way: float) -> "BuiltTrain":
+        """The train with what holds it at rest at one end of its spread, see `Built.held_otherwise`."""
+        drag = held_by(self.design.drag, self.case.losses, way)
+        return replace(self, design=replace(self.design, drag=drag))
+
+    def torques_at_rest(self, points: Operation, acting: Acting) -> tuple[np.ndarray, np.ndarray]:
+        """Mean and largest torque of the input that starts the train, see `torques_at_rest_of_train`."""
+        from pitchpoint.efficiency.train_summary import torques_at_rest_of_train
+
+        return torques_at_rest_of_train(self.design, points, acting.stages)
 
     @property
     def copies(self) -> tuple[int, ...]:

@@ -1795,9 +1795,14 @@ def _check_train(case: DriveCase) -> None:
             if key in stage.model_fields_set:
                 told = "follows from the train; leave it out"
                 wrong.add(InputError(told, key=f"stages.{number}.{key}"))
-    if case.losses:
-        told = "losses beside the teeth are not among those of a train; leave this table out"
-        wrong.add(InputError(told, key="losses"))
+        for name in stage.losses:
+            told = "losses of a train stand between its bodies; give this one under [losses]"
+            wrong.add(InputError(told, key=f"stages.{number}.losses.{name}"))
+    for name, loss in case.losses.items():
+        for key in ("position", "locating"):
+            if key in loss.model_fields_set:
+                told = "was given; a bearing of a train stands for all bearings of its body"
+                wrong.add(InputError(told, key=f"losses.{name}.{key}"))
     wrong.demand_none()
 
 

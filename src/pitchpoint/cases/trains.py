@@ -1,11 +1,12 @@
 """From a case of meshes that turn together, as a planetary set, to their flanks, loads and phases."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.build import Built, drags
 from pitchpoint.cases.document import STAGES
 from pitchpoint.cases.schema import Case, DriveCase, Operating, TrainTable
 from pitchpoint.doubts import GUESSED, Doubt
@@ -101,8 +102,21 @@ def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
     _check_planets(case, built)
     phases = iter(_fitted([link for link in links if link.carrier != HOUSING], train))
     each = [np.zeros(1) if link.carrier == HOUSING else next(phases) for link in links]
+    braked = [loss.between for loss in case.losses.values()]
     try:
-        return gear_train(links, designs, _ends(case, train), planets=(train.planet,), phases=each)
+        return gear_train(
+            links,
+            designs,
+            _ends(case, train),
+            planets=(train.planet,),
+            phases=each,
+            angles=equal_angles(round(train.planets)),
+            drag=[
+                replace(drags({name: loss}, loss.between, ())[0], seat=None)
+                for name, loss in case.losses.items()
+            ],
+            braked=braked,
+        )
     except InputError as error:
         raise error.at(key=error.key or "train") from None
 
@@ -180,6 +194,13 @@ _WARMED = Doubt(
     brief="Teeth are warmed by one mesh alone.",
 )
 
+_UNBRAKED = Doubt(
+    "The efficiency is without the bearings of the planets: no loss stands between a planet and its carrier.",
+    moves=GUESSED,
+    about=("mean_efficiency",),
+    brief="The efficiency is without planet bearings.",
+)
+
 MOST_FITTED = 8
 """Planets up to which it is told how many fit in."""
 
@@ -222,17 +243,14 @@ def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
         case: of the train.
         built: its meshes.
     """
+    train = case.train
+    assert train is not None
     worn = any(one.wear is not None for one in case.stages.values())
     warmed = any(one.warming is not None for one in built)
     return (
         *[_WORN] * worn,
         *[_WARMED] * warmed,
-        Doubt(
-            "The efficiency is that of the teeth: bearings of planets, seals and churning are not in it.",
-            moves=GUESSED,
-            about=("mean_efficiency",),
-            brief="The efficiency is that of the teeth: planet bearings are not in it.",
-        ),
+        *[_UNBRAKED] * (not any(train.planet in loss.between for loss in case.losses.values())),
         Doubt(
             "Stresses and safeties of a mesh are those of one planet with an equal share of the load, and of "
             "teeth loaded in one direction; planets bear on both flanks, and sun and ring meet every planet "

@@ -14,7 +14,6 @@ from pitchpoint.brief import brief
 from pitchpoint.efficiency.drag import Drag, bearing_loads
 from pitchpoint.efficiency.meetings import FEW, Meetings, meetings, unmet
 from pitchpoint.efficiency.quasi_static import (
-    ROUNDING,
     Design,
     Engagement,
     Models,
@@ -22,6 +21,7 @@ from pitchpoint.efficiency.quasi_static import (
     State,
     cycle_nodes,
     extremes,
+    power_ratio,
     state,
 )
 from pitchpoint.errors import InputError
@@ -255,7 +255,7 @@ class DriveCycle(eqx.Module):
         From the balance of power there.
         """
         power_out = self.mean_output_power[..., None, None, None]
-        return _quotient(power_out, self.states[0].input_power)
+        return power_ratio(power_out, self.states[0].input_power)
 
     @property
     def mean_losses(self) -> Float[Array, "stage *#b"]:
@@ -287,7 +287,7 @@ class DriveCycle(eqx.Module):
 
         From the balance of energy over the periods of all meshes.
         """
-        return _quotient(self.mean_output_power, self.mean(self.states[0].input_power))
+        return power_ratio(self.mean_output_power, self.mean(self.states[0].input_power))
 
     @property
     def stage_efficiencies(self) -> Float[Array, "stage *#b"]:
@@ -297,7 +297,7 @@ class DriveCycle(eqx.Module):
         """
         return jnp.stack(
             [
-                _quotient(self.mean(one.output_power, k), self.mean(one.input_power, k))
+                power_ratio(self.mean(one.output_power, k), self.mean(one.input_power, k))
                 for k, one in enumerate(self.states)
             ]
         )
@@ -330,11 +330,6 @@ def _extremes(
         high = extremes(high, nodes, smooth=one)[1]
     others = tuple(range(len(smooth) - axes, 0))
     return jnp.min(low, axis=others), jnp.max(high, axis=others)
-
-
-def _quotient(power_out: Each, power_in: Each) -> Each:
-    transmits = power_out > ROUNDING * power_in
-    return jnp.where(transmits, power_out / jnp.where(transmits, power_in, 1.0), jnp.nan)
 
 
 @program

@@ -49,6 +49,7 @@ __all__ = [
     "engagement_alone",
     "events_of",
     "extremes",
+    "power_ratio",
     "shares_at",
     "state",
 ]
@@ -419,10 +420,7 @@ class State(eqx.Module):
 
         Source: Tian et al. (2024), eq. 3.
         """
-        transmits = self.output_power > ROUNDING * self.input_power
-        return jnp.where(
-            transmits, self.output_power / jnp.where(transmits, self.input_power, 1.0), jnp.nan
-        )
+        return power_ratio(self.output_power, self.input_power)
 
     @property
     def contact_force_ratio(self) -> Each:
@@ -636,11 +634,7 @@ class Cycle(eqx.Module):
 
         From the balance of energy over one period.
         """
-        power_out, power_in = (
-            self.mean(power) for power in (self.state.output_power, self.state.input_power)
-        )
-        transmits = power_out > ROUNDING * power_in
-        return jnp.where(transmits, power_out / jnp.where(transmits, power_in, 1.0), jnp.nan)
+        return power_ratio(self.mean(self.state.output_power), self.mean(self.state.input_power))
 
     @property
     def ripple(self) -> Each:
@@ -674,6 +668,17 @@ class Cycle(eqx.Module):
         nearest = jnp.argmax(each[0] / each[1], axis=-1)[..., None]
         acting, limit = (jnp.take_along_axis(v, nearest, axis=-1)[..., 0] for v in each)
         return acting, limit
+
+
+def power_ratio(power_out: Each, power_in: Each) -> Each:
+    """Power out over power in; NaN where no power is transmitted, see `ROUNDING`.
+
+    Args:
+        power_out: at the output [W].
+        power_in: put in [W].
+    """
+    transmits = power_out > ROUNDING * power_in
+    return jnp.where(transmits, power_out / jnp.where(transmits, power_in, 1.0), jnp.nan)
 
 
 def extremes(values: Float[Array, "*b node"], nodes: int, *, smooth: bool) -> tuple[Each, Each]:

@@ -1,24 +1,27 @@
 """Figures of gear trains over their period, by one program for many operating points."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
-from pitchpoint.efficiency.quasi_static import Models, Operation, events_of
+from pitchpoint.efficiency.drag import at_rest
+from pitchpoint.efficiency.quasi_static import Models, Operation, events_of, power_ratio
 from pitchpoint.efficiency.rows import CHUNK
 from pitchpoint.efficiency.summary import in_chunks
-from pitchpoint.efficiency.train import MeshState, Train, TrainCycle, train_cycle
+from pitchpoint.efficiency.train import Train
+from pitchpoint.efficiency.train_cycle import MeshState, TrainCycle, train_cycle
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
-__all__ = ["train_figures"]
+__all__ = ["torques_at_rest_of_train", "train_figures"]
 
 MOST_BYTES = 1e9
 """Memory that the states of one chunk of points may take [B]."""
@@ -70,6 +73,28 @@ def train_figures(
     }
 
 
+def torques_at_rest_of_train(
+    train: Train, operation: Operation, models: Sequence[Models]
+) -> tuple[Float[np.ndarray, " point"], Float[np.ndarray, " point"]]:
+    """Torque at which the driving body begins to turn from rest: mean over the phases, and largest [N m].
+
+    Args:
+        train: for back-driving `train.driven_backwards()`.
+        operation: operating points [point], see `running_torque.torques_at_rest`.
+        models: laws of each mesh.
+
+    Returns:
+        Both torques; NaN where friction holds the train whatever the torque.
+
+    From the balance in motion, with what brakes bodies beside the teeth as where they are about to move.
+    """
+    resting = replace(train, drag=at_rest(train.drag))
+    every = zip(*jax.tree.map(np.asarray, jax.tree.leaves(operation)), strict=True)
+    points = [(resting, Operation(*map(array, values))) for values in every]
+    found = train_figures(points, models)
+    return found["mean_input_torque"], found["max_input_torque"]
+
+
 def _memory(train: Train, models: tuple[Models, ...]) -> float:
     """Memory for the states of a train at one operating point [B], from that of compiled programs."""
     nodes, lanes = 0, 0
@@ -109,23 +134,24 @@ def jamming_coefficients(
 def _figures(trains: Train, operations: Operation, models: tuple[Models, ...]) -> dict[str, Array]:
     def figures(train: Train, operation: Operation) -> dict[str, Array]:
         found = train_cycle.function(train, operation, models, NODES)
-        return {**_of_train(found), **_of_meshes(found)}
+        return {**_of_train(found), **_of_meshes(found), **_of_places(found)}
 
     result: dict[str, Array] = eqx.filter_vmap(figures)(trains, operations)
     return result
 
 
 def _of_train(found: TrainCycle) -> dict[str, Array]:
-    efficiency = found.output_power / found.input_power
+    efficiency = power_ratio(found.output_power, found.input_power)
     low, high = found.extremes(efficiency)
     torque_low, torque_high = found.extremes(found.input_torque)
     friction = jnp.stack([jnp.max(one.friction, axis=(0, 1, 2)) for one in found.meshes])
     ratios = [
-        jnp.max(jnp.where(one.nominal > 0.0, one.force / one.nominal, 1.0)) for one in found.meshes
+        jnp.max(jnp.where(one.nominal > 0.0, jnp.abs(one.force) / one.nominal, 1.0))
+        for one in found.meshes
     ]
     return {
         "mean_loss": found.mean(found.loss),
-        "mean_drag_loss": jnp.zeros(()),
+        "mean_drag_loss": found.mean(found.drag_loss),
         "mean_efficiency": found.mean_efficiency,
         "min_efficiency": low,
         # Between the nodes the interpolation may overshoot; no state is better than free of loss.
@@ -166,6 +192,13 @@ def _of_meshes(found: TrainCycle) -> dict[str, Array]:
         "stage_input_torque": jnp.stack(driving),
         "stage_speed": jnp.stack(speeds),
     }
+
+
+def _of_places(found: TrainCycle) -> dict[str, Array]:
+    """Mean load on the bearing of each place [place]."""
+    if not found.pressed:
+        return {}
+    return {"bearing_load": jnp.stack([found.mean(load) for load in found.pressed])}
 
 
 def _of_powers(

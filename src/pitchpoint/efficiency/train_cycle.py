@@ -1,0 +1,568 @@
+"""The quasi-static state of a gear train over its period, from the contacts of all its meshes."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Bool, Float, Int
+
+from pitchpoint._jax import demand_double, jax, jnp
+from pitchpoint.brief import brief
+from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.drive.kinematics import HOUSING
+from pitchpoint.efficiency.drag import ROUNDING as NO_TURNING
+from pitchpoint.efficiency.quasi_static import Models, Operation, events_of, extremes, power_ratio
+from pitchpoint.efficiency.train import Train, TrainMesh
+from pitchpoint.factored import as_array, root
+from pitchpoint.gears.period import nodes as period_nodes
+from pitchpoint.loading.balance import UNSOLVED
+from pitchpoint.lubrication.conditions import Conditions, evaluate
+from pitchpoint.programs import program
+from pitchpoint.status import Code, Status
+
+__all__ = ["MeshState", "TrainCycle", "train_cycle"]
+
+Nodes = Float[Array, " node"]
+Copies = Float[Array, "copy node"]
+Lanes = Float[Array, "pair slice copy node"]
+Forces = Float[Array, "node force"]
+Arms = Float[Array, "node row force"]
+Vectors = Float[Array, "3 copy node"]
+OfPlanets = Float[Array, "_ node"]
+
+MOST_STEPS = 60
+"""Steps of the search for forces. Friction hangs weakly on them, so that a step leaves a few per cent of the
+error before it; next to locking it leaves more, and the search ends without a solution."""
+
+IDLE = 1e-9
+"""Force over the largest of a train below which a mesh carries nothing: what rounding leaves."""
+
+NEAR = 1e-14
+"""Relative change of the forces at which the search ends."""
+
+
+class MeshState(eqx.Module):
+    """State of a mesh of a train at the nodes of its period.
+
+    Attributes:
+        conditions: at the contacts of all copies.
+        friction: coefficient at each slice.
+        sliding_loss, rolling_loss: power lost at each slice [W].
+        force, nominal: normal force of each copy, and without friction, equal for all [N].
+        input_torque: torque on the driving member of the mesh in its sense of motion, of all copies [N m].
+        speed: of that member against the carrier [rad/s].
+    """
+
+    conditions: Conditions
+    friction: Lanes
+    sliding_loss: Lanes
+    rolling_loss: Lanes
+    force: Copies
+    nominal: Copies
+    input_torque: Nodes
+    speed: Float[Array, ""]
+
+    @property
+    def loss(self) -> Nodes:
+        """Power lost in all copies [W]."""
+        return jnp.sum(total(self.sliding_loss + self.rolling_loss), axis=0)
+
+
+class TrainCycle(eqx.Module):
+    """One period of a train with the weights that integrate over it.
+
+    Attributes:
+        phase: nodes, as parts of the period of the train.
+        weight: of each node; they sum to one.
+        meshes: states of the meshes at the nodes.
+        torques: from outside on every body that is not free, by name [N m or N].
+        drag_loss: power lost beside the teeth [W].
+        pressed: load on the bearing of each place, of several planets the mean [N].
+        input_power, output_power: at the nodes [W].
+        levers: of a unit of normal force in each mesh on each body in equilibrium, all planets as one: of its
+            normal part, and of its friction for a coefficient of one.
+        status: of the search for forces at each node.
+        nodes: static, nodes in each segment between events.
+    """
+
+    phase: Nodes
+    weight: Nodes
+    meshes: tuple[MeshState, ...]
+    torques: Mapping[str, Nodes]
+    drag_loss: Nodes
+    pressed: tuple[Nodes, ...]
+    input_torque: Nodes
+    input_power: Nodes
+    output_power: Nodes
+    levers: Float[Array, "2 node body mesh"]
+    status: Status
+    nodes: int = eqx.field(static=True)
+
+    def __repr__(self) -> str:
+        return brief(self)
+
+    def mean(self, values: Nodes) -> Float[Array, ""]:
+        """Mean over the period."""
+        return jnp.sum(values * self.weight, axis=-1)
+
+    def extremes(self, values: Nodes) -> tuple[Float[Array, ""], Float[Array, ""]]:
+        """Smallest and largest value over the period, see `quasi_static.extremes`."""
+        return extremes(values, self.nodes, smooth=True)
+
+    @property
+    def loss(self) -> Nodes:
+        """Power lost in all meshes and beside their teeth [W]."""
+        return sum((one.loss for one in self.meshes), self.drag_loss)
+
+    @property
+    def mean_efficiency(self) -> Float[Array, ""]:
+        """Energy out over energy in; NaN where the train is locked, or nothing is transmitted.
+
+        From the balance of energy over the period.
+        """
+        return power_ratio(self.mean(self.output_power), self.mean(self.input_power))
+
+    @property
+    def ripple(self) -> Float[Array, ""]:
+        """Largest less smallest torque of the driving body [N m].
+
+        Source: Tian et al. (2024), eq. 10, for trains.
+        """
+        low, high = self.extremes(self.input_torque)
+        return high - low
+
+    @property
+    def locked(self) -> Bool[Array, ""]:
+        """True where friction holds the train at some phase."""
+        return jnp.any(self.status.code == int(Code.LOCKED))
+
+
+@program
+def train_cycle(
+    train: Train, operation: Operation, models: Sequence[Models], nodes: int = 6
+) -> TrainCycle:
+    """States of a train over its period, integrated segment by segment between the events of all meshes.
+
+    Where planets share a load, equilibrium leaves open how: of all forces in equilibrium those are taken
+    that, over equal ones without friction, have the least sum of squares; planets in phase share equally.
+
+    Args:
+        train: see `gear_train`.
+        operation: load of the loaded body, speed of the driving one, temperature of the oil; one point.
+        models: laws of each mesh.
+        nodes: Gauss-Lobatto nodes in each segment.
+
+    From the equilibrium of every body under the forces of all its contacts with their friction; the sides of
+    friction are those of the sliding that the motion asks for. Losses beside the teeth may press the other
+    flanks of a mesh that carries little: these are taken to lie as the loaded ones do, which is so in the
+    mean over a period.
+    """
+    demand_double()
+    phase, weight = (
+        one.ravel() for one in period_nodes(jnp.concatenate([*_events(train, models)]), nodes)
+    )
+    every = [
+        _Meshing(train, one, operation, laws, phase)
+        for one, laws in zip(train.meshes, models, strict=True)
+    ]
+    if train.drag:
+        _press(train, every, operation)
+    solved = _solve(train, every, operation)
+    lost = solved.code != int(Code.SOLVED)
+    forces = _by_mesh(every, jnp.where(lost[:, None], jnp.nan, solved.forces))
+    states = tuple(one.state(force) for one, force in zip(every, forces, strict=True))
+    places = _places(train, every, forces, operation)
+    torques = _torques(train, every, forces, places)
+    driving = torques[train.turned] * jnp.sign(train.rates[train.turned])
+    power_out = operation.load * jnp.abs(train.rates[train.loaded]) * operation.speed
+    return TrainCycle(
+        phase,
+        weight,
+        states,
+        torques,
+        sum((place.lost for place in places), jnp.zeros_like(weight)),
+        tuple(place.pressed for place in places),
+        driving,
+        driving * operation.speed,
+        jnp.where(lost, jnp.nan, power_out),
+        _levers(train, every),
+        Status(solved.code, solved.residual, solved.steps),
+        nodes,
+    )
+
+
+def _events(train: Train, models: Sequence[Models]) -> Iterator[Float[Array, " event"]]:
+    """Parts of the period of a train at which anything begins or ends in a mesh."""
+    for one, laws in zip(train.meshes, models, strict=True):
+        events = events_of(one.design.mesh, laws.sharing)
+        turns = jnp.arange(one.periods)[:, None, None]
+        ahead = (events[:, None] - one.phases) * train.onward(one)
+        yield jnp.mod((ahead + turns) / one.periods, 1.0).ravel()
+
+
+class _Meshing:
+    """The contacts of a mesh of a train, and what they do for a unit of force on each copy.
+
+    Args:
+        train: of which.
+        mesh: of it.
+        operation: of the train.
+        models: laws of the mesh.
+        phase: nodes of the period of the train.
+    """
+
+    def __init__(
+        self, train: Train, mesh: TrainMesh, operation: Operation, models: Models, phase: Nodes
+    ) -> None:
+        self.mesh, self.models = mesh, models
+        self.braked, self.planets = bool(train.drag), train.planets
+        pair, turned = mesh.design.mesh, train.onward(mesh) * mesh.periods * phase
+        self.contacts: Contacts = pair.contacts(mesh.phases[:, None] + turned)
+        motion = train.motion(mesh)
+        speed = jnp.abs(pair.driver @ motion) * operation.speed
+        self.driving = pair.driver * jnp.sign(pair.driver @ motion)
+        self.operation = Operation(
+            mesh.carried / mesh.copies * operation.load, speed, operation.temperature
+        )
+        self.share = models.share(mesh.design, self.contacts, self.operation.load)
+        arm = jnp.abs(total(self.share * along(self.contacts.normal, pair.loaded)))
+        self.rates = motion * operation.speed
+        self.carry(self.operation.load / arm)
+        slip, roll = along(self.contacts.slip_arm, motion), along(self.contacts.roll_arm, motion)
+        # Beside the pitch point by rounding, a contact does not slide.
+        self.sense = jnp.where(jnp.abs(slip) > 1e-13 * jnp.abs(roll), jnp.sign(slip), 0.0)
+        self.turn = jnp.sign(roll)
+        self.carrying = self.contacts.active & (self.share > 0.0)
+
+    def carry(self, nominal: Copies) -> None:
+        """Take these as the normal forces without friction."""
+        self.nominal = nominal
+        self.unloaded = self.mesh.design.conditions(
+            self.contacts,
+            self.operation,
+            load=jnp.zeros_like(self.share),
+            nominal_load=nominal,
+            rates=self.rates,
+        )
+
+    def laws(self, force: Copies) -> tuple[Lanes, Lanes]:
+        """Friction coefficient and rolling resistance [N] of each slice under normal forces of the copies."""
+        # Of a train that friction locks a force comes out negative: the law is asked for the usual one there.
+        force = force * self.pressing(force)
+        pushed = jnp.where(force > 0.0, force, jnp.where(self.nominal > 0.0, self.nominal, 1.0))
+        at = replace(self.unloaded, load=jnp.where(self.carrying, self.share, 1.0) * pushed)
+        loaded = self.carrying & (self.nominal > 0.0)
+        coefficient = jnp.where(loaded, self.models.coefficient(at), 0.0)
+        if self.models.rolling.name == "none":
+            return coefficient, jnp.zeros_like(coefficient)
+        resistance = evaluate(self.models.rolling, at) * self.contacts.weight
+        return coefficient, jnp.where(loaded, resistance, 0.0)
+
+    def pressing(self, force: Copies) -> Copies:
+        """One, or minus one where losses beside the teeth press the other flanks."""
+        return jnp.where(force < 0.0, -1.0, 1.0) if self.braked else jnp.ones_like(force)
+
+    def torques(self, coefficient: Lanes, force: Copies) -> Float[Array, "dof copy node"]:
+        """Torques from outside on the coordinates that a unit of normal force on each copy asks for."""
+        slip, mu = self.contacts.slip_arm, coefficient * self.sense * self.pressing(force)
+        each = zip(self.contacts.normal, slip, strict=True)
+        return jnp.stack([total(self.share * (n + mu * t)) for n, t in each])
+
+    def rolling_torques(self, resistance: Lanes) -> Float[Array, "dof copy node"]:
+        """Torques from outside on the coordinates that rolling resistance asks for."""
+        return jnp.stack([total(resistance * self.turn * arm) for arm in self.contacts.roll_arm])
+
+    def pressed(self, body: str, force: Copies) -> Vectors:
+        """Force on a body of the mesh by its normal forces [N], x from the central axis to the planet.
+
+        From action and reaction along the normals; on other flanks it pushes the other way round the body
+        and apart as on the loaded ones.
+        """
+        number = self.mesh.bodies.index(body)
+        places = jnp.stack([one.place[0] for one in self.mesh.design.mesh.coordinates])
+        planet = next((k for k, name in enumerate(self.mesh.bodies) if name in self.planets), 1)
+        outward = jnp.sign(places[planet] - places[1 - planet])
+        toward = outward * self.pressing(force)
+        unit = (2.0 * number - 1.0) * jnp.stack(
+            [total(self.share * d) for d in self.contacts.direction]
+        )
+        return (
+            unit * force * jnp.stack([toward, outward * jnp.ones_like(force), jnp.ones_like(force)])
+        )
+
+    def of_force(self, coefficient: Lanes, force: Copies) -> dict[str, Copies]:
+        """Torques of a unit of force, by body."""
+        return self.mesh.arms(self.torques(coefficient, force))
+
+    def of_rolling(self, resistance: Lanes) -> dict[str, Copies]:
+        """Torques of rolling resistance, by body."""
+        return self.mesh.arms(self.rolling_torques(resistance))
+
+    def state(self, force: Copies) -> MeshState:
+        """What follows from the forces of the copies."""
+        coefficient, resistance = self.laws(force)
+        at = replace(self.unloaded, load=self.share * force * self.pressing(force))
+        driver = self.driving @ jnp.stack(
+            [
+                jnp.sum(arm * force + rolling, axis=0)
+                for arm, rolling in zip(
+                    self.torques(coefficient, force), self.rolling_torques(resistance), strict=True
+                )
+            ]
+        )
+        return MeshState(
+            at,
+            coefficient,
+            at.load * coefficient * as_array(at.sliding),
+            2.0 * resistance * as_array(at.entrainment),
+            force,
+            self.nominal,
+            driver,
+            self.operation.speed,
+        )
+
+
+class _Balanced(eqx.Module):
+    forces: Forces
+    residual: Nodes
+    steps: Int[Array, ""]
+    code: Int[Array, " node"]
+
+
+def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Balanced:
+    """Forces of all copies in equilibrium; friction is that under the forces of the step before."""
+    asked = _asked(train, operation)
+
+    def step(held: tuple[Forces, Nodes, Array]) -> tuple[Forces, Nodes, Array]:
+        forces, _, steps = held
+        laws = [one.laws(force) for one, force in zip(every, _by_mesh(every, forces), strict=True)]
+        each = _by_mesh(every, forces)
+        taken = [one.of_rolling(rolling) for one, (_, rolling) in zip(every, laws, strict=True)]
+        arms = _arms(
+            train,
+            [
+                one.of_force(mu, force)
+                for one, (mu, _), force in zip(every, laws, each, strict=True)
+            ],
+        )
+        wanted = asked - jnp.sum(_arms(train, taken), axis=-1)
+        if train.drag:
+            wanted -= _on_rows(train, _places(train, every, each, operation))
+        left = jnp.einsum("nrf,nf->nr", arms, forces) - wanted
+        size = jnp.max(jnp.abs(arms) * jnp.abs(forces)[:, None], axis=-1)
+        # A body that idles is in balance within rounding of the forces in the rest of the train.
+        size = jnp.maximum(size, IDLE * jnp.max(size, axis=-1, keepdims=True))
+        residual = jnp.max(jnp.abs(left) / jnp.where(size > 0.0, size, 1.0), axis=-1)
+        return nominal * _least(arms * nominal[:, None], wanted), residual, steps + 1
+
+    def goes_on(held: tuple[Forces, Nodes, Array]) -> Array:
+        _, residual, steps = held
+        return (steps < MOST_STEPS) & jnp.any(residual > NEAR)
+
+    nominal = jnp.concatenate([one.nominal for one in every]).T
+    largest = jnp.max(nominal, axis=-1, keepdims=True)
+    nominal = jnp.maximum(nominal, jnp.where(largest > 0.0, IDLE * largest, 1.0))
+    first = nominal, jnp.full(nominal.shape[0], jnp.inf), jnp.asarray(0)
+    forces, residual, steps = jax.lax.while_loop(goes_on, step, first)
+    pulled = jnp.any(forces < -IDLE * jnp.max(jnp.abs(forces), axis=-1, keepdims=True), axis=-1)
+    # With losses beside the teeth other flanks are pressed there, and no forces hold a train that is locked.
+    pulled &= not train.drag
+    code = jnp.where(pulled, int(Code.LOCKED), int(Code.SOLVED))
+    code = jnp.where(residual <= UNSOLVED, code, int(Code.NOT_CONVERGED))
+    return _Balanced(forces, residual, steps, code)
+
+
+def _asked(train: Train, operation: Operation) -> Float[Array, " row"]:
+    """Torques from outside on the bodies in equilibrium."""
+    load = -jnp.sign(train.rates[train.loaded]) * operation.load
+    return jnp.stack([load * (body == train.loaded) for body, _ in train.rows()])
+
+
+def _levers(train: Train, every: Sequence[_Meshing]) -> Float[Array, "2 node body mesh"]:
+    """See `TrainCycle.levers`."""
+
+    def on_bodies(one: _Meshing, coefficient: float) -> Float[Array, "body node"]:
+        arms = one.of_force(jnp.where(one.carrying, coefficient, 0.0), one.nominal)
+        nothing = jnp.zeros(one.nominal.shape)
+        each = (arms.get(body, nothing) for body in (train.loaded, *train.free))
+        return jnp.stack([jnp.mean(arm, axis=0) for arm in each])
+
+    normal, whole = (
+        jnp.stack([on_bodies(one, coefficient) for one in every], axis=-1)
+        for coefficient in (0.0, 1.0)
+    )
+    return jnp.moveaxis(jnp.stack([normal, whole - normal]), 2, 1)
+
+
+def _arms(train: Train, every: Sequence[Mapping[str, Copies]]) -> Arms:
+    """Torques on the bodies in equilibrium by mesh and copy, those of planets on the planet of the copy."""
+    rows = {place: row for row, place in enumerate(train.rows())}
+    columns = []
+    for one in every:
+        copies, nodes = next(iter(one.values())).shape
+        for copy in range(copies):
+            column = [jnp.zeros(nodes)] * len(rows)
+            for body, values in one.items():
+                row = rows.get((body, copy if body in train.planets else 0))
+                if row is not None:
+                    column[row] = column[row] + values[copy]
+            columns.append(jnp.stack(column, axis=-1))
+    return jnp.stack(columns, axis=-1)
+
+
+def _least(arms: Arms, wanted: Float[Array, "node row"]) -> Forces:
+    """Parts of the nominal forces of the least sum of squares that give the torques wanted.
+
+    By Lagrange's multipliers, with a second pass that takes off what rounding leaves of the first.
+    """
+    size = jnp.max(jnp.abs(arms), axis=-1, keepdims=True)
+    arms, wanted = arms / size, wanted / size[..., 0]
+    count, rows = arms.shape[-1], arms.shape[-2]
+    none = jnp.zeros((*arms.shape[:-2], rows, rows))
+    unit = jnp.broadcast_to(jnp.eye(count), (*arms.shape[:-2], count, count))
+    system = jnp.block([[unit, jnp.swapaxes(arms, -1, -2)], [arms, none]])
+
+    def solved(right: Float[Array, "node row"]) -> Forces:
+        whole = jnp.concatenate([jnp.zeros((*right.shape[:-1], count)), right], axis=-1)
+        found: Forces = jnp.linalg.solve(system, whole[..., None])[..., :count, 0]
+        return found
+
+    forces = solved(wanted)
+    return forces + solved(wanted - jnp.einsum("nrf,nf->nr", arms, forces))
+
+
+def _by_mesh(every: Sequence[_Meshing], forces: Forces) -> list[Copies]:
+    """Forces of the copies of each mesh."""
+    ends = np.cumsum([one.mesh.copies for one in every])[:-1]
+    split: list[Copies] = jnp.split(forces.T, ends)
+    return split
+
+
+def _torques(
+    train: Train,
+    every: Sequence[_Meshing],
+    forces: Sequence[Copies],
+    places: "Sequence[_Place]",
+) -> dict[str, Nodes]:
+    """Torques from outside on each body that is not free."""
+    found: dict[str, Nodes] = {}
+    for place in places:
+        for body, torque in place.torques.items():
+            found[body] = found.get(body, 0.0) + jnp.sum(torque, axis=0)
+    for one, force in zip(every, forces, strict=True):
+        coefficient, resistance = one.laws(force)
+        rolling = one.of_rolling(resistance)
+        for body, arm in one.of_force(coefficient, force).items():
+            taken = jnp.sum(arm * force + rolling[body], axis=0)
+            found[body] = found.get(body, jnp.zeros_like(taken)) + taken
+    return {body: torque for body, torque in found.items() if body not in train.free}
+
+
+class _Place(NamedTuple):
+    """A place beside the teeth at the nodes.
+
+    Attributes:
+        torques: from outside that overcome what it takes, by body, for each planet that is braked there, or one.
+        pressed: see `TrainCycle.pressed`.
+        lost: power, of all planets [W].
+    """
+
+    torques: dict[str, OfPlanets]
+    pressed: Nodes
+    lost: Nodes
+
+
+def _places(
+    train: Train, every: Sequence[_Meshing], forces: Sequence[Copies], operation: Operation
+) -> list[_Place]:
+    """What brakes bodies beside the teeth under normal forces of the copies of each mesh."""
+    viscosity = every[0].mesh.design.lubricant.kinematic_viscosity(operation.temperature)
+    places = []
+    for drag, bodies in zip(train.drag, train.braked, strict=True):
+        rates = jnp.stack([train.rates[body] for body in bodies])
+        rate = drag.between @ rates
+        turns = jnp.abs(rate) > NO_TURNING * jnp.sum(jnp.abs(rates))
+        sense = jnp.where(turns, jnp.sign(rate), 0.0)
+        load = drag.preload + _borne(train, every, forces, bodies) * (drag.bearing.name != "none")
+        speed = jnp.abs(rate) * operation.speed
+        torque = drag.torque(speed=speed, load=load, kinematic_viscosity=viscosity)
+        torques = {
+            body: side * sense * torque for body, side in zip(bodies, drag.between, strict=True)
+        }
+        lost = jnp.sum(torque, axis=0) * speed * turns
+        places.append(_Place(torques, jnp.mean(load, axis=0), lost))
+    return places
+
+
+def _borne(
+    train: Train, every: Sequence[_Meshing], forces: Sequence[Copies], bodies: tuple[str, str]
+) -> OfPlanets:
+    """Size of what teeth put on the bearing between two bodies, of each planet that it is in [N].
+
+    From the forces of a planet in all its meshes, added as vectors; of central bodies and of the carrier from
+    those of all planets around them, which cancel as far as planets share alike.
+    """
+    nothing = jnp.zeros((1, forces[0].shape[-1]))
+    pairs = list(zip(every, forces, strict=True))
+    on_planets = [
+        one.pressed(body, force)
+        for one, force in pairs
+        for body in one.mesh.bodies
+        if body in train.planets
+    ]
+    if any(body in train.planets for body in bodies):
+        return _size(sum(on_planets[1:], on_planets[0]))
+    if HOUSING not in bodies:
+        return nothing
+    (body,) = (name for name in bodies if name != HOUSING)
+    around = [one.pressed(body, force) for one, force in pairs if body in one.mesh.bodies]
+    if any(one.mesh.carrier == body for one in every):
+        around.append(sum(on_planets[1:], on_planets[0]))
+    return sum((_size(_around(one, train.angles)) for one in around), nothing)
+
+
+def _around(vectors: Vectors, angles: Float[Array, " copy"]) -> Float[Array, "3 1 node"]:
+    """Sum of forces about an axis, each in the frame of its planet."""
+    x, y, z = vectors
+    if x.shape[0] == 1:  # a mesh in the housing
+        return vectors
+    cosine, sine = jnp.cos(angles)[:, None], jnp.sin(angles)[:, None]
+    turned = jnp.stack([cosine * x - sine * y, sine * x + cosine * y, z])
+    return jnp.sum(turned, axis=1, keepdims=True)
+
+
+def _size(vector: Float[Array, "3 _ node"]) -> OfPlanets:
+    size: OfPlanets = root(jnp.sum(vector**2, axis=0))
+    return size
+
+
+def _on_rows(train: Train, places: Sequence[_Place]) -> Float[Array, "node row"]:
+    """Torques that overcome losses beside the teeth, on the bodies in equilibrium."""
+    nodes = places[0].pressed.shape
+    rows = {row: jnp.zeros(nodes) for row in train.rows()}
+    for place in places:
+        for body, torque in place.torques.items():
+            for number in range(torque.shape[0] if body in train.planets else 1):
+                if (body, number) in rows:
+                    taken = torque[number] if body in train.planets else jnp.sum(torque, axis=0)
+                    rows[body, number] += taken
+    return jnp.stack([*rows.values()], axis=-1)
+
+
+def _press(train: Train, every: Sequence[_Meshing], operation: Operation) -> None:
+    """Give meshes the normal forces that losses beside the teeth leave them without friction."""
+    still = [jnp.zeros_like(one.nominal) for one in every]
+    arms = _arms(
+        train,
+        [
+            one.of_force(jnp.zeros_like(one.share), force)
+            for one, force in zip(every, still, strict=True)
+        ],
+    )
+    taken = _on_rows(train, _places(train, every, still, operation))
+    whole = jnp.ones((arms.shape[0], arms.shape[-1]))
+    forces = whole * _least(arms, _asked(train, operation) - taken)
+    for one, force in zip(every, _by_mesh(every, forces), strict=True):
+        one.carry(jnp.abs(force))
