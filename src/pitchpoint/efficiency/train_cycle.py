@@ -464,7 +464,7 @@ class _Place(NamedTuple):
     """A place beside the teeth at the nodes.
 
     Attributes:
-        torques: from outside that overcome what it takes, by body, for each planet that is braked there, or one.
+        torques: from outside that overcome what it takes, by body, for each planet that is braked, or one.
         pressed: see `TrainCycle.pressed`.
         lost: power, of all planets [W].
     """
