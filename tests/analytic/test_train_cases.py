@@ -109,6 +109,35 @@ def test_bearings_of_planets_and_seals_take_their_part():
     assert back > start * 108 / 24
 
 
+@pytest.mark.parametrize("planets", [1, 3])
+def test_planets_share_a_load_bear_both_ways_and_meet_sun_and_ring_in_turn(planets):
+    """Beside a lone pair under the load of a planet: K_gamma under the root, Y_M, more load cycles."""
+    settings = {"gears.planets": planets, "operation.torque": f"{20 * planets} N m"}
+    settings |= {"materials.gear_1": "case-hardened-mq", "materials.gear_2": "case-hardened-mq"}
+    settings["strength.life"] = "1000 h"
+    built = load_case(PLANETARY, settings=settings)
+    data = ANALYSES["strength"].compute(built, {}, lambda *_: None)
+    sun, ring = (data.sel(stage=stage) for stage in (1, 2))
+    turns = 1000 * 3600 * 50 * 84 / 108 * np.array([1, 24 / 30, 24 / 84])
+    assert sun["flank_cycles"].values == pytest.approx(turns[:2] * [planets, 1])
+    assert ring["root_cycles"].values == pytest.approx(turns[1:] * [1, planets])
+    assert sun["mean_stress_factor"].values.tolist() == [1.0, 0.7]
+    assert ring["mean_stress_factor"].values.tolist() == [0.7, 1.0]
+    pair = {"gears": gears([24, 30], face_width="12 mm", fillet_radius=[0.38, 0.2]), **TABLES}
+    speed = f"{3000 * 84 / 108} rpm"
+    alone = settings | {"operation.torque": f"{20 * 30 / 108} N m", "operation.speed": speed}
+    alone.pop("gears.planets")
+    lone = ANALYSES["strength"].compute(load_case(pair, settings=alone), {}, lambda *_: None)
+    shared = 1.1 if planets == 3 else 1.0
+    stress = lone["contact_stress"] / np.sqrt(lone["rated_dynamic_factor"])
+    found = sun["contact_stress"] / np.sqrt(sun["rated_dynamic_factor"])
+    assert found.values == pytest.approx(stress.values * np.sqrt(shared), rel=1e-9)
+    given = load_case(PLANETARY, settings=settings | {"strength.mesh_load_factor": 1.3})
+    other = ANALYSES["strength"].compute(given, {}, lambda *_: None)
+    assert other["mesh_load_factor"].values.tolist() == [1.3, 1.3]
+    assert "Y_M = 0.7" in data.attrs["remarks"]
+
+
 @pytest.mark.whole
 def test_a_set_is_the_train_of_its_meshes():
     built, found = figures(PLANETARY)

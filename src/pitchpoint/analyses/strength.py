@@ -65,7 +65,6 @@ _SHAFT = (
 _THINNED = (
     "Roots are those of the thinnest teeth that [gears.inspection] allows; all else is nominal."
 )
-_SINGLE = "Forces and stresses are those without friction and losses, for the load at the output."
 
 _PARTS = {
     "flanks": ("flank_safety", "contact_stress", "contact_limit", "pit"),
@@ -105,7 +104,7 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         method=_method([one for _, one in stages]),
         assumed=told(lambda one, _: _assumed(one)),
         withheld=told(lambda one, found: [*one.rated.withheld, *_bounds(one, found)]),
-        remarks=told(lambda one, _: [*_remarks(one)]) + [_SINGLE] * several,
+        remarks=[*told(lambda one, _: [*_remarks(one)]), *built.on_strength],
         warnings=told(lambda one, found: [*_failing(one, found), *_doubts(one, found)]),
     )
     return data if several else data.isel(stage=0, drop=True)

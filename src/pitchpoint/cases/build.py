@@ -285,6 +285,11 @@ class Built:
         return []
 
     @property
+    def on_strength(self) -> tuple[str, ...]:
+        """Sentences on what a rating takes where there are several meshes; none of one."""
+        return ()
+
+    @property
     def drags(self) -> tuple[Drag, ...]:
         """Places beside the teeth where power is lost."""
         return self.design.drag

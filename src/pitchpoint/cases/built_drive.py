@@ -222,6 +222,13 @@ class BuiltDrive:
         return [" and ".join(bodies) for bodies in named if bodies]
 
     @property
+    def on_strength(self) -> tuple[str, ...]:
+        """Sentences on what a rating takes where there are several meshes."""
+        return (
+            "Forces and stresses are those without friction and losses, for the load at the output.",
+        )
+
+    @property
     def drags(self) -> tuple[Drag, ...]:
         """Places beside the teeth where power is lost: of the drive, then of its stages."""
         stages = (drag for one in self.design.stages for drag in one.design.drag)
@@ -349,6 +356,17 @@ class BuiltTrain(BuiltDrive):
     def averaging(self) -> str:
         """What averages run over."""
         return TRAIN_PERIOD
+
+    @property
+    def on_strength(self) -> tuple[str, ...]:
+        """Sentences on what a rating takes where there are several meshes."""
+        count = max(self.copies)
+        return (
+            *super().on_strength,
+            f"Where [strength] says nothing else, {count} planets share a load as IEC 61400-4 has it (K_γ), "
+            f"teeth that two mates load both ways have Y_M = 0.7, and a gear that meets all planets has "
+            f"{count} load cycles in a turn against the carrier.",
+        )
 
     @property
     def drags(self) -> tuple[Drag, ...]:

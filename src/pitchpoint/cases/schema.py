@@ -1358,20 +1358,22 @@ UNRATED = "was given; ISO 6336 rates pairs of cylindrical gears, not these; leav
 class StrengthTable(Table):
     """What the strength of a pair of cylindrical gears depends on beside its dimensions and its load.
 
-    Load factors are at least 1: `application_factor` K_A, `dynamic_factor` K_v, `face_load_factor` K_Hbeta,
-    `transverse_load_factor` K_Halpha, and those of the root. Without a K_v it follows for gears of
-    `accuracy_class` of ISO 1328-1, by method C or by the `dynamic_method` that is named; K_Hbeta follows by
-    method C where `bearing_span`, `pinion_offset` and `pinion_shaft_diameter` are given, for a pinion between
-    two bearings without modifications of its helix. `sigma_hlim` and `sigma_flim` take the place of those of
-    the materials, for plastics at the temperature and life of the case; steels then say their `treatment`.
-    Without a `life` the teeth are to endure. `mean_stress_factor` is below 1 for teeth that are loaded both
-    ways, 0.7 for the same load. Roughness is Rz.
+    Load factors are at least 1: `application_factor` K_A, `mesh_load_factor` K_gamma, `dynamic_factor` K_v,
+    `face_load_factor` K_Hbeta, `transverse_load_factor` K_Halpha, and those of the root. Without a K_v it
+    follows for gears of `accuracy_class` of ISO 1328-1, by method C or by the `dynamic_method` that is named;
+    K_Hbeta follows by method C where `bearing_span`, `pinion_offset` and `pinion_shaft_diameter` are given,
+    for a pinion between two bearings without modifications of its helix. `sigma_hlim` and `sigma_flim` take
+    the place of those of the materials, for plastics at the temperature and life of the case; steels then say
+    their `treatment`. Without a `life` the teeth are to endure. `mean_stress_factor` is below 1 for teeth
+    that are loaded both ways, 0.7 for the same load. Roughness is Rz.
     """
 
     edition: Annotated[Literal["2006", "2019"], BeforeValidator(_year)] = "2019"
     """Edition of ISO 6336-2 and ISO 6336-3 by which the pair is rated."""
     application_factor: Annotated[float, LOAD_FACTOR] | None = None
     """Application factor K_A; 1 unless given."""
+    mesh_load_factor: Annotated[float, LOAD_FACTOR] | None = None
+    """Mesh load factor K_γ of planets that share a load; by IEC 61400-4 for 3 to 7, else 1, unless given."""
     dynamic_factor: Annotated[float, LOAD_FACTOR] | None = None
     """Dynamic factor K_v; by ISO 6336-1, of plastics 1, unless given."""
     dynamic_method: Literal["B", "C"] = "C"
@@ -1405,7 +1407,9 @@ class StrengthTable(Table):
     work_hardening: Annotated[tuple[float, float], Pair(HARDENING)] | None = None
     """Work hardening factor Z_W; 1 unless given."""
     mean_stress_factor: Annotated[tuple[float, float], Pair(REVERSED)] | None = None
-    """Mean stress factor Y_M of teeth loaded both ways; 1 unless given."""
+    """Mean stress factor Y_M of teeth loaded both ways; 0.7 of planets that are, else 1, unless given."""
+    engagements: Annotated[tuple[float, float], Pair(PLANETS)] | None = None
+    """Engagements of a tooth in a turn of its gear; of sun and ring one a planet, else 1, unless given."""
     flank_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None
     """Mean peak-to-valley roughness Rz of the flanks; 6 Ra unless given."""
     root_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None

@@ -23,7 +23,7 @@ from pitchpoint.strength.load_factors import CLASSES, running_in_relief
 from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths
 from pitchpoint.strength.treatments import PLASTIC, PLASTIC_CYCLES, TREATMENTS, Treatment
 
-__all__ = ["Rated", "check_strength", "rated_case"]
+__all__ = ["MESH_LOAD", "Rated", "check_strength", "of_planets", "rated_case"]
 
 _EDITIONS = {
     "2006": ("iso_6336_2_2006", "iso_6336_3_2006"),
@@ -34,6 +34,12 @@ _ROOT_ROUGHNESS = 10e-6  # Rz of the test gears [m]
 _RZ_PER_RA = 6.0  # ISO 6336-2:2006, 12.3; IACS UR M56, 2.10 c
 
 Used = tuple[SolidInUse, SolidInUse]
+
+MESH_LOAD = {3: 1.1, 4: 1.25, 5: 1.35, 6: 1.44, 7: 1.47}
+"""Mesh load factor K_gamma by the number of planets, IEC 61400-4:2012."""
+
+BOTH_WAYS = 0.7
+"""Mean stress factor Y_M of teeth that bear the same load both ways, ISO 6336-3."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +86,7 @@ class Rated:
             *_EDITIONS[self.table.edition],
             "iacs_m56_2021",
             *("iso_6336_1_2006",) * by_part_1,
+            *("iec_61400_4_2012",) * (self.table.mesh_load_factor in MESH_LOAD.values()),
             *("vdi_2736_2_2014",) * plastic,
             *dict.fromkeys(printed),
         )
@@ -92,7 +99,8 @@ class Rated:
             life: time under load [s]; None if the teeth are to endure.
         """
         flank, root = self.endured
-        return Duty(point.load, point.speed, flank, root, array(nan if life is None else life))
+        time, engagements = nan if life is None else life, self.table.engagements or (1.0, 1.0)
+        return Duty(point.load, point.speed, flank, root, array(time), array(engagements))
 
 
 def check_strength(case: Case, used: Used) -> None:
@@ -135,6 +143,31 @@ def rated_case(case: Case, used: Used, oil: LubricantRecord, roughness: Roughnes
 
 
 _USUAL = StrengthTable()
+
+
+def of_planets(
+    table: StrengthTable | None,
+    planets: int,
+    meets: tuple[bool, bool],
+    both_ways: tuple[bool, bool],
+) -> StrengthTable:
+    """The table of a mesh with what planets add, where the case leaves it open.
+
+    Args:
+        table: of the case.
+        planets: that share the load of the mesh.
+        meets: for both gears, whether it meets every planet in a turn.
+        both_ways: for both gears, whether its teeth are loaded both ways, by two mates.
+    """
+    table = table or _USUAL
+    usual = {
+        "mesh_load_factor": MESH_LOAD.get(planets, 1.0),
+        "engagements": tuple(float(planets) if every else 1.0 for every in meets),
+        "mean_stress_factor": tuple(BOTH_WAYS if both else 1.0 for both in both_ways),
+    }
+    return table.model_copy(
+        update={key: value for key, value in usual.items() if getattr(table, key) is None}
+    )
 
 
 def _plastic(used: Used) -> tuple[bool, bool]:
@@ -268,6 +301,7 @@ def _factors(table: StrengthTable, toothing: _Toothing, used: Used) -> Factors:
     earlier = table.edition == "2006"
     return Factors(
         application=_given(table.application_factor, 1.0),
+        mesh_load=_given(table.mesh_load_factor, 1.0),
         dynamic=_given(table.dynamic_factor, dynamic),
         face=_given(table.face_load_factor, 1.0 if table.shaft is None else nan),
         transverse=_given(table.transverse_load_factor, 1.0),

@@ -1,6 +1,7 @@
 """From a case of meshes that turn together, as a planetary set, to their flanks, loads and phases."""
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -8,7 +9,8 @@ import numpy as np
 
 from pitchpoint.cases.build import Built, drags
 from pitchpoint.cases.document import STAGES
-from pitchpoint.cases.schema import Case, DriveCase, Operating, TrainTable
+from pitchpoint.cases.schema import Case, DriveCase, Operating, StrengthTable, TrainTable
+from pitchpoint.cases.strength import of_planets
 from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.assembly import check_neighbours, equal_angles, planet_phases
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link
@@ -56,6 +58,7 @@ def turning_together(
         found = train_torques(links, _ends(case, train), 1.0, [1.0] * len(links))
     except InputError as error:
         raise error.at(key=error.key or "train") from None
+    meshings = Counter(gear for link in links for gear in _gears(link))
     turned, points = [], []
     for number, (one, link, torques) in enumerate(zip(alone, links, found.shares, strict=True), 1):
         torque = np.array([torques[body] for body in link.bodies])
@@ -71,8 +74,32 @@ def turning_together(
             "driver": one.gears.members[driver],
         }
         points.append(one.operation.model_copy(update=changes))
-        turned.append(one)
+        turned.append(one.model_copy(update={"strength": _strength(one, link, meshings, train)}))
     return turned, points
+
+
+def _strength(
+    one: Case, link: Link, meshings: Mapping[tuple[str, float], int], train: TrainTable
+) -> StrengthTable:
+    """What the strength of a mesh depends on, with the planets that share its load."""
+    on_planets = train.planet in link.bodies
+    return of_planets(
+        one.strength,
+        round(train.planets) if on_planets else 1,
+        meets=_both(body != train.planet for body in link.bodies),
+        both_ways=_both(meshings[gear] > 1 for gear in _gears(link)),
+    )
+
+
+def _both(values: Iterable[bool]) -> tuple[bool, bool]:
+    first, second = values
+    return first, second
+
+
+def _gears(link: Link) -> Iterator[tuple[str, float]]:
+    """Both gears of a mesh by their body and their teeth."""
+    mesh: Any = link.mesh
+    yield from zip(link.bodies, np.abs(mesh.teeth).tolist(), strict=True)
 
 
 def _on_other_flanks(one: Case, number: int) -> Case:
@@ -251,11 +278,4 @@ def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
         *[_WORN] * worn,
         *[_WARMED] * warmed,
         *[_UNBRAKED] * (not any(train.planet in loss.between for loss in case.losses.values())),
-        Doubt(
-            "Stresses and safeties of a mesh are those of one planet with an equal share of the load, and of "
-            "teeth loaded in one direction; planets bear on both flanks, and sun and ring meet every planet "
-            "in a turn.",
-            about=("root_stress", "contact_stress"),
-            brief="Safeties: planets loaded one way, equal shares, one mesh a turn.",
-        ),
     )

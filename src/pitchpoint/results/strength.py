@@ -24,6 +24,7 @@ STRENGTH: Final = {
     "dynamic_factor_b": _factor("dynamic factor by method B", "K_v-B"),
     "dynamic_factor_c": _factor("dynamic factor by method C", "K_v-C"),
     "application_factor": _factor("application factor", "K_A"),
+    "mesh_load_factor": _factor("mesh load factor", "K_γ"),
     "rated_dynamic_factor": _factor("dynamic factor", "K_v"),
     "face_misalignment": length("misalignment over the face after running in", "F_βy"),
     "face_load_factor": _factor("face load factor of the flank", "K_Hβ"),

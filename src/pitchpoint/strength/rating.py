@@ -49,6 +49,7 @@ class Duty(eqx.Module):
         speed: of the driving gear [rad/s].
         cycles_flank, cycles_root: load cycles of both gears that their life factors count, without a life.
         life: time under load, whose cycles count [s]; not a number where none is asked.
+        engagements: of a tooth of each gear in one turn of it.
     """
 
     load: One
@@ -56,6 +57,7 @@ class Duty(eqx.Module):
     cycles_flank: Both
     cycles_root: Both
     life: One = eqx.field(default_factory=lambda: np.array(nan))
+    engagements: Both = eqx.field(default_factory=lambda: np.ones(2))
 
 
 class Factors(eqx.Module):
@@ -76,6 +78,7 @@ class Factors(eqx.Module):
         shaft: l, s and d_sh of the pinion, see `pinion_misalignment`; not numbers without it [m].
         helix_slopes: f_Hbeta of both gears; not numbers without a shaft [m].
         soft: 1 for through-hardened and normalised gears, which run in further.
+        mesh_load: K_gamma.
     """
 
     application: One
@@ -95,6 +98,12 @@ class Factors(eqx.Module):
     shaft: Float[Arrays, "3"] = eqx.field(default_factory=lambda: np.full(3, nan))
     helix_slopes: Both = eqx.field(default_factory=lambda: np.full(2, nan))
     soft: Both = eqx.field(default_factory=lambda: np.zeros(2))
+    mesh_load: One = eqx.field(default_factory=lambda: np.ones(()))
+
+    @property
+    def on_load(self) -> One:
+        """K_A K_gamma, by which the line load counts for the other load factors."""
+        return self.application * self.mesh_load
 
 
 class Strengths(eqx.Module):
@@ -175,7 +184,10 @@ def _counted(mesh: Mesh, duty: Duty) -> Duty:
     """The duty with the cycles of the life that is asked."""
     endless = jnp.isnan(duty.life)
     turns = jnp.abs(mesh.motion) * duty.speed * jnp.where(endless, 0.0, duty.life) / (2.0 * jnp.pi)
-    flank, root = (jnp.where(endless, one, turns) for one in (duty.cycles_flank, duty.cycles_root))
+    counted = turns * duty.engagements
+    flank, root = (
+        jnp.where(endless, many, counted) for many in (duty.cycles_flank, duty.cycles_root)
+    )
     return dataclasses.replace(duty, cycles_flank=flank, cycles_root=root)
 
 
@@ -248,6 +260,7 @@ def _load_factors(
     return {
         **dynamic,
         "application_factor": factors.application,
+        "mesh_load_factor": factors.mesh_load,
         "rated_dynamic_factor": used,
         "face_misalignment": misalignment,
         "face_load_factor": face,
@@ -265,7 +278,7 @@ def _dynamic(
     resonance = load_factors.resonance_number(
         speed=speed, teeth=teeth[0], ratio=teeth[1] / teeth[0]
     )
-    line_load = factors.application * forces.reference / pair.face_width
+    line_load = factors.on_load * forces.reference / pair.face_width
     by_c = load_factors.dynamic_factor(
         resonance=resonance,
         line_load=line_load,
@@ -343,7 +356,7 @@ def _across_the_face(
     strengths: Strengths,
 ) -> tuple[One, One]:
     """Misalignment F_betay and K_Hbeta by method C; not numbers where the shaft is not known."""
-    outer = factors.application * forces.reference / pair.face_width
+    outer = factors.on_load * forces.reference / pair.face_width
     line_load = outer * dynamic
     span, offset, diameter = _known(factors.shaft, 1.0)
     slopes = _known(factors.helix_slopes, 1e-6)
@@ -394,7 +407,7 @@ def _flank(
 ) -> Rating:
     found = _nominal_contact(pair, forces, strengths)
     found["single_contact_factor"] = single = _single_contact(pair, factors, strengths)
-    load = k["application_factor"] * k["rated_dynamic_factor"]
+    load = k["application_factor"] * k["mesh_load_factor"] * k["rated_dynamic_factor"]
     load *= k["face_load_factor"] * k["transverse_load_factor"]
     stress = single * found["nominal_contact_stress"] * jnp.sqrt(load)
     limiting = _flank_factors(pair, speed, strengths, finish, duty)
@@ -506,7 +519,7 @@ def _root(
         module=pair.module,
         factors=_product(shape),
     )
-    load = k["application_factor"] * k["rated_dynamic_factor"]
+    load = k["application_factor"] * k["mesh_load_factor"] * k["rated_dynamic_factor"]
     load *= k["root_face_load_factor"] * k["root_transverse_load_factor"]
     stress = nominal * load
     notch = dimensions["notch_parameter"], shape["stress_correction_factor"]

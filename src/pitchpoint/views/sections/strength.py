@@ -31,6 +31,7 @@ _STRESSES = ("contact_stress", "flank_safety", "root_stress", "root_safety")
 
 _LOAD = (
     "application_factor",
+    "mesh_load_factor",
     "rated_dynamic_factor",
     "dynamic_factor_b",
     "dynamic_factor_c",
