@@ -155,6 +155,14 @@ def test_what_is_shown_in_its_si_unit_stays_as_it_is() -> None:
     xr.testing.assert_identical(in_units(kept, "shown"), kept)
 
 
+def test_the_axis_of_a_sweep_is_in_the_unit_of_its_key() -> None:
+    told = {"sweep_key": "operation.speed", "axis_kind": "speed", "axis_unit": "rpm"}
+    swept = xr.Dataset({"axis": (("point",), np.pi / 30.0 * np.array([500.0, 3000.0]))}, attrs=told)
+    shown = in_units(swept, "shown")["axis"]
+    np.testing.assert_allclose(shown, [500.0, 3000.0])
+    assert shown.attrs["units"] == "rpm"
+
+
 def test_a_part_as_a_frame(result: pp.Result) -> None:
     frame = result.to_dataframe("operation", units="shown")
     assert [*frame.index] == ["iso_tr_14179_2", "xu_2007"]

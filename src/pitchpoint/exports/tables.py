@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from pitchpoint import units
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
@@ -97,13 +96,7 @@ def _unit(told: Variable, si: bool) -> str:
 
 
 def _described(data: xr.Dataset, name: str) -> Variable:
-    """What a variable is; of the axis of a sweep its key."""
-    if name == "axis" and "sweep_key" in data.attrs:
-        kind, shown = (str(data.attrs[one]) for one in ("axis_kind", "axis_unit"))
-        key = str(data.attrs["sweep_key"])
-        return Variable(
-            key, "", units.si_unit(kind) if kind else "1", shown, kind or "dimensionless"
-        )
+    """What a variable is."""
     try:
         return variable_of(data, name)
     except KeyError:  # of a publication, which describes its own in the data

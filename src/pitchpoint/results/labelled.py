@@ -12,7 +12,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.variable import Variable
-from pitchpoint.results.variables import VARIABLES, variable_of
+from pitchpoint.results.variables import SWEPT, VARIABLES, variable_of
 
 __all__ = ["Units", "attributes", "demand_units", "in_units", "labelled", "showing"]
 
@@ -94,7 +94,7 @@ def showing(unit: Units) -> AbstractContextManager[None]:
 def _displayed(data: xr.Dataset) -> xr.Dataset:
     made = data.copy()
     for name in [*map(str, data.variables)]:
-        if name in VARIABLES and data[name].dtype.kind == "f":
+        if (name in VARIABLES or name == SWEPT) and data[name].dtype.kind == "f":
             known = variable_of(data, name)
             if known.display != known.unit:
                 made[name] = _as_shown(data, name, known)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
+from pitchpoint import units
 from pitchpoint.results.strength import EXTREMES, STRENGTH
 from pitchpoint.results.variable import (
     End,
@@ -22,8 +23,10 @@ from pitchpoint.results.variable import (
     torsional_stiffness,
 )
 
-__all__ = ["VARIABLES", "places_of", "variable_of"]
+__all__ = ["SWEPT", "VARIABLES", "places_of", "variable_of"]
 
+SWEPT = "axis"
+"""Values of the key of a sweep, in a study that has one."""
 
 VARIABLES: dict[str, Variable] = {
     **STRENGTH,
@@ -718,7 +721,14 @@ def places_of(dimension: str) -> str:
 
 
 def variable_of(data: Any, name: str) -> Variable:
-    """The quantity of that name in a dataset, or none; of a member that travels where its unit says so."""
+    """The quantity of that name in a dataset, or none; of a member that travels where its unit says so.
+
+    The axis of a sweep is what its key says.
+    """
+    if name == SWEPT and "sweep_key" in data.attrs:
+        key, kind, shown = (str(data.attrs[one]) for one in ("sweep_key", "axis_kind", "axis_unit"))
+        unit = units.si_unit(kind) if kind else "1"
+        return Variable(key, "", unit, shown, kind or "dimensionless")
     known = VARIABLES[name]
     if known.travel is None or name not in data:
         return known
