@@ -7,7 +7,7 @@ from pathlib import Path
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.first_screen import FEW_LINES, first_screen
 
-NUMBER = re.compile(r"\d[\d.,e−+-]*")
+NUMBER = re.compile(r"\d(?:[\d.,e−+-]*[\de])?")
 REPORT = Path("results/pair/report.html")
 
 

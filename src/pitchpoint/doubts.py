@@ -8,6 +8,7 @@ from typing import Any, Final
 
 __all__ = [
     "BRIEF",
+    "DOUBT_FIELDS",
     "FELT",
     "GUESSED",
     "LEFT_OUT",
@@ -225,10 +226,14 @@ def without_repeats(sentences: Iterable[str]) -> list[Doubt]:
     return _merged(_merged(sentences, _STAGE, _stages), _GEAR, _gears)
 
 
+DOUBT_FIELDS: Final = ("kind", "extent", "moves", "about", "brief")
+"""What is stored beside each sentence, see `Doubt`."""
+
+
 def stored(sentences: Iterable[str]) -> dict[str, str]:
     """Attributes of a dataset that hold sentences and what they move."""
     every = [as_doubt(text) for text in sentences]
-    rest = [[one.kind, one.extent, one.moves, one.about, one.brief] for one in every]
+    rest = [[getattr(one, name) for name in DOUBT_FIELDS] for one in every]
     return {"warnings": json.dumps(every), "doubts": json.dumps(rest)}
 
 

@@ -43,6 +43,7 @@ from pitchpoint.views.report import _failing, render, write_report
 from pitchpoint.views.section import KeyFigure, Paragraph, naming
 from pitchpoint.views.sections import compared as comparison
 from pitchpoint.views.sections.answer import ANSWER, summary
+from pitchpoint.views.sections.back_driving import back_driving_figure
 from pitchpoint.views.sections.cycle import _mean_friction
 from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.path import loss_places, loss_sentence
@@ -668,6 +669,21 @@ def test_a_locked_mesh_is_said(wheel: Outcomes) -> None:
     back["mean_efficiency"] = back["mean_efficiency"] * np.nan
     locked = replace(outcome, parts={**outcome.parts, "back_driving": back})
     assert "self-locking: friction locks the mesh" in render({"default": locked})
+
+
+def test_a_drive_that_locks_or_nearly_does_is_told_among_the_first_figures(wheel: Outcomes) -> None:
+    outcome = wheel["default"]
+    back = outcome.parts["back_driving"].copy(deep=True)
+    law = laws(back)[0]
+    far = back_driving_figure(outcome, law)
+    assert far.order > 60.0 and far.detail.startswith("of the same power carried back")
+    back["nearest_friction"].values[:], back["nearest_jamming_coefficient"].values[:] = 0.25, 0.29
+    near = replace(outcome, parts={**outcome.parts, "back_driving": back})
+    figure = back_driving_figure(near, law)
+    assert (figure.order, figure.value) == (29.0, far.value)
+    assert figure.detail == "locks from μ = 0.29 on; up to 0.25 acts"
+    back["locked"] = back["locked"] | True
+    assert back_driving_figure(near, law).value == "self-locking"
 
 
 def test_a_law_that_locks_is_named_beside_the_others(wheel: Outcomes) -> None:

@@ -9,8 +9,11 @@ from sound import quick_first
 
 import pitchpoint as pp
 from pitchpoint.cases.library import names
+from pitchpoint.doubts import Doubt
 from pitchpoint.materials.lubricants import find
 from pitchpoint.notebook.figures import Plots
+from pitchpoint.results.labelled import flat_attributes
+from pitchpoint.results.store import dataset
 
 MOST = 1000
 
@@ -89,7 +92,27 @@ def test_attributes_are_data(result, tmp_path):
     again = xr.load_dataset(tmp_path / "cycle.nc", engine="h5netcdf")
     assert [*again.attrs["events"]] == events
     assert result.attributes("cycle")["solve"]["sentence"] == "a solution was found"
-    assert result.attributes("laws")["outside"][0]["law"] == "xu_2007"
+    (outside,) = result.attributes("laws")["outside"]
+    assert outside["law"] == "xu_2007"
+    assert result.laws.attrs["outside_law"] == ["xu_2007"]
+    assert result.laws.attrs["outside_reasons"] == ["; ".join(outside["reasons"])]
+    assert result.cycle.attrs["solve_sentence"] == "a solution was found"
+
+
+def test_no_attribute_is_a_text_of_json(result):
+    for part in result.parts:
+        for name, value in result.dataset(part).attrs.items():
+            values = value if isinstance(value, list) else [value]
+            assert all(isinstance(one, str | int | float) for one in values), (part, name)
+            assert not any(str(one).startswith(('[{"', '{"', "[[", '["')) for one in values), name
+
+
+def test_what_is_doubtful_is_flat():
+    told = Doubt("the grid is coarse.", moves=0.05, about=("mean_loss", "mean_friction"))
+    flat = flat_attributes(dataset({}, {}, warnings=[told], apart=[["a", 1.0], ["b", 2.0]]))
+    assert flat["warnings"] == flat["doubts_brief"] == ["the grid is coarse."]
+    assert (flat["doubts_moves"], flat["doubts_about"]) == ([0.05], ["mean_loss; mean_friction"])
+    assert (flat["apart_1"], flat["apart_2"]) == (["a", "b"], [1.0, 2.0])
 
 
 def test_a_run_of_chosen_analyses_gives_the_same_numbers(result):

@@ -10,12 +10,12 @@ import xarray as xr
 from pitchpoint.doubts import doubts_of, in_stage, stored
 from pitchpoint.status import Code
 
-__all__ = ["by_stage", "of_stage", "stages_of"]
+__all__ = ["OF_STAGES", "by_stage", "of_stage", "stages_of"]
 
 STAGE = "stage"
 """Dimension of the meshes of a drive."""
 
-_OF_STAGES = "of_stages"
+OF_STAGES = "of_stages"
 """Attribute with what each stage has of its own, as JSON: sizes, texts along dimensions, types and more."""
 
 _COUNTED = "{}_number"
@@ -68,13 +68,13 @@ def by_stage(each: Mapping[int, xr.Dataset]) -> xr.Dataset:
         version=stages[0].attrs["version"],
         solve=json.dumps(_worst([json.loads(data.attrs["solve"]) for data in stages])),
         **stored(sentences),
-        **{_OF_STAGES: json.dumps(own, default=lambda value: value.item())},
+        **{OF_STAGES: json.dumps(own, default=lambda value: value.item())},
     )
 
 
 def stages_of(data: xr.Dataset) -> tuple[int, ...]:
     """Numbers of the stages that a dataset is made of; none where it is of a mesh or of a drive."""
-    return tuple(int(number) for number in json.loads(data.attrs.get(_OF_STAGES, "{}")))
+    return tuple(int(number) for number in json.loads(data.attrs.get(OF_STAGES, "{}")))
 
 
 def of_stage(data: xr.Dataset, number: int) -> xr.Dataset:
@@ -84,7 +84,7 @@ def of_stage(data: xr.Dataset, number: int) -> xr.Dataset:
         data: as `by_stage` made it.
         number: of the stage.
     """
-    own = json.loads(data.attrs[_OF_STAGES])[str(number)]
+    own = json.loads(data.attrs[OF_STAGES])[str(number)]
     row = data[STAGE].values.tolist().index(number)
     labels = {dim: data[dim].values.tolist() for dim in own["texts"]}
     variables = {}

@@ -1,20 +1,30 @@
 """Parts of a result as people of xarray expect them: labelled, in the units asked for, NaN off contact."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext, suppress
 from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 
+from pitchpoint.doubts import DOUBT_FIELDS
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
+from pitchpoint.results.by_stage import OF_STAGES
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import SWEPT, VARIABLES, variable_of
 
-__all__ = ["Units", "attributes", "demand_units", "in_units", "labelled", "showing"]
+__all__ = [
+    "Units",
+    "attributes",
+    "demand_units",
+    "flat_attributes",
+    "in_units",
+    "labelled",
+    "showing",
+]
 
 Units = Literal["si", "shown"] | UnitsByKind
 """Units of a dataset: SI, those in which tables and figures show each variable, or a choice by kind."""
@@ -42,8 +52,9 @@ def labelled(data: xr.Dataset, unit: Units = "si") -> xr.Dataset:
     for name in [*made.dims]:
         if name not in made.coords:
             made = _labelled(made, str(name))
-    lists = {name: value for name, value in attributes(made).items() if _plain_list(value)}
-    return in_units(made.assign_attrs(lists), unit)
+    made = made.copy()
+    made.attrs = flat_attributes(data)
+    return in_units(made, unit)
 
 
 def attributes(data: xr.Dataset) -> dict[str, Any]:
@@ -58,13 +69,44 @@ def _data(value: Any) -> Any:
     return value
 
 
-def _plain_list(value: Any) -> bool:
-    """True for texts alone or numbers alone, one at least, which attributes of NetCDF may be."""
-    if not isinstance(value, list) or not value:
-        return False
-    return len({isinstance(one, str) for one in value}) == 1 and all(
-        isinstance(one, str | int | float) for one in value
-    )
+def flat_attributes(data: xr.Dataset) -> dict[str, Any]:
+    """Attributes as those of a NetCDF file may be: texts, numbers, and lists of either.
+
+    Of a mapping each value has its own name, `solve_residual` say, NaN where there is none; of a list of
+    mappings or of lists each column, `outside_law` say, whose own lists are texts with "; " between. What the
+    stages of a drive keep apart is in the variables.
+    """
+    nested = attributes(data)
+    if _DOUBTS in nested:
+        nested[_DOUBTS] = [dict(zip(DOUBT_FIELDS, one, strict=True)) for one in nested[_DOUBTS]]
+    return {
+        name: value
+        for whole, inside in nested.items()
+        if whole != OF_STAGES
+        for name, value in _flat(whole, inside)
+    }
+
+
+_DOUBTS = "doubts"
+
+
+def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    if isinstance(value, Mapping):
+        for key, inside in value.items():
+            yield from _flat(f"{name}_{key}", inside)
+    elif isinstance(value, list) and value and isinstance(value[0], Mapping | list):
+        every = [one if isinstance(one, Mapping) else dict(enumerate(one, 1)) for one in value]
+        for key in every[0]:
+            yield f"{name}_{key}", [_plain(one[key]) for one in every]
+    else:
+        yield name, value if isinstance(value, list) else _plain(value)
+
+
+def _plain(value: Any) -> Any:
+    """A text or a number; a list as a text, nothing as what is not a number."""
+    if isinstance(value, list):
+        return "; ".join(map(str, value))
+    return np.nan if value is None else value
 
 
 def demand_units(unit: Any) -> None:

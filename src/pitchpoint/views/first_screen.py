@@ -4,6 +4,7 @@ import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, zip_longest
+from math import isfinite
 from pathlib import Path
 from typing import Literal
 
@@ -12,7 +13,9 @@ from pitchpoint.doubts import as_doubt
 from pitchpoint.results.target_rows import in_words
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
+from pitchpoint.views.inputs import number
 from pitchpoint.views.inputs import words as input_words
+from pitchpoint.views.point import speed_ratio
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import KeyFigure, Page, key_figures, said
 
@@ -25,9 +28,6 @@ _DOUBTS, _OF_DOUBTS = 3, 5
 """Sentences on what fails or is doubtful, and lines that they may take: a narrow screen folds them."""
 
 Style = Literal["title", "fails", "doubt", "figure", "note"]
-
-_LEAST_DETAIL = 6
-"""Characters below which what is left of a detail says nothing."""
 
 
 @dataclass(frozen=True)
@@ -90,19 +90,19 @@ def _title(outcome: Outcome, variants: int) -> str:
 
 
 def _operation(outcome: Outcome) -> str:
-    """Speed, load, temperature and friction law in few words."""
+    """Speed, load and temperature in few words; of a drive of several meshes its ratio, else the law."""
     speed, torque, force, temperature = (
         show.pretty(input_words(outcome, "operation", key))
         for key in ("speed", "torque", "force", "temperature")
     )
-    law = ""
-    if "operation" in outcome.parts:
+    manifest, ratio, law = outcome.manifest, speed_ratio(outcome), ""
+    loaded, load = manifest["loaded"], torque or force
+    if manifest["stages"] and isfinite(ratio):
+        speed_out = show.quantity("output_speed", number(outcome, "operation", "speed") / ratio)
+        loaded, load = f"{loaded} at {speed_out}", f"{load}, ratio {show.number(ratio, 6)}"
+    elif "operation" in outcome.parts:
         law = f", friction {headline(outcome.parts)['law'].values[0]}"
-    manifest = outcome.manifest
-    return (
-        f"{manifest['driver']} at {speed}, {manifest['loaded']} with {torque or force}, "
-        f"oil {temperature}{law}"
-    )
+    return f"{manifest['driver']} at {speed}, {loaded} with {load}, oil {temperature}{law}"
 
 
 def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
@@ -155,10 +155,7 @@ def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
         if room < 0:  # words in place of a number
             lines.append(show.first_clauses(f"{name:<{name_width}}  {value}", width))
             continue
-        whole = show.one_line(figure.detail.lstrip(",; "))
-        detail = show.first_clauses(whole, room, 0.0) if whole else ""
-        says = detail == whole or len(detail) > _LEAST_DETAIL
-        lines.append(f"{begin}{detail if says else ''}".rstrip())
+        lines.append(f"{begin}{show.whole_clauses(figure.detail.lstrip(',; '), room)}".rstrip())
     return [Line(text, "figure") for text in lines]
 
 

@@ -19,6 +19,9 @@ _RESULTS, _GEARS, _INPUTS, _COLUMNS, _DOUBTS, _ASSUMED = 15, 17, 10, 4, 4, 10
 """How much one page has room for: key figures, rows of the gears, inputs that differ, variants, doubts,
 assumed inputs."""
 
+_PICTURE = 20
+"""Rows of a table that are as high as the picture and what stands under it."""
+
 _LINE, _BESIDE = 280, 90
 """Characters of a doubt, and of what stands beside a key figure."""
 
@@ -44,7 +47,7 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
     doubts = list(dict.fromkeys(text for one in every for text in one.manifest["warnings"]))
     return {
         "of": next(iter(page.outcomes)) if page.several else "",
-        "gears": [] if page.designs else [_cut(table, _GEARS) for table in tables],
+        "columns": _columns([] if page.designs else [_cut(table, _GEARS) for table in tables]),
         "facts": [] if page.designs else _facts(outcome),
         "differing": _differing(page),
         "results": _results(page, outcome),
@@ -57,6 +60,18 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
         "code": manifest["surroundings"].get("code", ""),
         "fingerprints": _fingerprints(page),
     }
+
+
+def _columns(tables: Sequence[Table]) -> tuple[list[Table], list[Table]]:
+    """Tables of the gears on the left and, as far as these are longer, under the picture on the right."""
+    left: list[Table] = []
+    right: list[Table] = []
+    heights = [0, _PICTURE]
+    for table in tables:
+        side = int(heights[0] > heights[1])
+        (left, right)[side].append(table)
+        heights[side] += len([*table.rows]) + 1
+    return left, right
 
 
 def _cut(table: Table, room: int) -> Table:
@@ -133,7 +148,7 @@ def _results(page: Page, outcome: Outcome) -> Table:
 
 
 def _detail(words: str) -> str:
-    return show.first_clauses(words.lstrip(",; "), _BESIDE)
+    return show.whole_clauses(words.lstrip(",; "), _BESIDE)
 
 
 def _main_figures(page: Page, shown: Iterable[Panel]) -> Iterator[Figure]:

@@ -9,7 +9,15 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.inputs import given, number
 
-__all__ = ["OperatingPoint", "Period", "of_geometry", "operating_point", "period_of"]
+__all__ = [
+    "OperatingPoint",
+    "Period",
+    "member_names",
+    "of_geometry",
+    "operating_point",
+    "period_of",
+    "speed_ratio",
+]
 
 _WAY, _TURN = length("", ""), angle("", "")
 
@@ -75,6 +83,24 @@ def operating_point(outcome: Outcome) -> OperatingPoint:
     return OperatingPoint(
         **{name: number(outcome, "operation", key) for name, key in names.items()}
     )
+
+
+def member_names(outcome: Outcome, stage: int) -> dict[str, str]:
+    """Members of a stage, "gear 1" say, and the bodies of a train that they are; else themselves."""
+    known = next(one for one in outcome.manifest["stages"] if one["number"] == stage)
+    bodies = str(known["bodies"]).split(" and ")
+    members = [str(member) for member in known["members"]]
+    return dict(zip(members, bodies if len(bodies) == len(members) else members, strict=True))
+
+
+def speed_ratio(outcome: Outcome) -> float:
+    """Speed of the driver over that of the loaded member; NaN where one of them travels."""
+    manifest = outcome.manifest
+    motion = dict(zip(manifest["members"], manifest["motion"], strict=True))
+    driver, loaded = manifest["driver"], manifest["loaded"]
+    if manifest.get("travels") or not motion.get(loaded) or driver not in motion:
+        return np.nan
+    return float(motion[driver]) / float(motion[loaded])
 
 
 def period_of(outcome: Outcome) -> Period:

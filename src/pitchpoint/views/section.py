@@ -249,8 +249,14 @@ class Page:
         there = self.having(part)
         for position, (name, outcome) in enumerate(self.outcomes.items()):
             for k, (stage, mesh) in enumerate(of_meshes(outcome, part) if name in there else ()):
-                titles = [name if self.several else "", stage]
+                titles = [name if self.several else "", _with_bodies(stage, outcome)]
                 yield position + k * len(self.outcomes), ", ".join(filter(None, titles)), mesh
+
+
+def _with_bodies(stage: str, outcome: Outcome) -> str:
+    """Title of a stage with its bodies, where it is a mesh of a train."""
+    known = {f"stage {one['number']}": one["bodies"] for one in outcome.manifest.get("stages", ())}
+    return ": ".join(filter(None, (stage, known.get(stage, ""))))
 
 
 def of_meshes(outcome: Outcome, *parts: str) -> list[tuple[str, Outcome]]:

@@ -25,10 +25,15 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
-from pitchpoint.views.point import operating_point
+from pitchpoint.views.point import operating_point, speed_ratio
 from pitchpoint.views.screen import cell, efficiency_of, head, shown
 from pitchpoint.views.section import Block, Drawn, KeyFigure, Page, Printed, Section, key_figures
-from pitchpoint.views.sections.back_driving import back_driving, jamming, locks_from
+from pitchpoint.views.sections.back_driving import (
+    back_driving,
+    back_driving_figure,
+    jamming,
+    locks_from,
+)
 from pitchpoint.views.sections.beside import loss_split
 from pitchpoint.views.sections.spread import spread, spread_sentence
 
@@ -93,14 +98,15 @@ def _sums_of_curves(page: Page) -> Iterator[tuple[Curve, list[str]]]:
             yield page.curves[variant, law], cells
 
 
-def _ratio(manifest: Mapping[str, Any]) -> str:
+def _ratio(outcome: Outcome) -> str:
     """Speed of the driver over that of the loaded member in words; empty where one of them travels."""
-    motion = dict(zip(manifest["members"], manifest["motion"], strict=True))
-    driver, loaded = manifest["driver"], manifest["loaded"]
-    if manifest.get("travels") or not motion.get(loaded) or driver not in motion:
-        return ""
-    ratio = float(motion[driver]) / float(motion[loaded])
-    return f"{show.number(ratio, 6)}, speed of {show.the(driver)} over that of {show.the(loaded)}"
+    ratio = speed_ratio(outcome)
+    driver, loaded = (show.the(outcome.manifest[end]) for end in ("driver", "loaded"))
+    return (
+        ""
+        if np.isnan(ratio)
+        else f"{show.number(ratio, 6)}, speed of {driver} over that of {loaded}"
+    )
 
 
 def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
@@ -119,7 +125,7 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         ],
         "averaging": "" if single else _averaging(outcome),
         "operation": operation_words(outcome),
-        "ratio": "" if single else _ratio(manifest),
+        "ratio": "" if single else _ratio(outcome),
         "laws": manifest["laws"],
         "finished": manifest["finished"],
         "settings": set_for_run(manifest),
@@ -136,10 +142,7 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
 
 def _tile(figure: KeyFigure) -> KeyFigure:
     """A key figure with as much beside its value as a tile has room for."""
-    detail = (
-        show.first_clauses(figure.detail.lstrip(",; "), _IN_A_TILE, 0.0) if figure.detail else ""
-    )
-    return replace(figure, detail=detail)
+    return replace(figure, detail=show.whole_clauses(figure.detail.lstrip(",; "), _IN_A_TILE))
 
 
 _IN_A_TILE = 64
@@ -478,11 +481,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         for place, (name, value) in enumerate(_borne(outcome, position)):
             yield KeyFigure(78.0 + 0.1 * place, _BRIEFLY.get(name, name).capitalize(), value)
         if "back_driving" in outcome.parts:
-            words = back_driving(outcome, law)
-            value, _, detail = words.partition(", ")
-            if value[:1].isdigit():
-                detail = ", ".join(filter(None, ("of the same power carried back", detail)))
-            yield KeyFigure(77.0, "Back-driving", value, detail)
+            yield back_driving_figure(outcome, law)
 
 
 _OF_FILM = ("film_thickness", "lambda_ratio", "pressure")
@@ -503,7 +502,7 @@ def _efficiencies(
 ) -> Iterator[KeyFigure]:
     """The efficiency; where a drive lacks a part that loses, that first, and below it what is known."""
     if lacks := _lacks(data):
-        yield KeyFigure(10.0, "Efficiency", "not known", f"losses has none of the {lacks}")
+        yield KeyFigure(10.0, "Efficiency", "not known", f"lacks the {lacks}, see [losses]")
     place, name = (26.0, "Efficiency without it") if lacks else (10.0, "Efficiency")
     yield figure(place, name, "mean_efficiency", _certainty(outcome, data))
 
@@ -512,6 +511,7 @@ def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
     """What the efficiency is of, and how far the laws that apply disagree."""
     scope = covers(data).partition(":")[0]
     apart = spread(outcome)
+    others = [*_by_other_laws(outcome, data)]
     if not any(holding(outcome.parts)) and data is outcome.parts["operation"]:
         told = [scope, "no fitted law is in its range here"]
     elif apart and apart["points"]:
@@ -519,7 +519,10 @@ def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
     else:
         over = _range(data, "efficiency", lambda name: float(data[name].values[0, 0]))
         told = [scope, f"over the cycle {over}"]
-    return _clauses(*_by_other_laws(outcome, data), *told)
+    if not outcome.manifest["stages"]:  # the line above has the law
+        return _clauses(*others, *told)
+    law = f"by {data['law'].values[0]}"
+    return _clauses(*others, told.pop(), law, *told)
 
 
 def _lacks(data: xr.Dataset) -> str:
@@ -537,9 +540,8 @@ def _by_other_laws(outcome: Outcome, data: xr.Dataset) -> Iterator[str]:
     for law, value in zip(laws(operation), operation["mean_efficiency"].values[:, 0], strict=True):
         if law != laws(data)[0]:
             of_case = "" if any(holding(outcome.parts)) else " of the case"
-            apart = (
-                f"{of_case}, out of its range" if law in outside and data is not operation else ""
-            )
+            outside_here = law in outside and data is not operation
+            apart = f"{of_case} out of its range" if outside_here else ""
             yield f"{show.quantity('mean_efficiency', float(value))} by {law}{apart}"
 
 

@@ -8,8 +8,9 @@ from pitchpoint.analyses.caveats import jamming_words
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import laws
+from pitchpoint.views.section import KeyFigure
 
-__all__ = ["back_driving", "jamming", "locks_from"]
+__all__ = ["back_driving", "back_driving_figure", "jamming", "locks_from"]
 
 ROUGHEST = 1.0
 """Friction coefficient that no lubricated flank reaches: where a mesh locks beyond it is no figure."""
@@ -22,23 +23,56 @@ def back_driving(outcome: Outcome, law: str) -> str:
         return "not computed"
     position = laws(data).index(law)
     if bool(data["locked"].values[position, 0]):
-        ends = ("nearest_friction", "nearest_jamming_coefficient")
-        acting, limit = (float(data[name].values[position, 0]) for name in ends)
-        return f"self-locking: friction locks the mesh; {jamming_words(acting, limit)}"
+        return f"self-locking: friction locks the mesh; {jamming_words(*_nearest(data, position))}"
     value = float(data["mean_efficiency"].values[position, 0])
     if not np.isfinite(value):
         return "undefined, no power"
     told = f"{show.quantity('mean_efficiency', value)}, friction does not lock the mesh"
-    limit = _limit(data, position)
-    if not np.isfinite(limit):
+    if not np.isfinite(_limit(data, position)):
         return told
-    return f"{told} ({_would(limit)})"
+    return f"{told} ({_would(data, position)})"
 
 
-def _would(limit: float) -> str:
+def back_driving_figure(outcome: Outcome, law: str) -> KeyFigure:
+    """The drive backwards as a figure of the first screen, among the first where it locks or nearly does.
+
+    Args:
+        outcome: that has its part.
+        law: of the case.
+    """
+    data = outcome.parts["back_driving"]
+    position = laws(data).index(law)
+    value = float(data["mean_efficiency"].values[position, 0])
+    acting, limit = _nearest(data, position)
+    locked = bool(data["locked"].values[position, 0])
+    if locked or acting > 0.5 * limit:
+        words = "self-locking" if locked else show.quantity("mean_efficiency", value)
+        at = f"locks from μ = {show.number(limit)} on; up to {show.number(acting)} acts"
+        return KeyFigure(_NEARLY_LOCKED, _NAME, words, at)
+    if not np.isfinite(value):
+        return KeyFigure(_MOVES, _NAME, "undefined", "no power")
+    words = "of the same power carried back; friction does not lock it"
+    would = f"; {_would(data, position)}" if np.isfinite(_limit(data, position)) else ""
+    return KeyFigure(_MOVES, _NAME, show.quantity("mean_efficiency", value), f"{words}{would}")
+
+
+_NAME = "Back-driving"
+_NEARLY_LOCKED, _MOVES = 29.0, 77.0
+"""Places among the figures; half of the friction that locks takes about half of the power."""
+
+
+def _nearest(data: Any, position: int) -> tuple[float, float]:
+    """Friction coefficient where the mesh is nearest to locking, and the one at which it locks there."""
+    names = ("nearest_friction", "nearest_jamming_coefficient")
+    acting, limit = (float(data[name].values[position, 0]) for name in names)
+    return acting, limit
+
+
+def _would(data: Any, position: int) -> str:
+    limit = _limit(data, position)
     if limit > ROUGHEST:
         return f"nor would it below μ = {ROUGHEST:g}"
-    return f"it would from μ = {show.number(limit)} on"
+    return f"it would from μ = {show.number(limit)} on, up to {show.number(_nearest(data, position)[0])} acts"
 
 
 def jamming(data: Any, position: int) -> str:

@@ -11,6 +11,7 @@ import xarray as xr
 from pitchpoint.doubts import apart, doubts_of, without_repeats
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
+from pitchpoint.views.point import member_names
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
     Block,
@@ -93,13 +94,16 @@ _WHERE_ASKED = ("dynamic_factor_b", "dynamic_factor_c", "resonance_ratio", "face
 _COUNTED = ("flank_cycles", "root_cycles")
 
 
-def _pairs(data: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
-    """Ratings of each stage with its name; one without a name of a pair by itself."""
+def _pairs(outcome: Outcome) -> Iterator[tuple[str, xr.Dataset]]:
+    """Ratings of each stage with its name and those of its gears; one without a name of a pair by itself."""
+    data = outcome.parts["strength"]
     if "stage" not in data.dims:
         yield "", data
         return
     for at, stage in enumerate(data["stage"].values):
-        yield f"stage {stage}", data.isel(stage=at)
+        names = member_names(outcome, int(stage))
+        gears = [names[str(gear)] for gear in data["gear"].values]
+        yield f"stage {stage}", data.isel(stage=at).assign_coords(gear=gears)
 
 
 def strength_rows(outcome: Outcome) -> list[dict[str, str]]:
@@ -108,7 +112,7 @@ def strength_rows(outcome: Outcome) -> list[dict[str, str]]:
         ({"stage": name.removeprefix("stage ")} if name else {})
         | {"gear": str(gear)}
         | {head(one, data): _cell(data, one, at) for one in (*_FORCES, *_STRESSES)}
-        for name, data in _pairs(outcome.parts["strength"])
+        for name, data in _pairs(outcome)
         for at, gear in enumerate(data["gear"].values)
     ]
 
@@ -171,7 +175,7 @@ def _blocks_of(_: int, outcome: Outcome) -> Iterator[Block]:
         yield Paragraph(text, "warning")
     for text in _caveats(whole):
         yield Paragraph(text, "note")
-    for name, data in _pairs(whole):
+    for name, data in _pairs(outcome):
         tables = [
             _table(title, names, data)
             for title, names in (("Load factors", _LOAD), ("Flank", _FLANK), ("Root", _ROOT))
@@ -196,18 +200,30 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
         if not known.isnull().all():
             at = known.argmin([*known.dims])
             least = known.isel(at)
-            duty = f"{_place(least)}; {_duty(data, at, f'{part}_cycles')}"
-            yield KeyFigure(order, f"Safety of {where}", show.number(float(least)), f"at {duty}")
+            duty = f"at {_place(least, outcome)}; {_duty(data, at, f'{part}_cycles')}"
+            detail = "; ".join([*_doubted(outcome, least, stress), duty])
+            yield KeyFigure(order, f"Safety of {where}", show.number(float(least)), detail)
         elif data[stress].notnull().any():
             place = data[stress].argmax([*data[stress].dims])
             most = data[stress].isel(place)
             value = show.quantity(stress, float(most), of=data)
             key = f"materials.gear_{int(place['gear']) + 1}"
-            detail = (
-                f"no safety: {key} has no limits; largest at {_place(most)}; name one that has them, or give "
-                f"strength.sigma_{limit}"
+            lacks = (
+                f"no safety: {key} has no limits; largest at {_place(most, outcome)}; name one that has "
+                f"them, or give strength.sigma_{limit}"
             )
+            detail = "; ".join([*_doubted(outcome, most, stress), lacks])
             yield KeyFigure(order, f"Stress of {where}", value, detail)
+
+
+def _doubted(outcome: Outcome, value: xr.DataArray, stress: str) -> list[str]:
+    """What is doubtful of the stress in the stage of a value, briefly; nothing of one mesh alone."""
+    if "stage" not in value.coords:
+        return []
+    begin = f"Stage {value['stage'].values}: "
+    told = chain(*(doubts_of(part.attrs) for part in outcome.parts.values()))
+    briefs = (one.brief for one in told if stress in one.about)
+    return [one.removeprefix(begin).rstrip(".") for one in briefs if one.startswith(begin)]
 
 
 def _duty(data: xr.Dataset, place: Mapping[Hashable, xr.DataArray], cycles: str) -> str:
@@ -228,8 +244,11 @@ def _sums_up(outcome: Outcome) -> Iterator[Table | Paragraph]:
     if data is None:
         return
     rows = [
-        (_place(pair["gear"][at]), *(_cell(pair, name, at) for name in _STRESSES))
-        for _, pair in _pairs(data)
+        (
+            ", ".join(filter(None, [str(pair["gear"].values[at]), stage])),
+            *(_cell(pair, name, at) for name in _STRESSES),
+        )
+        for stage, pair in _pairs(outcome)
         for at in range(2)
     ]
     yield Table(["Strength", *(head(name, data) for name in _STRESSES)], rows, caption="Strength")
@@ -237,10 +256,12 @@ def _sums_up(outcome: Outcome) -> Iterator[Table | Paragraph]:
         yield Paragraph(text)
 
 
-def _place(value: xr.DataArray) -> str:
-    """Gear of a value, and its stage where there are several."""
-    stage = f" of stage {value['stage'].values}" if "stage" in value.coords else ""
-    return f"{value['gear'].values}{stage}"
+def _place(value: xr.DataArray, outcome: Outcome) -> str:
+    """Gear of a value, and its stage where there are several; the body that it is where these have names."""
+    if "stage" not in value.coords:
+        return str(value["gear"].values)
+    stage = int(value["stage"].values)
+    return f"{member_names(outcome, stage)[str(value['gear'].values)]} of stage {stage}"
 
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:
