@@ -289,7 +289,7 @@ def run(
     with _shown_units(outcomes):
         if full:
             _in_full(outcomes)
-        _first_screen(outcomes, folder / "report.html")
+        _first_screen(outcomes, folder / "report.html", tables=not full)
 
 
 def _in_full(outcomes: "dict[str, Outcome]") -> None:
@@ -305,15 +305,17 @@ def _in_full(outcomes: "dict[str, Outcome]") -> None:
 _STYLES = {"title": "bold", "fails": "bold red", "doubt": "yellow", "figure": "", "note": "dim"}
 
 
-def _first_screen(outcomes: "dict[str, Outcome]", report: Path) -> None:
-    """The answer; several variants side by side in a table."""
-    from pitchpoint.views.first_screen import beside_each_other, first_screen
+def _first_screen(outcomes: "dict[str, Outcome]", report: Path, *, tables: bool) -> None:
+    """The answer; several variants side by side in a table, and sweeps that were asked for."""
+    from pitchpoint.views.first_screen import beside_each_other, first_screen, swept_beside
 
     console = _console()
-    for line in first_screen(outcomes, report, console.width):
+    for line in first_screen(outcomes, report, console.width, tables=tables):
         console.print(_plain_line(line.text), style=_STYLES[line.style], soft_wrap=True)
     if len(outcomes) > 1:
         _table(beside_each_other(outcomes), ("", *outcomes))
+    for rows in swept_beside(outcomes) if tables else ():
+        _table(rows, tuple(rows[0]))
 
 
 @app.command()

@@ -6,7 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import bank
+import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 from screens import REPORT, faults_of_the_screen, screen
@@ -22,6 +24,7 @@ from pitchpoint.views.first_screen import (
     FEW_LINES,
     _aligned,
     beside_each_other,
+    swept_beside,
 )
 from pitchpoint.views.point import member_names
 from pitchpoint.views.registry import in_order
@@ -45,6 +48,28 @@ def shown(outcomes: Mapping[str, Outcome], width: int = 80) -> list[str]:
     assert len(lines) <= FEW_LINES
     assert all(len(line) <= width for line in lines)
     return lines
+
+
+def test_a_sweep_that_was_asked_for_stands_below_the_answer(pair: dict[str, Outcome]) -> None:
+    """Point by point, what is known at some of them; a long one is left to its tables."""
+    known = {"mean_efficiency": [0.98, np.nan], "mean_loss": [12.5, 30.0]}
+    values = {name: (("law", "point"), np.array([each])) for name, each in known.items()}
+    told = {"sweep_key": "operation.speed", "axis_kind": "rotational speed", "axis_unit": "rpm"}
+    speeds = {"axis": (("point",), np.array([500.0, 3000.0]) * np.pi / 30.0)}
+    swept = xr.Dataset({**values, **speeds}, {"law": ["xu_2007"]}, told)
+
+    def run(data: xr.Dataset) -> dict[str, Outcome]:
+        parts = {**pair["default"].parts, "study_sweep_operation_speed": data}
+        return {"default": replace(pair["default"], parts=parts)}
+
+    assert swept_beside(run(swept)) == [
+        [
+            {"operation.speed": "500 rpm", "efficiency [%]": "98", "loss [W]": "12.5"},
+            {"operation.speed": "3000 rpm", "efficiency [%]": "–", "loss [W]": "30"},
+        ]
+    ]
+    assert swept_beside(run(xr.concat([swept] * 13, "point", data_vars="all"))) == []
+    assert swept_beside(pair) == []
 
 
 def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:

@@ -8,6 +8,8 @@ from math import isfinite
 from pathlib import Path
 from typing import Literal
 
+import xarray as xr
+
 from pitchpoint.analyses.figures import headline
 from pitchpoint.doubts import as_doubt
 from pitchpoint.results.target_rows import in_words
@@ -18,8 +20,9 @@ from pitchpoint.views.inputs import words as input_words
 from pitchpoint.views.point import speed_ratio
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import KeyFigure, Page, key_figures, said
+from pitchpoint.views.sections.studies import is_swept, swept_place
 
-__all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen"]
+__all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen", "swept_beside"]
 
 FEW_LINES = 12
 """Lines of a first screen."""
@@ -38,19 +41,37 @@ class Line:
     style: Style = "note"
 
 
-def first_screen(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Line]:
+MOST_SWEPT = 24
+"""Rows of a sweep that still stand on a first screen."""
+
+SWEPT_HEADS = {
+    "mean_efficiency": "efficiency",
+    "mean_input_torque": "input",
+    "mean_loss": "loss",
+    "mean_friction": "friction",
+    "min_lambda_ratio": "film ratio",
+    "least_flank_safety": "S flank",
+    "least_root_safety": "S root",
+}
+"""What a sweep on a first screen has of its points, under short heads."""
+
+
+def first_screen(
+    outcomes: Mapping[str, Outcome], report: Path, width: int, *, tables: bool = True
+) -> list[Line]:
     """Lines that answer for one variant; for several only what fails or is doubtful, see `beside_each_other`.
 
     Args:
         outcomes: by variant.
         report: the page that holds everything else.
         width: of the screen, in characters; no line is longer, and no number cut.
+        tables: False to leave out of which sections there are tables, where they stand above.
     """
     outcome = next(iter(outcomes.values()))
     title = _title(outcome, len(outcomes))
     at = _operation(outcome) if len(outcomes) == 1 else ""
     doubts = _doubts(outcomes, width)
-    more = _more(outcomes, report, width)
+    more = _more(outcomes, report, width)[: None if tables else 1]
     rows = [*_rows_met(outcomes)]
     folded = [line for text in rows for line in _folded(text, width)]
     if 1 + len(doubts) + len(folded) + len(more) > FEW_LINES:
@@ -80,6 +101,38 @@ def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
         {"": name} | {variant: own.get(name, "–") for variant, own in values.items()}
         for name in names
     ]
+
+
+def swept_beside(outcomes: Mapping[str, Outcome]) -> list[list[dict[str, str]]]:
+    """Sweeps of the command line: for each the rows of its points, by variant and friction law.
+
+    None of a sweep of more rows than a first screen has room for.
+    """
+    sweeps: dict[str, list[dict[str, str]]] = {}
+    for variant, outcome in outcomes.items():
+        for name, data in outcome.parts.items():
+            if is_swept(name, data):
+                named = {"variant": variant} if len(outcomes) > 1 else {}
+                sweeps.setdefault(name, []).extend(named | row for row in _swept(data))
+    return [rows for rows in sweeps.values() if len(rows) <= MOST_SWEPT]
+
+
+def _swept(data: xr.Dataset) -> Iterator[dict[str, str]]:
+    """A row for each point under each law."""
+    points, laws = (range(data.sizes[dim]) for dim in ("point", "law"))
+    units = {name: show.unit_of(name, data) for name in SWEPT_HEADS}
+    heads = {n: f"{head} [{units[n]}]" if units[n] else head for n, head in SWEPT_HEADS.items()}
+    known = {n: head for n, head in heads.items() if n in data and not data[n].isnull().all()}
+    for point in points:
+        for law in laws:
+            named = {"law": str(data["law"].values[law])} if len(laws) > 1 else {}
+            values = {name: float(data[name].values[law, point]) for name in known}
+            cells = {known[name]: _cell(name, value, data) for name, value in values.items()}
+            yield swept_place(data, point) | named | cells
+
+
+def _cell(name: str, value: float, data: xr.Dataset) -> str:
+    return show.quantity(name, value, with_unit=False, of=data) if isfinite(value) else "–"
 
 
 def _title(outcome: Outcome, variants: int) -> str:

@@ -36,7 +36,7 @@ from pitchpoint.views.screen import efficiency_of, head, shown
 from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Section, Table
 from pitchpoint.views.sections.design_chart import design_charts, is_design_chart
 
-__all__ = ["STUDIES", "study_panels", "swept_rows"]
+__all__ = ["STUDIES", "is_swept", "study_panels", "swept_place", "swept_rows"]
 
 _SHOWN = ("mean_efficiency", "efficiency_fluctuation", "mean_input_torque", "torque_ripple")
 _MOVING = ("mean_stiffness", "transmission_error_range", "largest_dynamic_factor")
@@ -375,8 +375,19 @@ SWEPT = (
 def _screen(outcome: Outcome) -> Iterator[Printed]:
     """Every sweep of the command line: point by point, each friction law by name."""
     for name, data in outcome.parts.items():
-        if name.startswith("study_sweep_") and "axis" in data:
+        if is_swept(name, data):
             yield Printed(str(data.attrs["title"]), swept_rows(data))
+
+
+def is_swept(name: str, data: xr.Dataset) -> bool:
+    """True for a part that is a sweep of the command line."""
+    return name.startswith("study_sweep_") and "axis" in data
+
+
+def swept_place(data: xr.Dataset, point: int) -> dict[str, str]:
+    """The key of a sweep with its value at a point, as case files write it."""
+    key = str(data.attrs["sweep_key"])
+    return {key: _place(data["axis"].values[point], key)}
 
 
 def swept_rows(data: xr.Dataset) -> list[dict[str, str]]:
@@ -389,8 +400,6 @@ def swept_rows(data: xr.Dataset) -> list[dict[str, str]]:
 
 
 def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
-    key = data.attrs["sweep_key"]
-    place = {key: _place(data["axis"].values[point], key)}
     names = CONTACT if of_contact(data) else (*SWEPT, *_of_strength([data], vary=True))
     if idle := all(_lossless(data, each) for each in range(data.sizes["law"])):
         names = tuple(name for name in names if name not in _OF_LOSS)
@@ -399,7 +408,12 @@ def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
         for n, value in ((n, float(data[n].values[law, point])) for n in names if n in data)
     }
     told = {} if idle else efficiency_of(data)
-    return {**place, "friction law": str(data["law"].values[law]), **cells, **told}
+    return {
+        **swept_place(data, point),
+        "friction law": str(data["law"].values[law]),
+        **cells,
+        **told,
+    }
 
 
 def _place(value: float, key: str) -> str:
