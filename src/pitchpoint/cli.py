@@ -776,7 +776,7 @@ def _studies(texts: list[str]) -> dict[str, "Study"]:
 
 
 def _sweeps(texts: list[str], option: str) -> "Iterator[Sweep]":
-    from pitchpoint.cases.schema import Sweep
+    from pitchpoint.cases.schema import Sweep, one_value
     from pitchpoint.input.quantities import shown
 
     for text in texts:
@@ -788,6 +788,8 @@ def _sweeps(texts: list[str], option: str) -> "Iterator[Sweep]":
                 key=option,
             )
         key, start, stop, count = map(str.strip, given.groups())
+        if float(count) < 2 and start != stop:
+            raise InputError(one_value(start, stop), key=option)
         yield Sweep(key=key, start=start, stop=stop, count=float(count))
 
 

@@ -826,6 +826,14 @@ def bad_sweeps() -> Iterator[Bad]:
     yield Bad("both", sweep, both, ("start and stop, or values",), ".".join(sweep))
     empty = {"key": "gears.module", "values": []}
     yield Bad("no values", sweep, empty, ("0 values", "1 to 100000"), ".".join(sweep))
+    two_ends = {"key": "gears.module", "start": "2 mm", "stop": "3 mm", "count": 1}
+    yield Bad(
+        "one value",
+        sweep,
+        two_ends,
+        ('both "2 mm" and "3 mm"; write 2',),
+        ".".join((*sweep, "count")),
+    )
 
 
 def bad_parameters() -> Iterator[Bad]:

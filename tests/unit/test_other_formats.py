@@ -30,7 +30,13 @@ FILES = {
     ),
     "a bare unit": (b"module = 2.5 mm  # m", 'unit outside of quotation marks; write "2.5 mm"'),
     "a colon": (b'[gears]\nmodule: "2 mm"', 'line 2 has a colon; write module = "2 mm"'),
-    "another": (b"[gears", "is not a TOML file: Expected ']'"),
+    "an open table": (b"[gears", "line 1 opens a table that it does not close; write [gears]"),
+    "an open list of tables": (b"# a, b\n\n[[stages]\n", "does not close; write [[stages]]"),
+    "a table twice": (
+        b"# Spur pair, both gears of steel.\n# And more; so far.\n[gears]\nteeth = 20\n[gears]\n",
+        "line 5 has a table that was there before, [gears]; write it once",
+    ),
+    "another": (b"[gears]\nteeth =", "is not a TOML file: Invalid value"),
 }
 
 

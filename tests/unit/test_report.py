@@ -681,7 +681,7 @@ def test_a_drive_that_locks_or_nearly_does_is_told_among_the_first_figures(wheel
     near = replace(outcome, parts={**outcome.parts, "back_driving": back})
     figure = back_driving_figure(near, law)
     assert (figure.order, figure.value) == (29.0, far.value)
-    assert figure.detail == "locks from μ = 0.29 on; up to 0.25 acts"
+    assert figure.detail == "locks from μ = 0.29 on; at most 0.25 acts"
     back["locked"] = back["locked"] | True
     assert back_driving_figure(near, law).value == "self-locking"
 

@@ -17,7 +17,7 @@ _SHAPES = (
     ("XML or HTML", re.compile(r"\s*<[?!A-Za-z]")),
     (
         "a table of values, CSV say",
-        re.compile(r"(?:[ \t]*#.*\n)*[^=\n\[\]]*[,;\t][^=\n\[\]]*(\n|$)"),
+        re.compile(r"(?:[ \t]*(?:#.*)?\n)*(?![ \t]*#)[^=\n\[\]]*[,;\t][^=\n\[\]]*(\n|$)"),
     ),
 )
 """Formats, and how a file of each begins."""
@@ -56,7 +56,8 @@ def not_toml(text: str, error: ValueError) -> str:
         if shape.match(text[:2000]):
             return f"looks like {name}; {_CASE}"
     again = bool(_AGAIN.search(str(error)))
-    last = len(text.splitlines()) if again else 0  # a key at the end of a file has no line told
+    at_end = again or "end of document" in str(error)  # where the reader tells no line
+    last = len(text.splitlines()) if at_end else 0
     number = int((_LINE.search(str(error)) or [0, last])[1])
     line = [*text.splitlines(), ""][number - 1] if 0 < number <= text.count("\n") + 1 else ""
     return f"is not a TOML file: {_mended(line, number, again) or error}"
@@ -82,6 +83,9 @@ def _mended(line: str, number: int, again: bool) -> str:
         meant = comma_readings(comma[0])
         which = "before decimals" if len(meant) == 1 else "in a number"
         return f"{at} has a comma {which}, {comma[0]}; write {' or '.join(meant)}"
+    if (opened := code.count("[")) > code.count("]") and code.startswith("["):
+        closed = f"{code.rstrip('] ')}{']' * opened}"
+        return f"{at} opens a table that it does not close; write {shorten(closed)}"
     if again:
         what = "table" if code.startswith("[") else "key"
         return f"{at} has a {what} that was there before, {shorten(code)}; write it once"

@@ -1065,6 +1065,11 @@ def _check_patch(table: FilmTable) -> None:
         raise InputError(f"{table.pattern:g} was given; {told}", key="pattern")
 
 
+def one_value(start: Any, stop: Any) -> str:
+    """Why a sweep of a single value has no two ends."""
+    return f"1 value cannot be both {shown(start)} and {shown(stop)}; write 2 or more"
+
+
 class Sweep(Table):
     """Values of one key: from start to stop in equal steps, or a list."""
 
@@ -1085,6 +1090,8 @@ class Sweep(Table):
             raise InputError("a sweep needs either start and stop, or values")
         if self.values is not None and not 1 <= len(self.values) <= COUNT.high:
             raise InputError(f"{len(self.values)} values were given; {COUNT.allowed}", key="values")
+        if self.values is None and self.count < 2 and self.start != self.stop:
+            raise InputError(one_value(self.start, self.stop), key="count")
         return self
 
 
@@ -2424,10 +2431,17 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return f"{shown(given)} was given where a table belongs{_inner(detail['loc'], model)}"
     if kind in ("tuple_type", "list_type"):
-        return f"{shown(given)} was given where a list belongs"
+        return f"{shown(given)} was given where a list belongs{_as_list(detail['loc'], model)}"
     if kind == "too_long":
         return _too_many(len(given), context["max_length"])
     return f"{shown(given)} is not allowed: {detail['msg'].lower()}"
+
+
+def _as_list(location: tuple[Any, ...], model: type[BaseModel]) -> str:
+    """End of a sentence on a value in the place of a list of quantities: what to write."""
+    info = _fields(location, model).get(str(location[-1]))
+    quantity = None if info is None else quantity_of(info)
+    return "" if quantity is None else f"; write [{quantity.example}]; {quantity.allowed}"
 
 
 def _inner(location: tuple[Any, ...], model: type[BaseModel]) -> str:

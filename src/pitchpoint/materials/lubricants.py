@@ -394,8 +394,12 @@ class GreaseRecord(LubricantRecord):
 
 
 def _check_order(record: LubricantRecord) -> None:
+    thick, thin = (f"{1e6 * nu.value:.6g} mm2/s" for nu in (record.nu_1, record.nu_2))
     checks = {
-        "nu_1": (record.nu_1.value > record.nu_2.value, "must be above nu_2"),
+        "nu_1": (
+            record.nu_1.value > record.nu_2.value,
+            f"must be above nu_2, since oils thin with heat; {thick} was given with {thin}",
+        ),
         "nu_2": (record.nu_2.value >= 2e-6, "must be 2 mm2/s or more, where D341 holds as used"),
         "T_1": (record.T_1.value < record.T_2.value, "must be below T_2"),
         "T_min": (record.T_min.value < record.T_max.value, "must be below T_max"),

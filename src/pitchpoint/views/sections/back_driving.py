@@ -47,7 +47,7 @@ def back_driving_figure(outcome: Outcome, law: str) -> KeyFigure:
     locked = bool(data["locked"].values[position, 0])
     if locked or acting > 0.5 * limit:
         words = "self-locking" if locked else show.quantity("mean_efficiency", value)
-        at = f"locks from μ = {show.number(limit)} on; up to {show.number(acting)} acts"
+        at = f"locks from μ = {show.number(limit)} on; at most {show.number(acting)} acts"
         return KeyFigure(_NEARLY_LOCKED, _NAME, words, at)
     if not np.isfinite(value):
         return KeyFigure(_MOVES, _NAME, "undefined", "no power")
@@ -72,7 +72,8 @@ def _would(data: Any, position: int) -> str:
     limit = _limit(data, position)
     if limit > ROUGHEST:
         return f"nor would it below μ = {ROUGHEST:g}"
-    return f"it would from μ = {show.number(limit)} on, up to {show.number(_nearest(data, position)[0])} acts"
+    acting = show.number(_nearest(data, position)[0])
+    return f"it would from μ = {show.number(limit)} on, at most {acting} acts"
 
 
 def jamming(data: Any, position: int) -> str:
