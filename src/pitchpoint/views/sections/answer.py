@@ -472,7 +472,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
             yield figure(order + 0.1 * place, VARIABLES[name].long_name, name)
         return
     yield from _efficiencies(figure, outcome, data)
-    without = ["without it"] if _lacks(data) else []
+    without = [f"without the {lacks}"] if (lacks := _lacks(data)) else []
     yield figure(20.0, "Input", "mean_input_torque", _clauses(*without, _ripple(data)))
     yield figure(25.0, "Loss", "mean_loss", _clauses(*without, _drag(data, 0)))
     law = str(data["law"].values[0])
