@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import law_title
 from pitchpoint.views.inputs import FOLLOWING, input_rows
+from pitchpoint.views.point import speed_ratio
 
 __all__ = [
     "NOTHING",
@@ -146,7 +148,17 @@ def of_several(table: Compared, designs: int) -> tuple[Compared, int]:
 
 
 def _meant(outcomes: Mapping[str, Outcome], more: int) -> Iterator[tuple[str, ...]]:
-    """What efficiencies and stiffnesses are of, where that is less than the whole of a design."""
+    """Ratios that differ, and what efficiencies and stiffnesses are of, where that is not the whole."""
+    ratios = [
+        show.number(ratio, 6) if isfinite(ratio := speed_ratio(one)) else NOTHING
+        for one in outcomes.values()
+    ]
+    if len({*ratios}) > 1:
+        yield (
+            "ratio, speed of the driver over that of the output",
+            *ratios,
+            *("" for _ in range(more)),
+        )
     for words, told in (
         ("efficiency is that of the", _efficiency),
         ("stiffness is that of", _yields),
