@@ -39,7 +39,7 @@ from pitchpoint.runs.run import describe
 ROOT = Path(__file__).parents[1]
 SEEDS = [read(path) for path in sorted(ROOT.glob("examples/*.toml"))]
 SEEDS += [read(path_of(name)) for name in names()]
-RECORDED = ("pair_23_61", "helical_resonance", "strain_wave", "two_stage")
+RECORDED = ("pair_23_61", "helical_resonance", "strain_wave", "two_stage", "planetary")
 KEYS = [
     *keys(),
     "losses.a.bearing",
@@ -55,8 +55,8 @@ KEYS = [
     "gears.diametral_pitch",
 ]
 
-OTHERS = ("broken", "of another kind", "command line")
-"""Kinds of files and commands beside those whose values are changed."""
+OTHERS = ("broken", "of another kind", "command line", "name", "python")
+"""Kinds of files, commands and values of Python beside those whose values are changed."""
 
 RECORDS = 0.25
 """Part of the files that are records of results."""
@@ -348,8 +348,6 @@ def main() -> int:
         hostile, began = Hostile(seed), time.process_time()
         is_record = hostile.random.random() < RECORDS
         tree = hostile.random.choice(records if is_record else SEEDS)
-        kinds = ("unusual", "unusual", "changed", "broken", "command line", "name", "python")
-        kind = hostile.random.choice(kinds)
         kind = hostile.random.choice(("unusual", "unusual", "changed", *OTHERS))
         changed = {"unusual": hostile.unusual, "changed": hostile.changed}.get(kind, dict)(tree)
         path = given.keep / f"case.{'json' if is_record else 'toml'}"

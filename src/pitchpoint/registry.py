@@ -162,7 +162,10 @@ def nearest(name: str, known: Iterable[str]) -> str:
 _GRADE = re.compile("[a-z]{1,3}[0-9]{2,4}")
 
 _OTHERWISE = {
-    **dict.fromkeys(("spur", "helical", "internal", "involute"), "cylindrical"),
+    **dict.fromkeys(("spur", "helical", "internal", "involute", "pair", "ring"), "cylindrical"),
+    **dict.fromkeys(("rack", "rackpinion"), "rack_and_pinion"),
+    **dict.fromkeys(("epicyclic", "planet", "planets", "planetaryset", "sun"), "planetary"),
+    **dict.fromkeys(("stages", "gearbox", "drive", "twostage"), "two_stages"),
     **dict.fromkeys(("harmonic", "harmonicdrive", "strainwavegear"), "strain_wave"),
     **dict.fromkeys(("coulomb", "mu"), "constant"),
     **dict.fromkeys(("16mncr5", "20mncr5", "18crnimo76", "17crnimo6"), "case-hardened-mq"),

@@ -18,6 +18,11 @@ FILES = {
     "CSV": (b"teeth;module\n20;2\n", "looks like a table of values, CSV say; a case file"),
     "numbers": (b"1.0,2.0\n3.0,4.0\n", "looks like a table of values"),
     "XML": (b'<?xml version="1.0"?>\n<rexs/>', "looks like XML or HTML; a case file is TOML"),
+    "quotes below a remark with a comma": (
+        "# module, and so on\nmodule = “2 mm”".encode(),
+        "line 2 has the quotation mark “",
+    ),
+    "CSV below a remark": (b"# heights, in um\n\n1;2\n", "looks like a table of values"),
     "quotes": ("module = “2 mm”".encode(), "line 1 has the quotation mark “; write straight"),
     "one of them": ("name = ‘pao’".encode(), 'ones, name = "pao"'),
     "a comma": (

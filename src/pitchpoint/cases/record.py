@@ -76,6 +76,9 @@ class _Kept(BaseModel):
             return cls.model_validate_json(written)
         except ValidationError as error:
             first = error.errors(include_url=False, include_input=False)[0]
+            if first["type"] in ("missing", "model_type") and path.name not in (MANIFEST, RUN):
+                told = "is JSON, and no record of a result; a case file is TOML (pitchpoint new)"
+                raise InputError(told, file=str(path)) from None
             told = f"was not written by this version of pitchpoint: {first['msg']}"
             key = shorten(".".join(map(str, first["loc"])))
             raise InputError(told, file=str(path), key=key or None) from None

@@ -94,7 +94,7 @@ def answer(place: Sequence[str], value: Any, tree: Tree, fields: Collection[str]
 
 def no_family(name: str, known: Collection[str]) -> str:
     """End of a sentence on a family of gears that is not there: the one that is meant, or where to read."""
-    if letters(name) == "planetary":
+    if letters(name) in ("planetary", "epicyclic") and "planetary" not in known:
         return (
             " in a stage: a set stands alone under [gears]; with other stages write its meshes with their "
             "bodies and a [train] (pitchpoint docs stages)"
@@ -107,7 +107,6 @@ def no_family(name: str, known: Collection[str]) -> str:
 
 _NO_FAMILIES = {
     *(
-        "epicyclic",
         "bevel",
         "hypoid",
         "worm",
