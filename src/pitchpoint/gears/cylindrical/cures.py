@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import product
 from math import ceil, nan, pi
 from typing import Any
 
@@ -60,13 +61,19 @@ _STEPS = {
     "centre_distance": _Steps(DISTANCE, 0.01, 10, 40, 1e-3, "mm"),
 }
 
+_ADDENDA, _RING_ADDENDA = ((1.0, 1.0), (1.0, 0.8), (0.8, 0.8)), ((1.0, 0.8), (0.8, 0.6))
+_SHIFTS = ((0.0, 0.0), (0.3, 0.3), (0.5, 0.5), (0.4, -0.4))
+_RING_SHIFTS = ((0.0, 0.0), (0.3, -0.3), (0.4, -0.4), (0.0, -0.5), (0.0, -1.0))
+"""Usual values of two external gears and of a ring, which are tried together."""
+
 
 def cures(
     gears: CylindricalGears, remedies: Sequence[Remedy], open_values: Cure, attempt: Attempt
 ) -> tuple[Cure, ...]:
     """Changes of different keys after which gears run, each the least of its kind; two at most.
 
-    Where a change of one gear is not enough the same of both is tried.
+    Where a change of one gear is not enough the same of both is tried, and where no key alone is
+    enough, usual values of several.
 
     Args:
         gears: that cannot run.
@@ -93,7 +100,35 @@ def cures(
         if len(found) < MOST_CURES and remedy.key not in found:
             change = cure(remedy)
             found |= {} if change is None else {remedy.key: change}
+    if not found and (several := _of_several_keys(gears, attempt)):
+        return (several,)
     return tuple(found.values())
+
+
+def _of_several_keys(gears: CylindricalGears, attempt: Attempt) -> Cure | None:
+    """Usual values of as few keys as it takes, with the centre distance that follows where there was one."""
+    ring = gears.teeth[1] < 0
+    depths: list[Cure] = [{}]
+    for first, second in _RING_ADDENDA if ring else _ADDENDA:
+        usual = {
+            "dedendum": (second + 0.25, first + 0.25),
+            "fillet_radius": (0.2, 0.1 if ring else 0.2),
+        }
+        given = {key: usual[key] for key in usual if getattr(gears, key) is not None}
+        depths.append({"addendum": (first, second), **given})
+    shifts = [{}, *({"profile_shift": both} for both in (_RING_SHIFTS if ring else _SHIFTS))]
+    angles = [{}, {"pressure_angle": 25.0 * pi / 180.0}]
+    tips = [{}, {"least_tip_thickness": 0.1}]
+    every = ({**a, **b, **c, **d} for a, b, c, d in product(depths, shifts, angles, tips))
+    for changes in sorted(every, key=len):
+        changed = gears.model_copy(update=changes)
+        written = {key: _STEPS[key].written(changes[key]) for key in changes}
+        if gears.centre_distance is None:
+            if attempt(changed) is not None:
+                return written
+        elif both := _at_its_distance(changed, changed.profile_shift, attempt):
+            return {**written, "centre_distance": both["centre_distance"]}
+    return None
 
 
 def _least(changed: Callable[[int], Cure | None], low: int, high: int) -> int:
