@@ -1,7 +1,8 @@
 """Random pairs as they are published, against drawn gears: `pytest -n 0 tests/long/many_random_pairs.py`.
 
-Ten of each kind, with shifts and centre distances rounded to three decimals. What runs overlaps no more than
-the checks measure; what is refused for a tip in a fillet overlaps as drawn; advice that is followed runs.
+Ten of each kind, with shifts and centre distances rounded to three decimals. What runs overlaps no more
+than the checks measure, as drawn and as polygons of gears that racks have cut; what is refused for a tip in
+a fillet overlaps in both; advice that is followed runs.
 """
 
 import copy
@@ -12,6 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 from analytic.test_cylindrical_geometry import overlap
+from analytic.test_polygons_of_pairs import numbers
+from polygons import deepest as overlap_of_polygons
 from sound import PAIR
 
 from pitchpoint.cases.document import resolve
@@ -25,6 +28,9 @@ from pitchpoint.gears.cylindrical.family import _given
 COUNT = 10
 ROUNDED = 1e-5
 """Overlap that points of drawn gears leave, in modules."""
+
+CHORDS = 3e-5
+"""What corners of polygons leave of curves between them, in modules."""
 
 Draw = np.random.Generator
 
@@ -107,6 +113,8 @@ def test_ten_of_a_kind(kind: Callable[[Draw], dict[str, Any]]) -> None:
         jammed = 1.3 * max(-float(mesh.normal_backlash / mesh.module), 0.0)
         deepest = max(gear.fillet_overlap for gear in each)
         drawn = overlap(mesh, 24)
+        distance = abs(float(mesh.centre_distance / mesh.module))
+        cut = overlap_of_polygons(*map(numbers, mesh.gears), distance, 8)
         try:
             variant.built({})
         except InputError as error:
@@ -115,6 +123,7 @@ def test_ten_of_a_kind(kind: Callable[[Draw], dict[str, Any]]) -> None:
             if "fillet" in error.message:
                 tips_apart = not mesh.internal or whole.tip_gap > 0.0
                 assert drawn > 0.98 * deepest, (gears, error)
+                assert cut > 0.5 * deepest, (gears, error)
                 assert not tips_apart or drawn < 1.02 * deepest, (gears, error)
             for cure in error.cures:
                 counts["cures"] += 1
@@ -122,6 +131,7 @@ def test_ten_of_a_kind(kind: Callable[[Draw], dict[str, Any]]) -> None:
             continue
         counts["ran"] += 1
         assert deepest <= 0.005
-        assert drawn < 1.01 * deepest + jammed + ROUNDED, (gears, drawn, deepest, jammed)
+        for judge in (drawn, cut - CHORDS):
+            assert judge < 1.01 * deepest + jammed + ROUNDED, (gears, judge, deepest, jammed)
     print(kind.__name__, counts)
     assert counts["ran"] + counts["cures"] >= COUNT // 2
