@@ -178,6 +178,38 @@ def test_a_key_of_another_table_is_no_misspelt_neighbour(key):
     assert refused(tree) == f"case: {key}: is not a known key; {ELSEWHERE[key]}"
 
 
+ARRANGED = {
+    "in a list": (
+        {"gears": [{"teeth": 20}, {"teeth": 50}]},
+        "one table [gears] belongs; a list in it has",
+    ),
+    "each its own": (
+        {"gear_1": {"teeth": 20}},
+        "gear_1: is not a known table: both gears have one table",
+    ),
+    "with steel": (
+        {"gears": BASE["gears"] | {"material": "steel"}},
+        "materials have a table [materials]",
+    ),
+    "a set": (
+        {"gears": BASE["gears"] | {"family": "planetary", "teeth": [17, 22, -61]}},
+        "below zero; teeth of a set are positive, those of the ring too",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ARRANGED)
+def test_tables_as_other_programs_arrange_them(name):
+    changes, words = ARRANGED[name]
+    assert words in refused(BASE | changes)
+
+
+def test_a_table_of_stages_without_numbers():
+    drive = {key: value for key, value in BASE.items() if key != "gears"}
+    told = refused(drive | {"stages": {"gears": BASE["gears"]}})
+    assert 'there is no stage "gears"; use stages.1, or a table [[stages]] for each mesh' in told
+
+
 def test_keys_of_the_gears_of_a_stage_are_sent_there():
     tree = {**BASE, "stages": [{"gears": BASE["gears"], "module": 2}, {"gears": BASE["gears"]}]}
     del tree["gears"]

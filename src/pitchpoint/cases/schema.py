@@ -1644,7 +1644,8 @@ def _no_stage(key: str, given: Mapping[str, Any]) -> InputError:
     last = next(number for number in count() if str(number + 1) not in given)
     allowed = f"stages.1 to stages.{last}" if last > 1 else "stages.1"
     before = f"{last + 1} before " if key.isdecimal() and not key.startswith("0") else ""
-    return InputError(f"there is no stage {before}{shown(key)}; use {allowed}")
+    listed = "" if key.isdecimal() else ", or a table [[stages]] for each mesh"
+    return InputError(f"there is no stage {before}{shown(key)}; use {allowed}{listed}")
 
 
 class TrainTable(Table):
@@ -2428,6 +2429,10 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
 
             return f"{shown(given)} is no family of gears{no_family(given, _quoted(allowed))}"
         return f"{shown(given)} is not allowed; use {allowed}"
+    if isinstance(given, list) and given and all(isinstance(one, dict) for one in given):
+        table = ".".join(_place_of(detail, document))
+        both = "; a list in it has a value for each gear" if table == "gears" else ""
+        return f"tables [[{table}]] were given where one table [{table}] belongs{both}"
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return f"{shown(given)} was given where a table belongs{_inner(detail['loc'], model)}"
     if kind in ("tuple_type", "list_type"):

@@ -395,7 +395,7 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             "load, speed and temperature have a table [operation]",
         ),
         Wish(
-            ("gear", "pair", "geometry"),
+            ("gear", "pair", "geometry", "gear_1", "gear_2", "pinion", "wheel"),
             ("gears",),
             "both gears have one table [gears]",
         ),
@@ -588,6 +588,11 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             ("cutter_shift", "shaper_shift"),
             ("cutter_profile_shift",),
             "the root of a ring is that of its pinion cutter",
+        ),
+        Wish(
+            ("material", "materials", "steel"),
+            (),
+            "materials have a table [materials] with gear_1 and gear_2",
         ),
         Wish(
             ("hob", "tool"),

@@ -76,6 +76,11 @@ class OfThree(Pair):
     def read(self, value: Any) -> Any:
         """SI values of sun, planet and ring; the text where that of the ring is to follow."""
         every = list(value) if isinstance(value, list | tuple) else [value] * 3
+        if self.each is TEETH and any(isinstance(one, int | float) and one < 0 for one in every):
+            raise InputError(
+                f"{shown(value)} has numbers below zero; teeth of a set are positive, those of the ring too",
+                value=value,
+            )
         if len(every) != 3:
             raise InputError(
                 f"{shown(value)} has {len(every)} values; give those of sun, planet and ring, or one for "
