@@ -326,6 +326,17 @@ def test_names_without_a_letter_are_no_names(
         assert told.err.startswith("error: ") and told.err.count("\n") == 1, name
 
 
+@pytest.mark.parametrize("name", ["", " ", "-", "\x1b[2J", "\u202esun", "x" * 41])
+def test_names_of_bodies_are_names(name: str) -> None:
+    path = Path(__file__).parents[2] / "examples" / "three_k.toml"
+    train = tomllib.loads(path.read_text("utf-8"))
+    with pytest.raises(InputError, match=r"train.carrier: .* is not a name; use 1 to 40 signs"):
+        describe(Case({**train, "train": {**train["train"], "carrier": name}}))
+    train["stages"][0]["bodies"][0] = name
+    with pytest.raises(InputError, match=r"stages.1.bodies.*: .* is not a name; use 1 to 40 signs"):
+        describe(Case(train))
+
+
 def nested(levels: int) -> Any:
     table: Any = 1.0
     for level in range(levels):

@@ -35,6 +35,7 @@ FILES = {
     ),
     "a bare unit": (b"module = 2.5 mm  # m", 'unit outside of quotation marks; write "2.5 mm"'),
     "a colon": (b'[gears]\nmodule: "2 mm"', 'line 2 has a colon; write module = "2 mm"'),
+    "spaces": (b"# a\nteeth = [20 -50];\n", "line 2 has a list without commas; write [20, -50]"),
     "an open table": (b"[gears", "line 1 opens a table that it does not close; write [gears]"),
     "an open list of tables": (b"# a, b\n\n[[stages]\n", "does not close; write [[stages]]"),
     "a table twice": (
@@ -62,8 +63,10 @@ def test_a_file_beside_the_one_that_is_missing(name, tmp_path):
     (tmp_path / "robot.toml").touch()
     with pytest.raises(InputError, match=r"; did you mean pair\.toml\?$"):
         find(str(tmp_path / name))
-    with pytest.raises(InputError, match=r"no such case file$"):
-        find(str(tmp_path / "gone.toml"))
+    (tmp_path / "nowhere.toml").symlink_to(tmp_path / "gone.toml")
+    for missing in ("gone.toml", "nowhere.toml"):
+        with pytest.raises(InputError, match=r"no such case file$"):
+            find(str(tmp_path / missing))
 
 
 QUANTITIES = {

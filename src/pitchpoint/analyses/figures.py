@@ -287,7 +287,7 @@ def error_words(data: xr.Dataset, law: int, words: Callable[[str, float], str]) 
     )
     return (
         f"{data['law'].values[law]} {most} at most and {mean} in the mean half way between nodes, {light} at "
-        f"torques below {torque}, {creeping} at a tenth of {speed}, the lowest speed"
+        f"torques below {torque}, {creeping} at a tenth of {speed}, the lowest speed of the output"
     )
 
 

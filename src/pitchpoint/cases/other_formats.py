@@ -27,6 +27,7 @@ _COMMA = re.compile(r"(?<![\w.\"'])[+-]?\d+,\d+(?![\w.,])")
 _BARE = re.compile(
     r"[\w.]+\s*=\s*([+-]?[\d.]+(?:e[+-]?\d+)? ?[A-Za-z\u00b5\u03bc\u00b0%/][^\"'#]*?)\s*(?:#.*)?"
 )
+_SPACED = re.compile(r"\[\s*[+-]?[\d.]+(?:\s+[+-]?[\d.]+)+\s*\]")
 _COLON = re.compile(r"([\w.]+)\s*:\s+(\S.*)")
 _AGAIN = re.compile(r"Cannot (declare .* twice|overwrite a value)")
 _LINE = re.compile(r"\(at line (\d+), column")
@@ -89,6 +90,9 @@ def _mended(line: str, number: int, again: bool) -> str:
     if again:
         what = "table" if code.startswith("[") else "key"
         return f"{at} has a {what} that was there before, {shorten(code)}; write it once"
+    if spaced := _SPACED.search(code):
+        told = f"[{', '.join(spaced[0].strip('[]').split())}]"
+        return f"{at} has a list without commas; write {shorten(told)}"
     if colon := _COLON.fullmatch(code):
         return f"{at} has a colon; write {shorten(f'{colon[1]} = {colon[2]}')}"
     return ""
@@ -101,5 +105,5 @@ def neighbours(path: Path) -> str:
     except (OSError, ValueError):
         return ""
     close = alike(path.name.partition(".")[0], [one.stem for one in known])
-    names = [one.name for one in known if one.stem in close]
+    names = [one.name for one in known if one.stem in close and one.name != path.name]
     return f"; did you mean {' or '.join(map(shorten, names))}?" if names else ""

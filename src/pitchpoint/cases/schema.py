@@ -183,8 +183,17 @@ NOT_NEGATIVE = Quantity("dimensionless", 0.0, inf)
 POSITION = Quantity("dimensionless", 0, 11, whole=True)
 
 Text = Annotated[str, BeforeValidator(text)]
+
+BodyName = Annotated[str, BeforeValidator(lambda value: _name_of_body(value))]
 Unit = Annotated[str, BeforeValidator(lambda value: _unit(value))]
 Source = Annotated[Text, AfterValidator(lambda source: _with_its_variables(source))]
+
+
+def _name_of_body(value: Any) -> str:
+    name = text(value)
+    if not (letters(name) and name.isprintable() and len(name) <= 40):
+        raise InputError(f"{shown(name)} is not a name; use 1 to 40 signs, one a letter or a digit")
+    return name
 
 
 def _unit(value: Any) -> str:
@@ -1592,7 +1601,7 @@ class StageTable(Table):
     """Gears of the stage; their family decides what keys the table has."""
     driver: Text = ""
     """Member that the stage before drives; the first one that is not fixed unless given."""
-    bodies: Annotated[tuple[Text, ...], Field(max_length=3)] = ()
+    bodies: Annotated[tuple[BodyName, ...], Field(max_length=3)] = ()
     """Bodies of a [train] that its members are, in their order; a stage of a chain has none."""
     materials: Materials = Materials()
     """Materials of its gears; those of the drive unless given."""
@@ -1665,7 +1674,7 @@ class TrainTable(Table):
         Field(max_length=4),
     ] = ()
     """Bodies that stand still, one or a list."""
-    carrier: Text = "carrier"
+    carrier: BodyName = "carrier"
     """Body that carries the axes of the planets."""
     planet: Text = "planet"
     """Body that the planets are."""
