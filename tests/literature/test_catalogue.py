@@ -176,6 +176,9 @@ def test_a_higher_ratio_loses_less_torque():
 
 # ------------------------------------------------------------------ starting torques
 
+FRICTION = 0.1
+"""Coefficient on the teeth of the case `csd25`."""
+
 STARTING = {(17, 100): (0.034, 3.3), (25, 50): (0.15, 9.0)}
 """Size and ratio; torque that starts the drive, and that back-drives it, by its maker [N m]."""
 
@@ -214,6 +217,40 @@ def test_torques_that_start_a_drive_either_way(size, ratio):
             for factor in (1.0 / spread, spread)
         ]
         assert ends[0] < torque < ends[1]
+
+
+def moments(built):
+    """Torque that moves the drive without load from rest, over what its bearing is held by, by phase.
+
+    By statics in space: the circular spline is held by the moment of the forces on its flanks, which is the
+    torque from outside on the flexspline or on the wave generator; the bearing between these two feels the
+    forces along the radius. Shares and places are those of the drive.
+    """
+    idle = replace(built.operation, load=jnp.asarray(0.0))
+    known = jax.device_get(engaged(built.design, idle, built.models[0]))
+    at, share, motion = known.contacts, known.share, np.asarray(built.design.mesh.motion)
+    slip = np.tensordot(motion, at.surface[0] - at.surface[1], 1)
+    pull = at.direction + FRICTION * np.sign(slip) * at.tangent
+    arm = np.abs(np.sum(share * (at.point[0] * pull[1] - at.point[1] * pull[0]), axis=(0, 1)))
+    radial = np.abs(at.point[0] * at.direction[0] + at.point[1] * at.direction[1])
+    pressed = np.sum(share * radial / np.hypot(*at.point[:2]), axis=(0, 1))
+    (drag,), turned = built.design.drag, abs(motion[0] - motion[1])
+    rubbed = float(drag.factors["f1"] * drag.mean_diameter) * pressed * turned
+    rubbed += FRICTION * np.sum(share * np.abs(slip), axis=(0, 1))
+    return turned / (1.0 - rubbed / arm)
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize(("size", "ratio", "told"), [(17, 100, 1.18), (25, 50, 1.14)])
+def test_what_drives_backwards_stands_to_what_starts_as_virtual_work_has_it(size, ratio, told):
+    """Power of the driver is that in the bearing, held at rest, and in the teeth that carry it."""
+    built = of_size(size, ratio)
+    (law,) = built.case.models.friction
+    assert law.coefficient == FRICTION
+    found = from_rest(built.backwards) / (ratio * from_rest(built))
+    expected = moments(built.backwards).max() / (ratio * moments(built).max())
+    assert found == pytest.approx(expected, rel=5e-3)
+    assert found == pytest.approx(told, abs=5e-3)
 
 
 @pytest.mark.whole
