@@ -513,11 +513,14 @@ def table_of(data: xr.Dataset) -> LossTable:
 
 def _table(axes: Mapping[Any, Any], lost: Values, ratio: float) -> LossTable:
     torques, speeds, degrees = (np.asarray(axes[name], float) for name in _DIMS[1:])
-    torques, speeds, degrees, lost = finer_map(torques, speeds[speeds >= 0.0], degrees, lost)
+    # In degC: values between even ones are even too, where those of rounded kelvins are not.
+    torques, speeds, degrees, lost = finer_map(
+        torques, speeds[speeds >= 0.0], celsius(degrees), lost
+    )
     return LossTable(
         torques=torques.tolist(),
         speeds=speeds.tolist(),
-        temperatures=celsius(degrees).tolist(),
+        temperatures=degrees.tolist(),
         loss_torques=dict(zip(map(str, np.asarray(axes["law"])), lost.tolist(), strict=True)),
         speed_ratio=ratio,
     )

@@ -274,29 +274,50 @@ def _at_many(table: LossTable, torque: Any, speed: Any, temperature: Any, law: s
     every = [np.ascontiguousarray(one).reshape(-1) for one in places]
     kinds = float, float, float, bool, bool
     found = [np.empty(every[0].size, kind) for kind in kinds]
+    # What a chunk needs besides is kept for the next: memory that is taken anew costs more than the sums.
+    space = np.empty((17, min(CHUNK, every[0].size)))
+    whole = np.empty((4, space.shape[1]), np.intp)
 
     def fill(part: slice) -> None:
         torque, speed, degree = (one[part] for one in every)
         loss, efficiency, turning, locked, outside = (one[part] for one in found)
-        sign, pace = np.copysign(1.0, speed + 0.0), abs(speed)
-        along, rest = torque * sign, pace == 0.0
-        each = (along, np.log(pace), degree)
-        cells, weights, near = zip(*(f(x) for f, x in zip(axes, each, strict=True)), strict=True)
-        slow = np.where(rest, 0, cells[1] + 1) if rest.any() else cells[1] + 1
-        cell = (cells[0] * corners.shape[2] + slow) * corners.shape[3] + cells[2]
-        lost = _sum(terms, cell, weights)
+        work, cells = space[:, : torque.size], whole[:, : torque.size]
+        sign, pace, along, logarithm = work[8:12]
+        np.copysign(1.0, speed + 0.0, out=sign)
+        np.abs(speed, out=pace)
+        np.multiply(torque, sign, out=along)
+        np.log(pace, out=logarithm)
+        ways = work[12:15]
+        outside[:] = pace > table.speeds[-1]
+        for place, axis, way, low in zip(
+            (along, logarithm, degree), axes, ways, cells, strict=False
+        ):
+            near = axis(place, way, low, work[15:], cells[3])
+            if place is not logarithm:
+                outside |= place != near
+        rest = pace == 0.0
+        resting = rest.any()
+        cells[1] += 1
+        if resting:
+            cells[1][rest] = 0
+        cell = cells[0]
+        for low, count in zip(cells[1:3], corners.shape[2:], strict=True):
+            cell *= count
+            cell += low
+        lost = _sum(terms, cell, ways, work[:8])
         locked[:] = False
         if (missing := np.isnan(lost)).any():
-            few = [one[missing] for one in weights]
+            few = [one[missing] for one in ways]
             lost[missing], locked[missing] = _beside(corners, cell[missing], few)
-        driving = along + lost
-        share = along / driving
         np.multiply(lost, pace, out=loss)
-        efficiency[:] = np.where(share > 0.0, np.minimum(share, 1.0 / share), math.nan)
-        np.multiply(driving, sign * table.speed_ratio, out=turning)
-        efficiency[rest] = turning[rest] = math.nan
-        inside = (along == near[0]) & (degree == near[2]) & (pace <= table.speeds[-1])
-        np.logical_not(inside, out=outside)
+        driving = np.add(along, lost, out=lost)
+        share = np.divide(along, driving, out=along)
+        np.minimum(share, np.divide(1.0, share, out=logarithm), out=efficiency)
+        efficiency[~(share > 0.0)] = math.nan
+        np.multiply(driving, sign, out=turning)
+        turning *= table.speed_ratio
+        if resting:
+            efficiency[rest] = turning[rest] = math.nan
 
     with np.errstate(all="ignore"):
         for start in range(0, every[0].size, CHUNK):
@@ -347,9 +368,11 @@ def _terms(corners: Any) -> Any:
     return cube.reshape(8, -1)
 
 
-def _sum(terms: Any, cell: Any, weights: Any) -> Any:
-    """Sum of the terms of its cell at every point."""
-    values = [one.take(cell, mode="clip") for one in terms]
+def _sum(terms: Any, cell: Any, weights: Any, space: Any) -> Any:
+    """Sum of the terms of its cell at every point, in the first row of a space with one for each term."""
+    for one, value in zip(terms, space, strict=True):
+        one.take(cell, mode="clip", out=value)
+    values = [*space]
     for weight in weights[::-1]:
         for first, second in zip(values[::2], values[1::2], strict=True):
             second *= weight
@@ -359,7 +382,11 @@ def _sum(terms: Any, cell: Any, weights: Any) -> Any:
 
 
 def _finder(nodes: Sequence[float]) -> Any:
-    """Function of places on an axis: their cells, parts of the way through them, places kept within."""
+    """Function of places on an axis that writes parts of the way through their cells, and these cells.
+
+    It gives the places kept within the axis, in the first of two rows of numbers that are free, beside one of
+    whole numbers.
+    """
     import numpy as np
 
     ends = np.array([*nodes, *([nodes[0] + 1.0] if len(nodes) == 1 else [])])
@@ -370,19 +397,26 @@ def _finder(nodes: Sequence[float]) -> Any:
     first = np.searchsorted(ends[1:-1], lowest, "right")
     even = np.ptp(steps) < EVEN * steps.max()
 
-    def find(place: Any) -> "tuple[Any, Any, Any]":
-        near = np.minimum(np.maximum(place, nodes[0]), nodes[-1])
+    def find(place: Any, way: Any, low: Any, free: Any, bins: Any) -> Any:
+        near, other = free
+        np.minimum(np.maximum(place, nodes[0], out=near), nodes[-1], out=near)
+        np.subtract(near, ends[0], out=way)
         if even:
-            way = (near - ends[0]) * steps[0]
-            low = np.fmin(way, steps.size - 0.5).astype(np.intp)
-            return low, way - low, near
+            way *= steps[0]
+            low[:] = np.fmin(way, steps.size - 0.5, out=other)
+            way -= low
+            return near
         if first.size:
-            low = first.take(((near - ends[0]) * finer).astype(np.intp), mode="clip")
-            low += near >= upper.take(low)
+            way *= finer
+            bins[:] = way
+            first.take(bins, mode="clip", out=low)
+            low += near >= upper.take(low, out=other)
         else:
-            low = np.searchsorted(ends[1:-1], near, "right")
+            low[:] = np.searchsorted(ends[1:-1], near, "right")
             low[np.isnan(near)] = 0
-        return low, (near - ends.take(low)) * steps.take(low), near
+        np.subtract(near, ends.take(low, out=other), out=way)
+        way *= steps.take(low, out=other)
+        return near
 
     return find
 
