@@ -221,6 +221,13 @@ def test_mcewen_alone_is_a_power_and_constants_as_printed_are_those_of_both_term
     both = {"mcewen_exponent": q, "paluch_share": c / (alpha * p1), "divergence_pressure": p1}
     expected = 0.04 * (1.0 + a * p / q) ** q * math.exp(c * p / (p1 - p))
     assert float(value_of(bair_2015, **oil, **both)) == pytest.approx(expected, rel=1e-12)
+    # Mineral oil 23D as the Encyclopedia of Tribology (2013) has it, by Paluch's factor with its viscosity.
+    C, p1, least = 27.5, 2.73e9, 2.78e-14
+    known = {"viscosity": least * math.exp(C), "pressure_viscosity": C / p1}
+    paluch = {"paluch_share": 1.0, "divergence_pressure": p1}
+    found = float(value_of(bair_2015, **{**oil, **known}, **paluch))
+    assert found == pytest.approx(least * math.exp(C * p1 / (p1 - p)), rel=1e-12)
+    assert known["viscosity"] == pytest.approx(0.0244, abs=5e-5)
     alone = value_of(bair_2015, **oil, mcewen_exponent=q, paluch_share=0.0)
     assert float(alone) == pytest.approx(0.04 * (1.0 + alpha * p / q) ** q, rel=1e-12)
 

@@ -161,7 +161,7 @@ VISCOSITY = Registry(
         "bair_2015",
         "Bair, hybrid of McEwen and Paluch",
         "pitchpoint.materials.rheology:bair_2015",
-        ("bair_2015", "mcewen_1952", "bair_2019"),
+        ("bair_2015", "mcewen_1952", "bair_2019", "encyclopedia_of_tribology_2013"),
         ({**_OIL, "pressure": 0.5e9, "temperature_rise": 20.0}, 56.62480971447568),
         "Oils whose three constants are known at the temperature of the inlet, up to about 1 GPa; no set of "
         "constants is in the catalogue, and those of one gear oil at 60 degC are assumed unless given.",

@@ -341,9 +341,12 @@ def bair_2015(
 
     Validity: the constants belong to one oil at one temperature. The usual ones are fitted to the correlation
     of a gear oil at 60 degC by Bair (2019), within 2 % up to 1 GPa; at 0.5 GPa they are 0.66 of it at 50 degC
-    and 1.9 times it at 80 degC, and four times the free volume of squalane at 40 degC.
+    and 1.9 times it at 80 degC, and four times the free volume of squalane at 40 degC. In print one set was
+    found, of Paluch's factor alone: mineral oil 23D at 311 K, 27.8 fPa s exp(C p1/(p1 - p)) with C = 27.5 and
+    p1 = 2.73 GPa, which is s = 1, alpha = C/p1 = 10.1 1/GPa and eta0 = 24.4 mPa s.
 
-    Source: McEwen (1952) and Bair (2015), whose abstract names the hybrid; its form is recalled.
+    Source: McEwen (1952) and Bair (2015), whose abstract names the hybrid; its form is recalled. Constants of
+    mineral oil 23D: Encyclopedia of Tribology (2013).
 
     Example:
         >>> eta = bair_2015(
