@@ -18,6 +18,7 @@ from pitchpoint.analyses import wear_course
 from pitchpoint.analyses.along_action import STIFFNESS
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.wear import WEAR
+from pitchpoint.doubts import doubts_of
 from pitchpoint.errors import InputError
 from pitchpoint.results import store
 from pitchpoint.results.store import load
@@ -168,7 +169,13 @@ def test_worn_gears_are_gears(outcome: Outcome, folder: Path) -> None:
     errors = [float(np.ptp(one["static_transmission_error"].values)) for one in (new, worn)]
     assert abs(errors[1] / errors[0] - 1.0) > 0.05
     (record,) = describe(case, settings=settings)
-    assert any("worn by 3e+06 turns of gear 1" in told for told in record["warnings"])
+    data = outcome.parts["wear"]
+    most, error = (
+        " and ".join(f"{1e6 * depth:.3g}" for depth in data[name].values[-1])
+        for name in ("deepest_wear", "wear_error")
+    )
+    told = f"worn by 3e+06 turns of gear 1: {most} um deep at most, within {error} um by grid and steps"
+    assert any(told in warning for warning in record["warnings"])
     assert {row["key"] for row in record["inputs"] if row["table"] == "worn"} == {
         "file",
         "cycles",
@@ -184,6 +191,39 @@ def test_a_kept_profile_wears_in_proportion_to_the_cycles(case: str) -> None:
     ]
     short, long = (one.parts["wear"]["worn_depth"].values[-1] for one in both)
     assert long == pytest.approx(1e3 * short, rel=1e-9)
+
+
+@pytest.mark.whole
+def test_a_life_is_as_near_as_is_told(case: str) -> None:
+    """To a depth on coarse cells and phases, against four times as many and a tenth of the tolerance."""
+    limit = {"wear.depth_limit": "2 um", "wear.cycles": 1e9, "wear.sensitivities": False}
+    grids = (
+        {"wear.cells": 20, "wear.phases": 12},
+        {"wear.cells": 80, "wear.phases": 48, "wear.tolerance": 3e-4},
+    )
+    coarse, fine = (
+        running.run(case, settings={**limit, **grid})["default"].parts["wear"] for grid in grids
+    )
+    assert coarse.attrs["end"] == fine.attrs["end"] == "depth"
+    error = float(coarse["final_cycles_error"])
+    assert abs(float(fine["final_cycles"] - coarse["final_cycles"])) < error
+    assert 0.0 < error < 0.1 * float(coarse["final_cycles"])
+
+
+@pytest.mark.whole
+def test_the_backlash_of_lines_that_cross_their_pitch_line_is_one_of_the_slices(case: str) -> None:
+    """Nothing wears there, so that none is added where lines cross it in every position: it halves."""
+    wide = {"gears.helix_angle": "15 deg", "gears.face_width": "40 mm"}
+    wide |= {"wear.profile": "kept", "wear.sensitivities": False}
+    few, many = (
+        running.run(case, settings={**wide, "models.slices": slices})["default"].parts["wear"]
+        for slices in (12, 24)
+    )
+    grown, less = (float(data["backlash_growth"][-1]) for data in (few, many))
+    assert less == pytest.approx(grown / 2.0, rel=0.1)
+    assert float(few["backlash_growth_error"][-1]) >= grown
+    (told,) = (one for one in doubts_of(few.attrs) if "backlash that it adds" in one)
+    assert "100 % off" in told and "12 slices of lines" in told
 
 
 @pytest.mark.whole

@@ -13,6 +13,7 @@ __all__ = ["WEAR"]
 
 _MAIN = (
     "final_cycles",
+    "final_cycles_error",
     "final_depth",
     "life_hours",
     "run_in_cycles",
@@ -21,7 +22,7 @@ _MAIN = (
     "wear_steps",
 )
 _EACH = ("deepest_wear", "fastest_wear", "worn_volume", "wear_error")
-_OF_TEETH = ("worn_tip_land", "backlash_growth")
+_OF_TEETH = ("worn_tip_land", "backlash_growth", "backlash_growth_error")
 
 
 def _unasked(built: Built) -> str | None:

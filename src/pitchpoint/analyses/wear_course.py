@@ -134,10 +134,12 @@ def _hardness(built: Built) -> float:
     return float(np.nanmin([*known, np.inf]))
 
 
-def _play(built: Built, depth: np.ndarray) -> float:
-    """Normal backlash that wear has added [m]."""
+def _play(built: Built, depth: np.ndarray, *, pitch_line: bool = False) -> float:
+    """Normal backlash that wear has added, see `backlash_growth` [m]."""
     course = _course(built)
-    return backlash_growth(built.design.mesh, course.cells, course.start, depth)
+    return backlash_growth(
+        built.design.mesh, course.cells, course.start, depth, pitch_line=pitch_line
+    )
 
 
 def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
@@ -248,7 +250,10 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         "contact_span": (("axis",), np.asarray(course.cells.span)),
         **_where(built, depth),
     }
-    figures = _figures(built, values, deepest, fastest)
+    figures, teeth = (
+        _figures(built, values, deepest, fastest),
+        _of_teeth(built, depth, values["wear_error"]),
+    )
     codes = np.full(len(parts), int(Code.SOLVED))
     if end == "lost":
         codes[-1] = int(Code.NOT_CONVERGED)
@@ -256,7 +261,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         {
             **{name: (dims[name], one) for name, one in values.items()},
             **added,
-            **_of_teeth(built, depth),
+            **teeth,
             **{name: ((), one) for name, one in figures.items()},
         },
         {},
@@ -271,7 +276,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         driver=built.driver,
         tolerance=asked(built).tolerance,
         sensitivities=sensitivities,
-        warnings=_warnings(built, values, deepest, end),
+        warnings=[*_warnings(built, values, deepest, end), *_of_play(built, teeth)],
         solve=told_of(codes, values["wear_error"].max(axis=1), np.arange(codes.size)),
     )
 
@@ -381,18 +386,27 @@ def _largest_in_cells(built: Built, flank: np.ndarray, depth: np.ndarray) -> dic
     }
 
 
-def _of_teeth(built: Built, depth: np.ndarray) -> dict[str, Any]:
-    """Where the cells lie on the teeth and what wear leaves of them in each step, where there are any."""
+def _of_teeth(built: Built, depth: np.ndarray, error: np.ndarray) -> dict[str, Any]:
+    """Where the cells lie on the teeth and what wear leaves of them in each step, where there are any.
+
+    The backlash is taken to be off by as much as the largest depths of both flanks, and by what helical lines
+    have less of it that touch first where they cross their pitch line.
+    """
     tips = _course(built).tips
     if tips is None:
         return {}
     new = half_teeth(built.design.mesh, _course(built).cells)
+    grown, least = (
+        np.array([_play(built, one, pitch_line=crossed) for one in depth])
+        for crossed in (False, True)
+    )
     return {
         "flank_half_thickness": (("member", "cell"), new.half),
         "flank_height": (("member", "cell"), new.height),
         "flank_angle": (("member", "cell"), new.angle),
         "worn_tip_land": (("step", "member"), np.stack([tips.left(one) for one in depth])),
-        "backlash_growth": (("step",), np.array([_play(built, one) for one in depth])),
+        "backlash_growth": (("step",), grown),
+        "backlash_growth_error": (("step",), error.sum(axis=1) + grown - least),
     }
 
 
@@ -410,6 +424,8 @@ def _figures(
     return {
         "final_cycles": cycles[-1],
         "final_depth": deepest[-1].max(),
+        "final_cycles_error": values["wear_error"][-1, most]
+        / (course[-1] if course[-1] > 0.0 else np.nan),
         "life_hours": cycles[-1] * 2.0 * np.pi / speed,
         "pressure_change": pressure[-1] / pressure[0] - 1.0 if pressure[0] > 0.0 else np.nan,
         "run_in_cycles": run_in_end(cycles, course) if moves else np.nan,
@@ -558,6 +574,29 @@ def _warnings(
             )
         )
     return told
+
+
+def _of_play(built: Built, teeth: Mapping[str, Any]) -> list[str]:
+    """How far the backlash that wear adds may be off, where that is more than is silent."""
+    if not teeth:
+        return []
+    grown, error = (float(teeth[f"backlash_growth{end}"][1][-1]) for end in ("", "_error"))
+    if error <= TOLD * grown or error <= FIRST:
+        return []
+    off = min(error / grown, 1.0) if grown > 0.0 else 1.0
+    slices = _course(built).start.contacts.active.shape[1]
+    why, more = "the grid on the flanks and the steps of the march", "wear.cells and wear.phases"
+    if slices > 1:
+        why += f", and by the {slices} slices of lines that do not wear at their pitch line"
+        more += f", and more models.slices (of {slices})"
+    return [
+        Doubt(
+            f"Wear: the backlash that it adds may be {100.0 * off:.3g} % off by {why}; more {more}, tell.",
+            moves=off,
+            about=("backlash_growth",),
+            brief=f"Wear: the backlash it adds may be {100.0 * off:.3g} % off.",
+        )
+    ]
 
 
 def _lost(built: Built) -> str:

@@ -18,7 +18,7 @@ from pitchpoint.wear.history import Cells
 __all__ = ["gears_digest", "with_wear"]
 
 _PLACES = ("flank_ends", "across_ends", "contact_span")
-_READ = ("worn_depth", "cycles", "conforming", *_PLACES)
+_READ = ("worn_depth", "cycles", "conforming", "deepest_wear", "wear_error", *_PLACES)
 
 
 def gears_digest(gears: GearsTable) -> str:
@@ -62,15 +62,26 @@ def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str
     if turns > cycles[-1]:
         told = f"{turns:.6g} is beyond the {cycles[-1]:.6g} turns that {name} holds; give at most so many"
         raise InputError(told, key="worn.cycles")
-    depth = data["worn_depth"].values
+    depth = data["worn_depth"]
     at = max(int(np.searchsorted(cycles, turns)), 1) if cycles.size > 1 else 0
     part = 0.0 if at == 0 else (turns - cycles[at - 1]) / (cycles[at] - cycles[at - 1])
-    gone = (1.0 - part) * depth[at - 1] + part * depth[at] if at else depth[0]
+
+    def there(values: np.ndarray) -> np.ndarray:
+        return np.asarray((1.0 - part) * values[at - 1] + part * values[at] if at else values[0])
+
+    gone, most, error = (
+        there(data[one].values) for one in ("worn_depth", "deepest_wear", "wear_error")
+    )
     flank, across, span = (array(data[one].values) for one in _PLACES)
     cells = Cells(flank, across, span, depth.shape[2], depth.shape[3])
-    deepest = " and ".join(f"{1e6 * float(one.max()):.3g} um" for one in gone)
+    cut, deepest, off = (
+        " and ".join(f"{1e6 * float(one):.3g}" for one in each)
+        for each in (gone.max(axis=(1, 2)), most, error)
+    )
     told = (
-        f"Flanks are worn by {turns:.4g} turns of {data.attrs['driver']}: {deepest} deep at most."
+        f"Flanks are worn by {turns:.4g} turns of {data.attrs['driver']}: {deepest} um deep at most, within "
+        f"{off} um by grid and steps, and {cut} um in the {depth.shape[2]} cells along a flank whose depths "
+        "its surfaces have."
     )
     if data["conforming"].values[: at + 1].any():
         told += (

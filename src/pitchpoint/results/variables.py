@@ -298,6 +298,9 @@ VARIABLES: dict[str, Variable] = {
     "backlash_growth": deviation(
         "normal backlash that wear adds, largest of the mesh cycle", "Δj_n"
     ),
+    "backlash_growth_error": deviation(
+        "error of that backlash by steps, grid and slices", "Δ(Δj_n)"
+    ),
     "flank_place": length("arc length on the flank", "s"),
     "across_place": length("place across the face from its middle", "y"),
     "flank_radius": length("radius of the place on the flank", "r"),
@@ -305,6 +308,9 @@ VARIABLES: dict[str, Variable] = {
     "flank_height": length("height on the tooth from the lowest place that touches", "z"),
     "flank_angle": angle("angle between flank and axis of the tooth", "α"),
     "final_cycles": Variable("turns of the driver at the end of the march", "N end", "1"),
+    "final_cycles_error": Variable(
+        "turns by which the final depth may come earlier or later", "ΔN end", "1"
+    ),
     "final_depth": deviation("largest depth of wear at the end", "h end"),
     "pressure_change": percent(
         "largest pressure at the end over that at the start, less one", "Δp/p"

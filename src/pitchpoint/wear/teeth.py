@@ -8,6 +8,7 @@ from numpy.polynomial.chebyshev import chebfit, chebval
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import contacts_at
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.tooth_section import chebyshev_nodes
@@ -123,21 +124,25 @@ def _tips(mesh: Mesh) -> list[tuple[Array, Array, Array, Array]]:
     return [(*one.flank, one.load_angle, one.reach) for one in mesh.sections]
 
 
-def backlash_growth(mesh: Mesh, cells: Cells, start: Start, depth: Values) -> float:
+def backlash_growth(
+    mesh: Mesh, cells: Cells, start: Start, depth: Values, *, pitch_line: bool = False
+) -> float:
     """Normal backlash that wear of the flanks in use adds, where it adds most in the mesh cycle [m].
 
     In each position the pair with the smallest gap touches first: what it has lost of both flanks is the
     growth there.
 
     Validity:
-        Helical lines wear least at their pitch line, beside which the nearest slice lies: the growth is too
-        large, and less with more slices.
+        Helical lines do not wear at their pitch line, beside which the nearest slice lies: where lines cross
+        it in every position the growth is too large, and less with more slices. With `pitch_line` it is too
+        small: lines touch first where they cross it.
 
     Args:
         mesh: with flanks as new.
         cells: on both flanks.
         start: of the mesh.
         depth: worn off every cell and place [member, row, strip] [m].
+        pitch_line: nothing is gone from slices of lines with places between which the sliding turns.
     """
     if start.gap is None:
         worn = mesh.worn(cells.surfaces(array(depth)))
@@ -145,8 +150,24 @@ def backlash_growth(mesh: Mesh, cells: Cells, start: Start, depth: Values) -> fl
     else:
         gap = np.asarray(start.gap)
         gone = depth[:, cells.count :].sum(axis=0)
+        if pitch_line:
+            beside = _beside_pitch_line(mesh, start)
+            gone[: len(beside)][beside] = 0.0
         before, after = (_least_at_places(state, start) for state in (gap, gap + gone))
+        if pitch_line and gap.shape[1] > 1:
+            nodes = start.contacts.active.shape[-1]
+            before, after = before[:nodes], after[:nodes]
     return float(np.nanmax(after - before))
+
+
+def _beside_pitch_line(mesh: Mesh, start: Start) -> Bool[np.ndarray, "place slice"]:
+    """Places on slices beside which the sliding turns along a line, of all positions but where paths end."""
+    slip = jax.device_get(along(start.contacts.slip_arm, mesh.motion))
+    turns = np.sign(slip[:, 1:]) != np.sign(slip[:, :-1])
+    beside = np.zeros(slip.shape, dtype=bool)
+    beside[:, 1:] |= turns
+    beside[:, :-1] |= turns
+    return beside.swapaxes(1, 2).reshape(-1, slip.shape[1])
 
 
 def _least_at_places(gap: Values, start: Start) -> Values:

@@ -65,7 +65,7 @@ _ENDS = {
 }
 """Why a march ended, in words."""
 
-_FIGURES = ("final_cycles", "life_hours", "final_depth", "pressure_change")
+_FIGURES = ("final_cycles", "final_cycles_error", "life_hours", "final_depth", "pressure_change")
 
 
 def wear_blocks(page: Page) -> Iterator[Block]:
@@ -137,9 +137,9 @@ def _by_films(data: xr.Dataset) -> str:
 def _whole(data: xr.Dataset) -> Table:
     """Where the march ended, and its stages."""
     rows = [(titled(name, data), _told(data, name)) for name in _FIGURES]
-    if "backlash_growth" in data:
-        grown = show.quantity("backlash_growth", float(data["backlash_growth"].values[-1]))
-        rows.append((titled("backlash_growth", data), grown))
+    for name in ("backlash_growth", "backlash_growth_error"):
+        if name in data:
+            rows.append((titled(name, data), show.quantity(name, float(data[name].values[-1]))))
     rows.append(("ended", _ENDS[str(data.attrs["end"])]))
     for name in ("run_in_cycles", "severe_cycles"):
         rows.append((titled(name, data), _told(data, name)))
