@@ -150,7 +150,7 @@ def _operation(outcome: Outcome) -> str:
     )
     manifest, ratio, law = outcome.manifest, speed_ratio(outcome), ""
     loaded, load = manifest["loaded"], torque or force
-    if manifest["stages"] and isfinite(ratio):
+    if manifest.get("stages") and isfinite(ratio):
         speed_out = show.quantity("output_speed", number(outcome, "operation", "speed") / ratio)
         loaded, load = f"{loaded} at {speed_out}", f"{load}, ratio {show.number(ratio, 6)}"
     elif "operation" in outcome.parts:

@@ -519,7 +519,7 @@ def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
     else:
         over = _range(data, "efficiency", lambda name: float(data[name].values[0, 0]))
         told = [scope, f"over the cycle {over}"]
-    if not outcome.manifest["stages"]:  # the line above has the law
+    if not outcome.manifest.get("stages"):  # the line above has the law
         return _clauses(*others, *told)
     law = f"by {data['law'].values[0]}"
     return _clauses(*others, told.pop(), law, *told)
