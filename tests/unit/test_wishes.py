@@ -123,6 +123,20 @@ def test_tables_of_other_programs_are_answered():
     assert "strength.SHmin: is not a known key: safeties are results" in told
 
 
+def test_what_follows_from_other_keys_names_them():
+    for name, words in (
+        ("form_diameter", "follows from the rack and its fillet; the key is fillet_radius"),
+        ("base_pitch", "follow from module and pressure angle; the key is"),
+        ("internal", "a ring is gear 2 with a negative number of teeth; the key is teeth"),
+    ):
+        tree = copy.deepcopy(BASE)
+        tree["gears"][name] = 3
+        told = refused(tree)
+        assert words in told and "did you mean" not in told
+    told = refused(copy.deepcopy(BASE) | {"strength": {"K_gamma": 1.2}})
+    assert "K_γ is the mesh load factor; write mesh_load_factor = 1.2" in told
+
+
 def test_a_grade_is_a_part_of_several_names_of_oils():
     for name in ("VG 220", "ISO VG 220", "vg220"):
         told = refused(copy.deepcopy(BASE) | {"lubricant": {"name": name}})

@@ -497,6 +497,21 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             "the root diameter follows from dedendum and profile shift",
             _by_roots,
         ),
+        Wish(
+            ("form_diameter", "form_diameters", "d_ff", "sap_diameter", "tif_diameter"),
+            ("fillet_radius", "dedendum"),
+            "the form diameter follows from the rack and its fillet",
+        ),
+        Wish(
+            ("internal", "internal_gear", "is_internal"),
+            ("teeth",),
+            "a ring is gear 2 with a negative number of teeth",
+        ),
+        Wish(
+            ("base_pitch", "p_b", "p_bt", "base_diameter", "base_diameters", "d_b"),
+            ("module", "pressure_angle"),
+            "base circles and pitch follow from module and pressure angle",
+        ),
         Wish(("backlash",), ("centre_distance",), "the backlash follows from the centre distance"),
         Wish(
             ("circumferential_backlash", "nominal_backlash", "j_wt", "j_t"),
@@ -702,6 +717,12 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             ("face_load_factor",),
             "K_Hβ is the face load factor",
             _renamed("face_load_factor"),
+        ),
+        Wish(
+            ("k_gamma", "planet_load_factor", "load_sharing_factor", "mesh_load"),
+            ("mesh_load_factor",),
+            "K_γ is the mesh load factor",
+            _renamed("mesh_load_factor"),
         ),
         Wish(
             ("k_halpha", "k_ha"),
