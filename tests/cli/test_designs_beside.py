@@ -106,6 +106,8 @@ def test_what_a_reference_means(folder: Path, monkeypatch: pytest.MonkeyPatch) -
     Path("a@b.toml").write_text(BALL)
     assert wanted("a@b.toml").variant is None
     assert wanted("out/pair@worn") == wanted("out/pair").__class__("out/pair", "worn")
+    assert wanted("out/pair/worn") == wanted("out/pair@worn")
+    assert wanted("out/pair").variant is None
     assert [*designs(["out/pair@worn", "out/ball"])] == ["pair@worn", "ball"]
     assert [*designs(["out/pair"])] == ["pair@new", "pair@worn"]
     for references, words in (

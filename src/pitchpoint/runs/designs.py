@@ -65,12 +65,15 @@ class Wanted:
 
 
 def wanted(reference: str) -> Wanted:
-    """What a reference means: `case`, or `case@variant` where no file has that name.
+    """What a reference means: `case`, `case@variant` where no file has that name, or the folder of a variant.
 
     Example:
         >>> wanted("pair.toml@physical")
         Wanted(case='pair.toml', variant='physical')
     """
+    folder = Path(reference)
+    if (folder / MANIFEST).is_file() and is_result(str(folder.parent)):
+        return Wanted(str(folder.parent), folder.name)
     case, at, variant = reference.rpartition("@")
     if not at or os.path.exists(reference):
         return Wanted(reference)
