@@ -298,7 +298,10 @@ def test_unknown_oil_and_material_name_the_nearest():
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"nu_2": 100e-6}, "fva-3.nu_1: must be above nu_2"),
+        (
+            {"nu_2": 100e-6},
+            "fva-3.nu_1: must be above nu_2, since oils thin with heat; 95 mm2/s was given with 100 mm2/s",
+        ),
         ({"nu_1": float("nan")}, "fva-3.nu_1: nan is not a positive number"),
         ({"density_15": -1.0}, "fva-3.density_15: -1.0 is not a positive number"),
         ({"density_slope": 10.0}, "fva-3.density_slope: makes the density negative at T_max"),

@@ -25,6 +25,15 @@ PLANET = WILLIS - 24 / 30 * (1 - WILLIS)
 """Speeds of carrier and planet for a unit speed of the sun of 24/30/84 with a held ring."""
 
 
+QUIET = Drag(
+    between=(1.0, -1.0),
+    bearing=BEARING_LOSS["palmgren_1959"],
+    mean_diameter=0.03,
+    factors={"f0": 0.0, "f1": 0.0},
+)
+"""A bearing that loses nothing, of which the load counts."""
+
+
 def point(load):
     return replace(POINT, load=jnp.asarray(load))
 
@@ -103,13 +112,15 @@ def test_seals_take_the_power_of_the_speeds_between_their_bodies():
 
 def test_flanks_that_losses_press_are_in_equilibrium_without_load():
     """A planet that its pin brakes is turned by the sun and leans on the other flanks of the ring."""
-    train = planetary([Drag(between=(1.0, -1.0), seal_torque=0.2)], [("planet", "carrier")])
+    train = planetary([replace(QUIET, seal_torque=0.2)], [("planet", "carrier")])
     found = train_cycle(train, point(0.0), [constant(0.1)] * 2)
     sun, ring = (np.asarray(mesh.force) for mesh in found.meshes)
     assert (sun > 0.0).all() and (ring < 0.0).all()
     torques = np.array([*map(np.asarray, found.torques.values())])
     np.testing.assert_allclose(torques.sum(0), 0.0, atol=1e-12 * np.abs(torques).max())
     np.testing.assert_allclose(found.input_power, found.loss, rtol=1e-9)
+    # The other flank of the ring pushes back along the line on which the sun pushes on.
+    np.testing.assert_allclose(found.pressed[0], (sun - np.abs(ring)).mean(axis=0), rtol=1e-9)
     free = 3 * 0.2 * (WILLIS - PLANET)
     # Forces of some newtons rub little: free bodies with a few per cent lost in each mesh.
     assert 1.0 < found.mean(found.input_torque) / free < 1.02
@@ -117,19 +128,13 @@ def test_flanks_that_losses_press_are_in_equilibrium_without_load():
 
 def test_pins_carry_what_the_carrier_takes_and_central_bearings_nothing():
     """Tangential forces F cos(alpha) of a planet add up, its radial ones and those around a sun cancel."""
-    quiet = Drag(
-        between=(1.0, -1.0),
-        bearing=BEARING_LOSS["palmgren_1959"],
-        mean_diameter=0.03,
-        factors={"f0": 0.0, "f1": 0.0},
-    )
     places = [("planet", "carrier"), ("sun", "housing"), ("carrier", "housing")]
-    train = planetary([quiet] * 3, places)
+    train = planetary([QUIET] * 3, places)
     mesh = train.meshes[0].design.mesh
     pin = 100.0 / 3 / float(mesh.centre_distance)
     assert figures(train, 0.0)["bearing_load"] == pytest.approx([pin, 0.0, 0.0], rel=1e-9, abs=1e-9)
     # One planet alone puts its force on the sun, and that of its pin on the carrier.
-    lone = figures(planetary([quiet] * 3, places, count=1), 0.0)["bearing_load"]
+    lone = figures(planetary([QUIET] * 3, places, count=1), 0.0)["bearing_load"]
     on_sun = 1.5 * pin / cos(radians(20.0))
     assert lone == pytest.approx([3 * pin, on_sun, 3 * pin], rel=1e-9)
 

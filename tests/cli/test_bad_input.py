@@ -1351,7 +1351,7 @@ def deep(levels: int) -> bytes:
 
 
 FILES = {
-    "not TOML": (b"[gears\nteeth = 3", "is not a TOML file: ", "at line 1"),
+    "not TOML": (b"[gears\nteeth = 3", "is not a TOML file: line 1", "write [gears]"),
     "two of a kind": (b"a = 1\na = 2", "is not a TOML file: ", "line 2", "a = 2; write it once"),
     "binary": (b"\x00\x01\x02", "is not a TOML file", "line 1"),
     "not UTF-8": ("title = 'é'".encode("latin-1"), "is not UTF-8 text", "Latin-1"),

@@ -41,7 +41,7 @@ STRENGTH, SHAFT, INSPECTION, LIMITS = blocks("guide/sizing.md", "toml")
 (MOTION,) = blocks("guide/motion.md", "toml")
 FILM, OIL, FINITE, HEIGHTS = blocks("guide/films.md", "toml")
 WEAR, WORN = blocks("guide/wear.md", "toml")
-STAGES, PLANETARY, TRAIN = blocks("guide/stages.md", "toml")
+STAGES, PLANETARY, TRAIN, OF_TRAIN = blocks("guide/stages.md", "toml")
 (TARGETS,) = blocks("guide/targets.md", "toml")
 (RACK,) = blocks("gears/rack_and_pinion.md", "toml")
 (TORUS,) = blocks("gears/torus.md", "toml")
@@ -77,6 +77,7 @@ CASES = {
     "stages": STAGES,
     "planetary": PLANETARY,
     "train": TRAIN,
+    "losses of a train": (PLANETARY, OF_TRAIN),
     "ball": BALL,
     "targets": (WAVE, TARGETS),
     "units": (PAIR, UNITS),

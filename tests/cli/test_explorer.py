@@ -259,7 +259,7 @@ def test_every_family_names_a_key_to_explore(table: type[GearsTable]) -> None:
     ("arguments", "sentence"),
     [
         (["--over", "operation.torque=5"], "is not KEY=START:STOP:COUNT"),
-        (["--over", "operation.torque=5 N m:6 N m:1"], "a slider needs two at least"),
+        (["--over", "operation.torque=5 N m:6 N m:1"], "1 value cannot be both"),
         (["--over", "operation.torqe=5 N m:6 N m:2"], "there is no such key; did you mean"),
         (["--over", "operation.torque=5 N m:6 mm:2"], "operation.torque"),
         (["--over", "operation.torque=5 N m:6 N m:601"], "a page holds 600 at most"),

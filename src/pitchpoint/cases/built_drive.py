@@ -360,12 +360,19 @@ class BuiltTrain(BuiltDrive):
     @property
     def on_strength(self) -> tuple[str, ...]:
         """Sentences on what a rating takes where there are several meshes."""
+        from pitchpoint.cases.strength import MESH_LOAD
+
         count = max(self.copies)
+        share = (
+            f"K_γ = {MESH_LOAD[count]} for {count} planets by IEC 61400-4"
+            if count in MESH_LOAD
+            else "K_γ = 1"
+        )
         return (
             *super().on_strength,
-            f"Where [strength] says nothing else, {count} planets share a load as IEC 61400-4 has it (K_γ), "
-            f"teeth that two mates load both ways have Y_M = 0.7, and a gear that meets all planets has "
-            f"{count} load cycles in a turn against the carrier.",
+            f"Where [strength] says nothing else, {share}, teeth that two mates load both ways have "
+            f"Y_M = 0.7, and a gear that meets all planets has {count} load cycles in a turn against the "
+            "carrier.",
         )
 
     @property

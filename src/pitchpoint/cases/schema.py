@@ -509,6 +509,8 @@ class Loss(Table):
     part where two are given with their positions along the axis, counted from the middle of the face
     towards the end that a contact line reaches last. The one that is locating takes the axial force. A
     bearing between wave generator and flexspline bears the radial load of the teeth in both zones.
+    In a train a place that names the planet is at every planet, and a bearing stands for all of its body:
+    of a planet in its carrier, or of a body in the housing; between two others it bears its preload.
     A breakaway model and its torque by value hold the bodies at rest, beside the bearing and the seal.
     """
 
@@ -1423,7 +1425,7 @@ class StrengthTable(Table):
     work_hardening: Annotated[tuple[float, float], Pair(HARDENING)] | None = None
     """Work hardening factor Z_W; 1 unless given."""
     mean_stress_factor: Annotated[tuple[float, float], Pair(REVERSED)] | None = None
-    """Mean stress factor Y_M of teeth loaded both ways; 0.7 of planets that are, else 1, unless given."""
+    """Mean stress factor Y_M of teeth loaded both ways; in trains 0.7 with two mates, else 1."""
     engagements: Annotated[tuple[float, float], Pair(PLANETS)] | None = None
     """Engagements of a tooth in a turn of its gear; of sun and ring one a planet, else 1, unless given."""
     flank_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None
@@ -1446,6 +1448,10 @@ class StrengthTable(Table):
             raise InputError(
                 "was given beside dynamic_factor, which is K_v itself; give one",
                 key="dynamic_method",
+            )
+        if self.engagements is not None and self.life is None:
+            raise InputError(
+                "was given without life, whose load cycles it counts", key="engagements"
             )
         if self.edition == "2006" and self.profile_correction is not None:
             raise InputError(
@@ -1819,12 +1825,36 @@ def _check_train(case: DriveCase) -> None:
         for name in stage.losses:
             told = "losses of a train stand between its bodies; give this one under [losses]"
             wrong.add(InputError(told, key=f"stages.{number}.losses.{name}"))
-    for name, loss in case.losses.items():
+        if case.losses and stage.lubricant is not None:
+            told = "was given beside [losses]; a train that has them has one oil, that of the case"
+            wrong.add(InputError(told, key=f"stages.{number}.lubricant"))
+    _check_bearings(case.losses, train, wrong)
+    wrong.demand_none()
+
+
+def _check_bearings(losses: Mapping[str, Loss], train: TrainTable, wrong: Complaints) -> None:
+    """Complaints on bearings of a train whose load would not be known."""
+    seen: dict[frozenset[str], str] = {}
+    for name, loss in losses.items():
         for key in ("position", "locating"):
             if key in loss.model_fields_set:
                 told = "was given; a bearing of a train stands for all bearings of its body"
                 wrong.add(InputError(told, key=f"losses.{name}.{key}"))
-    wrong.demand_none()
+        if loss.bearing == "none":
+            continue
+        bodies = frozenset(loss.between)
+        if train.planet in bodies and bodies != {train.planet, train.carrier}:
+            told = (
+                f'bearings of planets sit in their carrier: ["{train.planet}", "{train.carrier}"]'
+            )
+            wrong.add(InputError(told, key=f"losses.{name}.between"))
+        before = seen.setdefault(bodies, name)
+        if before != name:
+            told = (
+                f"{before} is a bearing between the same two; one of a train stands for all bearings of its "
+                "body: add their factors f0, and leave one out"
+            )
+            wrong.add(InputError(told, key=f"losses.{name}.between"))
 
 
 def _check_passing(stages: Mapping[str, StageTable]) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from pitchpoint.cases.build import Built, drags
 from pitchpoint.cases.document import STAGES
 from pitchpoint.cases.schema import Case, DriveCase, Operating, StrengthTable, TrainTable
-from pitchpoint.cases.strength import of_planets
+from pitchpoint.cases.strength import MESH_LOAD, of_planets
 from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.assembly import check_neighbours, equal_angles, planet_phases
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link
@@ -228,6 +228,14 @@ _UNBRAKED = Doubt(
     brief="The efficiency is without planet bearings.",
 )
 
+_MANY = Doubt(
+    f"Stresses are those of planets that share alike: no mesh load factor K_γ is known for more than "
+    f"{max(MESH_LOAD)} planets, for which it is {MESH_LOAD[max(MESH_LOAD)]}; give strength.mesh_load_factor.",
+    moves=GUESSED,
+    about=("root_stress", "contact_stress"),
+    brief=f"K_γ of more than {max(MESH_LOAD)} planets is unknown: taken as 1.",
+)
+
 MOST_FITTED = 8
 """Planets up to which it is told how many fit in."""
 
@@ -272,10 +280,14 @@ def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
     """
     train = case.train
     assert train is not None
+    losses = [loss for loss in case.losses.values() if loss.bearing != "none"]
+    borne = [{*loss.between} for loss in losses]
+    alone = case.strength is None or case.strength.mesh_load_factor is None
     worn = any(one.wear is not None for one in case.stages.values())
     warmed = any(one.warming is not None for one in built)
     return (
         *[_WORN] * worn,
         *[_WARMED] * warmed,
-        *[_UNBRAKED] * (not any(train.planet in loss.between for loss in case.losses.values())),
+        *[_UNBRAKED] * ({train.planet, train.carrier} not in borne),
+        *[_MANY] * (train.planets > max(MESH_LOAD) and alone),
     )

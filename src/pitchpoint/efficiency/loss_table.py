@@ -288,7 +288,7 @@ def _at_many(table: LossTable, torque: Any, speed: Any, temperature: Any, law: s
         np.multiply(torque, sign, out=along)
         np.log(pace, out=logarithm)
         ways = work[12:15]
-        outside[:] = pace > table.speeds[-1]
+        outside[:] = ~(pace <= table.speeds[-1])  # of what is not a number too
         for place, axis, way, low in zip(
             (along, logarithm, degree), axes, ways, cells, strict=False
         ):

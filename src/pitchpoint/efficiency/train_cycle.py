@@ -50,7 +50,8 @@ class MeshState(eqx.Module):
         conditions: at the contacts of all copies.
         friction: coefficient at each slice.
         sliding_loss, rolling_loss: power lost at each slice [W].
-        force, nominal: normal force of each copy, and without friction, equal for all [N].
+        force, nominal: normal force of each copy, negative on other flanks that losses press, and its size
+            without friction [N].
         input_torque: torque on the driving member of the mesh in its sense of motion, of all copies [N m].
         speed: of that member against the carrier [rad/s].
     """
@@ -135,7 +136,10 @@ class TrainCycle(eqx.Module):
 
     @property
     def locked(self) -> Bool[Array, ""]:
-        """True where friction holds the train at some phase."""
+        """True where friction holds the train at some phase.
+
+        With losses beside the teeth the search finds no forces there, see `train_summary.train_figures`.
+        """
         return jnp.any(self.status.code == int(Code.LOCKED))
 
 

@@ -96,10 +96,10 @@ def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
             yield from _flat(f"{name}_{key}", inside)
     elif isinstance(value, list) and value and isinstance(value[0], Mapping | list):
         every = [one if isinstance(one, Mapping) else dict(enumerate(one, 1)) for one in value]
-        for key in every[0]:
-            yield f"{name}_{key}", [_plain(one[key]) for one in every]
+        for key in dict.fromkeys(key for one in every for key in one):
+            yield f"{name}_{key}", [_plain(one.get(key)) for one in every]
     else:
-        yield name, value if isinstance(value, list) else _plain(value)
+        yield name, [*map(_plain, value)] if isinstance(value, list) else _plain(value)
 
 
 def _plain(value: Any) -> Any:
