@@ -124,7 +124,7 @@ def test_every_block_is_known() -> None:
     assert set(kinds) <= {"sh", "toml", "python", *OF_THE_SITE}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 26
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 27
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 
@@ -263,7 +263,9 @@ def test_a_case(name: str) -> None:
     assert ("film" in made) == (name in ("film", "oil"))
     assert ("wear" in made) == (name == "wear")
     assert ("finite_film" in made) == (name == "finite")
-    assert ("running" in made) == (name in ("wave", "limits", "targets", "stages"))
+    assert ("running" in made) == (
+        name in ("wave", "limits", "targets", "stages", "losses of a train")
+    )
     assert ("load_limits" in made) == (name in ("wave", "limits", "targets"))
     assert ("kinematic_error" in made) == (name in ("modified", "wave", "limits", "targets"))
 
@@ -361,7 +363,7 @@ def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
 
     monkeypatch.setattr(run, "run", prepare)
     monkeypatch.setattr(cli, "_write_report", lambda outcomes, folder: None)
-    monkeypatch.setattr(cli, "_first_screen", lambda outcomes, report: None)
+    monkeypatch.setattr(cli, "_first_screen", lambda outcomes, report, tables: None)
     program, *arguments = shlex.split(line)
     assert program == ".venv/bin/pitchpoint"
     monkeypatch.setattr(sys, "argv", ["pitchpoint", *arguments])
