@@ -144,6 +144,17 @@ def test_the_teeth_alone_are_no_headline_of_a_drive(pair: dict[str, Outcome]) ->
     )
 
 
+def test_a_drive_of_stages_without_losses_has_the_efficiency_of_its_teeth(
+    pair: dict[str, Outcome],
+) -> None:
+    outcome = doubting(pair["default"], stages=[{"number": 1, "title": "stage 1"}])
+    data = outcome.parts["operation"].copy(deep=True)
+    for covers, name in ((ALONE, "Efficiency of teeth"), ("", "Efficiency")):
+        data["mean_efficiency"] = data["mean_efficiency"].assign_attrs(covers=covers)
+        drive = replace(outcome, parts={**outcome.parts, "operation": data})
+        assert key_figures(in_order(), drive)[0].name == name
+
+
 @pytest.mark.parametrize("width", [40, 60, 100])
 def test_no_number_is_cut(pair: dict[str, Outcome], width: int) -> None:
     assert [*faults_of_the_screen(pair, width)] == []

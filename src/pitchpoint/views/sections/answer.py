@@ -500,10 +500,15 @@ _BRIEFLY = {
 def _efficiencies(
     figure: Callable[[float, str, str, str], KeyFigure], outcome: Outcome, data: xr.Dataset
 ) -> Iterator[KeyFigure]:
-    """The efficiency; where a drive lacks a part that loses, that first, and below it what is known."""
+    """The efficiency; where a drive lacks a part that loses, that first, and below it what is known.
+
+    That of a drive of several meshes without any losses beside its teeth is named as theirs.
+    """
     if lacks := _lacks(data):
         yield KeyFigure(10.0, "Efficiency", "not known", f"lacks the {lacks}, see [losses]")
-    place, name = (26.0, "Efficiency without it") if lacks else (10.0, "Efficiency")
+    alone = outcome.manifest.get("stages") and covers(data).startswith("teeth alone")
+    whole = "Efficiency of teeth" if alone else "Efficiency"
+    place, name = (26.0, "Efficiency without it") if lacks else (10.0, whole)
     yield figure(place, name, "mean_efficiency", _certainty(outcome, data))
 
 
