@@ -463,6 +463,8 @@ def worn_file(gears: dict[str, Any]) -> str:
     data = dataset(
         {
             "worn_depth": (("step", "member", "cell", "strip"), depth),
+            "deepest_wear": (("step", "member"), depth.max(axis=(2, 3))),
+            "wear_error": (("step", "member"), 0.01 * depth.max(axis=(2, 3))),
             "cycles": (("step",), np.array([0.0, 1e6])),
             "conforming": (("step",), np.array([False, False])),
             "flank_ends": (("member", "side"), np.array([[0.5e-3, 3e-3], [2e-3, 6e-3]])),
