@@ -72,7 +72,7 @@ def wanted(reference: str) -> Wanted:
         Wanted(case='pair.toml', variant='physical')
     """
     folder = Path(reference)
-    if (folder / MANIFEST).is_file() and is_result(str(folder.parent)):
+    if os.path.isfile(folder / MANIFEST) and is_result(str(folder.parent)):
         return Wanted(str(folder.parent), folder.name)
     case, at, variant = reference.rpartition("@")
     if not at or os.path.exists(reference):
