@@ -140,6 +140,7 @@ def test_loss_of_an_involute_drive_by_its_friction(runs, torque):
     assert 0.25 < lost < 0.55
 
 
+# A known miss: fewer pairs than are expected there. Strict, so that a change that mends it says so.
 SHALLOW = pytest.mark.xfail(
     strict=True,
     reason="5.5: at one end of the wave two or three; 5.9 if contacts had no width, 6 from 6 N m on",

@@ -522,6 +522,7 @@ def second_derivative(heights, step):
 @pytest.fixture(scope="module")
 def curves(family):
     if family.curves is None:
+        # Bent flanks are no curves of a rigid body, from which this road takes its contacts.
         pytest.skip("checked by positions alone in test_strain_wave.py")
     return family.curves(family.mesh)
 
@@ -717,6 +718,7 @@ def test_rigid_flanks_touch_where_they_are_active(family):
 
 def test_number_of_pairs_changes_at_events_only(family):
     if not family.mesh.touching:
+        # Events are of rigid flanks; with gaps between them load decides, and no count is there to compare.
         pytest.skip("pairs come and go unloaded; the number that touches depends on the load")
     events = family.told.events
     assert events.shape == jax.eval_shape(type(family.mesh).events, family.mesh).shape
@@ -734,6 +736,7 @@ def test_number_of_pairs_changes_at_events_only(family):
 
 def test_sliding_changes_its_sense_at_events_only(family):
     if not family.mesh.touching:
+        # No event is due there: one of many teeth bends the sums over them by little.
         pytest.skip("each tooth reverses its sliding near the long axis, one of many that carry")
     edges = np.unique(np.concatenate([[0.0], family.told.events, [1.0]]))
     for low, high in pairwise(edges):

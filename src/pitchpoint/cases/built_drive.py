@@ -237,12 +237,10 @@ class BuiltDrive:
     def held_otherwise(self, way: float) -> "BuiltDrive":
         """The drive with what holds it at rest at one end of its spread, see `Built.held_otherwise`."""
         drag = held_by(self.design.drag, self.case.losses, way)
-        pairs = zip(self.design.stages, self.stages, strict=True)
-        each = [held_by(one.design.drag, built.case.losses, way) for one, built in pairs]
-        stages = [
-            replace(one, design=replace(one.design, drag=own))
-            for one, own in zip(self.design.stages, each, strict=True)
-        ]
+        stages = []
+        for stage, built in zip(self.design.stages, self.stages, strict=True):
+            held = held_by(stage.design.drag, built.case.losses, way)
+            stages.append(replace(stage, design=replace(stage.design, drag=held)))
         return replace(self, design=replace(self.design, drag=drag, stages=tuple(stages)))
 
     def torques_at_rest(self, points: Operation, acting: Acting) -> tuple[np.ndarray, np.ndarray]:

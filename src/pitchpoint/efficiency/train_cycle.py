@@ -341,8 +341,8 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
 
     def step(held: tuple[Forces, Nodes, Array]) -> tuple[Forces, Nodes, Array]:
         forces, _, steps = held
-        laws = [one.laws(force) for one, force in zip(every, _by_mesh(every, forces), strict=True)]
         each = _by_mesh(every, forces)
+        laws = [one.laws(force) for one, force in zip(every, each, strict=True)]
         taken = [one.of_rolling(rolling) for one, (_, rolling) in zip(every, laws, strict=True)]
         arms = _arms(
             train,
@@ -566,7 +566,6 @@ def _press(train: Train, every: Sequence[_Meshing], operation: Operation) -> Non
         ],
     )
     taken = _on_rows(train, _places(train, every, still, operation))
-    whole = jnp.ones((arms.shape[0], arms.shape[-1]))
-    forces = whole * _least(arms, _asked(train, operation) - taken)
+    forces = _least(arms, _asked(train, operation) - taken)
     for one, force in zip(every, _by_mesh(every, forces), strict=True):
         one.carry(jnp.abs(force))

@@ -14,7 +14,7 @@ from pitchpoint.input.quantities import shown
 from pitchpoint.results.by_stage import OF_STAGES
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.variable import Variable
-from pitchpoint.results.variables import SWEPT, VARIABLES, variable_of
+from pitchpoint.results.variables import SWEEP_AXIS, VARIABLES, variable_of
 
 __all__ = [
     "Units",
@@ -136,7 +136,7 @@ def showing(unit: Units) -> AbstractContextManager[None]:
 def _displayed(data: xr.Dataset) -> xr.Dataset:
     made = data.copy()
     for name in [*map(str, data.variables)]:
-        if (name in VARIABLES or name == SWEPT) and data[name].dtype.kind == "f":
+        if (name in VARIABLES or name == SWEEP_AXIS) and data[name].dtype.kind == "f":
             known = variable_of(data, name)
             if known.display != known.unit:
                 made[name] = _as_shown(data, name, known)

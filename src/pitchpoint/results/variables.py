@@ -23,9 +23,9 @@ from pitchpoint.results.variable import (
     torsional_stiffness,
 )
 
-__all__ = ["SWEPT", "VARIABLES", "places_of", "variable_of"]
+__all__ = ["SWEEP_AXIS", "VARIABLES", "places_of", "variable_of"]
 
-SWEPT = "axis"
+SWEEP_AXIS = "axis"
 """Values of the key of a sweep, in a study that has one."""
 
 VARIABLES: dict[str, Variable] = {
@@ -731,7 +731,7 @@ def variable_of(data: Any, name: str) -> Variable:
 
     The axis of a sweep is what its key says.
     """
-    if name == SWEPT and "sweep_key" in data.attrs:
+    if name == SWEEP_AXIS and "sweep_key" in data.attrs:
         key, kind, shown = (str(data.attrs[one]) for one in ("sweep_key", "axis_kind", "axis_unit"))
         unit = units.si_unit(kind) if kind else "1"
         return Variable(key, "", unit, shown, kind or "dimensionless")
