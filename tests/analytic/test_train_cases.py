@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.drive.torques import train_torques
@@ -115,6 +116,64 @@ def test_bearings_of_planets_and_seals_take_their_part():
     assert start > 0.03
     back = data["back_driving_torque"].sel(temperature=built.case.operation.temperature).item()
     assert back > start * 108 / 24
+
+
+def inspected(teeth):
+    return gears(teeth, inspection={"thickness_field": "cd25"})
+
+
+@pytest.mark.parametrize("kind", ["set", "3K"])
+def test_play_and_inertia_at_the_ends_follow_from_gaps_and_speeds(kind):
+    """Play by the gaps of all meshes, closed on bodies that are held; inertia by the energy of all bodies."""
+    meshes = {
+        "set": [("sun", [24, 30]), ("ring", [30, -84])],
+        "3K": [("sun", [18, 36]), ("ring", [36, -90]), ("output ring", [34, -88])],
+    }[kind]
+    output = {"set": "carrier", "3K": "output ring"}[kind]
+    stages = [
+        {
+            "bodies": ["sun", "planet"] if body == "sun" else ["planet", body],
+            "gears": inspected(teeth),
+        }
+        for body, teeth in meshes
+    ]
+    train = {"input": "sun", "output": output, "held": "ring", "planets": 3}
+    built = load_case({"stages": stages, "train": train, **TABLES})
+    data = ANALYSES["reflected"].compute(built, {}, lambda *_: None)
+    each = [inspection_part(mesh) for mesh in built.meshes]
+
+    # Along the line of action: what a turn of the other bodies opens, with sun and ring held.
+    free = [*dict.fromkeys(("planet", "carrier", output))]
+    opening = np.zeros((len(meshes), len(free)))
+    closed = np.zeros(len(meshes))
+    for row, (body, teeth) in enumerate(meshes):
+        outer, planet = teeth if body == "sun" else teeth[::-1]
+        base = abs(np.array([outer, planet])) * np.cos(np.radians(20.0)) * 1e-3 / 2.0
+        of_outer, of_planet = np.sign(outer) * base[0], base[1]
+        arms = {"planet": of_planet, "carrier": -of_outer - of_planet, body: of_outer}
+        opening[row] = [arms.get(name, 0.0) for name in free]
+        closed[row] = -of_outer * (body == "sun")  # again, for a radian of the sun
+    gaps = np.array([one["backlash_along_normal"].values for one in each])
+    turns = np.abs(np.linalg.inv(opening)[free.index(output)]) @ gaps
+    np.testing.assert_allclose(data["output_backlash"], turns, rtol=1e-9)
+    assert turns[3] > turns[1] > 0.0
+
+    moving = np.linalg.solve(opening, closed)
+    speed = {"sun": 1.0, "ring": 0.0} | dict(zip(free, moving, strict=True))
+    weighed = {}
+    for (body, teeth), one, mesh in zip(meshes, each, built.meshes, strict=True):
+        planet = 1 if body == "sun" else 0
+        mass, inertia = one["disc_mass"].values, one["disc_inertia"].values
+        orbit = speed["carrier"] * float(mesh.dimensions["centre_distance"])
+        turning = inertia[planet] * speed["planet"] ** 2 + mass[planet] * orbit**2
+        weighed[f"planet {teeth[planet]}"] = 3 * turning
+        weighed[body] = inertia[1 - planet] * speed[body] ** 2
+    at_input = sum(weighed.values())
+    np.testing.assert_allclose(
+        data["reflected_inertia"], [at_input, at_input / speed[output] ** 2], rtol=1e-9
+    )
+    assert data.sizes["body"] == len(weighed)
+    assert data.attrs["carriers"] == '["carrier"]'
 
 
 @pytest.mark.parametrize("planets", [1, 3])

@@ -2,7 +2,7 @@
 
 from pitchpoint.analyses.analysis import Unasked, has_key
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
+from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.loading.registry import LOAD_SHARING
 
 __all__ = [
@@ -77,10 +77,6 @@ def no_bodies(built: Built) -> str | None:
 
 def of_one_mesh(built: Ready) -> str | None:
     """Why there are no sums over the meshes of a drive."""
-    if isinstance(built, BuiltTrain):
-        return Unasked(
-            "backlash, masses and inertia at the ends are those of stages one behind the other"
-        )
     if isinstance(built, BuiltDrive):
         return None
     return Unasked("backlash, masses and inertia of one mesh stand with its gears")

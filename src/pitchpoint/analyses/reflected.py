@@ -1,6 +1,6 @@
 """What a drive of several meshes is at its ends: backlash at the output, masses, reflected inertia."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from math import isfinite
 from typing import NamedTuple
 
@@ -10,9 +10,9 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Piece, Progress, has_key, silent
 from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.inspection import CASES, inspection_part
-from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive
+from pitchpoint.cases.built_drive import BuiltDrive, MemberMotion
 from pitchpoint.doubts import Doubt
+from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.results.store import dataset
 
 __all__ = ["reflected_of"]
@@ -21,10 +21,10 @@ Inspections = Mapping[int, xr.Dataset]
 
 
 class _Moving(NamedTuple):
-    """A body of a stage.
+    """A body of a drive, all its copies together.
 
     Attributes:
-        name: with its stage.
+        name: of it, with how many there are.
         mass: [kg].
         inertia: about its axis [kg m2]; not a number where it travels.
         energy: twice that of its motion, for a radian of the input in a second [J].
@@ -49,12 +49,8 @@ def reflected_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
     inspected = {
         n: inspection_part(mesh) for n, mesh in numbered.items() if has_key(mesh, "inspection")
     }
-    bodies = [
-        body
-        for (number, mesh), entering in zip(numbered.items(), built.motion[:-1], strict=True)
-        for body in _bodies(number, mesh, entering, inspected)
-    ]
-    ends = {"input": built.motion[0]} | ({} if built.travels else {"output": built.motion[-1]})
+    bodies = _bodies(built, inspected)
+    ends = {"input": 1.0} | ({} if built.travels else {"output": built.output_rate})
     parts = np.array([[body.energy / rate**2 for body in bodies] for rate in ends.values()])
     backlash = {} if built.travels else _backlash(built, inspected)
     return dataset(
@@ -73,47 +69,63 @@ def reflected_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
         },
         title="reflected",
         warnings=_unknown(bodies),
+        carriers=[*_carriers(built)],
         without_backlash=[n for n in numbered if n not in inspected],
         without_tolerances=[n for n, data in inspected.items() if data.sizes["case"] == 1],
     )
 
 
-def _bodies(number: int, mesh: Built, entering: float, inspected: Inspections) -> list[_Moving]:
-    """Bodies of a stage whose driver moves so fast; cylindrical gears are the discs of their inspection."""
-    kind = "disc" if number in inspected else "body"
-    data = inspected[number] if number in inspected else bodies_of(mesh, {}, silent)
-    motion, driver = mesh.nominal["motion"], mesh.nominal["driver"]
-    every = zip(
-        mesh.bodies,
-        data[f"{kind}_mass"].values.tolist(),
-        data[f"{kind}_inertia"].values.tolist(),
-        (motion * entering / (driver @ motion)).tolist(),
-        strict=True,
-    )
-    return [
-        _Moving(
-            f"stage {number}: {body.body}",
-            mass,
-            inertia,
-            (inertia if body.turns else mass) * rate**2 if rate else 0.0,
-        )
-        for body, mass, inertia, rate in every
-    ]
+def _bodies(built: BuiltDrive, inspected: Inspections) -> list[_Moving]:
+    """Bodies of a drive, each gear once; cylindrical ones are the discs of their inspection.
+
+    Of a gear that is as wide as another mesh of it asks, the heavier disc counts.
+    """
+    heaviest: dict[str, _Moving] = {}
+    meshes = zip(built.numbers, built.meshes, built.member_motions, strict=True)
+    for number, mesh, members in meshes:
+        kind = "disc" if number in inspected else "body"
+        data = inspected[number] if number in inspected else bodies_of(mesh, {}, silent)
+        values = (data[f"{kind}_{what}"].values.tolist() for what in ("mass", "inertia"))
+        for member, coordinate, mass, inertia in zip(members, mesh.bodies, *values, strict=True):
+            body = _moving(member, mass, inertia, turns=coordinate.turns)
+            other = heaviest.setdefault(member.body, body)
+            if body.mass > other.mass:
+                heaviest[member.body] = body
+    return [*heaviest.values()]
+
+
+def _moving(member: MemberMotion, mass: float, inertia: float, *, turns: bool) -> _Moving:
+    """A member with its mass, from the energy about its axis and that of its axis about the carrier's."""
+    of_axis = (inertia if turns else mass) * member.rate**2 if member.rate else 0.0
+    of_orbit = mass * member.orbit**2 if member.orbit else 0.0
+    count = member.copies
+    name = member.body if count == 1 else f"{count} × {member.body}"
+    return _Moving(name, count * mass, count * inertia, count * (of_axis + of_orbit))
+
+
+def _carriers(built: BuiltDrive) -> Iterator[str]:
+    """Carriers, of which no mass is known."""
+    carriers = (member.carrier for members in built.member_motions for member in members)
+    yield from (name for name in dict.fromkeys(carriers) if name != HOUSING)
 
 
 def _backlash(
     built: BuiltDrive, inspected: Inspections
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
-    """Turn of the output in the backlash of all stages; nothing where that of one is not by its teeth."""
+    """Turn of the output in the backlash of all meshes; nothing where that of one is not by its teeth.
+
+    From virtual work: the torque that the driven member of a mesh carries for a unit at the output, without
+    losses, is also how far a turn of it alone turns the output. Planets share it and play alike.
+    """
     if len(inspected) < len(built.meshes):
         return {}
-    steps = np.abs(built.motion[-1] / np.array(built.motion[1:]))
     of_loaded = [
         inspected[number]["backlash_angle"].values[int(mesh.nominal["loaded"].argmax())]
         for number, mesh in zip(built.numbers, built.meshes, strict=True)
     ]
     each = [
-        step * np.resize(angles, len(CASES)) for step, angles in zip(steps, of_loaded, strict=True)
+        step * np.resize(angles, len(CASES))
+        for step, angles in zip(built.steps, of_loaded, strict=True)
     ]
     return {"output_backlash": (("case",), np.sum(each, axis=0))}
 

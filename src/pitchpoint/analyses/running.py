@@ -149,8 +149,7 @@ def from_rest(
 
 def has_spread(built: Ready) -> bool:
     """True if a place says by how much what holds it at rest may be more or less."""
-    stages = built.stages if isinstance(built, BuiltDrive) else ()
-    every: tuple[Ready, ...] = built, *stages
+    every: tuple[Ready, ...] = built, *built.meshes
     return any(loss.breakaway_spread > 1.0 for one in every for loss in one.case.losses.values())
 
 
@@ -189,11 +188,7 @@ def creeping_speed(built: Ready) -> float:
     Args:
         built: the case.
     """
-    if isinstance(built, BuiltDrive):
-        turned = abs(built.motion[-1] / built.motion[0])
-    else:
-        turned = abs(float(built.nominal["loaded"] @ built.nominal["motion"]))
-    return CREEPING / turned if "driver" in built.travels else CREEPING
+    return CREEPING / built.output_rate if "driver" in built.travels else CREEPING
 
 
 def _held(torques: np.ndarray) -> np.ndarray:

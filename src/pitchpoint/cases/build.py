@@ -380,6 +380,11 @@ class Built:
         """True if the loaded coordinate moves, so that power goes through; False for a test rig."""
         return bool(self.nominal["loaded"] @ self.nominal["motion"])
 
+    @property
+    def output_rate(self) -> float:
+        """Rate of the loaded member for a unit rate of the driver, without sign."""
+        return abs(float(self.nominal["loaded"] @ self.nominal["motion"]))
+
     @cached_property
     def bodies(self) -> tuple[Coordinate, ...]:
         """Coordinates of the mesh without their places."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from pitchpoint.cases.build import (
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.schema import DriveCase
 from pitchpoint.doubts import in_stage
-from pitchpoint.drive.kinematics import Ends, Link, body_rates
+from pitchpoint.drive.kinematics import HOUSING, Ends, Link, body_rates
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Drive
 from pitchpoint.efficiency.drive_summary import drive_figures
@@ -31,9 +31,18 @@ from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.variable import End
 
 if TYPE_CHECKING:
-    from pitchpoint.efficiency.train import Train
+    from pitchpoint.efficiency.train import Train, TrainMesh
 
-__all__ = ["MEETINGS", "TRAIN_PERIOD", "Acting", "BuiltDrive", "BuiltTrain", "Ready", "ends_of"]
+__all__ = [
+    "MEETINGS",
+    "TRAIN_PERIOD",
+    "Acting",
+    "BuiltDrive",
+    "BuiltTrain",
+    "MemberMotion",
+    "Ready",
+    "ends_of",
+]
 
 MEETINGS, TRAIN_PERIOD = "all meetings of phases", "period of the train"
 """What averages run over where there are several meshes: stages in a row, or a train."""
@@ -53,6 +62,24 @@ class Acting:
 
     def __repr__(self) -> str:
         return brief(self)
+
+
+class MemberMotion(NamedTuple):
+    """How a member of a mesh moves in its drive, for a radian of the input in a second.
+
+    Attributes:
+        body: its name in the drive; members of several meshes that are one gear have one name.
+        rate: about its axis, or of what travels along it, from the housing [rad/s or m/s].
+        copies: how many of it there are.
+        orbit: speed of its axis about that of its carrier [m/s].
+        carrier: that bears its axis, or the housing.
+    """
+
+    body: str
+    rate: float
+    copies: int = 1
+    orbit: float = 0.0
+    carrier: str = HOUSING
 
 
 @dataclass(frozen=True, eq=False)
@@ -302,11 +329,31 @@ class BuiltDrive:
         )
         return [rates[shaft] for shaft in dict.fromkeys(shafts)]
 
+    @property
+    def output_rate(self) -> float:
+        """Rate of the output for a radian of the input, without sign."""
+        return abs(self.motion[-1] / self.motion[0])
+
+    @property
+    def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:
+        """Motion of the members of each mesh, in the order of its coordinates."""
+        meshes = zip(self.numbers, self.stages, self.motion[:-1], strict=True)
+        return tuple(
+            tuple(
+                MemberMotion(f"stage {number}: {coordinate.body}", rate * entering)
+                for coordinate, rate in zip(
+                    mesh.bodies,
+                    (mesh.nominal["motion"] / ends_of(mesh.design.mesh)[0]).tolist(),
+                    strict=True,
+                )
+            )
+            for number, mesh, entering in meshes
+        )
+
     @cached_property
     def backwards(self) -> "BuiltDrive":
         """The same drive with its output driving, see `Built.backwards`."""
-        step = float(np.abs(self.motion[-1] / self.motion[0]))
-        point = self.case.operation
+        step, point = self.output_rate, self.case.operation
         stages = tuple(one.backwards for one in reversed(self.stages))
         load = {"torque": None, "force": None, stages[-1].carried.kind: point.load * step}
         changed = point.model_copy(update={**load, "speed": point.speed * step})
@@ -413,11 +460,39 @@ class BuiltTrain(BuiltDrive):
         rates = {body: float(rate) for body, rate in self.design.rates.items()}
         return [rates[body] / rates[self.driver] for body in self.case.bodies]
 
+    @property
+    def output_rate(self) -> float:
+        """Rate of the output for a radian of the input, without sign."""
+        return 1.0 / abs(float(self.design.ratio))
+
+    @property
+    def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:
+        """Motion of the members of each mesh; planets move about their axis and with it."""
+        rates = dict(zip(self.case.bodies, self.motion, strict=True))
+        teeth = {
+            (body, count)
+            for mesh, place in zip(self.stages, self.design.meshes, strict=True)
+            for body, count in _gears(mesh, place.bodies)
+        }
+
+        def moving(mesh: Built, place: "TrainMesh", body: str, count: float) -> MemberMotion:
+            gears = sum(name == body for name, _ in teeth)
+            name = body if gears == 1 else f"{body}, {count:.0f} teeth"
+            rate = rates.get(body, 0.0)
+            if body not in self.design.planets:
+                return MemberMotion(name, rate)
+            orbit = rates[place.carrier] * float(mesh.dimensions["centre_distance"])
+            return MemberMotion(name, rate, place.copies, orbit, place.carrier)
+
+        return tuple(
+            tuple(moving(mesh, place, body, count) for body, count in _gears(mesh, place.bodies))
+            for mesh, place in zip(self.stages, self.design.meshes, strict=True)
+        )
+
     @cached_property
     def backwards(self) -> "BuiltTrain":
         """The same train with its output driving, see `Built.backwards`."""
-        step = 1.0 / abs(float(self.design.ratio))
-        point = self.case.operation
+        step, point = self.output_rate, self.case.operation
         changed = point.model_copy(
             update={"torque": point.load * step, "speed": point.speed * step}
         )
@@ -430,6 +505,12 @@ class BuiltTrain(BuiltDrive):
 
 
 Ready = Built | BuiltDrive
+
+
+def _gears(mesh: Built, bodies: Sequence[str]) -> list[tuple[str, float]]:
+    """Both gears of a mesh of a train by their body and their teeth."""
+    teeth: Any = mesh.design.mesh
+    return list(zip(bodies, np.abs(teeth.teeth).tolist(), strict=True))
 
 
 def ends_of(mesh: Mesh) -> tuple[float, float]:

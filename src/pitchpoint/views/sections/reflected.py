@@ -35,13 +35,25 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
         row = (f"turn of the output, the input held [{unit}]", *cells)
         yield Table(["backlash", *heads], [row], compact=True)
     yield Table(_heads(data), _rows(data), compact=True)
-    yield Paragraph(" ".join([_ASSUMED, *_of_backlash(data)]), "note")
+    yield Paragraph(" ".join([_ASSUMED, *_of_planets(data), *_of_backlash(data)]), "note")
 
 
 def _by_tolerances(data: xr.Dataset) -> bool:
     """True where a tolerance makes the backlash at the output differ."""
     _, least, _, largest = data["output_backlash"].values
     return bool(largest > least)
+
+
+def _carriers(data: xr.Dataset) -> str:
+    return " and ".join(json.loads(data.attrs["carriers"]))
+
+
+def _of_planets(data: xr.Dataset) -> Iterator[str]:
+    """What is not known of a train."""
+    if _carriers(data):
+        yield (
+            f"The {_carriers(data)} is not in it: nothing says what it weighs. All planets play alike."
+        )
 
 
 def _of_backlash(data: xr.Dataset) -> Iterator[str]:
@@ -84,7 +96,8 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     for (end, value), *others in [known] if known else []:
         more = "".join(f"; {inertia} at the {name}" for name, inertia in others)
         mass = show.quantity("drive_mass", float(data["drive_mass"]))
-        yield KeyFigure(79.0, "Inertia", value, f"at the {end}{more}; gears {mass}")
+        without = f", without the {_carriers(data)}" if _carriers(data) else ""
+        yield KeyFigure(79.0, "Inertia", value, f"at the {end}{more}; gears {mass}{without}")
 
 
 def reflected_printed(outcome: Outcome) -> Iterator[Printed]:
