@@ -1,5 +1,7 @@
 """Case files of planetary sets and other trains: what they compute, what they say of a wrong number."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 TABLES = {
     "lubricant": {"name": "pao-vg-150"},
     "roughness": {"ra": "0.4 um"},
@@ -116,6 +119,28 @@ def test_bearings_of_planets_and_seals_take_their_part():
     assert start > 0.03
     back = data["back_driving_torque"].sel(temperature=built.case.operation.temperature).item()
     assert back > start * 108 / 24
+
+
+def test_torque_and_forces_over_the_period_have_the_means_of_the_operating_point():
+    """25/29/83: planets out of phase carry unlike forces, which hold the carrier together."""
+    built, found = figures(PLANETARY | {"gears": SET | {"teeth": [25, 29, 83]}})
+    data = ANALYSES["train_period"].compute(built, {}, lambda *_: None)
+    torque = data["input_torque"].values[0] @ data["weight"].values
+    assert torque == pytest.approx(found["mean_input_torque"], rel=1e-12)
+    assert data["loss"].values[0] @ data["weight"].values == pytest.approx(found["mean_loss"])
+    assert data["input_torque"].values.max() <= found["max_input_torque"] * (1 + 1e-12)
+    # A tooth of the sun comes to a planet once in so much of a turn against the carrier.
+    assert data.attrs["driver_period"] == pytest.approx(2 * np.pi / 25 / (83 / 108))
+    ends = data["driver_angle"].values[[0, -1]]
+    assert ends == pytest.approx([0.0, data.attrs["driver_period"]], abs=1e-9)
+    first, second = data["contact_force"].values[0]
+    assert np.ptp(first, axis=0).max() > 1e-3 * first.mean()
+    base = 1e-3 * np.array([25, 83]) * np.cos(np.radians(20.0)) / 2.0
+    held = first.sum(0) * base[0] + second.sum(0) * base[1]
+    np.testing.assert_allclose(held, 60.0, rtol=5e-3)  # friction puts some thousandths beside it
+    for name in ("pair_23_61", "two_stage"):
+        case = load_case(EXAMPLES / f"{name}.toml")
+        assert "do not turn together" in ANALYSES["train_period"].why_not(case)
 
 
 def inspected(teeth):

@@ -26,6 +26,7 @@ from pitchpoint.analyses.running import RUNNING
 from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import STUDIES
 from pitchpoint.analyses.teeth import TEETH
+from pitchpoint.analyses.train_period import TRAIN_OVER_PERIOD
 from pitchpoint.analyses.wear import WEAR
 from pitchpoint.registry import Registry
 from pitchpoint.results.variables import VARIABLES
@@ -113,6 +114,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     BODIES,
     REFLECTED,
     CYCLE,
+    TRAIN_OVER_PERIOD,
     OPERATION,
     LAWS_THERE,
     STRENGTH,

@@ -106,6 +106,13 @@ class Train(eqx.Module):
         return own.onward * jnp.sign((own.driver @ own.motion) * (own.driver @ self.motion(mesh)))
 
     @property
+    def period(self) -> Float[Array, ""]:
+        """Turn of the driving body in which all meshes come together again [rad]."""
+        first = self.meshes[0]
+        own = first.design.mesh
+        return first.periods * own.period / jnp.abs(own.driver @ self.motion(first))
+
+    @property
     def free(self) -> tuple[str, ...]:
         """Bodies that nothing turns, loads or holds."""
         others = {HOUSING, self.turned, self.loaded, *self.held}

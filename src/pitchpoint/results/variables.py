@@ -33,6 +33,7 @@ VARIABLES: dict[str, Variable] = {
     **EXTREMES,
     "phase": Variable("phase of the mesh cycle", "φ", "1"),
     "weight": Variable("weight of the node in a mean over one period", "w", "1"),
+    "driver_angle": angle("angle of the driving body", "φ_in"),
     "path": Variable("position on the path of contact from A, in base pitches", "x/p_b", "1"),
     "active": Variable("pair in contact", "", "1"),
     "input_torque": torque("input torque", "T_in"),

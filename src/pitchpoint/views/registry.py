@@ -142,6 +142,15 @@ REFLECTED = Section(
     answer=of_part("reflected", "pitchpoint.views.sections.reflected:reflected_facts"),
     screen=of_part("reflected", "pitchpoint.views.sections.reflected:reflected_printed"),
 )
+TRAIN_PERIOD = Section(
+    name="train_period",
+    title="Over the period of the train",
+    short="Over the period",
+    order=205.0,
+    parts=("train_period",),
+    blocks="pitchpoint.views.sections.train_period:train_period_blocks",
+    main_figure="train0_input_torque",
+)
 MOTION = Section(
     name="motion",
     title="Motion with friction",
@@ -169,6 +178,7 @@ SECTIONS: Registry[Section] = Registry(
     DRIVE,
     ARC,
     CYCLE,
+    TRAIN_PERIOD,
     FILM,
     FINITE_FILM,
     FILM_SQUEEZE,

@@ -25,7 +25,7 @@ from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import Block, Heading, Page, Printed, Section, Table, naming
 
-__all__ = ["STAGES", "stage_rows"]
+__all__ = ["STAGES", "stage_rows", "stage_words"]
 
 
 def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
@@ -35,7 +35,7 @@ def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
         return []
     names = [name for name in FIGURES if name in data and np.any(data[name])]
     return [
-        {"friction law": law, "stage": _named(outcome, at, stage)}
+        {"friction law": law, "stage": stage_words(outcome, at, stage)}
         | {
             head(name, data): shown(name, float(data[name].values[k, 0, at]), data)
             for name in names
@@ -45,7 +45,7 @@ def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
     ]
 
 
-def _named(outcome: Outcome, at: int, stage: Any) -> str:
+def stage_words(outcome: Outcome, at: int, stage: Any) -> str:
     """Number of a stage, with its bodies where it is a mesh of a train."""
     bodies = [one["bodies"] for one in outcome.manifest.get("stages", ())][at : at + 1]
     return f"{stage}: {bodies[0]}" if bodies and bodies[0] else str(stage)
@@ -62,7 +62,7 @@ def _card(outcome: Outcome, law: str) -> Iterator[tuple[str, str]]:
             show.quantity(name, float(data[name].values[position, 0, at]), of=data)
             for name in ("stage_loss", "stage_efficiency")
         )
-        yield f"stage {_named(outcome, at, stage)}", f"{efficiency}, {loss} lost"
+        yield f"stage {stage_words(outcome, at, stage)}", f"{efficiency}, {loss} lost"
 
 
 def _blocks(page: Page) -> Iterator[Block]:
@@ -73,7 +73,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         names = [name for name in FIGURES if name in data]
         rows = [
             (
-                _named(outcome, at, stage),
+                stage_words(outcome, at, stage),
                 law,
                 *(show.quantity(n, float(data[n].values[k, 0, at]), of=data) for n in names),
             )

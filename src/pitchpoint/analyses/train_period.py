@@ -1,0 +1,72 @@
+"""A gear train over its period: torque of the driving body, forces of every planet in every mesh."""
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint._jax import jax
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltTrain, Ready
+from pitchpoint.efficiency.quasi_static import power_ratio
+from pitchpoint.results.store import dataset
+from pitchpoint.status import Code
+from pitchpoint.status import told as told_of
+
+__all__ = ["TRAIN_OVER_PERIOD"]
+
+
+def _without_train(built: Ready) -> str | None:
+    if built.averaging == TRAIN_PERIOD:
+        return None
+    return Unasked("its bodies do not turn together as those of a train do")
+
+
+def _over_period(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
+    """States of the train at the nodes of its period, under each friction law.
+
+    From `train_cycle`, whose means are those of the operating point.
+    """
+    # Only now: a pair or a chain does not load what trains take.
+    from pitchpoint.efficiency.train_cycle import train_cycle
+    from pitchpoint.efficiency.train_summary import NODES
+
+    train = built.design
+    cycles = [
+        jax.device_get(train_cycle(train, built.operation, acting.stages, NODES))
+        for acting in built.models
+    ]
+    first, planets = cycles[0], max(built.copies)
+    forces = np.full((len(cycles), len(built.copies), planets, first.phase.size), np.nan)
+    for law, cycle in enumerate(cycles):
+        for stage, mesh in enumerate(cycle.meshes):
+            forces[law, stage, : mesh.force.shape[0]] = mesh.force
+    codes = np.stack([cycle.status.code for cycle in cycles])
+    solved = codes == Code.SOLVED
+    ratios = [power_ratio(cycle.output_power, cycle.input_power) for cycle in cycles]
+    driven = np.stack([cycle.input_torque for cycle in cycles])
+    return dataset(
+        {
+            "driver_angle": (("node",), first.phase * float(train.period)),
+            "weight": (("node",), first.weight),
+            "input_torque": (("law", "node"), np.where(solved, driven, np.nan)),
+            "efficiency": (("law", "node"), np.stack(ratios)),
+            "loss": (("law", "node"), np.stack([cycle.loss for cycle in cycles])),
+            "contact_force": (("law", "stage", "planet", "node"), forces),
+        },
+        {
+            "law": built.law_names,
+            "stage": [*built.numbers],
+            "planet": np.arange(1, planets + 1),
+        },
+        title="period of the train",
+        solve=told_of(codes, np.stack([cycle.status.residual for cycle in cycles])),
+        driver_period=float(train.period),
+    )
+
+
+TRAIN_OVER_PERIOD = Analysis(
+    name="train_period",
+    title="period of the train",
+    of="drive",
+    lacks=_without_train,
+    compute=_over_period,
+)

@@ -1,0 +1,90 @@
+"""A gear train over its period: torque and efficiency over the angle, what each planet carries."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    DASHES,
+    PALETTE,
+    Curves,
+    Figure,
+    Key,
+    Panel,
+    display,
+    laws,
+    layout,
+    line,
+    plain,
+    short_axis,
+)
+from pitchpoint.views.lines import gapped, titled
+from pitchpoint.views.section import Block, Page, Paragraph, naming
+from pitchpoint.views.sections.stages import stage_words
+
+__all__ = ["train_period_blocks"]
+
+_PART = "train_period"
+
+
+def train_period_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
+    there = page.having(_PART)
+    for position, (variant, outcome) in enumerate(there.items()):
+        data = outcome.parts[_PART]
+        turn = show.quantity("driver_angle", float(data.attrs["driver_period"]))
+        first = f" by {laws(data)[0]}" if data.sizes["law"] > 1 else ""
+        yield Paragraph(
+            f"All meshes come together again after {turn} of the driving body. Equilibrium leaves open how "
+            "planets share a load: of all forces that hold the train those of the least sum of squares are "
+            f"shown{first}."
+        )
+        figures = [
+            *(
+                _over_angle(f"train{position}_{name}", name, variant, data, page.curves)
+                for name in ("input_torque", "efficiency")
+            ),
+            *_forces(f"train{position}_force", outcome),
+        ]
+        curves = [page.curves[variant, law] for law in laws(data)]
+        title = variant if len(there) > 1 else ""
+        yield from naming(title, [Panel(title, figures, curves)])
+
+
+def _over_angle(name: str, variable: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
+    unit = show.unit_of(variable, data)
+    angle = display("driver_angle", data["driver_angle"].values)
+    traces = [
+        line(known[variant, law], *gapped(angle, display(variable, values, data)), unit)
+        for law, values in zip(laws(data), data[variable].values, strict=True)
+    ]
+    return Figure(
+        name,
+        f"{titled(variable, data)} over the angle of the driving body",
+        traces,
+        layout(short_axis("driver_angle"), short_axis(variable, data)),
+    )
+
+
+def _forces(name: str, outcome: Outcome) -> Iterator[Figure]:
+    """Normal force of each planet in each mesh under the first law."""
+    data = outcome.parts[_PART]
+    angle = display("driver_angle", data["driver_angle"].values)
+    unit = show.unit_of("contact_force", data)
+    for at, stage in enumerate(data["stage"].values):
+        forces = display("contact_force", data["contact_force"].values[0, at], data)
+        keys = tuple(
+            Key(f"planet {number}", PALETTE[k % len(PALETTE)], DASHES[k % len(DASHES)])
+            for k, number in enumerate(data["planet"].values)
+            if np.isfinite(forces[k]).any()
+        )
+        yield Figure(
+            f"{name}{at}",
+            f"Normal force of the teeth, stage {stage_words(outcome, at, stage)}",
+            [plain(key, *gapped(angle, forces[k]), unit) for k, key in enumerate(keys)],
+            layout(short_axis("driver_angle"), short_axis("contact_force", data)),
+            keys=keys,
+        )
