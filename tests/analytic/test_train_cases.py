@@ -7,6 +7,7 @@ import pytest
 
 from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.doubts import doubts_of
 from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.drive_summary import drive_figures
@@ -141,6 +142,53 @@ def test_torque_and_forces_over_the_period_have_the_means_of_the_operating_point
     for name in ("pair_23_61", "two_stage"):
         case = load_case(EXAMPLES / f"{name}.toml")
         assert "do not turn together" in ANALYSES["train_period"].why_not(case)
+
+
+PINS = {"pin_errors": ["20 um", 0, 0, 0], "pin_tolerance": "20 um", "planets": 4}
+
+
+def test_planets_share_by_the_springs_of_their_teeth_and_pins():
+    """With rigid pins the springs of all planets are the stiffness of the drive; errors by closed form."""
+    by_stiffness = {"models": TABLES["models"] | {"load_sharing": "from_stiffness"}}
+    set_of = SET | PINS | {"face_width": "12 mm"}
+    compute = ANALYSES["planet_sharing"].compute
+    built = load_case({"gears": set_of, **TABLES | by_stiffness})
+    data = compute(built, {}, lambda *_: None)
+    torsion = ANALYSES["torsion"].compute(built, {}, lambda *_: None)
+    of_drive = torsion["tangent_torsional_stiffness"].sel(torque=60.0).item()
+    stiffness = float(data["planet_stiffness"])
+    assert 4 * stiffness * 27e-3**2 == pytest.approx(of_drive, rel=1e-9)
+    yielding = {"pin_stiffness": "20 N/um", "floating": "ring"}
+    soft = compute(load_case({"gears": set_of | yielding, **TABLES}), {}, lambda *_: None)
+    series = 1.0 / (1.0 / stiffness + 1.0 / 20e6)
+    assert float(soft["planet_stiffness"]) == pytest.approx(series, rel=1e-9)
+    alike, more = 60.0 / 4 / 27e-3, series * 20e-6 / 4
+    expected = [alike - more, alike + more, alike - more, alike + more]
+    assert soft["pin_force"].values == pytest.approx(expected, rel=1e-9)
+    assert float(soft["planet_load_factor"]) == pytest.approx(1.0 + more / alike)
+    drawn = soft["drawn_planet_load_factor"].values
+    assert 1.0 < drawn[0] < drawn[1] < drawn[2] < 1.0 + 4 * more / alike
+    (lifted,) = doubts_of(data.attrs)
+    assert "planet 1 carries nothing" in lifted
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"planets": 3}, "pin_errors: 4 were given for 3 planets; give the error of each"),
+        ({"pin_errors": "20 um"}, "pin_errors"),
+        ({"floating": "planet"}, "floating"),
+        (
+            {"pin_errors": [], "pin_tolerance": 0.0, "floating": "sun"},
+            "floating: counts where pins",
+        ),
+        ({"pin_stiffness": "20 N"}, "pin_stiffness"),
+    ],
+)
+def test_pins_of_other_planets_are_refused_in_a_sentence(changes, words):
+    with pytest.raises(InputError, match="gears") as caught:
+        load_case({"gears": SET | PINS | changes, **TABLES})
+    assert words in str(caught.value)
 
 
 def inspected(teeth):

@@ -134,6 +134,7 @@ def test_the_matrix_says_yes_or_why_not_and_stands_in_the_docs() -> None:
         "bodies",
         "reflected",
         "train_period",
+        "planet_sharing",
         "joint",
     ]
     assert "along their line of action" in rows["joint"]["cylindrical"]

@@ -2,19 +2,22 @@
 
 from pitchpoint.analyses.analysis import Unasked, has_key
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, BuiltTrain, Ready
+from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.loading.registry import LOAD_SHARING
 
 __all__ = [
     "no_bodies",
     "no_deviations",
     "no_joint",
+    "no_pins",
     "no_quadrants",
     "of_one_mesh",
     "rigid",
     "untransmitted",
     "without_films",
     "without_formula",
+    "without_train",
 ]
 
 
@@ -80,6 +83,26 @@ def of_one_mesh(built: Ready) -> str | None:
     if isinstance(built, BuiltDrive):
         return None
     return Unasked("backlash, masses and inertia of one mesh stand with its gears")
+
+
+def without_train(built: Ready) -> str | None:
+    """Why there is no period in which all meshes come together again."""
+    if built.averaging == TRAIN_PERIOD:
+        return None
+    return Unasked("its bodies do not turn together as those of a train do")
+
+
+def no_pins(built: Ready) -> str | None:
+    """Why nothing is computed of how planets share a load."""
+    if not isinstance(built, BuiltTrain):
+        return Unasked("it has no planets")
+    train = built.case.train
+    if train is None or not (train.pin_errors or train.pin_tolerance):
+        return Unasked("pin_errors or pin_tolerance of a planetary set asks for it")
+    on_planets = [one for one in built.design.meshes if one.carrier != HOUSING]
+    if train.planets < 2 or len(on_planets) != 2:
+        return "planets that share a load by their pins are several, each in two meshes"
+    return None
 
 
 def no_joint(built: Built) -> str | None:

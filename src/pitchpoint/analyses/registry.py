@@ -16,9 +16,11 @@ from pitchpoint.analyses.lacking import (
     no_bodies,
     no_deviations,
     no_joint,
+    no_pins,
     no_quadrants,
     of_one_mesh,
     rigid,
+    without_train,
 )
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
@@ -26,7 +28,6 @@ from pitchpoint.analyses.running import RUNNING
 from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import STUDIES
 from pitchpoint.analyses.teeth import TEETH
-from pitchpoint.analyses.train_period import TRAIN_OVER_PERIOD
 from pitchpoint.analyses.wear import WEAR
 from pitchpoint.registry import Registry
 from pitchpoint.results.variables import VARIABLES
@@ -67,6 +68,21 @@ REFLECTED = Analysis(
     lacks=of_one_mesh,
     compute="pitchpoint.analyses.reflected:reflected_of",
     main=("output_backlash", "drive_mass", "reflected_inertia"),
+)
+TRAIN_OVER_PERIOD = Analysis(
+    name="train_period",
+    title="period of the train",
+    of="drive",
+    lacks=without_train,
+    compute="pitchpoint.analyses.train_period:train_period_of",
+)
+PLANET_SHARING = Analysis(
+    name="planet_sharing",
+    title="sharing of planets",
+    of="drive",
+    lacks=no_pins,
+    compute="pitchpoint.analyses.planet_sharing:sharing_of",
+    main=("planet_load_factor", "planet_share"),
 )
 TORSION = Analysis(
     name="torsion",
@@ -123,6 +139,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     FILM_SQUEEZE,
     WEAR,
     TORSION,
+    PLANET_SHARING,
     KINEMATIC_ERROR,
     JOINT,
     STIFFNESS,

@@ -50,8 +50,13 @@ _OTHER_STIFFNESS = ("tangent_torsional_stiffness", "phase_mean_torsional_stiffne
 
 def torsion_part(built: Ready) -> xr.Dataset:
     """Wind-up, stiffness and load on every pair for torques up to twice that of the operating point."""
-    torques = np.linspace(0.0, 2.0 * built.case.operation.load or 1.0, TORQUES)
+    torques = _torques(built)
     return _of_drive(built, torques) if isinstance(built, BuiltDrive) else _of_mesh(built, torques)
+
+
+def _torques(built: Ready) -> np.ndarray:
+    """Torques at the output up to twice that of the operating point."""
+    return np.linspace(0.0, 2.0 * built.case.operation.load or 1.0, TORQUES)
 
 
 def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
@@ -120,6 +125,19 @@ _SLOPELESS = (
     "Slopes K1 to K3, lost motion and hysteresis loss as in catalogues are those of one mesh: the strain "
     "wave gear in a file of its own has them."
 )
+
+
+def mesh_slopes(built: BuiltDrive) -> np.ndarray:
+    """Torque over turn of the driven member of one copy of each mesh, the slope at its load [N m/rad]."""
+    torques = _torques(built)
+    each = zip(built.stages, built.steps, built.copies, strict=True)
+    slopes = [
+        _torsion(one, torques * step / count, np.zeros(len(built.models)))[
+            "tangent_torsional_stiffness"
+        ]
+        for one, step, count in each
+    ]
+    return np.array([np.interp(built.case.operation.load, torques, slope) for slope in slopes])
 
 
 def _parts_of_stages(

@@ -4,31 +4,23 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import jax
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
-from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltTrain, Ready
+from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.cases.built_drive import BuiltTrain
 from pitchpoint.efficiency.quasi_static import power_ratio
+from pitchpoint.efficiency.train_cycle import train_cycle
+from pitchpoint.efficiency.train_summary import NODES
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 
-__all__ = ["TRAIN_OVER_PERIOD"]
+__all__ = ["train_period_of"]
 
 
-def _without_train(built: Ready) -> str | None:
-    if built.averaging == TRAIN_PERIOD:
-        return None
-    return Unasked("its bodies do not turn together as those of a train do")
-
-
-def _over_period(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
+def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     """States of the train at the nodes of its period, under each friction law.
 
     From `train_cycle`, whose means are those of the operating point.
     """
-    # Only now: a pair or a chain does not load what trains take.
-    from pitchpoint.efficiency.train_cycle import train_cycle
-    from pitchpoint.efficiency.train_summary import NODES
-
     train = built.design
     cycles = [
         jax.device_get(train_cycle(train, built.operation, acting.stages, NODES))
@@ -61,12 +53,3 @@ def _over_period(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
         solve=told_of(codes, np.stack([cycle.status.residual for cycle in cycles])),
         driver_period=float(train.period),
     )
-
-
-TRAIN_OVER_PERIOD = Analysis(
-    name="train_period",
-    title="period of the train",
-    of="drive",
-    lacks=_without_train,
-    compute=_over_period,
-)

@@ -36,7 +36,13 @@ from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPER
 from pitchpoint.errors import CollectedInputError, Complaints, InputError, shorten
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.families import Gears
-from pitchpoint.gears.planetary import PLANETARY, PLANETS, PlanetaryGears
+from pitchpoint.gears.planetary import (
+    PIN_STIFFNESS,
+    PLANETARY,
+    PLANETS,
+    PinErrors,
+    PlanetaryGears,
+)
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
@@ -1686,6 +1692,14 @@ class TrainTable(Table):
     """Body that the planets are."""
     planets: Annotated[float, PLANETS] = 3.0
     """Number of planets."""
+    floating: Text = ""
+    """Sun, ring or carrier that is free to move sideways, so that planets share alike; none unless given."""
+    pin_errors: PinErrors = ()
+    """How far each pin is ahead along its circle, to where its planet pushes it, so that it bears less."""
+    pin_tolerance: Annotated[float, DEVIATION] | None = None
+    """Diameter of the circle in which each pin lies by tolerance."""
+    pin_stiffness: Annotated[float, PIN_STIFFNESS] | None = None
+    """Stiffness of a pin and its bearing along the circle; rigid unless given."""
 
 
 class DriveCase(Table):
@@ -1828,8 +1842,26 @@ def _check_train(case: DriveCase) -> None:
         if case.losses and stage.lubricant is not None:
             told = "was given beside [losses]; a train that has them has one oil, that of the case"
             wrong.add(InputError(told, key=f"stages.{number}.lubricant"))
+    _check_pins(train, case.bodies, wrong)
     _check_bearings(case.losses, train, wrong)
     wrong.demand_none()
+
+
+def _check_pins(train: TrainTable, bodies: Sequence[str], wrong: Complaints) -> None:
+    """Complain of what is said of pins of other planets, or floats that cannot."""
+    central = [body for body in bodies if body != train.planet]
+    if train.floating and train.floating not in central:
+        told = f"{shown(train.floating)} does not float; {', '.join(central)} may"
+        wrong.add(InputError(told, key="train.floating"))
+    given, count = len(train.pin_errors), round(train.planets)
+    if given not in (0, count):
+        told = f"{given} were given for {count} planets; give the error of each"
+        wrong.add(InputError(told, key="train.pin_errors"))
+    if not (given or train.pin_tolerance):
+        for key in ("floating", "pin_stiffness"):
+            if getattr(train, key):
+                told = "counts where pins are out of place; give pin_errors or pin_tolerance, or leave it out"
+                wrong.add(InputError(told, key=f"train.{key}"))
 
 
 def _check_bearings(losses: Mapping[str, Loss], train: TrainTable, wrong: Complaints) -> None:
@@ -2154,11 +2186,10 @@ def with_meshes(document: Document) -> Document:
                 key=key,
             )
     gears = planetary_of(document)
-    train = {"input": gears.input, "output": gears.output, "held": gears.held}
     stages = {str(number): one for number, one in enumerate(gears.meshes(), 1)}
     return replace(
         document,
-        tree={**tree, STAGES: stages, "train": _Followed(train, planets=gears.planets)},
+        tree={**tree, STAGES: stages, "train": _Followed(gears.train())},
     )
 
 

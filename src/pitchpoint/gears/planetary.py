@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import isfinite, pi
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import GetJsonSchemaHandler, model_validator
+from pydantic import Field, GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
@@ -21,15 +21,28 @@ from pitchpoint.gears.cylindrical.table import (
     LEAST_TIP,
     TIP,
 )
-from pitchpoint.gears.table import ANGLE, DISTANCE, FILLET, HELIX, MODULE, RACK, SHIFT, WIDTH
+from pitchpoint.gears.table import (
+    ANGLE,
+    DEVIATION,
+    DISTANCE,
+    FILLET,
+    HELIX,
+    MODULE,
+    RACK,
+    SHIFT,
+    WIDTH,
+)
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.input.tables import Table
 
 __all__ = [
     "BODIES",
+    "PIN_STIFFNESS",
     "PLANETARY",
     "PLANETS",
+    "SHARING",
     "OfThree",
+    "PinErrors",
     "PlanetaryGears",
     "in_words_of_set",
 ]
@@ -44,6 +57,13 @@ MOST_PLANETS = 24
 
 TEETH = Quantity("dimensionless", 5, 2_000, whole=True)
 PLANETS = Quantity("dimensionless", 1, MOST_PLANETS, whole=True)
+
+PIN_ERROR = Quantity("length", -1e-2, 1e-2, "um")
+PIN_STIFFNESS = Quantity("stiffness", 0.0, 1e13, "N/um", open_low=True)
+PinErrors = Annotated[tuple[Annotated[float, PIN_ERROR], ...], Field(max_length=MOST_PLANETS)]
+
+SHARING = ("floating", "pin_errors", "pin_tolerance", "pin_stiffness")
+"""Keys on how planets share a load."""
 
 _LISTS = ("teeth", "profile_shift", "addendum", "dedendum", "fillet_radius", "tip_alteration")
 """Keys that hold a value for each of sun, planet and ring."""
@@ -138,6 +158,14 @@ class PlanetaryGears(Table):
     """Body that takes the load."""
     held: Literal["sun", "carrier", "ring"] = "ring"
     """Body that stands still."""
+    floating: Literal["sun", "carrier", "ring"] | None = None
+    """Body that is free to move sideways, so that planets share alike; none unless given."""
+    pin_errors: PinErrors = ()
+    """How far each pin is ahead along its circle, to where its planet pushes it, so that it bears less."""
+    pin_tolerance: Annotated[float, DEVIATION] | None = None
+    """Diameter of the circle in which each pin lies by tolerance."""
+    pin_stiffness: Annotated[float, PIN_STIFFNESS] | None = None
+    """Stiffness of a pin and its bearing along the circle; rigid unless given."""
 
     @model_validator(mode="after")
     def _whole(self) -> "PlanetaryGears":
@@ -200,6 +228,20 @@ class PlanetaryGears(Table):
             for teeth, shift in [*zip(self.teeth, self.profile_shift, strict=True)][:2]
         ]
         return distance_without_backlash(*gears)
+
+    def train(self) -> Tree:
+        """Table [train]."""
+        pins = [SIValue(error) for error in self.pin_errors]
+        values = {"pin_tolerance": self.pin_tolerance, "pin_stiffness": self.pin_stiffness}
+        return {
+            "input": self.input,
+            "output": self.output,
+            "held": self.held,
+            "planets": self.planets,
+            **({"floating": self.floating} if self.floating else {}),
+            **({"pin_errors": pins} if pins else {}),
+            **{name: SIValue(value) for name, value in values.items() if value is not None},
+        }
 
     def meshes(self) -> list[Tree]:
         """Tables [[stages]] of sun and planet, and of planet and ring."""

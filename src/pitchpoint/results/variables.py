@@ -78,6 +78,14 @@ VARIABLES: dict[str, Variable] = {
     "ball_diameter": length("diameter of the measuring balls", "D_M"),
     "over_balls": length("dimension over balls", "M_d"),
     "ball_contact_diameter": length("diameter on which the balls touch", "d_K"),
+    "pin_error": Variable("way by which a pin is ahead along its circle", "e", "m", "um", "length"),
+    "pin_force": force("force of a planet on its pin along the circle", "F_pin"),
+    "planet_share": Variable("load of a planet over that of an equal share", "F/F_mean", "1"),
+    "planet_load_factor": Variable("mesh load factor by the errors of the pins", "K_γ", "1"),
+    "drawn_planet_load_factor": Variable(
+        "mesh load factor of sets whose pins lie by tolerance", "K_γ", "1"
+    ),
+    "planet_stiffness": stiffness("stiffness of the way over one planet along its circle", "k_p"),
     "disc_mass": Variable("mass of a gear as a disc", "m", "kg", "kg", "mass"),
     "disc_inertia": Variable(
         "moment of inertia of a gear as a disc", "J", "kg m2", "kg cm2", "moment of inertia"

@@ -43,7 +43,9 @@ def matrix() -> list[dict[str, str]]:
     drives = [_drive(sample_of(table)) for table in turning]
     samples["several stages"] = drives + [_drive(sample_of(turning[0]), one) for one in asked]
     deviating = {"gears.deviations.iso_class": 6}
-    samples["planetary"] = [*map(_train, ({}, deviating, *asked))]
+    pins = {"gears.pin_tolerance": "20 um"}
+    set_of = load_case(str(_PLANETARY), settings=_OF_OUTPUT | pins)
+    samples["planetary"] = [set_of, *map(_train, ({}, deviating, *asked))]
     return [
         {"analysis": analysis.name, "title": analysis.title}
         | {name: _why_not(analysis, cases) for name, cases in samples.items()}

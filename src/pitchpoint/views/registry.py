@@ -142,6 +142,16 @@ REFLECTED = Section(
     answer=of_part("reflected", "pitchpoint.views.sections.reflected:reflected_facts"),
     screen=of_part("reflected", "pitchpoint.views.sections.reflected:reflected_printed"),
 )
+PLANET_SHARING = Section(
+    name="planet_sharing",
+    title="Load of the planets",
+    short="Planets",
+    order=208.0,
+    parts=("planet_sharing",),
+    blocks="pitchpoint.views.sections.planet_sharing:sharing_blocks",
+    answer=of_part("planet_sharing", "pitchpoint.views.sections.planet_sharing:sharing_facts"),
+    screen=of_part("planet_sharing", "pitchpoint.views.sections.planet_sharing:sharing_printed"),
+)
 TRAIN_PERIOD = Section(
     name="train_period",
     title="Over the period of the train",
@@ -179,6 +189,7 @@ SECTIONS: Registry[Section] = Registry(
     ARC,
     CYCLE,
     TRAIN_PERIOD,
+    PLANET_SHARING,
     FILM,
     FINITE_FILM,
     FILM_SQUEEZE,

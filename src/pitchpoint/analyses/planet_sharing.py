@@ -1,0 +1,93 @@
+"""How planets share a load: forces on their pins, the mesh load factor, its spread by tolerance."""
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.torsion import mesh_slopes
+from pitchpoint.cases.built_drive import BuiltTrain
+from pitchpoint.doubts import Doubt
+from pitchpoint.drive.kinematics import HOUSING, Ends, Link
+from pitchpoint.drive.torques import train_torques
+from pitchpoint.loading.planets import path_stiffness, planet_forces
+from pitchpoint.results.store import dataset
+
+__all__ = ["sharing_of"]
+
+PERCENTILES = (50.0, 90.0, 99.0)
+SAMPLES = 4096
+"""Sets of pins that are drawn; the 99th percentile of their factors then lies within a hundredth."""
+
+
+def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
+    """Dataset of the part.
+
+    From the equilibrium of springs that only push, see `planet_forces`: teeth at the load of the operating
+    point in series with the pin, without friction, weight and centrifugal force.
+
+    Args:
+        built: the case.
+    """
+    train, table, load = built.design, built.case.train, float(built.case.operation.load)
+    assert table is not None
+    count = round(table.planets)
+    meshes = [k for k, one in enumerate(train.meshes) if one.carrier != HOUSING]
+    radius = float(built.meshes[meshes[0]].dimensions["centre_distance"])
+    links = [Link(one.design.mesh, one.bodies, one.carrier) for one in train.meshes]
+    ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
+    ideal = train_torques(links, ends, load or 1.0, [1.0] * len(links))
+    total = abs(ideal.torques[table.carrier]) / radius
+    pin = total / count
+    torques = built.steps / np.array(built.copies) * (load or 1.0)
+    slopes = mesh_slopes(built)
+    stiffness = path_stiffness(
+        levers=[torques[k] / pin for k in meshes],
+        stiffnesses=[slopes[k] for k in meshes],
+        pin_stiffness=table.pin_stiffness or np.inf,
+    )
+    angles, floating = np.asarray(train.angles), bool(table.floating)
+    errors = np.array(table.pin_errors or [0.0] * count)
+    forces = planet_forces(total, stiffness, errors, angles, floating=floating)
+    factor = float(forces.max() / pin)
+    drawn = {}
+    if table.pin_tolerance:
+        random = np.random.default_rng(0)
+        size = (SAMPLES, count)
+        far = table.pin_tolerance / 2.0 * np.sqrt(random.uniform(size=size))
+        placed = errors + far * np.cos(random.uniform(0.0, 2.0 * np.pi, size=size))
+        every = planet_forces(total, stiffness, placed, angles, floating=floating)
+        factors = np.percentile(every.max(axis=1) / pin, PERCENTILES)
+        drawn = {"drawn_planet_load_factor": (("percentile",), factors)}
+    return dataset(
+        {
+            "pin_error": (("planet",), errors),
+            "pin_force": (("planet",), forces),
+            "planet_share": (("planet",), forces / pin),
+            "planet_load_factor": ((), factor),
+            "planet_stiffness": ((), stiffness),
+            **drawn,
+        },
+        {
+            "planet": np.arange(1, count + 1),
+            **({"percentile": [*PERCENTILES]} if drawn else {}),
+        },
+        title="sharing of planets",
+        warnings=_lifted(forces),
+        floating=table.floating,
+        rigid_pins=int(table.pin_stiffness is None),
+    )
+
+
+def _lifted(forces: np.ndarray) -> list[str]:
+    """Planets that carry nothing."""
+    free = [str(number) for number, force in enumerate(forces, 1) if force == 0.0]
+    if not free:
+        return []
+    listed = f"planet {free[0]} carries" if len(free) == 1 else f"planets {', '.join(free)} carry"
+    return [
+        Doubt(
+            f"By the errors of the pins {listed} nothing; the others carry the load alone.",
+            about=("planet_load_factor",),
+            brief=f"By the errors of its pins {listed} nothing.",
+        )
+    ]

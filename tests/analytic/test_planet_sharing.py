@@ -1,0 +1,75 @@
+"""How planets share a load: closed forms until one lifts off, a search by brute force beyond."""
+
+import numpy as np
+import pytest
+
+from pitchpoint.drive.assembly import equal_angles
+from pitchpoint.loading.planets import path_stiffness, planet_forces
+
+ANGLE = np.radians(24.6)
+STIFFNESS = path_stiffness(
+    levers=(1.0 / (2.0 * np.cos(ANGLE)),) * 2, stiffnesses=(5e8, 5e8), pin_stiffness=1e8
+)
+
+
+def at_sun(count, floating, error=20e-6):
+    """Normal forces at the sun for 4 kN in all, with one pin out of place."""
+    errors = np.zeros(count)
+    errors[0] = error
+    pins = planet_forces(
+        4000.0 * 2.0 * np.cos(ANGLE), STIFFNESS, errors, equal_angles(count), floating=floating
+    )
+    return pins / (2.0 * np.cos(ANGLE))
+
+
+@pytest.mark.parametrize(
+    ("count", "floating", "expected"),
+    [
+        (3, True, [1333.33] * 3),
+        (3, False, [679.24, 1660.38, 1660.38]),
+        (4, True, [754.71, 1245.29, 754.71, 1245.29]),
+        (4, False, [264.14, 1245.29, 1245.29, 1245.29]),
+        (5, True, [407.54, 1117.50, 678.72, 678.72, 1117.50]),
+        (6, False, [0.0, 800.0, 800.0, 800.0, 800.0, 800.0]),
+    ],
+)
+def test_one_pin_out_of_place_gives_the_numbers_of_the_closed_form(count, floating, expected):
+    np.testing.assert_allclose(at_sun(count, floating), expected, atol=0.006)
+
+
+def closed(total, stiffness, errors, angles, *, floating):
+    """F/N - k e', the error less its mean and less its first harmonic."""
+    left = errors - errors.mean()
+    if floating and errors.size > 2:
+        for wave in (np.cos(angles), np.sin(angles)):
+            left = left - wave * (left @ wave) / (wave @ wave)
+    return total / errors.size - stiffness * left
+
+
+def test_random_errors_follow_the_closed_form_until_a_planet_lifts_off():
+    random, seen = np.random.default_rng(3), 0
+    for _ in range(400):
+        count, floating = int(random.integers(3, 9)), bool(random.integers(2))
+        angles, errors = equal_angles(count), random.normal(0.0, 10e-6, count)
+        total = random.uniform(2e3, 2e4)
+        expected = closed(total, STIFFNESS, errors, angles, floating=floating)
+        forces = planet_forces(total, STIFFNESS, errors, angles, floating=floating)
+        assert forces.sum() == pytest.approx(total, rel=1e-9)
+        assert forces.min() >= 0.0
+        if floating:
+            assert abs(forces @ np.exp(1j * angles)) < 1e-9 * total
+        if expected.min() > 0.0:
+            np.testing.assert_allclose(forces, expected, rtol=1e-9, atol=1e-9 * total)
+            seen += 1
+        elif not floating:
+            # A planet that carries nothing is ahead of the place to which the others are wound up.
+            level = (forces + STIFFNESS * errors)[forces > 0.0]
+            np.testing.assert_allclose(level, level[0], rtol=1e-9)
+            assert (STIFFNESS * errors[forces == 0.0] >= level[0] * (1.0 - 1e-9)).all()
+    assert 100 < seen < 390
+
+
+def test_three_planets_around_a_floating_body_share_alike_whatever_the_errors():
+    errors = np.random.default_rng(5).normal(0.0, 1e-4, (200, 3))
+    forces = planet_forces(900.0, STIFFNESS, errors, equal_angles(3), floating=True)
+    np.testing.assert_allclose(forces, 300.0, rtol=1e-8)
