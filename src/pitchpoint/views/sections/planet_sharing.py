@@ -32,7 +32,7 @@ def _assumed(data: xr.Dataset) -> str:
     return (
         f"Springs that only push, {stiffness} over one planet: {pins}, {moves}; without friction, weight and "
         "centrifugal force. By tolerance pins lie anywhere in their circles alike. The rating of teeth "
-        "takes K_γ of [strength], not this one."
+        "takes the factor of [strength], not this one."
     )
 
 
