@@ -22,6 +22,19 @@
     if (shown(one) && !one.closest(".spoken, .plot") && one.scrollWidth > one.clientWidth + 1 && one.clientWidth) faults.push("wider than its place: " + name(one));
   }
 
+  // Words of heads and names that are broken where they have no hyphen and no point.
+  const word = document.createRange();
+  for (const one of document.querySelectorAll("thead th, dt, h1, h2, h3, h4, figcaption, caption, .keys span, strong")) {
+    if (!shown(one) || one.closest(".spoken, .plot")) continue;
+    const texts = document.createTreeWalker(one, NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) for (const { 0: letters, index } of texts.currentNode.data.matchAll(/[\p{L}\p{N}]+/gu)) {
+      word.setStart(texts.currentNode, index);
+      word.setEnd(texts.currentNode, index + letters.length);
+      const lines = [...word.getClientRects()].filter((part) => part.width > 0);
+      if (lines.some((part) => part.top > lines[0].bottom - 2)) faults.push(`"${letters}" is broken: ${name(one)}`);
+    }
+  }
+
   // Parts of one parent that stand in the way of each other.
   for (const parent of document.querySelectorAll("main, section, .pane, details, .card, .tiles, .facts, .figures, figure, .halves, .halves > div")) {
     const parts = [...parent.children].filter((one) => {

@@ -112,6 +112,7 @@ _SPOILED = {
     "empty": "document.querySelectorAll('#cycle_friction .trace').forEach(one => one.remove())",
     "cut": "document.querySelector('#cycle_input_torque .xtitle').setAttribute('x', 9999)",
     '" on "': "Plotly.relayout('along_loss', {'yaxis.tickfont.size': 60})",
+    "is broken": "document.querySelector('#models thead th').style.cssText = 'display: block; width: 30px'",
     "told from its ground": "document.querySelector('#along_loss .xtitle').style.fill = '#fafafa'",
 }
 
@@ -122,6 +123,20 @@ def test_what_is_cut_empty_or_overlapping_is_found(wide: Browser, fault: str) ->
     wide.run(f"({_SPOILED[fault]}, null)")
     assert any(fault in words for words in faults_shown(wide, 1280))
     wide.window = None
+
+
+def test_the_page_that_sums_up_fills_its_sheet_however_long_it_is(wide: Browser) -> None:
+    sheet = "document.querySelector('#one-page > div')"
+    rows = f"[...{sheet}.querySelectorAll('tr')].map(row => row.cloneNode(true))"
+    wide.run(f"{sheet}.append(...{rows})")
+    wide.run("dispatchEvent(new Event('beforeprint'))")
+    box = f"(({{ width, height }}) => [width, height])({sheet}.getBoundingClientRect())"
+    width, height = wide.run(box)
+    scale = float(wide.run(f"{sheet}.style.zoom"))
+    wide.window = None
+    assert 0.3 < scale < 0.9
+    assert width == pytest.approx(688, abs=2)
+    assert 975 < height <= 1005
 
 
 def test_the_picture_beside_the_answer_moves_with_the_teeth(wide: Browser) -> None:

@@ -294,9 +294,7 @@
     for (const one of hidden) one.hidden = false;
     restore = folded.map((one) => () => (one.open = false));
     restore.push(...hidden.map((one) => () => (one.hidden = true)), ...(dark.matches ? whitened() : []));
-    const sheet = document.querySelector("#one-page > div");
-    sheet.style.zoom = 1;
-    sheet.style.zoom = Math.min(1, 1005 / sheet.offsetHeight); // pixels of A4 between its margins
+    fit(document.querySelector("#one-page > div"));
     for (const place of places) {
       const summed = place.closest("#one-page");
       if (summed || !(alone || place.closest(".beside:not([open])"))) draw(place).then(() => print(place, !summed));
@@ -310,6 +308,22 @@
     seen.alone = "";
     window.print();
   });
+
+  // The page that sums up, as large as one sheet takes it, 688 by 1005 pixels within its margins.
+  function fit(sheet) {
+    const fits = (scale) => {
+      sheet.style.zoom = scale;
+      sheet.style.width = `${688 / scale}px`;
+      return sheet.getBoundingClientRect().height <= 1005;
+    };
+    let [small, large] = fits(1) ? [1, 1] : [0.3, 1];
+    while (large - small > 0.005) {
+      const scale = (small + large) / 2;
+      if (fits(scale)) small = scale;
+      else large = scale;
+    }
+    fits(small);
+  }
 
   // A figure in the colours of white paper, half as wide as a page where its place is not.
   function print(place, resized) {
