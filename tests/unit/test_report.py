@@ -1048,6 +1048,13 @@ def test_numbers_beside_print_have_seven_digits_and_unknown_ones_are_said() -> N
     assert comparison._row(row)["computed"] == "0.1858592"
     assert comparison._row(replace(row, computed=float("nan")))["computed"] == "not computed"
     assert comparison._row(replace(row, computed=0.0, tolerance=0.01))["computed"] == "0.000"
+    whole = comparison._row(replace(row, printed=1.0, computed=1.0))
+    assert (whole["computed"], whole["deviation"]) == ("1", "0")
+    trend = comparison._row(
+        replace(row, bound="< ", unit="N/um", computed=-235.4262, tolerance=0.0)
+    )
+    assert (trend["computed"], trend["deviation"]) == ("−235.4 N/µm", "−235.4")
+    assert (trend["printed"], trend["tolerance"]) == ("< 0 N/µm", "")
 
 
 def test_what_fails_alike_in_several_variants_is_said_once() -> None:

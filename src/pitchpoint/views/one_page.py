@@ -111,7 +111,9 @@ def _facts(outcome: Outcome) -> list[tuple[str, str]]:
     manifest = outcome.manifest
     rows = input_rows(manifest)
     materials = [
-        f"{_plain_key(row['key'])} {row['value']}" for row in rows if row["table"] == "materials"
+        f"{row['key'].replace('.', ' ').replace('_', ' ')} {show.pretty(row['value'])}"
+        for row in rows
+        if row["table"] == "materials"
     ]
     laws = "; ".join(str(law["title"]) for law in manifest["laws"])
     facts = [

@@ -230,10 +230,10 @@ def environment() -> "jinja2.Environment":
 
 
 def _typeset(words: str) -> "markupsafe.Markup":
-    """Words, escaped, with the indices of symbols set low."""
+    """Words, escaped, with the indices of symbols set low and units as printed."""
     from markupsafe import Markup, escape
 
-    return Markup(show.subscripts(str(escape(words))))
+    return Markup(show.subscripts(show.pretty(str(escape(words)))))
 
 
 def _marked(words: str) -> "markupsafe.Markup":

@@ -75,13 +75,19 @@ def _row(row: Row) -> dict[str, str]:
     computed, deviation, tolerance = "not computed", "", ""
     if row.computed is not None and row.deviation is not None and isfinite(row.computed):
         digits = _decimals(row.tolerance)
-        computed = f"{row.computed:.{min(digits, _most_decimals(row.computed))}f} {unit}".strip()
-        deviation = show.signed(row.deviation, digits)
+        if not row.tolerance:
+            computed, deviation = show.number(row.computed), show.number(row.deviation)
+            deviation = f"{'+' * (row.deviation > 0.0)}{deviation}"
+        elif digits > _most_decimals(row.computed):
+            computed, deviation = show.number(row.computed, 7), show.signed(row.deviation, digits)
+        else:
+            computed, deviation = f"{row.computed:.{digits}f}", show.signed(row.deviation, digits)
+        computed = f"{computed.replace('-', '−')} {unit}".strip()
         tolerance = "" if row.bound else f"± {row.tolerance:g}"
     return {
         "quantity": show.pretty(row.quantity),
         "where": row.where,
-        "printed": f"{row.bound}{row.printed:g} {unit}".strip(),
+        "printed": f"{row.bound}{row.printed:g} {unit}".strip().replace("-", "−"),
         "computed": computed,
         "deviation": deviation,
         "tolerance": tolerance,
@@ -93,7 +99,7 @@ def _row(row: Row) -> dict[str, str]:
 
 def _decimals(tolerance: float) -> int:
     """Decimals that show a deviation to a tenth of the tolerance or finer."""
-    return max(ceil(-log10(tolerance)), 0) + 1 if tolerance > 0.0 else 4
+    return max(ceil(-log10(tolerance)), 0) + 1 if tolerance else 0
 
 
 def _most_decimals(value: float) -> int:
