@@ -17,7 +17,7 @@ from browser import Browser, browser
 from screens import faults_of_the_screen
 from seen import faults_on_paper, faults_on_screen, pages, whole
 
-from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.cases.library import names
 from pitchpoint.runs.run import open_result, run
 from pitchpoint.views.report import write_report
 
@@ -28,7 +28,7 @@ WINDOWS = ((1280, "light"), (1280, "dark"), (500, "light"))
 def cases() -> dict[str, str]:
     """Examples by name of their file, and published cases."""
     files = sorted(EXAMPLES.glob("*.toml"))
-    return {file.stem: str(file) for file in files} | {name: name for name in PUBLICATIONS}
+    return {file.stem: str(file) for file in files} | {name: name for name in names()}
 
 
 def report(case: str, folder: Path) -> Path:

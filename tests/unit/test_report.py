@@ -33,7 +33,7 @@ from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.units import convert, kind_of, kinds, parse, units_of
 from pitchpoint.views import show
 from pitchpoint.views.explorer import Reader
-from pitchpoint.views.figures import Figure, Panel, curves, laws, rounded
+from pitchpoint.views.figures import Figure, Panel, curves, laws, line_heights, rounded
 from pitchpoint.views.lines import gapped
 from pitchpoint.views.outlines import visible_points
 from pitchpoint.views.path import path_of
@@ -629,6 +629,15 @@ def test_misses_come_first_and_kinds_are_counted_apart(page: str) -> None:
     assert "physical has no targets of its own and is not compared" in compared
 
 
+@pytest.mark.parametrize("span", [0.00123, 0.9, 1.0, 4.999, 25.0, 7.7e5])
+def test_heights_of_a_line_stand_on_the_fewest_levels_that_can_be_seen(span: float) -> None:
+    values = np.linspace(-0.3 * span, 0.7 * span, 100_001)
+    heights = np.array(line_heights([*values, np.nan], 1000)[:-1])
+    levels = len(np.unique(heights))
+    assert 1000 <= levels <= 2502
+    assert np.max(np.abs(heights - values)) < 0.51 * span / 1000
+
+
 def test_inputs_that_differ_are_shown_for_each_variant(page: str) -> None:
     rows = re.findall(r'<tr class="differs">(.*?)</tr>', page, re.S)
     keys = {re.sub(r"<[^>]*>", "", re.split("</t[dh]>", row)[0]).strip() for row in rows}
@@ -1046,9 +1055,10 @@ def test_numbers_for_readers() -> None:
 def test_numbers_beside_print_have_seven_digits_and_unknown_ones_are_said() -> None:
     row = Row("part of the time", "a table", 0.0, 0.18585924446678, "1", 1e-12, "trend", "miss", "")
     assert comparison._row(row)["computed"] == "0.1858592"
+    assert comparison._row(row)["deviation"] == "+0.1859"
     assert comparison._row(replace(row, computed=float("nan")))["computed"] == "not computed"
     assert comparison._row(replace(row, computed=0.0, tolerance=0.01))["computed"] == "0.000"
-    whole = comparison._row(replace(row, printed=1.0, computed=1.0))
+    whole = comparison._row(replace(row, printed=1.0, computed=1.0 + 1e-15))
     assert (whole["computed"], whole["deviation"]) == ("1", "0")
     trend = comparison._row(
         replace(row, bound="< ", unit="N/um", computed=-235.4262, tolerance=0.0)

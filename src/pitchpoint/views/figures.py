@@ -239,8 +239,14 @@ def line_heights(values: Any, levels: int = 4000) -> list[Any]:
     numbers = rounded(values)
     finite = [value for value in numbers if value is not None]
     span = max(finite, default=0.0) - min(finite, default=0.0)
-    decimals = ceil(log10(levels / span)) if span else None
-    return [v if v is None or decimals is None else round(v, decimals) + 0.0 for v in numbers]
+    if not span:
+        return numbers
+    decimals = ceil(log10(levels / span))
+    most = max(
+        10.0**decimals * span / levels, 1.0
+    )  # units of the last decimal from a level to the next
+    step = next(one for one in (5, 2, 1) if one <= most) * 10.0**-decimals
+    return [v if v is None else round(round(v / step) * step, decimals) + 0.0 for v in numbers]
 
 
 def _decimals(value: float, digits: int) -> int:

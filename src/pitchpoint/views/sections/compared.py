@@ -75,15 +75,14 @@ def _row(row: Row) -> dict[str, str]:
     computed, deviation, tolerance = "not computed", "", ""
     if row.computed is not None and row.deviation is not None and isfinite(row.computed):
         digits = _decimals(row.tolerance)
-        if not row.tolerance:
-            computed, deviation = show.number(row.computed), show.number(row.deviation)
-            deviation = f"{'+' * (row.deviation > 0.0)}{deviation}"
-        elif digits > _most_decimals(row.computed):
-            computed, deviation = show.number(row.computed, 7), show.signed(row.deviation, digits)
+        if digits > _most_decimals(row.computed):  # a tolerance for rounding, or none
+            computed = show.number(row.computed, 7 if row.tolerance else 4)
+            off = round(row.deviation, digits)
+            deviation = f"{'+' * (off > 0.0)}{show.number(off)}"
         else:
             computed, deviation = f"{row.computed:.{digits}f}", show.signed(row.deviation, digits)
         computed = f"{computed.replace('-', '−')} {unit}".strip()
-        tolerance = "" if row.bound else f"± {row.tolerance:g}"
+        tolerance = "" if row.bound else f"± {row.tolerance:.3g}"
     return {
         "quantity": show.pretty(row.quantity),
         "where": row.where,
@@ -98,8 +97,8 @@ def _row(row: Row) -> dict[str, str]:
 
 
 def _decimals(tolerance: float) -> int:
-    """Decimals that show a deviation to a tenth of the tolerance or finer."""
-    return max(ceil(-log10(tolerance)), 0) + 1 if tolerance else 0
+    """Decimals that show a deviation to a tenth of the tolerance or finer; all for none."""
+    return max(ceil(-log10(tolerance)), 0) + 1 if tolerance else 99
 
 
 def _most_decimals(value: float) -> int:
