@@ -44,6 +44,7 @@ from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.section import (
     Block,
+    Folded,
     Heading,
     KeyFigure,
     Page,
@@ -474,11 +475,13 @@ def _of_kept(position: int, data: xr.Dataset) -> Iterator[Block]:
             "note",
         )
         yield maps_panel(f"patch{position}_{k}", data, k)
-    yield Heading("What the grid is worth")
+    tables = []
     if np.isfinite(data["near_ends"].values).any():
-        yield _ends_table(data)
+        tables.append(_ends_table(data))
     if np.isfinite(data["coarse_central_film"].values).any():
-        yield _grid_table(data)
+        tables.append(_grid_table(data))
+    if tables:
+        yield Folded("What the grid is worth", tables)
 
 
 def _loaded(data: xr.Dataset, at: tuple[int, ...]) -> str:
