@@ -338,7 +338,7 @@ class Built:
 
     @cached_property
     def _of_mesh(self) -> dict[str, dict[str, Any]]:
-        found: dict[str, dict[str, Any]] = jax.device_get(_numbers(self.design.mesh))
+        found: dict[str, dict[str, Any]] = jax.tree.map(np.asarray, _numbers(self.design.mesh))
         return found
 
     @property

@@ -24,7 +24,6 @@ from pitchpoint.cases.schema import (
 )
 from pitchpoint.gears.family import Followed
 from pitchpoint.gears.table import SmallerOfTwo
-from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.units import hardness_scale
@@ -290,13 +289,14 @@ def _rows(
         path, value = f"{table}.{key}", found.value if left is None else left
         if value is None:
             continue
+        value = _plain(value)
         if any(one == path or one.startswith(f"{path}.") for one in asked):
             mark = document.provenance.get(path, Provenance())
-            mark = _scaled(mark, quantity_at(path, document.tree), asked.get(path))
-            yield _row(table, key, value, _kind(path, _plain(value)), mark, given=True)
+            mark = _scaled(mark, path, document, asked.get(path))
+            yield _row(table, key, value, _kind(path, value), mark, given=True)
         else:
             mark = usual.get(key, _mark(found) if left is None else Provenance("default"))
-            yield _row(table, key, value, _kind(path, _plain(value)), mark)
+            yield _row(table, key, value, _kind(path, value), mark)
     for path, value in asked.items():
         key = path[len(table) + 1 :]
         if value == {} or (usual and key == SET):
@@ -304,8 +304,12 @@ def _rows(
             yield _row(table, key, value, "", mark, given=True)
 
 
-def _scaled(mark: Provenance, quantity: Quantity | None, given: Any) -> Provenance:
+def _scaled(mark: Provenance, path: str, document: Document, given: Any) -> Provenance:
     """The mark of a value, with the scale of a hardness, and that of which two it is the smaller."""
+    usual = quantity_at(path)  # is kept; that of the very family takes longer
+    if not isinstance(given, list) and (usual is None or usual.kind != "hardness"):
+        return mark
+    quantity = quantity_at(path, document.tree)
     if isinstance(quantity, SmallerOfTwo) and isinstance(given, list):
         told = f"the smaller of {given[0]} and {given[1]}, as wide as which both bodies count"
         return replace(mark, note="; ".join(filter(None, [mark.note, told])))
@@ -378,15 +382,17 @@ def _plain(value: Any) -> Any:
         return value.model_dump()
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
+    if isinstance(value, float | int) and not isinstance(value, bool):
+        return float(value)
     return value if isinstance(value, str | bool | dict) else np.asarray(value, float).tolist()
 
 
 def _dimensions(built: Built) -> Iterator[Row]:
+    known, mark = built.dimensions, Provenance("derived")
     for name in _DIMENSIONS:
-        if name in built.dimensions:
+        if name in known:
             variable = VARIABLES.get(name) or VARIABLES[f"{name}_1"]
-            value = built.dimensions[name]
-            yield _row(DIMENSIONS, name, value, variable.kind, Provenance("derived"))
+            yield _row(DIMENSIONS, name, known[name], variable.kind, mark)
     cut = built.following.get("generating_shift")
     if cut is not None:
         yield _row(DIMENSIONS, "generating_shift", cut.value, "dimensionless", _mark(cut))

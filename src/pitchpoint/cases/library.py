@@ -1,6 +1,7 @@
 """Cases that ship with the package, and cases in files."""
 
 import os
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,8 +19,14 @@ if TYPE_CHECKING:
 
 def names() -> list[str]:
     """Names of the shipped cases."""
+    return [*_shipped()]
+
+
+@cache
+def _shipped() -> tuple[str, ...]:
+    """Names of the shipped cases, looked for once: a run asks four times."""
     folder = resources.files(published)
-    return sorted(item.name for item in folder.iterdir() if (item / "case.toml").is_file())
+    return tuple(sorted(one.name for one in folder.iterdir() if (one / "case.toml").is_file()))
 
 
 def path_of(case: str) -> Path:

@@ -197,8 +197,15 @@ class Models(eqx.Module):
     @property
     def without_friction(self) -> "Models":
         """The same without friction laws, for what does not ask for them: its programs serve every law."""
-        laws = replace(self, friction=(), choice=array(0), parameters={})
-        return replace(laws, held=None, held_rolling=None, film=None)
+        return replace(
+            self,
+            friction=(),
+            choice=array(0),
+            parameters={},
+            held=None,
+            held_rolling=None,
+            film=None,
+        )
 
     def holding(self, friction: Lanes, rolling: Lanes | None = None) -> "Models":
         """The same with friction that was found elsewhere in the place of laws.
