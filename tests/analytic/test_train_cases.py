@@ -147,6 +147,7 @@ def test_torque_and_forces_over_the_period_have_the_means_of_the_operating_point
 PINS = {"pin_errors": ["20 um", 0, 0, 0], "pin_tolerance": "20 um", "planets": 4}
 
 
+@pytest.mark.whole
 def test_planets_share_by_the_springs_of_their_teeth_and_pins():
     """With rigid pins the springs of all planets are the stiffness of the drive; errors by closed form."""
     by_stiffness = {"models": TABLES["models"] | {"load_sharing": "from_stiffness"}}
@@ -195,7 +196,7 @@ def inspected(teeth):
     return gears(teeth, inspection={"thickness_field": "cd25"})
 
 
-@pytest.mark.parametrize("kind", ["set", "3K"])
+@pytest.mark.parametrize("kind", ["set", pytest.param("3K", marks=pytest.mark.whole)])
 def test_play_and_inertia_at_the_ends_follow_from_gaps_and_speeds(kind):
     """Play by the gaps of all meshes, closed on bodies that are held; inertia by the energy of all bodies."""
     meshes = {
