@@ -343,6 +343,32 @@ def test_the_load_on_asperities_by_films(folder: Path) -> None:
 
 
 @pytest.mark.whole
+def test_the_error_of_wear_has_that_of_the_grid_of_films(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Off by less than told and by more than a third of it; on the fewest, as told."""
+    films = {**MIXED, "wear.load_ratio": "film", "film.solver": "line", "wear.cells": 8}
+    case = written(folder, MODELS + DRY, "nodes.toml")
+    of_films, told = wear_course._of_films, []
+    monkeypatch.setattr(
+        wear_course, "_of_films", lambda *given: told.append(of_films(*given)) or told[-1]
+    )
+
+    def wear(nodes: int) -> xr.Dataset:
+        run = running.run(case, settings={**films, "film.nodes": nodes})
+        return run["default"].parts["wear"].isel(step=-1)
+
+    coarse, usual, fine = (wear(nodes) for nodes in (33, 65, 129))
+    depths = [one["deepest_wear"].values for one in (coarse, usual, fine)]
+    assert told[0] == pytest.approx(np.max(np.abs(depths[1] / depths[0] - 1.0)), rel=1e-3)
+    off = np.max(np.abs(depths[2] / depths[1] - 1.0))
+    assert off < told[1] < 3.0 * off
+    with_films, of_them = usual["wear_error"].values, told[1] * depths[1]
+    monkeypatch.setattr(wear_course, "_of_films", lambda *_: 0.0)
+    assert with_films - wear(65)["wear_error"].values == pytest.approx(of_them, rel=1e-6)
+
+
+@pytest.mark.whole
 def test_a_film_that_is_not_solved_ends_the_march(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

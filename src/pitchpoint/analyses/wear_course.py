@@ -22,6 +22,8 @@ from pitchpoint.efficiency.quasi_static import contacts_at, shares_at
 from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.lubrication.ehl.grid import fewer
+from pitchpoint.lubrication.ehl.solve import OF_HALF
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
@@ -233,7 +235,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     merged = np.stack([course.cells.merged(one) for one in depth])
     of_cells = np.abs(deepest - merged[:, :, rows].max(axis=(2, 3)))
     values["wear_error"] += np.maximum(of_cells, _of_grid(built) * deepest)
-    values["wear_error"] += _of_slices(course.start) * deepest
+    values["wear_error"] += (_of_slices(course.start) + _of_films(built, depth)) * deepest
     volumes = [np.asarray(course.cells.volumes(array(one))) for one in depth]
     sensitivities = _sensitivities(built, values)
     inner = course.cells.count
@@ -313,6 +315,35 @@ def _of_grid(built: Built) -> float:
     worn = fine > 0.0
     apart = np.abs(coarse - fine)[worn] / fine[worn]
     return SAFETY * float(np.max(np.nan_to_num(apart, nan=1.0), initial=0.0))
+
+
+def _of_films(built: Built, depth: np.ndarray) -> float:
+    """What the grid of solved films leaves of the largest depths, over them; zero where none are solved.
+
+    Asperities bear all over a contact, whose film is that of its middle: rates are off by as much of their
+    change from half as many nodes as that is; on the fewest, by all of their change to twice as many. That
+    of the member where it is more, with flanks as new or, where their profile follows, as they end up.
+    """
+    course, design, operation = _course(built), built.design, built.operation
+    if course.model.films is None:
+        return 0.0
+    half = fewer(course.model.films.nodes)
+    other, part = (half, OF_HALF[0]) if half else (2 * course.model.films.nodes - 1, 1.0)
+    models = course.model, replace(course.model, films=replace(course.model.films, nodes=other))
+    ends = [np.zeros_like(depth[-1])] + [depth[-1]] * (asked(built).profile == "updated")
+    rates = np.array(
+        [
+            one_turn(
+                design, operation, built.models[0], model, course.cells, course.start, array(one)
+            ).depth
+            for model in models
+            for one in ends
+        ]
+    )
+    usual, varied = rates[:, :, course.cells.deepest].max(axis=(2, 3)).reshape(2, -1)
+    worn = usual != 0.0  # also what was not found
+    apart = np.abs(varied - usual)[worn] / usual[worn]
+    return float(part * np.max(np.nan_to_num(apart, nan=1.0), initial=0.0))
 
 
 def _widest(built: Built) -> float:
@@ -465,12 +496,15 @@ def _warnings(
 ) -> list[str]:
     told = told_of_wear(built.case, _course(built).model)
     error = float(np.max(values["wear_error"][-1] / np.maximum(deepest[-1].max(), FIRST)))
+    films = _course(built).model.films
+    more = "" if films is None else f"more film.nodes (of {films.nodes}), "
     if error > TOLD:
         told.append(
             Doubt(
-                f"Wear: the largest depth may be {100.0 * error:.2g} % off by the grid on the flanks and the "
+                f"Wear: the largest depth may be {100.0 * error:.2g} % off by the grid on the flanks"
+                f"{'' if films is None else ', that of the films'} and the "
                 f"steps of the march; more wear.cells (of {int(asked(built).cells)}) and wear.phases (of "
-                f"{int(asked(built).phases)}), and a smaller wear.tolerance, tell.",
+                f"{int(asked(built).phases)}), {more}and a smaller wear.tolerance, tell.",
                 "wear grid",
                 error,
                 moves=error,

@@ -45,7 +45,7 @@ from pitchpoint.lubrication.ehl.strips import WARM_ENOUGH
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 
-__all__ = ["NODES", "Films", "line_films", "solve_lines", "usual_nodes"]
+__all__ = ["NODES", "OF_HALF", "Films", "line_films", "solve_lines", "usual_nodes"]
 
 Tree = TypeVar("Tree")
 
