@@ -83,8 +83,8 @@ def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:
     assert f"{ripple:.4g} N m peak to peak" in by_name["Input"]
     assert {"Loss", "Stress of flanks", "Stress of roots", "Backlash"} <= {*by_name}
     assert "no safety: materials.gear_1 has no limits" in by_name["Stress of flanks"]
-    assert f"Report: {REPORT}" in figures
-    assert figures[-1] == "Tables by --full: answer, strength"  # it has no other tables
+    assert figures[-1].startswith(f"Report: {REPORT}")
+    assert figures[-1].endswith("; tables by --full: answer, strength")  # it has no other tables
 
 
 def test_films_that_are_solved_stand_before_what_follows_from_the_speeds_of_a_rig() -> None:
@@ -182,11 +182,13 @@ def test_what_is_doubtful_is_never_cut(pair: dict[str, Outcome], width: int) -> 
     """A doubt shows its brief; what has none goes on lines of its own, or is counted where it is too long."""
     words = "off by 40 %, of which much more could be said on a screen that had more room for it"
     long = " ".join(f"word{k}" for k in range(90))
-    warnings = [Doubt("off by 20 %, at length.", brief="off by 20 %."), Doubt(words), Doubt(long)]
-    lines = shown({"default": doubting(pair["default"], warnings=warnings)}, width)
-    text = " ".join(lines)
+    brief = Doubt("off by 20 %, at length.", brief="off by 20 %.")
+    text = " ".join(
+        shown({"default": doubting(pair["default"], warnings=[brief, Doubt(words)])}, width)
+    )
     assert "Doubtful: off by 20 %. Doubtful: " in text and words in text
-    assert "word1" not in text
+    lines = shown({"default": doubting(pair["default"], warnings=[brief, Doubt(long)])}, width)
+    assert "word1" not in " ".join(lines)
     assert "1 more of this kind is in the report." in lines
 
 
@@ -228,8 +230,10 @@ def test_printed_numbers_of_variants_take_a_line_each_where_there_is_no_room(
         name: doubting(pair["default"], rows=rows, implausible=[f"Fails: {long}"])
         for name in ("first", "second", "third", "fourth")
     }
-    lines = [line for line in shown(every) if "printed numbers: 1 met" in line]
-    assert [line.partition(":")[0] for line in lines] == [*every]
+    lines = shown(every)
+    met = [line.partition(":")[0] for line in lines if "printed numbers: 1 met" in line]
+    assert met == [*every]
+    assert "Missed: loss" in lines
 
 
 def test_key_figures_are_named_once(pair: dict[str, Outcome]) -> None:

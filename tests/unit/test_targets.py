@@ -318,5 +318,7 @@ def test_numbers_of_an_independent_calculation_are_counted_apart():
         in_words(beside + rows)
         == f"{of_the_publication}; 2 of an independent calculation: 1 met, 1 missed without a reason"
     )
+    found = [row("fitted", "pass"), row("calibrated", "pass"), row("predicted", "pass")]
+    assert in_words(found) == "3 printed numbers: 3 met (2 fitted)"
     assert in_words(beside[:1]) == "1 of an independent calculation: 1 met"
     assert in_words([]) == ""

@@ -1,7 +1,7 @@
 """What became of a printed number, as a result keeps it."""
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -43,7 +43,11 @@ class Row:
         return asdict(self)
 
 
-_VERDICTS = {"pass": "met", "miss": "missed", "excluded": "left out"}
+_MET = "met"
+_VERDICTS = {"pass": _MET, "miss": "missed", "excluded": "left out"}
+
+FITTED = ("calibrated", "fitted")
+"""Kinds of numbers with which a constant, a reading or an input was found: that they are met tests little."""
 
 
 def in_words(rows: Iterable[Row]) -> str:
@@ -60,9 +64,13 @@ def in_words(rows: Iterable[Row]) -> str:
     )
 
 
-def _tally(rows: Iterable[Row]) -> str:
+def _tally(rows: Sequence[Row]) -> str:
     ordered = sorted(rows, key=lambda row: ([*_VERDICTS].index(row.verdict), row.surprises))
-    return ", ".join(f"{count} {told}" for told, count in Counter(map(_verdict, ordered)).items())
+    fitted = sum(row.verdict == "pass" and row.kind in FITTED for row in rows)
+    return ", ".join(
+        f"{count} {told}{f' ({fitted} fitted)' if told == _MET and fitted else ''}"
+        for told, count in Counter(map(_verdict, ordered)).items()
+    )
 
 
 def _verdict(row: Row) -> str:

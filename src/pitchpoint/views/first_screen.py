@@ -27,8 +27,11 @@ __all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen", "swept_besi
 FEW_LINES = 12
 """Lines of a first screen."""
 
-_DOUBTS, _OF_DOUBTS = 3, 5
-"""Sentences on what fails or is doubtful, and lines that they may take: a narrow screen folds them."""
+_DOUBTS, _OF_DOUBTS = 2, 4
+"""Sentences on what is doubtful, one more where something fails, and lines that they may take in all.
+
+More would push what is asked first off the screen: safeties, backlash, stiffness.
+"""
 
 Style = Literal["title", "fails", "doubt", "figure", "note"]
 
@@ -71,8 +74,8 @@ def first_screen(
     title = _title(outcome, len(outcomes))
     at = _operation(outcome) if len(outcomes) == 1 else ""
     doubts = _doubts(outcomes, width)
-    more = _more(outcomes, report, width)[: None if tables else 1]
-    rows = [*_rows_met(outcomes)]
+    more = _more(outcomes, report, width) if tables else [Line(f"Report: {report}")]
+    rows = [*_rows_met(outcomes), *_missed(outcomes, width)]
     folded = [line for text in rows for line in _folded(text, width)]
     if 1 + len(doubts) + len(folded) + len(more) > FEW_LINES:
         folded = [show.first_clauses(text, width) for text in rows]
@@ -166,7 +169,8 @@ def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
         *([Line(line, "fails") for line in _folded(text, width)] for text in fails),
         *([Line(line, "doubt") for line in _folded(f"Doubtful: {text}", width)] for text in doubts),
     ]
-    shown = every if len(every) <= _DOUBTS else every[: _DOUBTS - 1]
+    most = _DOUBTS + bool(fails)
+    shown = every if len(every) <= most else every[: most - 1]
     while sum(map(len, shown)) > _OF_DOUBTS:
         shown = shown[:-1]
     rest = len(every) - len(shown)
@@ -200,7 +204,7 @@ def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
     names = [show.one_line(figure.name) for figure in figures]
     values = [show.one_line(figure.value) for figure in figures]
     name_width = max(map(len, names))
-    value_width = max((len(value) for value in values if len(value) <= width // 5), default=0)
+    value_width = max((len(value) for value in values if len(value) <= width // 7), default=0)
     lines = []
     for figure, name, value in zip(figures, names, values, strict=True):
         begin = f"{name:<{name_width}}  {value:<{value_width}}  "
@@ -221,6 +225,22 @@ def _rows_met(outcomes: Mapping[str, Outcome]) -> Iterator[str]:
             yield f"{start}{in_words(outcome.rows)}"
 
 
+def _missed(outcomes: Mapping[str, Outcome], width: int) -> Iterator[str]:
+    """Which printed numbers are missed, as many as two lines hold; nothing where none is."""
+    names = dict.fromkeys(
+        row.quantity
+        for outcome in outcomes.values()
+        for row in outcome.rows
+        if row.verdict == "miss" and row.kind != "reference"
+    )
+    for count in range(len(names), 0, -1):
+        rest = f"; {len(names) - count} more" if count < len(names) else ""
+        text = f"Missed: {'; '.join([*names][:count])}{rest}"
+        if len(_folded(text, width)) <= 2:
+            yield text
+            return
+
+
 def _folded(text: str, width: int) -> list[str]:
     """A text on as many lines as it takes."""
     return textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
@@ -238,5 +258,7 @@ def _more(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Lin
             for printed in section.prints(outcome)
         )
     ]
-    every = f"Tables by --full: {', '.join(titles).lower()}"
-    return [Line(text) for text in (f"Report: {report}", *_folded(every, width))]
+    page_at, tables = f"Report: {report}", f"tables by --full: {', '.join(titles).lower()}"
+    on_one_line = (f"{page_at}; {tables}", f"{page_at}; tables by --full")
+    fits = next((text for text in on_one_line if len(text) <= width), None)
+    return [Line(page_at), Line("Tables by --full")] if fits is None else [Line(fits)]
