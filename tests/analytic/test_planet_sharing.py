@@ -69,6 +69,27 @@ def test_random_errors_follow_the_closed_form_until_a_planet_lifts_off():
     assert 100 < seen < 390
 
 
+def test_up_to_24_planets_balance_however_far_their_pins_are_off():
+    """Whatever pushes is in balance and as far as its gap is closed: the one equilibrium of such springs."""
+    random = np.random.default_rng(7)
+    for _ in range(300):
+        count, floating = int(random.integers(2, 25)), bool(random.integers(2))
+        angles = equal_angles(count)
+        errors = random.normal(0.0, 10.0 ** random.uniform(-7.0, -2.0), count)
+        forces = planet_forces(1e3, 1e8, errors, angles, floating=floating)
+        assert forces.sum() == pytest.approx(1e3, rel=1e-8)
+        arms = np.ones((count, 1))
+        if floating:
+            assert abs(forces @ np.exp(1j * angles)) < 1e-5
+            arms = np.column_stack([arms, np.cos(angles), np.sin(angles)])
+        pushes = forces > 0.0
+        closed_by = forces / 1e8 + errors
+        place = np.linalg.lstsq(arms[pushes], closed_by[pushes])[0]
+        np.testing.assert_allclose(arms[pushes] @ place, closed_by[pushes], atol=1e-9)
+        if np.linalg.matrix_rank(arms[pushes]) == arms.shape[1]:
+            assert (arms @ place - errors)[~pushes].max(initial=0.0) < 1e-9
+
+
 def test_three_planets_around_a_floating_body_share_alike_whatever_the_errors():
     errors = np.random.default_rng(5).normal(0.0, 1e-4, (200, 3))
     forces = planet_forces(900.0, STIFFNESS, errors, equal_angles(3), floating=True)

@@ -169,6 +169,8 @@ def test_planets_share_by_the_springs_of_their_teeth_and_pins():
     assert float(soft["planet_load_factor"]) == pytest.approx(1.0 + more / alike)
     drawn = soft["drawn_planet_load_factor"].values
     assert 1.0 < drawn[0] < drawn[1] < drawn[2] < 1.0 + 4 * more / alike
+    idle = load_case({"gears": set_of, **TABLES}, settings={"operation.torque": "0 N m"})
+    assert ANALYSES["planet_sharing"].why_not(idle) == "planets share no load where there is none"
     (lifted,) = doubts_of(data.attrs)
     assert "planet 1 carries nothing" in lifted
 

@@ -100,6 +100,8 @@ def no_pins(built: Ready) -> str | None:
     if train is None or not (train.pin_errors or train.pin_tolerance):
         return Unasked("pin_errors or pin_tolerance of a planetary set asks for it")
     on_planets = [one for one in built.design.meshes if one.carrier != HOUSING]
+    if built.case.operation.load == 0.0:
+        return "planets share no load where there is none"
     if train.planets < 2 or len(on_planets) != 2:
         return "planets that share a load by their pins are several, each in two meshes"
     return None

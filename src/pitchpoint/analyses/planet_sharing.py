@@ -35,10 +35,10 @@ def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     radius = float(built.meshes[meshes[0]].dimensions["centre_distance"])
     links = [Link(one.design.mesh, one.bodies, one.carrier) for one in train.meshes]
     ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
-    ideal = train_torques(links, ends, load or 1.0, [1.0] * len(links))
+    ideal = train_torques(links, ends, load, [1.0] * len(links))
     total = abs(ideal.torques[table.carrier]) / radius
     pin = total / count
-    torques = built.steps / np.array(built.copies) * (load or 1.0)
+    torques = built.steps / np.array(built.copies) * load
     slopes = mesh_slopes(built)
     stiffness = path_stiffness(
         levers=[torques[k] / pin for k in meshes],

@@ -9,7 +9,9 @@ from pitchpoint.errors import ConvergenceError
 
 __all__ = ["path_stiffness", "planet_forces"]
 
-MOST_STEPS = 200
+MOST_STEPS, HALVINGS = 200, 60
+SOFT = 1e-8
+"""Spring of a body that no planet holds, over that of a planet: its steps are long, and halved as needed."""
 NEAR = 1e-10
 """Unbalance over the load at which the search ends."""
 
@@ -81,31 +83,28 @@ def planet_forces(
     def forces(place: np.ndarray) -> np.ndarray:
         return np.asarray(np.maximum(place @ arms.T - gaps, 0.0))
 
-    def energy(place: np.ndarray) -> np.ndarray:
-        return np.asarray(np.sum(forces(place) ** 2, axis=-1) / 2.0 - place @ share)
-
     place = np.zeros((gaps.shape[0], share.size))
     place[:, 0] = 1.0 + gaps.mean(axis=1)
     for _ in range(MOST_STEPS):
         pushed = forces(place)
         left = pushed @ arms - share
-        open_ = np.max(np.abs(left), axis=1) > NEAR * angles.size
-        if not open_.any():
+        unbalanced = np.max(np.abs(left), axis=1) > NEAR * angles.size
+        if not unbalanced.any():
             shared: np.ndarray = np.reshape(pushed, errors.shape) * (total / angles.size)
             return shared
         active = (pushed > 0.0).astype(float)
         curvature = np.einsum("pi,bp,pj->bij", arms, active, arms)
-        # Few planets that push leave the body free to shift one way: the shortest step is as good.
-        step = -np.einsum("bij,bj->bi", np.linalg.pinv(curvature, hermitian=True), left)
-        # Where none pushes in the way of what is left, the load itself leads back to them.
-        stuck = np.einsum("bi,bi->b", step, left) > -1e-14
-        step[stuck] = -left[stuck]
-        before, slope = energy(place), np.einsum("bi,bi->b", step, left)
-        part = np.ones(gaps.shape[0])
-        for _ in range(30):
-            worse = energy(place + part[:, None] * step) > before + 1e-4 * part * slope + 1e-14
-            if not worse.any():
+        # Few planets that push leave the body free to shift: it does until it meets others.
+        step = -np.linalg.solve(curvature + SOFT * np.eye(share.size), left[..., None])[..., 0]
+        # Energy is convex: where it would rise again its least along the step is found by halving.
+        least, most = np.zeros(len(gaps)), np.ones(len(gaps))
+        part = most
+        for _ in range(HALVINGS):
+            rise = np.einsum("bi,bi->b", forces(place + part[:, None] * step) @ arms - share, step)
+            too_far = rise > NEAR * np.abs(np.einsum("bi,bi->b", left, step))
+            most, least = np.where(too_far, part, most), np.where(too_far, least, part)
+            if (least == most).all():
                 break
-            part = np.where(worse, part / 2.0, part)
-        place = place + np.where(open_, part, 0.0)[:, None] * step
+            part = np.where(least == 1.0, 1.0, (least + most) / 2.0)
+        place = place + np.where(unbalanced, least, 0.0)[:, None] * step
     raise ConvergenceError("the planets of this set were not brought into equilibrium")
