@@ -36,7 +36,7 @@ def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     links = [Link(one.design.mesh, one.bodies, one.carrier) for one in train.meshes]
     ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
     ideal = train_torques(links, ends, load, [1.0] * len(links))
-    total = abs(ideal.torques[table.carrier]) / radius
+    total = abs(sum(ideal.shares[k][table.carrier] for k in meshes)) / radius
     pin = total / count
     torques = built.steps / np.array(built.copies) * load
     slopes = mesh_slopes(built)

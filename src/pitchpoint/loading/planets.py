@@ -30,7 +30,8 @@ def path_stiffness(
     Example:
         Sun and ring alike at a working pressure angle of 24.6 degrees, on pins of 1e8 N/m:
 
-        >>> lever = 1.0 / (2.0 * np.cos(np.radians(24.6)))
+        >>> from math import cos, radians
+        >>> lever = 1.0 / (2.0 * cos(radians(24.6)))
         >>> stiffness = path_stiffness(
         ...     levers=(lever, lever), stiffnesses=(5e8, 5e8), pin_stiffness=1e8
         ... )
