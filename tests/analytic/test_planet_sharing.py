@@ -1,4 +1,4 @@
-"""How planets share a load: closed forms until one lifts off, a search by brute force beyond."""
+"""How planets share a load: closed forms until one lifts off, conditions of contact beyond."""
 
 import numpy as np
 import pytest

@@ -180,7 +180,7 @@ def test_planets_share_by_the_springs_of_their_teeth_and_pins():
     [
         ({"planets": 3}, "pin_errors: 4 were given for 3 planets; give the error of each"),
         ({"pin_errors": "20 um"}, "pin_errors"),
-        ({"floating": "planet"}, "floating"),
+        ({"floating": "planet"}, "\"planet\" is not allowed; use 'sun', 'carrier' or 'ring'"),
         (
             {"pin_errors": [], "pin_tolerance": 0.0, "floating": "sun"},
             "floating: counts where pins",
@@ -192,6 +192,22 @@ def test_pins_of_other_planets_are_refused_in_a_sentence(changes, words):
     with pytest.raises(InputError, match="gears") as caught:
         load_case({"gears": SET | PINS | changes, **TABLES})
     assert words in str(caught.value)
+
+
+@pytest.mark.whole
+def test_sharing_of_a_stepped_set_leaves_radial_errors_out_and_says_so():
+    stages = [
+        {"bodies": ["motor", "sun"], "gears": gears([20, 40])},
+        {"bodies": ["sun", "planet"], "gears": gears([18, 36])},
+        {"bodies": ["planet", "ring"], "gears": gears([24, -78])},
+    ]
+    train = {"input": "motor", "output": "carrier", "held": "ring", "pin_errors": ["9 um", 0, 0]}
+    tree = {"stages": stages, "train": train, **TABLES}
+    data = ANALYSES["planet_sharing"].compute(load_case(tree), {}, lambda *_: None)
+    assert data["pin_force"].sum() == pytest.approx(60.0 / 27e-3)
+    assert any("along the radius" in told for told in doubts_of(data.attrs))
+    with pytest.raises(InputError, match="does not float; sun, ring, carrier may"):
+        load_case(tree | {"train": train | {"floating": "motor"}})
 
 
 def inspected(teeth):

@@ -6,7 +6,7 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.torsion import mesh_slopes
 from pitchpoint.cases.built_drive import BuiltTrain
-from pitchpoint.doubts import Doubt
+from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.loading.planets import path_stiffness, planet_forces
@@ -16,7 +16,7 @@ __all__ = ["sharing_of"]
 
 PERCENTILES = (50.0, 90.0, 99.0)
 SAMPLES = 4096
-"""Sets of pins that are drawn; the 99th percentile of their factors then lies within a hundredth."""
+"""Sets of pins that are drawn: some forty of them lie beyond the 99th percentile."""
 
 
 def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
@@ -72,13 +72,28 @@ def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
             **({"percentile": [*PERCENTILES]} if drawn else {}),
         },
         title="sharing of planets",
-        warnings=_lifted(forces),
+        warnings=[*_lifted(forces), *_stepped(built)],
         floating=table.floating,
         rigid_pins=int(table.pin_stiffness is None),
     )
 
 
-def _lifted(forces: np.ndarray) -> list[str]:
+def _stepped(built: BuiltTrain) -> list[Doubt]:
+    """Planets of two gears, on which errors along the radius act too."""
+    members = [one for mesh in built.member_motions for one in mesh]
+    if len({one.body for one in members if one.carrier != HOUSING}) < 2:
+        return []
+    return [
+        Doubt(
+            "Errors of pins along the radius are left out; on stepped planets they load them unlike too.",
+            moves=GUESSED,
+            about=("planet_load_factor",),
+            brief="Radial errors of pins are left out of the load of stepped planets.",
+        )
+    ]
+
+
+def _lifted(forces: np.ndarray) -> list[Doubt]:
     """Planets that carry nothing."""
     free = [str(number) for number, force in enumerate(forces, 1) if force == 0.0]
     if not free:

@@ -1842,14 +1842,15 @@ def _check_train(case: DriveCase) -> None:
         if case.losses and stage.lubricant is not None:
             told = "was given beside [losses]; a train that has them has one oil, that of the case"
             wrong.add(InputError(told, key=f"stages.{number}.lubricant"))
-    _check_pins(train, case.bodies, wrong)
+    _check_pins(train, [one.bodies for one in case.stages.values()], wrong)
     _check_bearings(case.losses, train, wrong)
     wrong.demand_none()
 
 
-def _check_pins(train: TrainTable, bodies: Sequence[str], wrong: Complaints) -> None:
-    """Complain of what is said of pins of other planets, or floats that cannot."""
-    central = [body for body in bodies if body != train.planet]
+def _check_pins(train: TrainTable, meshes: Sequence[tuple[str, ...]], wrong: Complaints) -> None:
+    """Complain of what is said of pins of other planets, or floats that are not around them."""
+    around = [body for bodies in meshes if train.planet in bodies for body in bodies]
+    central = [body for body in dict.fromkeys((*around, train.carrier)) if body != train.planet]
     if train.floating and train.floating not in central:
         told = f"{shown(train.floating)} does not float; {', '.join(central)} may"
         wrong.add(InputError(told, key="train.floating"))

@@ -64,7 +64,7 @@ def _drawn(data: xr.Dataset) -> list[tuple[str, ...]]:
 
 
 def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
-    """The mesh load factor, by the errors that are given, else by tolerance."""
+    """The mesh load factor, by tolerance about the errors that are given, or by these alone."""
     data = outcome.parts["planet_sharing"]
     if "drawn_planet_load_factor" in data:
         level, factor = _drawn(data)[-1]

@@ -76,8 +76,13 @@ def _forces(name: str, outcome: Outcome) -> Iterator[Figure]:
     unit = show.unit_of("contact_force", data)
     for at, stage in enumerate(data["stage"].values):
         forces = display("contact_force", data["contact_force"].values[0, at], data)
+        copies = int(np.isfinite(forces).any(axis=-1).sum())
         keys = tuple(
-            Key(f"planet {number}", PALETTE[k % len(PALETTE)], DASHES[k % len(DASHES)])
+            Key(
+                f"planet {number}" if copies > 1 else "mesh",
+                PALETTE[k % len(PALETTE)],
+                DASHES[k % len(DASHES)],
+            )
             for k, number in enumerate(data["planet"].values)
             if np.isfinite(forces[k]).any()
         )
