@@ -221,8 +221,7 @@ def _joint(built: Built, torsion: _Torsion, free: bool) -> Joint:
     assert asked is not None
     assert asked.inertia is not None
     driver, load = asked.inertia
-    ratio = abs(built.nominal["driver"] @ built.nominal["motion"])
-    ratio /= abs(built.nominal["loaded"] @ built.nominal["motion"])
+    ratio = abs(built.nominal["driver"] @ built.nominal["motion"]) / built.output_rate
     both = array([driver * ratio**2, load])
     given = torsion.curve, array(built.case.operation.load)
     none, motor = array(0.0), both[0] if free else array(np.inf)

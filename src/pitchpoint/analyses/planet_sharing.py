@@ -7,7 +7,7 @@ from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.torsion import mesh_slopes
 from pitchpoint.cases.built_drive import BuiltTrain
 from pitchpoint.doubts import GUESSED, Doubt
-from pitchpoint.drive.kinematics import HOUSING, Ends, Link
+from pitchpoint.drive.kinematics import HOUSING, Ends
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.loading.planets import path_stiffness, planet_forces
 from pitchpoint.results.store import dataset
@@ -33,7 +33,7 @@ def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     count = round(table.planets)
     meshes = [k for k, one in enumerate(train.meshes) if one.carrier != HOUSING]
     radius = float(built.meshes[meshes[0]].dimensions["centre_distance"])
-    links = [Link(one.design.mesh, one.bodies, one.carrier) for one in train.meshes]
+    links = [one.link for one in train.meshes]
     ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
     ideal = train_torques(links, ends, load, [1.0] * len(links))
     total = abs(sum(ideal.shares[k][table.carrier] for k in meshes)) / radius

@@ -66,11 +66,7 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
     same ratio. Of the phases the worst meeting counts.
     """
     steps, copies = built.steps, np.array(built.copies)
-    unloaded = np.zeros(len(built.models))
-    each = [
-        _torsion(one, torques * step / count, unloaded)
-        for one, step, count in zip(built.stages, steps, copies, strict=True)
-    ]
+    each = _of_meshes(built, torques)
 
     def at_output(name: str) -> np.ndarray:
         return np.stack([step * found[name] for step, found in zip(steps, each, strict=True)], -1)
@@ -127,17 +123,18 @@ _SLOPELESS = (
 )
 
 
+def _of_meshes(built: BuiltDrive, torques: np.ndarray) -> list[dict[str, Any]]:
+    """What winds up in one copy of each mesh under torques at the output, without friction."""
+    unloaded = np.zeros(len(built.models))
+    each = zip(built.stages, built.steps, built.copies, strict=True)
+    return [_torsion(one, torques * step / count, unloaded) for one, step, count in each]
+
+
 def mesh_slopes(built: BuiltDrive) -> np.ndarray:
     """Torque over turn of the driven member of one copy of each mesh, the slope at its load [N m/rad]."""
-    torques = _torques(built)
-    each = zip(built.stages, built.steps, built.copies, strict=True)
-    slopes = [
-        _torsion(one, torques * step / count, np.zeros(len(built.models)))[
-            "tangent_torsional_stiffness"
-        ]
-        for one, step, count in each
-    ]
-    return np.array([np.interp(built.case.operation.load, torques, slope) for slope in slopes])
+    torques, load = _torques(built), built.case.operation.load
+    slopes = (one["tangent_torsional_stiffness"] for one in _of_meshes(built, torques))
+    return np.array([np.interp(load, torques, slope) for slope in slopes])
 
 
 def _parts_of_stages(

@@ -469,11 +469,7 @@ class BuiltTrain(BuiltDrive):
     def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:
         """Motion of the members of each mesh; planets move about their axis and with it."""
         rates = dict(zip(self.case.bodies, self.motion, strict=True))
-        teeth = {
-            (body, count)
-            for mesh, place in zip(self.stages, self.design.meshes, strict=True)
-            for body, count in _gears(mesh, place.bodies)
-        }
+        teeth = {(body, count) for place in self.design.meshes for body, count in place.link.gears}
 
         def moving(mesh: Built, place: "TrainMesh", body: str, count: float) -> MemberMotion:
             gears = sum(name == body for name, _ in teeth)
@@ -485,7 +481,7 @@ class BuiltTrain(BuiltDrive):
             return MemberMotion(name, rate, place.copies, orbit, place.carrier)
 
         return tuple(
-            tuple(moving(mesh, place, body, count) for body, count in _gears(mesh, place.bodies))
+            tuple(moving(mesh, place, body, count) for body, count in place.link.gears)
             for mesh, place in zip(self.stages, self.design.meshes, strict=True)
         )
 
@@ -505,12 +501,6 @@ class BuiltTrain(BuiltDrive):
 
 
 Ready = Built | BuiltDrive
-
-
-def _gears(mesh: Built, bodies: Sequence[str]) -> list[tuple[str, float]]:
-    """Both gears of a mesh of a train by their body and their teeth."""
-    teeth: Any = mesh.design.mesh
-    return list(zip(bodies, np.abs(teeth.teeth).tolist(), strict=True))
 
 
 def ends_of(mesh: Mesh) -> tuple[float, float]:

@@ -37,13 +37,12 @@ from pitchpoint.errors import CollectedInputError, Complaints, InputError, short
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.planetary import (
-    PIN_STIFFNESS,
     PLANETARY,
     PLANETS,
     PinErrors,
     PlanetaryGears,
 )
-from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, GearsTable
+from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, STIFFNESS, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
@@ -136,7 +135,6 @@ PRELOAD_RATIO = Quantity("dimensionless", 0.0, 100.0)
 EXPONENT = Quantity("dimensionless", 0.0, 3.0, open_low=True)
 ANY = Quantity("dimensionless", -inf, inf)
 
-STIFFNESS = Quantity("stiffness", 0.0, 1e13, "N/um", open_low=True)
 DAMPING = Quantity("viscous damping", 0.0, 1e9, "N s/m")
 DURATION = Quantity("time", 0.0, 1e4, "s", open_low=True)
 RISE = Quantity("time", 0.0, 1e4, "s")
@@ -1698,7 +1696,7 @@ class TrainTable(Table):
     """How far each pin is ahead along its circle, to where its planet pushes it, so that it bears less."""
     pin_tolerance: Annotated[float, DEVIATION] | None = None
     """Diameter of the circle in which each pin lies by tolerance."""
-    pin_stiffness: Annotated[float, PIN_STIFFNESS] | None = None
+    pin_stiffness: Annotated[float, STIFFNESS] | None = None
     """Stiffness of a pin and its bearing along the circle; rigid unless given."""
 
 

@@ -1,7 +1,7 @@
 """From a case of meshes that turn together, as a planetary set, to their flanks, loads and phases."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -58,7 +58,7 @@ def turning_together(
         found = train_torques(links, _ends(case, train), 1.0, [1.0] * len(links))
     except InputError as error:
         raise error.at(key=error.key or "train") from None
-    meshings = Counter(gear for link in links for gear in _gears(link))
+    meshings = Counter(gear for link in links for gear in link.gears)
     turned, points = [], []
     for number, (one, link, torques) in enumerate(zip(alone, links, found.shares, strict=True), 1):
         torque = np.array([torques[body] for body in link.bodies])
@@ -87,19 +87,13 @@ def _strength(
         one.strength,
         round(train.planets) if on_planets else 1,
         meets=_both(body != train.planet for body in link.bodies),
-        both_ways=_both(meshings[gear] > 1 for gear in _gears(link)),
+        both_ways=_both(meshings[gear] > 1 for gear in link.gears),
     )
 
 
 def _both(values: Iterable[bool]) -> tuple[bool, bool]:
     first, second = values
     return first, second
-
-
-def _gears(link: Link) -> Iterator[tuple[str, float]]:
-    """Both gears of a mesh by their body and their teeth."""
-    mesh: Any = link.mesh
-    yield from zip(link.bodies, np.abs(mesh.teeth).tolist(), strict=True)
 
 
 def _on_other_flanks(one: Case, number: int) -> Case:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import equinox as eqx
 import numpy as np
@@ -56,6 +57,12 @@ class Link(eqx.Module):
             raise InputError(
                 f"a rack travels in the housing, and the {self.carrier} would carry it round"
             )
+
+    @property
+    def gears(self) -> tuple[tuple[str, float], ...]:
+        """Both gears of a cylindrical pair, each by its body and its teeth."""
+        pair: Any = self.mesh
+        return tuple(zip(self.bodies, np.abs(pair.teeth).tolist(), strict=True))
 
     @property
     def relation(self) -> dict[str, float]:

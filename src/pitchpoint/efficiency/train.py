@@ -46,6 +46,11 @@ class TrainMesh(eqx.Module):
     periods: int = eqx.field(static=True)
 
     @property
+    def link(self) -> Link:
+        """The mesh with the bodies that it joins."""
+        return Link(self.design.mesh, self.bodies, self.carrier)
+
+    @property
     def copies(self) -> int:
         """How many there are of the mesh."""
         return int(np.shape(self.phases)[0])
@@ -126,7 +131,7 @@ class Train(eqx.Module):
         """
         designs = designs or [one.design for one in self.meshes]
         links = [
-            Link(design.mesh, one.bodies, one.carrier)
+            replace(one, design=design).link
             for design, one in zip(designs, self.meshes, strict=True)
         ]
         backwards = Ends({self.loaded: -float(self.rates[self.loaded])}, self.held, self.turned)

@@ -30,6 +30,7 @@ from pitchpoint.gears.table import (
     MODULE,
     RACK,
     SHIFT,
+    STIFFNESS,
     WIDTH,
 )
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
@@ -37,10 +38,8 @@ from pitchpoint.input.tables import Table
 
 __all__ = [
     "BODIES",
-    "PIN_STIFFNESS",
     "PLANETARY",
     "PLANETS",
-    "SHARING",
     "OfThree",
     "PinErrors",
     "PlanetaryGears",
@@ -59,11 +58,7 @@ TEETH = Quantity("dimensionless", 5, 2_000, whole=True)
 PLANETS = Quantity("dimensionless", 1, MOST_PLANETS, whole=True)
 
 PIN_ERROR = Quantity("length", -1e-2, 1e-2, "um")
-PIN_STIFFNESS = Quantity("stiffness", 0.0, 1e13, "N/um", open_low=True)
 PinErrors = Annotated[tuple[Annotated[float, PIN_ERROR], ...], Field(max_length=MOST_PLANETS)]
-
-SHARING = ("floating", "pin_errors", "pin_tolerance", "pin_stiffness")
-"""Keys on how planets share a load."""
 
 _LISTS = ("teeth", "profile_shift", "addendum", "dedendum", "fillet_radius", "tip_alteration")
 """Keys that hold a value for each of sun, planet and ring."""
@@ -164,7 +159,7 @@ class PlanetaryGears(Table):
     """How far each pin is ahead along its circle, to where its planet pushes it, so that it bears less."""
     pin_tolerance: Annotated[float, DEVIATION] | None = None
     """Diameter of the circle in which each pin lies by tolerance."""
-    pin_stiffness: Annotated[float, PIN_STIFFNESS] | None = None
+    pin_stiffness: Annotated[float, STIFFNESS] | None = None
     """Stiffness of a pin and its bearing along the circle; rigid unless given."""
 
     @model_validator(mode="after")

@@ -27,6 +27,7 @@ __all__ = [
     "PHASE",
     "RACK",
     "SHIFT",
+    "STIFFNESS",
     "WIDTH",
     "Deviation",
     "GearsTable",
@@ -91,6 +92,7 @@ SHIFT = Quantity("dimensionless", -2.0, 3.0)
 FILLET = Quantity("dimensionless", 0.0, 1.0)
 DISTANCE = Quantity("length", 1e-4, 100.0, "mm")
 BORE = Quantity("length", 1e-5, 100.0, "mm")
+STIFFNESS = Quantity("stiffness", 0.0, 1e13, "N/um", open_low=True)
 MASS = Quantity("mass", 0.0, 1e6, "kg", open_low=True)
 WAVES = Quantity("dimensionless", 1, 1_000, whole=True)
 DEVIATION = Quantity("length", 0.0, 1e-2, "um")

@@ -68,10 +68,11 @@ def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     data = outcome.parts["planet_sharing"]
     if "drawn_planet_load_factor" in data:
         level, factor = _drawn(data)[-1]
-        yield KeyFigure(57.0, "Load on a planet", f"K_γ {factor}", f"at most in {level} of sets")
+        detail = f"at most in {level} of sets"
     else:
         factor = show.quantity("planet_load_factor", float(data["planet_load_factor"]))
-        yield KeyFigure(57.0, "Load on a planet", f"K_γ {factor}", "by the errors of the pins")
+        detail = "by the errors of the pins"
+    yield KeyFigure(57.0, "Load on a planet", f"K_γ {factor}", detail)
 
 
 def sharing_printed(outcome: Outcome) -> Iterator[Printed]:
