@@ -17,6 +17,7 @@ from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.doubts import Doubt, fails, in_stage
 from pitchpoint.efficiency.summary import in_chunks, in_groups
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rated_pair import bare, ends_at_tips, rated_pair
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.strength.limits import STRESS_CORRECTION
@@ -131,19 +132,19 @@ def _ratings(pairs: Sequence[Built]) -> list[Numbers]:
 def _asked(built: Built) -> tuple[Any, ...]:
     """A pair as `rated` takes it."""
     mesh, given, table = built.design.mesh, built.rated, built.case.strength
-    ends = np.full(2, nan) if mesh.ends_at_tips else jax.device_get(_path_ends(mesh))
+    ends = np.full(2, nan) if ends_at_tips(mesh) else jax.device_get(_path_ends(mesh))
     duty = given.duty(built.operation, None if table is None else table.life)
     return mesh, ends, duty, given.factors, given.strengths, given.finish
 
 
 @program
 def _path_ends(mesh: Mesh) -> Float[Array, "2"]:
-    return mesh.rated_pair.path_ends
+    return rated_pair(mesh).path_ends
 
 
 def _bare(mesh: Mesh) -> Mesh:
     """Bare meshes, with an axis of pairs in front."""
-    found: Mesh = jax.vmap(lambda one: one.bare)(mesh)
+    found: Mesh = jax.vmap(bare)(mesh)
     return found
 
 

@@ -30,6 +30,7 @@ from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rated_pair import bare
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.registry import TOOTH_COMPLIANCE
@@ -70,7 +71,7 @@ def vibrating_of(built: Built) -> Vibrating:
     assert asked is not None
     if asked.inertia is None:
         densities = [float(solid.density) for solid in built.design.solids]
-        inertia = _inertia(mesh.bare, array(densities))
+        inertia = _inertia(bare(mesh), array(densities))
     else:
         inertia = array(asked.inertia)
     errors = asked.profile_error

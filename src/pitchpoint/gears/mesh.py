@@ -18,11 +18,10 @@ from pitchpoint.contact.worn import new_and_worn, with_worn
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.on_balls import Body
-from pitchpoint.gears.rated_pair import RatedPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.materials.solids import Solid
 
-__all__ = ["PATHS", "Mesh", "Reference", "StandardPair", "Way"]
+__all__ = ["PATHS", "Mesh", "Reference", "Way"]
 
 
 Path = Literal["action", "wave", "turn"]
@@ -114,30 +113,6 @@ class Reference(eqx.Module):
     radius: Float[Array, ""]
     sum_speed: Float[Array, ""]
     pitch_line_speed: Float[Array, ""]
-
-
-class StandardPair(eqx.Module):
-    """What the standards for cylindrical gears ask about a pair.
-
-    Attributes:
-        virtual_teeth: z_n of the normal sections, in magnitude.
-        profile_shift: coefficients.
-        dedendum: of the basic racks, in normal modules.
-        pressure_angle: normal one of the basic racks [rad].
-        helix_angle: [rad].
-        transverse_contact_ratio: eps_alpha.
-        face_width: [m].
-        reference_arm: radius on which the load of the driven coordinate acts at the reference circle [m].
-    """
-
-    virtual_teeth: Float[Array, "2"]
-    profile_shift: Float[Array, "2"]
-    dedendum: Float[Array, "2"]
-    pressure_angle: Float[Array, ""]
-    helix_angle: Float[Array, ""]
-    transverse_contact_ratio: Float[Array, ""]
-    face_width: Float[Array, ""]
-    reference_arm: Float[Array, ""]
 
 
 class Mesh(eqx.Module):
@@ -355,31 +330,6 @@ class Mesh(eqx.Module):
         One row for each zone in which they press; none without such a bearing, see `inner_bearing`.
         """
         return jnp.zeros((0, *contacts.weight.shape))
-
-    @property
-    def standard(self) -> StandardPair:
-        """What standards ask about a pair of cylindrical gears, see `standardised`."""
-        raise self._without("values that a standard asks for")
-
-    @property
-    def standardised(self) -> bool:
-        """True if the standards for cylindrical gears apply."""
-        return False
-
-    @property
-    def bare(self) -> Self:
-        """The same gears with their dimensions alone, so that many share a program that asks no more."""
-        return self
-
-    @property
-    def ends_at_tips(self) -> bool:
-        """True if contact ends at tip circles, so that a bare mesh has the path of this one."""
-        return True
-
-    @property
-    def rated_pair(self) -> RatedPair:
-        """What standards for the strength of cylindrical gears ask, see `GearsTable.rated`."""
-        raise self._without("teeth that a standard rates")
 
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, " dof"]:
         """Moments of inertia of plain bodies about their axes [kg m2], masses of those that travel [kg].

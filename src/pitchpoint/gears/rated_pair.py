@@ -1,11 +1,14 @@
-"""What the standards for the strength of cylindrical gears ask about a pair."""
+"""What standards ask about a pair of cylindrical gears; whose gears have it registers it here."""
+
+from functools import singledispatch
+from typing import Any
 
 import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 
-__all__ = ["RatedPair"]
+__all__ = ["RatedPair", "StandardPair", "bare", "ends_at_tips", "rated_pair", "standard_pair"]
 
 
 class RatedPair(eqx.Module):
@@ -69,3 +72,55 @@ class RatedPair(eqx.Module):
     def end_radii(self) -> Float[Array, "2"]:
         """Radii there [m]; those of the tips unless the mate is undercut."""
         return self.base_radii * jnp.sqrt(1.0 + self.end_slopes**2)
+
+
+class StandardPair(eqx.Module):
+    """What the standard for the stiffness of cylindrical gears asks about a pair.
+
+    Attributes:
+        virtual_teeth: z_n of the normal sections, in magnitude.
+        profile_shift: coefficients.
+        dedendum: of the basic racks, in normal modules.
+        pressure_angle: normal one of the basic racks [rad].
+        helix_angle: [rad].
+        transverse_contact_ratio: eps_alpha.
+        face_width: [m].
+        reference_arm: radius on which the load of the driven coordinate acts at the reference circle [m].
+    """
+
+    virtual_teeth: Float[Array, "2"]
+    profile_shift: Float[Array, "2"]
+    dedendum: Float[Array, "2"]
+    pressure_angle: Float[Array, ""]
+    helix_angle: Float[Array, ""]
+    transverse_contact_ratio: Float[Array, ""]
+    face_width: Float[Array, ""]
+    reference_arm: Float[Array, ""]
+
+
+@singledispatch
+def standard_pair(mesh: Any) -> StandardPair | None:
+    """What the standard for stiffness asks about a mesh; None where it does not apply."""
+    return None
+
+
+@singledispatch
+def rated_pair(mesh: Any) -> RatedPair:
+    """What the standards for strength ask about a mesh, see `GearsTable.rated`.
+
+    Raises:
+        TypeError: they do not apply to its gears.
+    """
+    raise TypeError(f"{type(mesh).__name__} has no teeth that a standard rates")
+
+
+@singledispatch
+def bare(mesh: Any) -> Any:
+    """The same gears with their dimensions alone, so that many share a program that asks no more."""
+    return mesh
+
+
+@singledispatch
+def ends_at_tips(mesh: Any) -> bool:
+    """True if contact ends at tip circles, so that a bare mesh has the path of this one."""
+    return True

@@ -109,7 +109,7 @@ class GearsTable(Table):
         load: what the loaded member takes.
         carries: that in words.
         transmits: False for a test rig.
-        rated: True if standards rate the strength of their teeth, see `Mesh.rated_pair`.
+        rated: True if standards rate the strength of their teeth, see `rated_pair`.
         friction, film_thickness, load_sharing: laws where none are given.
         meaningless: by key of the models why they say nothing about these gears.
         drivers: members that may drive, the usual one first.

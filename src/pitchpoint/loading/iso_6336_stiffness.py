@@ -4,11 +4,13 @@ import math
 from dataclasses import replace
 from typing import Any
 
+import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.doubts import REMARKED, Doubt
-from pitchpoint.gears.mesh import Mesh, StandardPair
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rated_pair import StandardPair, standard_pair
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
 
@@ -162,7 +164,7 @@ def estimate(
 
     Source: ISO 6336-1:2006, method B.
     """
-    if not mesh.standardised:
+    if eqx.filter_eval_shape(standard_pair, mesh) is None:
         return {}, ()
     found, single, total = jax.device_get(_estimate(mesh, solids, load))
     warnings = range_warnings(
@@ -181,7 +183,8 @@ def estimate(
 def _estimate(
     mesh: Mesh, solids: tuple[Solid, Solid], load: Float[Array, ""]
 ) -> tuple[StandardPair, Float[Array, ""], Float[Array, ""]]:
-    pair = mesh.standard
+    pair = standard_pair(mesh)
+    assert pair is not None
     pinion_first = jnp.argsort(pair.virtual_teeth)
     pair = replace(
         pair,

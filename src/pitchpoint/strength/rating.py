@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.rated_pair import RatedPair
+from pitchpoint.gears.rated_pair import RatedPair, rated_pair
 from pitchpoint.loading import iso_6336_stiffness
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
@@ -168,11 +168,11 @@ def rated(
     """The rating of a mesh, see `rate`.
 
     Args:
-        mesh: with a `rated_pair`, bare.
+        mesh: of which there is a `rated_pair`, `bare`.
         path_ends: of the pair as it runs, see `RatedPair`; not a number where those of the bare mesh are it.
         duty, factors, strengths, finish: as `rate` takes them.
     """
-    pair = mesh.rated_pair
+    pair = rated_pair(mesh)
     pair = dataclasses.replace(pair, path_ends=_or(path_ends, pair.path_ends))
     reference = jnp.abs(pair.reference_radii)
     force = duty.load / jnp.sum(mesh.loaded * reference)

@@ -27,7 +27,7 @@ from pitchpoint.gears.involute import (
 )
 from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
-from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
+from pitchpoint.gears.mesh import Mesh, Path, Reference
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.roots import hypot, root
 
@@ -594,27 +594,6 @@ class InvolutePair(Mesh):
                 )
             )
         return found[0], found[1]
-
-    @property
-    def standard(self) -> StandardPair:
-        """What standards ask about the pair."""
-        gears = self.gears
-        radii = jnp.abs(jnp.stack([gear.reference_radius for gear in gears]))
-        return StandardPair(
-            virtual_teeth=jnp.abs(jnp.stack([gear.virtual_spur_gear.teeth for gear in gears])),
-            profile_shift=self.profile_shift,
-            dedendum=self.dedendum,
-            pressure_angle=self.pressure_angle,
-            helix_angle=self.helix_angle,
-            transverse_contact_ratio=self.transverse_contact_ratio,
-            face_width=self.face_width,
-            reference_arm=jnp.sum(self.loaded * radii),
-        )
-
-    @property
-    def standardised(self) -> bool:
-        """The standards are for external gears."""
-        return not self.internal
 
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
         """Moments of inertia of discs as wide as the face, from bore to reference circle [kg m2].

@@ -2,14 +2,20 @@
 
 import dataclasses
 from math import pi
-from typing import Self
 
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
-from pitchpoint.gears.rated_pair import RatedPair
+from pitchpoint.gears.rated_pair import (
+    RatedPair,
+    StandardPair,
+    bare,
+    ends_at_tips,
+    rated_pair,
+    standard_pair,
+)
 
 __all__ = ["CylindricalPair"]
 
@@ -23,63 +29,6 @@ class CylindricalPair(InvolutePair):
     A contact line enters the plane of action at one end face and leaves at the other; a spur pair has
     one slice, a line over the whole face, unless its surfaces change across the face.
     """
-
-    @property
-    def bare(self) -> Self:
-        """Without what neither circles nor roots depend on; its path of contact ends at the tip circles."""
-        return dataclasses.replace(
-            self,
-            undercut=(False, False),
-            shortened=(False, False),
-            follows=(False, False),
-            helical=True,
-            lanes=2,
-            slices=1,
-            surfaces=((), ()),
-        )
-
-    @property
-    def ends_at_tips(self) -> bool:
-        """Undercuts end it before."""
-        return not any(self.undercut)
-
-    @property
-    def rated_pair(self) -> RatedPair:
-        """What standards for the strength of cylindrical gears ask."""
-        line, gears = self.line, self.gears
-        roots = jnp.stack([gear.root_radius for gear in gears])
-        outside = jnp.asarray([False, self.internal])
-        rim = jnp.where(outside, self.rim_ratio - 1.0, 1.0 - 1.0 / self.rim_ratio)
-        ring = gears[1].virtual_spur_gear
-        return RatedPair(
-            teeth=self.teeth,
-            module=self.module,
-            pressure_angle=self.pressure_angle,
-            helix_angle=self.helix_angle,
-            base_helix_angle=self.base_helix_angle,
-            transverse_pressure_angle=line.transverse_pressure_angle,
-            working_pressure_angle=self.working_pressure_angle,
-            profile_shift=self.profile_shift + self.infeed,
-            dedendum=self.dedendum,
-            fillet_radius=self.fillet_radius,
-            reference_radii=jnp.stack([gear.reference_radius for gear in gears]),
-            base_radii=line.base_radii,
-            working_radii=line.working_radii,
-            tip_radii=self.tip_radii,
-            root_radii=roots,
-            path_ends=line.limits,
-            overlap_ratio=line.overlap_ratio,
-            face_width=self.face_width,
-            rim_thickness=jnp.abs(roots) * rim,
-            ring_section=ring.ring_tangent(_RING_TANGENT) if self.internal else jnp.zeros(3),
-            cutter=self._cutter,
-        )
-
-    @property
-    def _cutter(self) -> Float[Array, "2"]:
-        if self.cutter_teeth is None or self.cutter_shift is None:
-            return jnp.full(2, jnp.nan)
-        return jnp.stack([jnp.asarray(self.cutter_teeth), jnp.asarray(self.cutter_shift)])
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
@@ -96,3 +45,80 @@ class CylindricalPair(InvolutePair):
             tilt=self.base_helix_angle,
             across=jnp.zeros(2),
         )
+
+
+@bare.register
+def _bare(pair: CylindricalPair) -> CylindricalPair:
+    """Without what neither circles nor roots depend on; its path of contact ends at the tip circles."""
+    return dataclasses.replace(
+        pair,
+        undercut=(False, False),
+        shortened=(False, False),
+        follows=(False, False),
+        helical=True,
+        lanes=2,
+        slices=1,
+        surfaces=((), ()),
+    )
+
+
+@ends_at_tips.register
+def _ends_at_tips(pair: CylindricalPair) -> bool:
+    """Undercuts end it before."""
+    return not any(pair.undercut)
+
+
+@standard_pair.register
+def _standard_pair(pair: CylindricalPair) -> StandardPair | None:
+    """The standard is for external gears."""
+    if pair.internal:
+        return None
+    gears = pair.gears
+    radii = jnp.abs(jnp.stack([gear.reference_radius for gear in gears]))
+    return StandardPair(
+        virtual_teeth=jnp.abs(jnp.stack([gear.virtual_spur_gear.teeth for gear in gears])),
+        profile_shift=pair.profile_shift,
+        dedendum=pair.dedendum,
+        pressure_angle=pair.pressure_angle,
+        helix_angle=pair.helix_angle,
+        transverse_contact_ratio=pair.transverse_contact_ratio,
+        face_width=pair.face_width,
+        reference_arm=jnp.sum(pair.loaded * radii),
+    )
+
+
+@rated_pair.register
+def _rated_pair(pair: CylindricalPair) -> RatedPair:
+    """Radii, path and roots of both gears."""
+    line, gears = pair.line, pair.gears
+    roots = jnp.stack([gear.root_radius for gear in gears])
+    outside = jnp.asarray([False, pair.internal])
+    rim = jnp.where(outside, pair.rim_ratio - 1.0, 1.0 - 1.0 / pair.rim_ratio)
+    ring = gears[1].virtual_spur_gear
+    known = pair.cutter_teeth is not None and pair.cutter_shift is not None
+    cutter = (
+        jnp.stack([*map(jnp.asarray, (pair.cutter_teeth, pair.cutter_shift))]) if known else None
+    )
+    return RatedPair(
+        teeth=pair.teeth,
+        module=pair.module,
+        pressure_angle=pair.pressure_angle,
+        helix_angle=pair.helix_angle,
+        base_helix_angle=pair.base_helix_angle,
+        transverse_pressure_angle=line.transverse_pressure_angle,
+        working_pressure_angle=pair.working_pressure_angle,
+        profile_shift=pair.profile_shift + pair.infeed,
+        dedendum=pair.dedendum,
+        fillet_radius=pair.fillet_radius,
+        reference_radii=jnp.stack([gear.reference_radius for gear in gears]),
+        base_radii=line.base_radii,
+        working_radii=line.working_radii,
+        tip_radii=pair.tip_radii,
+        root_radii=roots,
+        path_ends=line.limits,
+        overlap_ratio=line.overlap_ratio,
+        face_width=pair.face_width,
+        rim_thickness=jnp.abs(roots) * rim,
+        ring_section=ring.ring_tangent(_RING_TANGENT) if pair.internal else jnp.zeros(3),
+        cutter=jnp.full(2, jnp.nan) if cutter is None else cutter,
+    )

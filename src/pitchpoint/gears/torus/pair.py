@@ -166,11 +166,6 @@ class TorusPair(InvolutePair):
         given = radius * jnp.sin(angle), radius * jnp.cos(angle), jnp.asarray(across)
         return jnp.stack(jnp.broadcast_arrays(*given))
 
-    @property
-    def standardised(self) -> bool:
-        """The standards are for contact along lines."""
-        return False
-
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
         """Moments of inertia of discs as wide as the face of each gear [kg m2]."""
         return super().inertia(density) * self.widths / self.face_width

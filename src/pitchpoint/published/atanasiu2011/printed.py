@@ -9,6 +9,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jax
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
+from pitchpoint.gears.rated_pair import bare
 from pitchpoint.programs import program
 from pitchpoint.published.publication import Point
 
@@ -58,7 +59,7 @@ def readings(point: Point) -> dict[str, float]:
     assert isinstance(mesh, CylindricalPair)
     angle = float(np.arctan(tan(gears.pressure_angle) / cos(gears.helix_angle)))
     densities = [float(solid.density) for solid in design.solids]
-    inertia, action = jax.device_get(_inertia_and_arms(mesh.bare, array(densities)))
+    inertia, action = jax.device_get(_inertia_and_arms(bare(mesh), array(densities)))
     return {
         "printed_undercut_limit_1": undercut_limit(
             teeth=gears.teeth[0],
