@@ -519,18 +519,17 @@ def test_load_closes_the_gap_of_every_pair_that_carries(loaded):
 
 
 @eqx.filter_jit
-def section_of(section):
-    return *section.flank, section.slope
+def sections_of(mesh):
+    return [(jnp.stack(each.reach), *each.flank, each.slope) for each in mesh.sections]
 
 
 def test_tooth_sections_are_the_outlines(pair):
     """Half thickness, height and slope of the sections by which teeth yield."""
     mesh, by = pair.mesh, pair.by
     node = -np.cos(np.pi * np.arange(24) / 23.0)
-    for index, section in enumerate(mesh.sections):
-        low, high = np.asarray(section.reach)
+    for index, section in enumerate(sections_of(mesh)):
+        (low, high), half, height, rate_there = map(np.asarray, section)
         reach = (high + low + node * (high - low)) / 2.0
-        half, height, rate_there = np.asarray(section_of(section))
         place = by.outline.place if index == 0 else mate_outline(pair)
         expected = place(reach**2)
         tolerance = 1e-13 if index == 0 else 1e-7  # its arc length is that of chords

@@ -596,26 +596,31 @@ def test_other_families_keep_their_volume(name):
 
 FLANK, MODULUS, CURVATURE = 2e-3, 2.3e11, 70.0
 SCAR = 0.25e-3  # m: standard deviation of a scar in the middle of the flank
-felt_over = eqx.filter_jit(averaged)
 
 
 def pressed_lines(
     depths: np.ndarray, places: np.ndarray, line_load: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Half-widths by the curvature that contacts feel, and where these are no half spaces."""
+    radius, wide = felt_over(array(depths), array(places), array(line_load))
+    half = np.sqrt(8.0 * line_load * np.asarray(radius) / (np.pi * MODULUS))
+    return half[0, 0], np.asarray(wide)[0, 0]
+
+
+@eqx.filter_jit
+def felt_over(depths: jax.Array, places: jax.Array, line_load: jax.Array) -> Any:
     contacts = discs()[0].mesh.contacts(jnp.zeros(places.size))
     lanes = contacts.active.shape
     given = replace(
         contacts,
-        flank=jnp.broadcast_to(array(places), (2, *lanes)),
+        flank=jnp.broadcast_to(places, (2, *lanes)),
         curvature=jnp.zeros((2, 2, *lanes)).at[:, 0].set(CURVATURE / 2.0),
         felt=jnp.full(lanes, CURVATURE),
     )
     ends = array([0.0, FLANK]), array([-1.0, 1.0]), array([1e-4, 1.0])
-    worn = Worn(array(depths[:, None]), *ends), Worn(array(0.0 * depths[:, None]), *ends)
-    found, wide = felt_over(given, worn, array(line_load), array(MODULUS))
-    half = np.sqrt(8.0 * line_load * np.asarray(found.radius) / (np.pi * MODULUS))
-    return half[0, 0], np.asarray(wide)[0, 0]
+    worn = Worn(depths[:, None], *ends), Worn(0.0 * depths[:, None], *ends)
+    found, wide = averaged(given, worn, line_load, array(MODULUS))
+    return found.radius, wide
 
 
 def scar(place: np.ndarray) -> np.ndarray:

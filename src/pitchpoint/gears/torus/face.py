@@ -61,6 +61,7 @@ class TorusFace(eqx.Module):
         return jnp.sqrt(self.radius**2 - across**2)
 
 
+@eqx.filter_jit
 def least(
     first: TorusFace,
     second: TorusFace,
