@@ -124,7 +124,7 @@ def package_geometry(built: Built, known: Engagement) -> rival.Geometry:
         gap=np.asarray(contacts.gap[:, 0]),
         normal=np.asarray(contacts.normal[:, :, 0]),
         slip=np.asarray(contacts.slip_arm[:, :, 0]),
-        radial=np.asarray(built.design.mesh.inner_load(contacts)).sum(axis=0)[:, 0],
+        radial=np.asarray(built.design.mesh.body.inner_load(contacts)).sum(axis=0)[:, 0],
     )
 
 

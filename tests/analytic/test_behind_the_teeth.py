@@ -48,14 +48,14 @@ def at(drive, torque):
 
 
 _contacts = jax.jit(lambda drive: drive.contacts(jnp.asarray(PHASES)))
-_coupled = jax.jit(lambda drive, contacts: drive.body_compliance(contacts, SOLIDS))
+_coupled = jax.jit(lambda drive, contacts: drive.body.compliance(contacts, SOLIDS))
 
 
 def in_series(drive):
     return {name: float(each) for name, each in _in_series(drive).items()}
 
 
-_in_series = jax.jit(lambda drive: drive.in_series(SOLIDS))
+_in_series = jax.jit(lambda drive: drive.body.in_series(SOLIDS))
 
 
 # ------------------------------------------------------------------ closed forms
@@ -329,7 +329,7 @@ def test_balls_stand_elsewhere_as_far_from_here_as_they_come(number):
     drive = build(bearing=Balls(number=number))
     pitch = 2.0 * np.pi / number
     same = pitch / 2.0 if number % 2 else pitch
-    there = drive.balls_elsewhere
+    there = replace(drive, bearing=drive.body.elsewhere.bearing)
     turned = np.asarray(there.bearing.angle - drive.bearing.angle)
     np.testing.assert_allclose(turned, same / 2.0, rtol=1e-12)
     back = replace(there, bearing=there.bearing.elsewhere)
@@ -338,4 +338,4 @@ def test_balls_stand_elsewhere_as_far_from_here_as_they_come(number):
     order = [1, 0] if number % 2 else [0, 1]
     np.testing.assert_allclose(again.inner_load, here.inner_load[np.array(order)], rtol=1e-6)
     assert np.abs(away.wind_up / here.wind_up - 1.0).max() > 1e-4
-    assert build().balls_elsewhere is None
+    assert build().body.elsewhere is None

@@ -12,6 +12,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.contact.surface import Spot, Waves
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.drive import places
@@ -74,8 +75,11 @@ def springs(monkeypatch):
     return Mock(
         spec=Mesh,
         contacts=lambda phase: at,
-        inner_load=lambda contacts: zones * pressed,
-        in_series=lambda solids: {},
+        body=Mock(
+            spec=GearBody,
+            inner_load=lambda contacts: zones * pressed,
+            in_series=lambda solids: {},
+        ),
         loaded=LOADED,
         of_pairs=lambda places: places,
         on_edge=lambda contacts: at.gap == jnp.max(at.gap),
@@ -347,7 +351,7 @@ def test_pairs_with_a_clearance_lead_only_if_they_stand_out_further():
 @eqx.filter_jit
 def leaning(drive, at):
     """How far the pairs lean, and how they press the ring along its circumference."""
-    return drive.spots(at, PHASES)[0].leaning, drive.ring_loads(at).tangential
+    return drive.spots(at, PHASES)[0].leaning, drive.body.ring_loads(at).tangential
 
 
 def test_roundings_lean_to_the_radius(drive, at):

@@ -494,13 +494,18 @@ def test_every_kind_of_loss_alone_brakes_the_driver(braked, kind):
     drags = braked.design(kind).drag
     given = braked.mesh, braked.contacts
     for resting, each in ((False, drags), (True, at_rest(drags))):
-        torque = resistance(
-            each, *given, speed=braked.points.speed[..., None], kinematic_viscosity=1e-4
-        )(jnp.zeros(braked.contacts.weight.shape))
+        torque = resisted(each, *given, braked.points.speed[..., None])
         driven = dot(np.asarray(braked.mesh.driver * braked.mesh.motion), np.asarray(torque))
         assert driven.shape == (2, 3, 1)
         acts = kind in ("bearing", "seal", "breakaway" if resting else "churning")
         assert np.all(driven > 0.0) if acts else np.all(driven == 0.0)
+
+
+@eqx.filter_jit
+def resisted(drags, mesh, contacts, speed):
+    """Torque of drags where the teeth carry nothing."""
+    torque = resistance(drags, mesh, contacts, speed=speed, kinematic_viscosity=1e-4)
+    return torque(jnp.zeros(contacts.weight.shape))
 
 
 @pytest.mark.parametrize("kind", LOSSES)

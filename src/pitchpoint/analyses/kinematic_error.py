@@ -67,7 +67,7 @@ def kinematic_error_part(
     """
     design, gears = built.design, built.case.gears
     load = array(np.full((1, 1), built.case.operation.load))
-    phases = PHASES if design.mesh.couples else FEW_PAIRS
+    phases = PHASES if design.mesh.body.couples else FEW_PAIRS
     period = _period(design.mesh, design.solids, built.terms, load, phases)
     teeth = np.asarray(gears.tooth_numbers)
     solved: list[np.ndarray] = []

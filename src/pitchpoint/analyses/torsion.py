@@ -74,7 +74,7 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
     slopes = np.stack([found["tangent_torsional_stiffness"] for found in each], -1)
     slopes *= copies / steps**2
     slope, turned = 1.0 / np.sum(1.0 / slopes, axis=-1), at_output("wind_up")
-    told_parts = (one.design.mesh.yielding for one in built.stages)
+    told_parts = (one.design.mesh.body.yielding for one in built.stages)
     yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
     parts = _parts_of_stages(built, steps, each)
     assumed = proportions_words(built.stages)
@@ -169,7 +169,7 @@ def _covered(yields: str, assumed: str) -> dict[str, str]:
 def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     friction, rated = mean_friction(built), built.case.operation.load
     limits = getattr(built.case.gears, "slopes", None)
-    told_of = built.design.mesh.couples and rated > 0.0 and _reduces(built)
+    told_of = built.design.mesh.body.couples and rated > 0.0 and _reduces(built)
     more = torques_of_catalogues(rated, limits) if told_of else torques[:0]
     every = np.union1d(torques, more)
     at = np.isin(every, torques)
@@ -192,7 +192,7 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         held, play = found["loading_torque"] - every, float(found["kinematic_play"])
         data |= as_in_catalogues(every, found["wind_up"], held, play, rated, limits)
         data["wind_up_part"] = (("part", "torque"), np.stack([*parts.values()]))
-    yields, rigid = built.design.mesh.yielding
+    yields, rigid = built.design.mesh.body.yielding
     assumed = proportions_words([built])
     at_rated = float(np.interp(rated, every, found["wind_up"]))
     whole = dataset(
@@ -269,7 +269,7 @@ def _on_edges(built: Ready, torques: np.ndarray, share: np.ndarray) -> list[str]
 
 def _on_balls(built: Ready) -> bool:
     """True if balls hold the body under the teeth of a mesh."""
-    return any(one.design.mesh.balls_elsewhere is not None for one in built.meshes)
+    return any(one.design.mesh.body.elsewhere is not None for one in built.meshes)
 
 
 def _pressed(play: float) -> list[str]:
@@ -396,8 +396,10 @@ def wound_ups(
         torques: of the loaded member [N m].
     """
     design = built.design
-    body = coupling(design, known.contacts) if known.body is None else known.body
-    given = design.mesh, design.solids, built.terms
+    mesh, solids, body = design.mesh, design.solids, known.body
+    if body is None:
+        body = coupling(mesh.body, solids, known.contacts)
+    given = mesh, solids, built.terms
     each: list[Any] = []
     for torque in torques:
         if each and isinstance(
@@ -411,7 +413,7 @@ def wound_ups(
 
 def _edge_share(mesh: Mesh, found: Any, weight: np.ndarray) -> dict[str, np.ndarray]:
     """Part of the load on edges at each torque, of meshes that watch for them; none of no load."""
-    if not mesh.couples:
+    if not mesh.body.couples:
         return {}
     whole = found.force.sum(axis=(1, 2)) @ weight
     return {"edge_share": (found.edge_load @ weight) / np.where(whole != 0.0, whole, 1.0)}
@@ -421,12 +423,12 @@ def _by_balls(
     built: Built, contacts: Contacts, weight: np.ndarray, as_they_stand: float
 ) -> dict[str, np.ndarray]:
     """Wind-up at the operating point with the balls elsewhere less that as they stand; none without balls."""
-    other = built.design.mesh.balls_elsewhere
+    mesh, solids = built.design.mesh, built.design.solids
+    other = mesh.body.elsewhere
     if other is None:
         return {}
-    design = replace(built.design, mesh=other)
-    given = other, design.solids, built.terms, array(built.case.operation.load)
-    found = wound_up(*given, contacts, coupling(design, contacts))
+    given = mesh, solids, built.terms, array(built.case.operation.load)
+    found = wound_up(*given, contacts, coupling(other, solids, contacts))
     return {"wind_up_by_balls": np.asarray(found.wind_up) @ weight - as_they_stand}
 
 
@@ -443,7 +445,7 @@ def _parts(
     design: Design, contacts: Contacts, found: Any, weight: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Parts of the wind-up over the torques, by name; those that yield [rad]."""
-    if not design.mesh.couples:
+    if not design.mesh.body.couples:
         return {}
     under = jax.device_get(body_parts(design.mesh, design.solids, contacts, found))
     teeth = {"teeth": found.of_teeth, "gaps between the teeth": found.of_gaps}

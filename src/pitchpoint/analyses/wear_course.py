@@ -482,7 +482,7 @@ def _sensitive(built: Built) -> bool:
     """True if derivatives are taken: never through solved films, on coupled teeth if they are asked for."""
     wanted = asked(built).sensitivities
     if wanted is None:
-        wanted = not (built.design.mesh.couples and built.models[0].sharing.by_stiffness)
+        wanted = not (built.design.mesh.body.couples and built.models[0].sharing.by_stiffness)
     return wanted and not _films(built)
 
 

@@ -418,7 +418,7 @@ class Built:
     @property
     def lacks_bearing(self) -> bool:
         """True where teeth press on a bearing inside the drive, and no loss of the case stands for it."""
-        inner = self.design.mesh.inner_bearing
+        inner = self.design.mesh.body.inner_bearing
         given = (frozenset(loss.between) for loss in self.case.losses.values())
         return bool(inner) and inner not in given
 
@@ -509,7 +509,7 @@ def build(case: Case, document: Document, own: ChosenLaws = ()) -> Built:
         solids=(used[0].solid, used[1].solid),
         lubricant=_built_oil(oil),
         roughness=_roughness(case.roughness),
-        drag=drags(case.losses, case.bodies, {mesh.inner_bearing}),
+        drag=drags(case.losses, case.bodies, {mesh.body.inner_bearing}),
         elliptic=ELLIPTIC_CONTACT[case.models.elliptic_contact],
     )
     told = [*warnings, *_yielding(case, mesh), *_of_oil(oil)]
@@ -919,7 +919,7 @@ def _check_motion(case: Case, mesh: Mesh) -> None:
         return
     if told := _solved_first(case):
         raise InputError(f"a motion {told}", key="models.friction")
-    if mesh.couples:
+    if mesh.body.couples:
         raise InputError(
             "motion with friction takes each pair of teeth as a spring of its own, and the rim of these "
             "gears couples them; leave this table out",
@@ -1081,7 +1081,7 @@ def _built_oil(record: lubricants.LubricantRecord) -> lubricants.Lubricant:
 def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     """What the model of tooth compliance does not cover, where it is used."""
     sharing = LOAD_SHARING[case.models.load_sharing]
-    if mesh.couples or (case.dynamics is None and not sharing.by_stiffness):
+    if mesh.body.couples or (case.dynamics is None and not sharing.by_stiffness):
         return ()
     sections, model = _sections(mesh), TOOTH_COMPLIANCE[case.models.tooth_compliance]
     doubts = map(as_doubt, uncovered(model, sections, case.gears.members))

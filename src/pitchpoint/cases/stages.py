@@ -291,7 +291,7 @@ def _drive(case: DriveCase, built: Sequence[Built]) -> Drive:
         names = _on_shafts(one, first, count + held)
         held += len(names) - 2
         stages.append(_stage(one, table, tuple(names.values())))
-        bearing = [f"shaft {names[body] + 1}" for body in one.design.mesh.inner_bearing]
+        bearing = [f"shaft {names[body] + 1}" for body in one.design.mesh.body.inner_bearing]
         inner.add(frozenset(bearing))
     still = [f"held {number}" for number in range(held)]
     bodies = (*case.bodies, *still)

@@ -254,7 +254,7 @@ def demand_effects(moving: Moving, what: str) -> None:
     ):
         if float(value) < 0.0:
             raise InputError(f"{told} is not negative, got {float(value):g}")
-    if mesh.couples:
+    if mesh.body.couples:
         raise InputError(f"{what} takes each pair of teeth as a spring, and a ring couples these")
     if moving.stiffness is None and moving.passage is None and not mesh.toothed:
         raise InputError(f"bodies without teeth need the stiffness of their contact in {what}")

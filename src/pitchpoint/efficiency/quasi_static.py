@@ -14,6 +14,7 @@ from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.factored import Arrays, Numbers, as_array
+from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.period import between
@@ -326,7 +327,11 @@ def engagement(
     if like is None:
         phase, weight = _nodes(design.mesh, models.sharing, nodes)
         contacts = contacts_at(design.mesh, phase)
-        body = coupling(design, contacts) if models.sharing.by_stiffness else None
+        body = (
+            coupling(design.mesh.body, design.solids, contacts)
+            if models.sharing.by_stiffness
+            else None
+        )
     else:
         phase, weight, contacts, body = like.phase, like.weight, like.contacts, like.body
     share = shares_at(design, contacts, load, models, body)
@@ -376,10 +381,9 @@ def contacts_at(mesh: Mesh, phase: Each) -> Contacts:
 
 
 @program
-def coupling(design: Design, contacts: Contacts) -> Coupling | None:
-    """How far a unit force on one lane moves another; one program for all drives."""
-    mesh = design.mesh
-    return mesh.body_compliance(contacts, design.solids) if mesh.couples else None
+def coupling(body: GearBody, solids: tuple[Solid, Solid], contacts: Contacts) -> Coupling | None:
+    """How far a unit force on one lane moves another; one program for all bodies of a structure."""
+    return body.compliance(contacts, solids) if body.couples else None
 
 
 @program

@@ -17,9 +17,8 @@ from pitchpoint.contact.surface import Spot, Surface, Surfaces, with_surfaces
 from pitchpoint.contact.worn import new_and_worn, with_worn
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
-from pitchpoint.gears.on_balls import Body
+from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.tooth_section import ToothSection
-from pitchpoint.materials.solids import Solid
 
 __all__ = ["PATHS", "Mesh", "Reference", "Way"]
 
@@ -126,11 +125,8 @@ class Mesh(eqx.Module):
         shape: of the class; that of all its contacts.
         toothed: of the class; True if `sections` holds teeth that yield.
         along_action: of the class; True if it has a `line_of_action`.
-        couples: of the class; True if bodies under the teeth couple them, see `body_compliance`.
         counts: of the class; what `Contacts.path` counts, a key of `PATHS`.
         goes_round: of the class; True if every flank of a member takes its turn, see `flanks_in_turn`.
-        inner_bearing: of the class; the two bodies between which a bearing sits inside the drive, by name;
-            empty without one.
         chosen: of the class; fields whose numbers are chosen one by one, what follows from them is
             `completed`.
     """
@@ -139,10 +135,8 @@ class Mesh(eqx.Module):
     shape: ClassVar[Shape] = "line"
     toothed: ClassVar[bool] = False
     along_action: ClassVar[bool] = False
-    couples: ClassVar[bool] = False
     counts: ClassVar[Path] = "turn"
     goes_round: ClassVar[bool] = True
-    inner_bearing: ClassVar[frozenset[str]] = frozenset()
     chosen: ClassVar[tuple[str, ...]] = ()
 
     def __repr__(self) -> str:
@@ -228,49 +222,9 @@ class Mesh(eqx.Module):
         return array(inf)
 
     @property
-    def yielding(self) -> tuple[str, str]:
-        """What yields under load, and what is left out, in words."""
-        return "teeth and the bodies under them", "shafts, bearings and housing"
-
-    def body_compliance(self, contacts: Contacts, solids: tuple[Solid, Solid]) -> Body:
-        """How far a unit force on one lane moves another through the body under the teeth [m/N].
-
-        Lanes are pairs and slices, flattened; both ends along their normals. It does not depend on the
-        load. Of families that say so, see `couples`.
-
-        Args:
-            contacts: of the mesh.
-            solids: material of each member.
-        """
-        raise self._without("body that couples its teeth")
-
-    def body_parts(
-        self,
-        contacts: Contacts,
-        solids: tuple[Solid, Solid],
-        force: Float[Array, "pair slice *b"],
-        balls: Float[Array, "ball *b"] | None,
-    ) -> dict[str, Float[Array, "*b"]]:
-        """Work of the contacts' forces on what bodies under the teeth yield, by name of the part [N m].
-
-        Args:
-            contacts: of the mesh.
-            solids: material of each member.
-            force: normal force of each slice [N].
-            balls: approach of balls that hold the body [m]; None without.
-        """
-        return {}
-
-    def in_series(self, solids: tuple[Solid, Solid]) -> dict[str, Float[Array, ""]]:
-        """What yields behind the teeth and carries the whole load, by name.
-
-        Args:
-            solids: material of each member.
-
-        Returns:
-            Movement of the loaded coordinate for a unit load on it [rad/(N m) or m/N].
-        """
-        return {}
+    def body(self) -> GearBody:
+        """What lies under and behind the teeth."""
+        return GearBody()
 
     @property
     def contact_room(self) -> Float[Array, ""]:
@@ -289,11 +243,6 @@ class Mesh(eqx.Module):
     def other_flanks(self) -> Self:
         """The same mesh where its other flanks carry; gaps are counted from the same position."""
         return self
-
-    @property
-    def balls_elsewhere(self) -> "Mesh | None":
-        """The same mesh while the balls under its teeth stand elsewhere; None without balls."""
-        return None
 
     @property
     @abc.abstractmethod
@@ -322,14 +271,6 @@ class Mesh(eqx.Module):
             contacts: of the mesh.
             phase: at which they were taken, counted on beyond one period [periods].
         """
-
-    def inner_load(self, contacts: Contacts) -> Float[Array, "zone pair slice *b"]:
-        """Load on the bearing inside the drive for a unit normal force at each contact, not negative.
-
-        Forces that press on it from all around are no reaction, in which they cancel: it bears their sum.
-        One row for each zone in which they press; none without such a bearing, see `inner_bearing`.
-        """
-        return jnp.zeros((0, *contacts.weight.shape))
 
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, " dof"]:
         """Moments of inertia of plain bodies about their axes [kg m2], masses of those that travel [kg].

@@ -62,11 +62,11 @@ def compliance(
         solids: material of each member.
         terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
-        body: see `Mesh.body_compliance`, where it is known already.
+        body: see `GearBody.compliance`, where it is known already.
         teeth: where the contacts lie on them, where that is known already.
     """
-    if body is None and mesh.couples:
-        body = mesh.body_compliance(contacts, solids)
+    if body is None and mesh.body.couples:
+        body = mesh.body.compliance(contacts, solids)
     return Compliance(
         stiffness=slice_stiffness(mesh, contacts, solids, terms, load, teeth), body=body, load=load
     )

@@ -78,11 +78,11 @@ class Bearing(eqx.Module):
 
 
 class InnerBearing(eqx.Module):
-    """The bearing inside a drive that a wave of teeth presses on all around, see `Mesh.inner_load`."""
+    """The bearing inside a drive that a wave of teeth presses on all around, see `GearBody.inner_load`."""
 
     def load(self, mesh: Mesh, contacts: Contacts, force: Lanes) -> Each:
         """Sum of the sizes of the loads around the bearing [N]; arguments as in `Bearing.load`."""
-        return jnp.sum(mesh.inner_load(contacts) * force, axis=(0, 1, 2))
+        return jnp.sum(mesh.body.inner_load(contacts) * force, axis=(0, 1, 2))
 
 
 def unit_forces(body: Coordinate, contacts: Contacts) -> Vectors:

@@ -33,7 +33,7 @@ class WindUp(eqx.Module):
         force: normal force of each slice [N].
         share: part of the sum of all forces; without load the limit for a vanishing one.
         edge_load: sum of the forces at ends of flanks and on roundings, see `Mesh.on_edge` [N].
-        inner_load: on the bearing inside the drive in each zone, see `Mesh.inner_load` [N].
+        inner_load: on the bearing inside the drive in each zone, see `GearBody.inner_load` [N].
         slip_torque: sum of forces times their sliding arms: what a friction coefficient of one would
             hold at the driven coordinate [N m or N].
         residual: of the equilibrium, see `Equilibrium`.
@@ -91,10 +91,10 @@ def wind_up(
         load: of the driven coordinate, not negative, broadcast against the phases [N m or N].
         phase: of the mesh [periods], as many axes as `load`.
         contacts: at these phases, where they are known already.
-        body: see `Mesh.body_compliance`, where it is known already.
+        body: see `GearBody.compliance`, where it is known already.
 
     Returns:
-        NaN where no equilibrium was found. What yields is what `Mesh.yielding` says.
+        NaN where no equilibrium was found. What yields is what `GearBody.yielding` says.
 
     From the equilibrium of its contacts, see `equilibrium`, and its derivative with respect to the load.
     """
@@ -102,7 +102,7 @@ def wind_up(
     arm = jnp.abs(along(contacts.normal, mesh.loaded))
     load = jnp.broadcast_to(load, jnp.broadcast_shapes(jnp.shape(load), jnp.shape(phase)))
     given = {"arm": arm, "active": contacts.active}
-    behind = sum(mesh.in_series(solids).values(), jnp.zeros(()))
+    behind = sum(mesh.body.in_series(solids).values(), jnp.zeros(()))
 
     def approach(torque: Each) -> tuple[Each, tuple[Equilibrium, Arrays, Arrays]]:
         yields = compliance(mesh, contacts, solids, terms, torque, body)
@@ -125,7 +125,7 @@ def wind_up(
         edge_load=total(jnp.where(mesh.on_edge(contacts), found.force, 0.0)),
         force=found.force,
         share=found.share,
-        inner_load=jnp.sum(mesh.inner_load(contacts) * found.force, axis=(1, 2)),
+        inner_load=jnp.sum(mesh.body.inner_load(contacts) * found.force, axis=(1, 2)),
         slip_torque=total(found.force * slip),
         residual=found.residual,
         iterations=found.iterations,
@@ -158,10 +158,10 @@ def body_parts(
     """
 
     def works(one: WindUp) -> dict[str, Each]:
-        return mesh.body_parts(contacts, solids, one.force, one.balls)
+        return mesh.body.parts(contacts, solids, one.force, one.balls)
 
     under = {part: _over(work, found.load) for part, work in jax.vmap(works)(found).items()}
-    behind = {part: each * found.load for part, each in mesh.in_series(solids).items()}
+    behind = {part: each * found.load for part, each in mesh.body.in_series(solids).items()}
     names = (*under, *(part for part in behind if part not in under))
     none = jnp.zeros(found.load.shape)
     return {part: under.get(part, none) + behind.get(part, none) for part in names}

@@ -322,7 +322,7 @@ class Start(eqx.Module):
         if models.sharing.by_stiffness:
             given = mesh.sections, design.solids, models.compliance
             teeth = teeth_at(contacts, *given)
-            body = mesh.body_compliance(contacts, design.solids) if mesh.couples else None
+            body = mesh.body.compliance(contacts, design.solids) if mesh.body.couples else None
         spots, places, gap = mesh.spots(contacts, phase), None, None
         if mesh.along_action and contacts.shape == "line":  # an ellipse covers many strips
             lengths = jnp.stack(
@@ -508,13 +508,13 @@ def one_turn(
         start: of the design.
         depth: worn off so far [m].
     """
-    if not design.mesh.couples and wear.films is None:
+    if not design.mesh.body.couples and wear.films is None:
         return _turn_alone(design, operation, models, wear, cells, start, depth)
     contacts, flat = worn_contacts(cells, start, depth)
     worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
     share = shares_at(worn, contacts, operation.load, models, start.body)
     known = start.engaged(share, contacts if contacts.shape == "ellipse" else None)
-    known = known.loaded() if design.mesh.couples else known
+    known = known.loaded() if design.mesh.body.couples else known
     known, wide = felt_over_width(design, operation, models, cells, known, depth)
     if wear.films is not None:
         at, _ = travelled(design, operation, models, known)

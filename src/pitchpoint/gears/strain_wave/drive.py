@@ -15,19 +15,17 @@ from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path
-from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.strain_wave import MEMBERS
-from pitchpoint.gears.strain_wave.ball_bearing import BallBearing, on_balls, parts_on_balls
+from pitchpoint.gears.strain_wave.ball_bearing import BallBearing
+from pitchpoint.gears.strain_wave.body import StrainWaveBody, end_of_wave
 from pitchpoint.gears.strain_wave.contact_width import curvature_in_contact
-from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
+from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
 from pitchpoint.gears.strain_wave.groove import Groove, Tips, swept
 from pitchpoint.gears.strain_wave.in_series import InSeries
-from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance, ring_parts
 from pitchpoint.gears.strain_wave.tooth_motion import Passing, ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes
-from pitchpoint.materials.solids import Solid
 from pitchpoint.roots import hypot, root
 
 __all__ = [
@@ -153,10 +151,8 @@ class StrainWave(Mesh):
     """
 
     toothed: ClassVar[bool] = True
-    couples: ClassVar[bool] = True
     counts: ClassVar[Path] = "wave"
     chosen: ClassVar[tuple[str, ...]] = ("face_width",)
-    inner_bearing: ClassVar[frozenset[str]] = frozenset(MEMBERS[:2])
 
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
@@ -409,88 +405,17 @@ class StrainWave(Mesh):
             shape="line",
         )
 
-    def ring_loads(self, contacts: Contacts) -> RingLoads:
-        """How unit forces at the contacts act on the flexspline's rim."""
-        slope = self.flank.angle(contacts.flank[0])
-        return RingLoads(
-            angle=2.0 * jnp.pi * contacts.path + _end(contacts),
-            tangential=-jnp.cos(slope),
-            radial=-jnp.sin(slope),
-            height=jnp.real(self.flank.place(contacts.flank[0])),
-        )
-
-    def in_series(self, solids: tuple[Solid, Solid]) -> dict[str, Float[Array, ""]]:
-        """Bottom of the cup, flange, shaft of the wave generator, circular spline given by value."""
-        z1, z2 = self.teeth
-        return self.series.by_part(solids[0], jnp.stack([z2 - z1, z1, -z2]), self.loaded)
-
     @property
-    def yielding(self) -> tuple[str, str]:
-        """Teeth and the ring that carries them, and what the case lets yield behind them."""
-        behind = dict(zip(InSeries.parts, np.asarray(self.series.compliance) > 0.0, strict=True))
-        behind[InSeries.parts[0]] |= float(self.series.bottom) > 0.0
-        behind[InSeries.parts[3]] |= self.series.ring is not None
-        held = self.bearing is not None or not np.isinf(self.rim.support_stiffness)
-        every = {"bearing of the wave generator": held, **behind}
-        inside = [name for name, yields in every.items() if yields]
-        outside = [name for name, yields in every.items() if not yields]
-        if self.bearing is None and held:
-            outside.append("clearance of the bearing")
-        return (
-            ", ".join(["teeth, ring and cup wall of the flexspline", *inside]),
-            ", ".join([*outside, "housing and shafts outside"]),
-        )
-
-    def body_compliance(self, contacts: Contacts, solids: tuple[Solid, Solid]) -> Body:
-        """The flexspline's rim couples all its teeth, and so does a circular spline that yields."""
-        loads, outer = self.ring_loads(contacts), self.series.ring
-        around: Float[Array, "lane lane *b"] | float = 0.0
-        if outer is not None:
-            around = ring_compliance(outer, solids[1], self._on_circular_spline(contacts, outer))
-        if self.bearing is None:
-            return ring_compliance(self.rim, solids[0], loads) + around
-        held = on_balls(self.bearing, self.rim, self.line, solids[0], loads)
-        return dataclasses.replace(held, lanes=held.lanes + around)
-
-    @property
-    def balls_elsewhere(self) -> Mesh | None:
-        """The same drive with the balls of its wave generator as far from where they stand as they come."""
-        if self.bearing is None:
-            return None
-        return dataclasses.replace(self, bearing=self.bearing.elsewhere)
-
-    def body_parts(
-        self,
-        contacts: Contacts,
-        solids: tuple[Solid, Solid],
-        force: Lanes,
-        balls: Float[Array, "ball *b"] | None,
-    ) -> dict[str, Each]:
-        """Rim, wall of the cup and bearing of the wave generator; the circular spline where it yields."""
-        loads, outer, bearing = self.ring_loads(contacts), self.series.ring, self.bearing
-        if balls is None or bearing is None:
-            parts = ring_parts(self.rim, solids[0], loads, force)
-        else:
-            parts = parts_on_balls(bearing, self.rim, self.line, solids[0], loads, force, balls)
-        found = {
-            "rim of the flexspline": parts.rim,
-            "wall of the cup": parts.wall,
-            "bearing of the wave generator": parts.support,
-        }
-        if outer is None:
-            return found
-        around = self._on_circular_spline(contacts, outer)
-        wall, rim, _ = ring_parts(outer, solids[1], around, force)
-        return found | {InSeries.parts[3]: wall + rim}
-
-    def _on_circular_spline(self, contacts: Contacts, ring: FlexibleRing) -> RingLoads:
-        """How unit forces at the contacts act on the circular spline: against those on the flexspline."""
-        loads = self.ring_loads(contacts)
-        return RingLoads(
-            angle=loads.angle,
-            tangential=-loads.tangential,
-            radial=-loads.radial,
-            height=hypot(contacts.point[0], contacts.point[1]) - ring.radius,
+    def body(self) -> StrainWaveBody:
+        """Rim and cup of the flexspline, what holds them, what yields behind them, circular spline."""
+        return StrainWaveBody(
+            flank=self.flank,
+            line=self.line,
+            rim=self.rim,
+            bearing=self.bearing,
+            series=self.series,
+            relation=self.relation,
+            loaded=self.loaded,
         )
 
     @property
@@ -511,7 +436,7 @@ class StrainWave(Mesh):
         and tip lean to the radius.
         """
         around = places(contacts, phase, self.teeth)
-        across = jnp.where(contacts.active, jnp.abs(self.ring_loads(contacts).tangential), 0.0)
+        across = jnp.where(contacts.active, jnp.abs(self.body.ring_loads(contacts).tangential), 0.0)
         leaning = across / jnp.max(across)
         first, second = (
             Spot(
@@ -534,14 +459,6 @@ class StrainWave(Mesh):
             Coordinate(name, centre, axis, member, rigid=stiff)
             for name, member, stiff in zip(MEMBERS, flanks, rigid, strict=True)
         )
-
-    def inner_load(self, contacts: Contacts) -> Float[Array, "2 pair slice *b"]:
-        """Radial load on the wave generator's bearing: teeth press the ring onto it in both zones.
-
-        A zone is told by the end of the long axis at which its pairs lie, so that any of them may be missing.
-        """
-        pressed, second = -self.ring_loads(contacts).radial, contacts.point[0] < 0.0
-        return jnp.stack([jnp.where(second, 0.0, pressed), jnp.where(second, pressed, 0.0)])
 
     @property
     def sections(self) -> tuple[ToothSection, ToothSection]:
@@ -723,15 +640,8 @@ def places(
         phase: at which they were taken, counted on beyond one period [periods].
         teeth: of flexspline and circular spline.
     """
-    since_start, end = 2.0 * jnp.pi * (contacts.path - phase / teeth[0]), _end(contacts)
+    since_start, end = 2.0 * jnp.pi * (contacts.path - phase / teeth[0]), end_of_wave(contacts)
     return jnp.stack([since_start + end, since_start * (teeth[0] / teeth[1]) + end])
-
-
-def _end(contacts: Contacts) -> Float[Array, "pair 1 *b"]:
-    """Angle of the end of the long axis at which each pair lies: half of them at one, half at the other."""
-    pairs = contacts.path.shape[0]
-    second = jnp.arange(pairs).reshape(-1, *(1 for _ in contacts.path.shape[1:])) >= pairs // 2
-    return jnp.pi * second
 
 
 def nearest_points(
