@@ -44,7 +44,8 @@ def page(name: str) -> str:
     chosen = _chosen(name)
     if chosen is None or _FOLDER is None:
         near = nearest(name.removesuffix(".md"), names())
-        raise InputError(f"'{shorten(name)}' is no page of the documentation{near}")
+        words = "" if "/" in name else ", nor is it on one"
+        raise InputError(f"'{shorten(name)}' is no page of the documentation{words}{near}")
     return _HEAD.sub("", (_FOLDER / f"{chosen}.md").read_text("utf-8"))
 
 

@@ -1027,7 +1027,7 @@ def bad_drives() -> Iterator[Bad]:
         ("mixed", ("gears", "tooth", "profile_shift"), 3.3, ("profile_shift", "not a known key")),
         ("body", ("losses", "bearing", "between", 0), "wave", ("wave generator", "housing")),
         ("bodies", ("losses", "bearing", "between", 0), "flexspline", ("given twice", "housing")),
-        ("factor", ("losses", "bearing", "bearing"), "none", ("asks for no values",)),
+        ("factor", ("losses", "bearing", "bearing"), "none", ("no model asks for it",)),
         ("slopes", ("gears", "slopes"), ["9 N m", "9 N m"], ("larger last",)),
         ("walls", ("gears", "flexspline", "walls"), "bending strain", ("rim_thickness was given",)),
         (
@@ -1089,7 +1089,7 @@ def bad_drives() -> Iterator[Bad]:
     words = ("is missing", "mean_diameter, breakaway_dry, breakaway_viscous")
     yield Bad("breakaway", ("losses",), {"oil": held}, words, "losses.oil.mean_diameter")
     seal = between | {"seal_torque": "1 N m", "breakaway_preload": 2}
-    words, key = ("none asks for no values",), "losses.oil.breakaway_preload"
+    words, key = ('breakaway is "none"; name one',), "losses.oil.breakaway_preload"
     yield Bad("breakaway_preload alone", ("losses",), {"oil": seal}, words, key)
 
 
@@ -1113,7 +1113,7 @@ def bad_loss_sets() -> Iterator[Bad]:
         ("negative size", {"mean_diameter": "-3 mm"}, ".mean_diameter", ("-3 mm", "allowed")),
         ("negative part", {"breakaway_dry": "-1 N/m"}, ".breakaway_dry", ("allowed is 0",)),
         ("unknown key", {"f2": 1}, ".f2", ("f0", "f1")),
-        ("no bearing", {"bearing": "none"}, ".f0", ("none asks for no values",)),
+        ("no bearing", {"bearing": "none"}, ".f0", ('bearing is "none"; name one',)),
         ("no table", 3, "", ("3 was given where a table belongs",)),
     ]:
         table = named | {"wave_generator_bearing": given}

@@ -92,6 +92,7 @@ PYTHON = {
     ("guide/python.md", "strain_wave.toml"),
     ("guide/python.md", "plot_in"),
     ("guide/python.md", "analyses="),
+    ("guide/sizing.md", "def next_speed"),
 }
 """Blocks of Python by page and by what they alone hold; each is run by a test."""
 
@@ -446,7 +447,9 @@ def test_words_are_searched(
 def test_what_is_nowhere_is_no_page(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert "'zzzzq' is no page of the documentation" in printed(monkeypatch, capsys, "zzzzq")
+    assert "'zzzzq' is no page of the documentation, nor is it on one" in printed(
+        monkeypatch, capsys, "zzzzq"
+    )
 
 
 def test_words_that_no_line_has_together_are_looked_for_in_pages(

@@ -2,6 +2,7 @@
 
 import ast
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -35,6 +36,7 @@ from pitchpoint.runs.run import Outcome, describe, keep, load_case, open_result
 from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+SIZING = Path(__file__).parents[2] / "docs" / "guide" / "sizing.md"
 TITLE = '"""*/ #\' \\ ??/ {title}\u2028 % \U0001f600'
 GEARS = sound.PAIR.replace("[23, 61]", "[12, 120]\nprofile_shift = [0.5, 0.0]")
 PAIR = f"""
@@ -492,6 +494,40 @@ def test_the_module_is_a_command(exported: Path, moving: tuple[Ready, Outcome]) 
     expected = table_of(moving[1].parts["four_quadrants"]).at(-20.0, 3.0, 45.0, "frictionless")
     assert told["input_torque"] == f"{expected.input_torque!r} N m"
     assert told["locked"] == "False"
+
+
+def test_a_joint_in_time_starts_stops_and_keeps_its_energy(exported: Path) -> None:
+    """The loop of the guide: held inside the band, moved beyond it, held again where it comes to rest."""
+    loop = next(
+        block
+        for block in re.findall(r"```python\n(.*?)```", SIZING.read_text("utf-8"), re.DOTALL)
+        if "def next_speed" in block
+    )
+    program = f"""{loop}
+import json
+rest = at_rest(LOAD, OIL)
+inside = (rest.lowest + rest.highest) / 2.0
+speeds, gained, speed = [], 0.0, 0.0
+for step in range(6000):
+    motor = inside if step < 500 or step >= 2000 else 1.05 * rest.highest
+    later = next_speed(speed, motor)
+    middle = (speed + later) / 2.0
+    if middle:
+        lost = at(LOAD, speed or later, OIL).loss / abs(speed or later) * abs(middle)
+        gained += (motor * middle / TABLE.speed_ratio - LOAD * middle - lost) * STEP
+    speed = later
+    speeds.append((speed, gained, INERTIA * speed**2 / 2.0))
+print(json.dumps(speeds))
+"""
+    told = subprocess.run(
+        [sys.executable, "-c", program], cwd=exported, capture_output=True, check=True, timeout=60
+    )
+    speed, gained, kinetic = np.array(json.loads(told.stdout)).T
+    assert not speed[:500].any()
+    assert speed[1999] > 0.01 and np.all(np.diff(speed[500:2000]) > 0.0)
+    assert np.all(np.diff(speed[2000:]) <= 0.0) and not speed[-1]
+    np.testing.assert_allclose(gained[:2000], kinetic[:2000], atol=0.02 * kinetic.max())
+    assert gained[-1] == pytest.approx(0.0, abs=0.02 * kinetic.max())
 
 
 def test_nothing_that_was_typed_breaks_out(exported: Path) -> None:

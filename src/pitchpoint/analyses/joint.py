@@ -10,7 +10,8 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, Progress, silent
+from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.analyses.kinematic_error import own_error
 from pitchpoint.analyses.torsion import engaged_at, kinematic_play, mean_friction, wound_ups
@@ -117,7 +118,11 @@ def joint_part(built: Built, progress: Progress) -> xr.Dataset:
         },
         title="torsional vibration",
         travels=built.travels,
-        warnings=[*_unloaded(built, found, speeds, waves), *_unsettled(names, courses)],
+        warnings=[
+            *_light_motor(built),
+            *_unloaded(built, found, speeds, waves),
+            *_unsettled(names, courses),
+        ],
         note=f"{'' if any(built.deviations) else f'{ALONE} '}{LEFT_OUT}.",
         strongest=waves.names[waves.strongest],
         solve=told_of(courses["course_status"].astype(int)),
@@ -334,6 +339,27 @@ def _linear(joint: Joint, order: Array, amplitude: Array, speed: Array) -> Array
     return jnp.abs(respond(joint, order, amplitude, speed).torque)
 
 
+def _light_motor(built: Built) -> list[str]:
+    """A motor that is lighter than the member of the drive that it turns, which its inertia includes."""
+    assert built.case.dynamics is not None and built.case.dynamics.inertia is not None
+    if built.family.bodies is None:
+        return []
+    turned, motor = int(np.argmax(built.nominal["driver"])), built.case.dynamics.inertia[0]
+    own = float(bodies_of(built, {}, silent)["body_inertia"].values[turned])
+    if not motor < own:
+        return []
+    name, both = built.driver, [f"{1e4 * each:.3g} kg cm2" for each in (motor, own)]
+    return [
+        Doubt(
+            f"Torsional vibration: the motor's moment of inertia counts with the {name} that it turns, and "
+            f"{both[0]} is less than that of the {name} alone, {both[1]} by its dimensions; the natural "
+            "frequency on a motor that runs free is too high.",
+            moves=1.0 - motor / own,
+            brief=f"Inertia of the motor with the {name}, {both[0]}, is below {both[1]}.",
+        )
+    ]
+
+
 def _unloaded(
     built: Built, found: Mapping[str, np.ndarray], speeds: np.ndarray, waves: _Waves
 ) -> list[str]:
@@ -347,7 +373,7 @@ def _unloaded(
             f"Torsional vibration: flanks change sides at {beyond.size} of {speeds.size} speeds; the torque "
             "swings by more than the load there, which amplitudes by the tangent of the wind-up leave out.",
             moves=beyond.size / speeds.size,
-            brief=f"Flanks change sides at {beyond.size} of {speeds.size} speeds, left out.",
+            brief=f"Joint vibration lifts teeth at {beyond.size} of {speeds.size} speeds, left out there.",
         )
     ]
 

@@ -59,7 +59,7 @@ BODIES = Analysis(
     of="mesh",
     lacks=no_bodies,
     compute="pitchpoint.analyses.bodies:bodies_of",
-    main=("body_mass", "body_inertia"),
+    main=("body_mass", "body_inertia", "reflected_inertia"),
 )
 REFLECTED = Analysis(
     name="reflected",

@@ -264,7 +264,7 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
         yield Doubt(
             "The flank stress leaves out the inner point of double contact; above a transverse contact ratio "
             "of 2 Z_B and Z_D are 1 here, and ISO 6336-2 has that point.",
-            brief=f"Flank stress at contact ratio {float(ratio):.3g} leaves out the inner point.",
+            brief=f"Flank stress lacks the inner point at contact ratio {float(ratio):.3g}.",
         )
     if float(ratio) < 1.0:
         yield Doubt(

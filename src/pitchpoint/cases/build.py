@@ -1188,7 +1188,11 @@ def _with_own(
 
 def _of_oil(oil: lubricants.LubricantRecord) -> list[str]:
     """What is assumed of it."""
-    return [Doubt(oil.note, brief=f"{oil.name} is taken as its base oil.")] if oil.note else []
+    return (
+        [Doubt(oil.note, brief=f"Grease ({oil.name}) as its base oil: the thickener does nothing.")]
+        if oil.note
+        else []
+    )
 
 
 def _half_of_a_line(oil: Oil) -> list[str]:

@@ -580,7 +580,11 @@ class Loss(Table):
         wanted = [f"breakaway_{name}" for name in BREAKAWAY[self.breakaway].factors]
         held = self._asked(self.breakaway, wanted, holding)
         if not (moving or held) and self.mean_diameter is not None:
-            raise InputError("was given; none asks for no values", key="mean_diameter")
+            raise InputError(
+                "was given, and without a bearing nothing asks for it: a seal takes its torque by value; "
+                "leave it out, or name a model in bearing or breakaway",
+                key="mean_diameter",
+            )
         if self.churning_torque > 0.0 and self.churning_speed is None:
             raise InputError(
                 "is missing; churning_torque is that at this speed", key="churning_speed"
@@ -608,9 +612,14 @@ class Loss(Table):
         there = {*given, *(["mean_diameter"] if self.mean_diameter is not None else [])}
         for name in (*needed, *sorted(given)):
             if (name in needed) != (name in there):
-                told = "is missing; " if name in needed else "was given; "
-                has = ", ".join(needed) or "no values"
-                raise InputError(f"{told}{model} asks for {has}", key=name)
+                if not needed:
+                    kind = name.partition("_")[0] if name.startswith("breakaway") else "bearing"
+                    raise InputError(
+                        f'was given, and no model asks for it: {kind} is "none"; name one, or leave this out',
+                        key=name,
+                    )
+                told = "is missing" if name in needed else "was given"
+                raise InputError(f"{told}; {model} asks for {', '.join(needed)}", key=name)
         return needed
 
 
@@ -2118,19 +2127,27 @@ def validate(document: Document) -> Case | DriveCase:
     document = with_meshes(document)
     if STAGES not in document.tree:
         return validated(Case, document)
-    for key, why in _OF_ONE_MESH.items():
-        if key in document.tree and not (key == "gears" and is_planetary(document.tree)):
-            why = _OF_SETS if is_planetary(document.tree) else why
+    of_set = is_planetary(document.tree)
+    for key, why in ({**_OF_ONE_MESH, **_OF_SETS} if of_set else _OF_ONE_MESH).items():
+        if key in document.tree and not (key == "gears" and of_set):
             given = document.tree[key]
             why = why if isinstance(given, Mapping) else f"{shown(given)} {why}"
             raise InputError(why, file=document.name, key=key)
     return validated(DriveCase, document)
 
 
-_OF_SETS = (
+_AS_STAGES = (
     "this is computed of one mesh; write the meshes of the set as [[stages]] with a [train], of which each "
     "may have a table film or wear (pitchpoint docs stages)"
 )
+_OF_SETS = {
+    "dynamics": (
+        "vibration is computed of one mesh, not of sets; leave this out: the stiffness k of the output, by "
+        'load_sharing = "from_stiffness" in [models], and a load of inertia J on it have a natural '
+        "frequency of sqrt(k/J)/2pi while the motor holds its speed"
+    ),
+    **dict.fromkeys(("film", "wear", "worn"), _AS_STAGES),
+}
 
 
 def is_planetary(tree: Mapping[str, Any]) -> bool:

@@ -34,8 +34,9 @@ BETWEEN = (
     "load and speed and exponentials of the temperature, by monotone cubics of logarithms; so do those down "
     "to an eighth of the least load. The torque that is lost is linear between the values of the table over "
     "torque, temperature and the logarithm of the speed. Below the lowest speed that is not zero it stays as "
-    "it is there, for which the drive starts too, while laws of friction may rise on towards rest without "
-    "bound. Torque of the driver and efficiency follow from the balance of power."
+    "it is there, while laws of friction may rise on towards rest without bound; what holds the drive at "
+    "rest and starts it is that of at_rest, from which friction falls to that of motion at once. Torque of "
+    "the driver and efficiency follow from the balance of power."
 )
 BEYOND = (
     "Beyond the table the torque that is lost is that of the nearest point in it, and outside is true. Where "
@@ -43,7 +44,8 @@ BEYOND = (
     "is NaN. The efficiency is NaN too where no power comes out, as where both ends put power in."
 )
 AT_REST = (
-    "At rest no power is lost, and the torque of the driver may have any value of a band: at_rest gives for "
+    "At rest no power is lost, and the torque of the driver may have any value of a band: at has NaN for it "
+    "at a speed of zero, where a simulation has to ask at_rest. That gives for "
     "a load the torque below which it moves back and that above which it is moved on, in the mean over the "
     "phases of the teeth, with what holds bearings and seals at rest. By the spread of that, lowest_low to "
     "highest_high is the widest band, and from lowest_high to highest_low the drive surely holds. Where the "

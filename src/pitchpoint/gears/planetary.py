@@ -79,13 +79,18 @@ class OfThree(Pair):
         """What editors know of the values."""
         each = self.each.json_schema
         item = {"anyOf": [each, {"const": FROM_CENTRE_DISTANCE}]} if self.follows else each
-        every = {"type": "array", "items": item, "minItems": 3, "maxItems": 3}
+        least = 2 if self.follows else 3
+        every = {"type": "array", "items": item, "minItems": least, "maxItems": 3}
         return {"anyOf": [each, every], "description": self.told}
 
     @property
     def told(self) -> str:
         """Kind, range and units in words."""
-        open_ring = f'; "{FROM_CENTRE_DISTANCE}" for the ring' if self.follows else ""
+        open_ring = (
+            f'; "{FROM_CENTRE_DISTANCE}" for the ring, or those of sun and planet alone'
+            if self.follows
+            else ""
+        )
         return f"{self.each.told}; a list of sun, planet and ring, or one value for all{open_ring}"
 
     def read(self, value: Any) -> Any:
@@ -96,6 +101,8 @@ class OfThree(Pair):
                 f"{shown(value)} has numbers below zero; teeth of a set are positive, those of the ring too",
                 value=value,
             )
+        if len(every) == 2 and self.follows:
+            every.append(FROM_CENTRE_DISTANCE)
         if len(every) != 3:
             raise InputError(
                 f"{shown(value)} has {len(every)} values; give those of sun, planet and ring, or one for "

@@ -96,7 +96,10 @@ def first_screen(
 def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     """Values of the key figures of several variants: a row for each figure, a column for each variant."""
     values = {
-        variant: {figure.name: figure.value for figure in key_figures(in_order(), outcome)}
+        variant: {
+            figure.name: figure.beside or figure.value
+            for figure in key_figures(in_order(), outcome)
+        }
         for variant, outcome in outcomes.items()
     }
     names = dict.fromkeys(name for of_variant in values.values() for name in of_variant)

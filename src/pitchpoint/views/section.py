@@ -157,12 +157,15 @@ class KeyFigure:
         name: what it is, in a few words.
         value: number with its unit, or a word where there is none.
         detail: what goes with it, the most telling clause first; a narrow screen shows the first ones.
+        beside: the value where that of other variants stands in the next column, with what it cannot do
+            without; the value alone where it is empty.
     """
 
     order: float
     name: str
     value: str
     detail: str = ""
+    beside: str = ""
 
     @property
     def words(self) -> str:

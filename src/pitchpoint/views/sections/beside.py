@@ -267,8 +267,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield from [Paragraph(show.pretty(told), "note")] if told else []
 
 
-_FROM_REST = 71.5
-"""Place of what starts a drive, for which a joint is chosen: before its kinematic error."""
+_FROM_REST = 70.1
+"""Place of what starts a drive either way, for which a joint is chosen: before its lost motion."""
 
 
 def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
@@ -279,7 +279,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
             brief, _, speed = name.partition(" at ")
             told, _, band = value.partition(", ")
             detail = f"at {speed}" if speed else band
-            order = _FROM_REST if brief.startswith("starting") else 76.0 + 0.1 * place
+            order = 76.0 if speed else _FROM_REST + 0.1 * place
             yield KeyFigure(order, brief.capitalize(), told, detail)
 
 

@@ -26,16 +26,26 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
 
 
 def bodies_facts(outcome: Outcome) -> Iterator[KeyFigure]:
-    """Moments of inertia, which a joint is driven with."""
+    """Inertia at the ends, which a joint is driven with, and of the members."""
     data = outcome.parts["bodies"]
     inertias = [
         (str(member), show.quantity("body_inertia", float(value)))
         for member, value in zip(data["member"].values, data["body_inertia"].values, strict=True)
         if np.isfinite(value)
     ]
-    for (member, value), *others in [inertias] if inertias else []:
-        more = "; ".join(f"{name} {inertia}" for name, inertia in others)
-        yield KeyFigure(79.0, "Inertia", value, f"{member}{'; ' if more else ''}{more}")
+    if "reflected_inertia" in data:
+        at_ends = (
+            show.quantity("reflected_inertia", float(value))
+            for value in data["reflected_inertia"].values
+        )
+        inertias = [*zip(("at the input", "at the output"), at_ends, strict=True), *inertias]
+    for (where, value), *others in [inertias] if inertias else []:
+        more = [
+            f"{inertia} {name}" if name.startswith("at ") else f"{name} {inertia}"
+            for name, inertia in others
+        ]
+        name, of = ("Inertia at the input", []) if where.startswith("at ") else ("Inertia", [where])
+        yield KeyFigure(79.0, name, value, "; ".join([*of, *more]))
 
 
 def bodies_printed(outcome: Outcome) -> Iterator[Printed]:

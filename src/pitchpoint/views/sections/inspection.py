@@ -155,8 +155,15 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
         60.0,
         "Backlash by tolerances" if several else "Backlash",
         f"{' to '.join(on_circle[1:])} {show.unit_of('backlash_on_circle')}",
-        f"{'' if several else 'nominal, '}on the pitch circles; {', '.join(turns)}",
+        f"{_of_allowances(data)}on the pitch circles; {', '.join(turns)}",
     )
+
+
+def _of_allowances(data: xr.Dataset) -> str:
+    """Where a backlash is not by tolerances, that it is as drawn; of none that nothing was given for it."""
+    if data.sizes["case"] > 1:
+        return ""
+    return "nominal, " if data["backlash_on_circle"].any() else "nominal, no allowance is given; "
 
 
 def _printed(outcome: Outcome) -> Iterator[Printed]:

@@ -31,7 +31,6 @@ from pitchpoint.views.section import (
     Paragraph,
     Printed,
     Table,
-    key_figure,
     naming,
 )
 
@@ -66,19 +65,20 @@ _APART = 0.1
 def joint_answer(outcome: Outcome) -> str:
     """Natural frequencies and the critical speed of the strongest wave in words."""
     data = outcome.parts["joint"]
-    held, free = (
-        show.quantity("natural_frequency", float(value), of=data)
-        for value in data["natural_frequency"].values
-    )
-    strongest = int(np.argmax(data["wave_amplitude"].values))
-    speed, other = (
-        show.quantity("critical_speed", float(value), of=data)
-        for value in data["critical_speed"].values[:, strongest]
-    )
+    (held, speed), (free, other) = _resonances(data)
     return (
         f"{held} on a motor that holds its speed, {free} on one that runs free; the strongest wave of the "
         f"error, {data.attrs['strongest']}, meets them at {speed} and {other}"
     )
+
+
+def _resonances(data: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Natural frequency and critical speed of the strongest wave, on a motor held and on one free."""
+    strongest = int(np.argmax(data["wave_amplitude"].values))
+    pairs = zip(data["natural_frequency"].values, data["critical_speed"].values, strict=True)
+    for frequency, critical in pairs:
+        own = show.quantity("natural_frequency", float(frequency), of=data)
+        yield own, show.quantity("critical_speed", float(critical[strongest]), of=data)
 
 
 def critical_rows(outcome: Outcome) -> list[dict[str, str]]:
@@ -263,5 +263,7 @@ def joint_printed(outcome: Outcome) -> Iterator[Printed]:
 
 
 def joint_facts(outcome: Outcome) -> Iterator[KeyFigure]:
-    """Lowest natural frequencies of the joint."""
-    yield key_figure(79.5, "Joint resonance", joint_answer(outcome), " on a motor")
+    """Natural frequencies of the joint, for which the case gave its inertia."""
+    (held, speed), (free, _) = _resonances(outcome.parts["joint"])
+    detail = f"motor held, {free} motor free; critical {speed} motor held"
+    yield KeyFigure(36.5, "Joint resonance", held, detail)

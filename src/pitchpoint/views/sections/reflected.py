@@ -85,7 +85,7 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
             59.0,
             "Backlash at the output",
             f"{value} {show.unit_of('output_backlash')}",
-            f"{'by tolerances' if _by_tolerances(data) else 'nominal'}, the input held",
+            "by tolerances, the input held" if _by_tolerances(data) else _of_nominal(nominal),
         )
     inertias = zip(data["end"].values, data["reflected_inertia"].values, strict=True)
     known = [
@@ -94,10 +94,18 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         if np.isfinite(value)
     ]
     for (end, value), *others in [known] if known else []:
-        more = "".join(f"; {inertia} at the {name}" for name, inertia in others)
+        more = "".join(f"{inertia} at the {name}; " for name, inertia in others)
         mass = show.quantity("drive_mass", float(data["drive_mass"]))
         without = f", without the {_carriers(data)}" if _carriers(data) else ""
-        yield KeyFigure(79.0, "Inertia", value, f"at the {end}{more}; gears {mass}{without}")
+        yield KeyFigure(79.0, f"Inertia at the {end}", value, f"{more}gears {mass}{without}")
+    if '"from_stiffness" do' in outcome.manifest["lacks"].get("torsion", ""):
+        how = 'load_sharing = "from_stiffness" has it'
+        yield KeyFigure(70.0, "Torsional stiffness", "not asked", how)
+
+
+def _of_nominal(backlash: float) -> str:
+    """What goes with a backlash without tolerances."""
+    return "nominal, the input held" if backlash else "nominal: no allowance is given"
 
 
 def reflected_printed(outcome: Outcome) -> Iterator[Printed]:
@@ -125,7 +133,8 @@ def _rows(data: xr.Dataset) -> list[Row]:
         for name, (mass, inertia, parts) in zip(data["body"].values, each, strict=True)
     ]
     whole = [_cell("reflected_inertia", float(v)) for v in data["reflected_inertia"].values]
-    return [*rows, ("drive", _cell("drive_mass", float(data["drive_mass"])), "", *whole)]
+    without = f", without the {_carriers(data)}" if _carriers(data) else ""
+    return [*rows, (f"drive{without}", _cell("drive_mass", float(data["drive_mass"])), "", *whole)]
 
 
 def _cell(name: str, value: float) -> str:

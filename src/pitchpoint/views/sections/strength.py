@@ -200,14 +200,15 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
         if not known.isnull().all():
             at = known.argmin([*known.dims])
             least = known.isel(at)
-            duty = f"at {_place(least, outcome)}; {_duty(data, at, f'{part}_cycles')}"
-            detail = "; ".join([*_doubted(outcome, least, stress), duty])
-            yield KeyFigure(order, f"Safety of {where}", show.number(float(least)), detail)
+            place, duty = f"at {_place(least, outcome)}", _duty(data, at, f"{part}_cycles")
+            detail = "; ".join([place, *_doubted(outcome, least, stress), duty])
+            value = show.number(float(least))
+            yield KeyFigure(order, f"Safety of {where}", value, detail, f"{value} {place}")
         elif data[stress].notnull().any():
-            place = data[stress].argmax([*data[stress].dims])
-            most = data[stress].isel(place)
+            largest = data[stress].argmax([*data[stress].dims])
+            most = data[stress].isel(largest)
             value = show.quantity(stress, float(most), of=data)
-            key = f"materials.gear_{int(place['gear']) + 1}"
+            key = f"materials.gear_{int(largest['gear']) + 1}"
             lacks = (
                 f"no safety: {key} has no limits; largest at {_place(most, outcome)}; name one that has "
                 f"them, or give strength.sigma_{limit}"
