@@ -435,7 +435,13 @@ def _compare_designs(
 
 def _differences(outcomes: "dict[str, Outcome]") -> None:
     """What cannot be, results with their differences, inputs that differ, and what warns of each design."""
-    from pitchpoint.views.designs import differing, law_words, of_several, result_table
+    from pitchpoint.views.designs import (
+        differing,
+        law_words,
+        named_inputs,
+        of_several,
+        result_table,
+    )
 
     for name, outcome in outcomes.items():
         _failing(f"{name}: {text}" for text in outcome.manifest["implausible"])
@@ -444,7 +450,10 @@ def _differences(outcomes: "dict[str, Outcome]") -> None:
     for title, whole in {"Results": results, **differing(outcomes)}.items():
         table, alone = of_several(whole, len(outcomes))
         _console().print(f"\n[bold]{title}[/]" if whole.rows else f"\n[bold]{title}[/]: none")
-        _table([dict(zip(table.head, row, strict=True)) for row in table.rows], tuple(table.head))
+        head, rows = tuple(table.head), table.rows
+        if table.names > 1:  # one column of names stays beside values that go on below
+            head, rows = ("input", *head[table.names :]), named_inputs(table)
+        _table([dict(zip(head, row, strict=True)) for row in rows], head)
         if alone:
             _console().print(
                 f"{alone} more that one design alone has are in the report.", style="dim"

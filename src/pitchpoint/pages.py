@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pitchpoint.errors import InputError, shorten
-from pitchpoint.registry import known_as, nearest
+from pitchpoint.registry import alike, known_as
 
 __all__ = ["is_page", "names", "page", "search_pages", "title"]
 
@@ -43,9 +43,10 @@ def page(name: str) -> str:
     """
     chosen = _chosen(name)
     if chosen is None or _FOLDER is None:
-        near = nearest(name.removesuffix(".md"), names())
         words = "" if "/" in name else ", nor is it on one"
-        raise InputError(f"'{shorten(name)}' is no page of the documentation{words}{near}")
+        near = alike(name.removesuffix(".md"), names())
+        told = f"; did you mean {' or '.join(near)}?" if near else ", which pitchpoint docs lists"
+        raise InputError(f"'{shorten(name)}' is no page of the documentation{words}{told}")
     return _HEAD.sub("", (_FOLDER / f"{chosen}.md").read_text("utf-8"))
 
 

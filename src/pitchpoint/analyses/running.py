@@ -203,6 +203,7 @@ def _unloaded(built: Ready) -> list[str]:
         Doubt(
             "Torques to start are too low without what holds bearings at rest; measured drives take many "
             "times as much, either way, and no preload, breakaway model or breakaway_torque is given.",
+            about=("starting_torque", "back_driving_torque"),
             brief="Torques to start are too low: nothing holds bearings at rest.",
         )
     ]

@@ -51,6 +51,7 @@ SWEPT = (
     "lubricant",
     "roughness",
     "operation",
+    "strength",
     "film",
     "worn",
     "formulas",

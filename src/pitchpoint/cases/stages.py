@@ -30,6 +30,7 @@ from pitchpoint.cases.schema import (
     StageTable,
     validated,
 )
+from pitchpoint.doubts import REMARKED, Doubt
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
@@ -325,10 +326,13 @@ def _few_meetings(built: Sequence[Built]) -> Iterator[str]:
         first, second = (round(count) for count in meshes)
         common = gcd(first, second)
         if min(first, second) // common < SEVERAL_MEETINGS:
-            yield (
+            yield Doubt(
                 f"On shaft {shaft} {first} and {second} teeth mesh in a turn, with the common divisor "
                 f"{common}: few of their phases meet. The ripple shown is that of the worst meeting of "
-                "phases, and means are those over all of them."
+                "phases, and means are those over all of them.",
+                moves=REMARKED,
+                about=("torque_ripple",),
+                brief=f"Shaft {shaft}: few phases of {first} and {second} teeth meet; the worst ripple.",
             )
 
 

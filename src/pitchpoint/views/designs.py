@@ -48,21 +48,42 @@ class Compared:
 
 
 def input_tables(outcomes: Mapping[str, Outcome]) -> tuple[Compared, Compared]:
-    """Inputs that differ, and what follows from them: table, key, and words of each design."""
+    """Inputs that differ, and what follows from them: table, key, and words of each design.
+
+    What others lack and nobody gave is left out: a bearing that one design has brings many such values.
+    """
     rows: dict[tuple[str, str], dict[str, str]] = {}
+    given_ones: set[tuple[str, str]] = set()
     for design, outcome in outcomes.items():
         for row in input_rows(outcome.manifest):
             words = show.pretty(row["value"]) or NOTHING
             rows.setdefault((row["table"], row["key"]), {})[design] = words
+            if row["status"] != "default":
+                given_ones.add((row["table"], row["key"]))
     differing = [
         (table, key, *(each.get(one, NOTHING) for one in outcomes))
         for (table, key), each in rows.items()
         if len({each.get(one, NOTHING) for one in outcomes}) > 1
+        and (len({*each.values()}) > 1 or (table, key) in given_ones)
     ]
     head = ("table", "key", *outcomes)
     following = [row for row in differing if row[0] in FOLLOWING]
-    given = [row for row in differing if row not in following]
+    given = sorted((row for row in differing if row not in following), key=_standing)
     return Compared(head, given, 2), Compared(head, following, 2)
+
+
+_DEMANDS = ("operation", "strength", "materials", "lubricant", "roughness", "models")
+"""Tables on which the numbers of any gears stand: where these differ, gears are no longer compared alone."""
+
+_DETAILS = ("addendum", "dedendum", "fillet_radius", "tip_alteration")
+"""Keys of gears that are read last."""
+
+
+def _standing(row: Sequence[str]) -> tuple[int, bool]:
+    """Place of an input among those that differ."""
+    table, key = row[:2]
+    place = _DEMANDS.index(table) if table in _DEMANDS else len(_DEMANDS)
+    return place, key.rpartition(".")[2] in _DETAILS
 
 
 def differing(outcomes: Mapping[str, Outcome]) -> dict[str, Compared]:
@@ -141,9 +162,13 @@ def _unlike(figure: Figure, first: Outcome, other: Outcome) -> bool:
 
 
 def of_several(table: Compared, designs: int) -> tuple[Compared, int]:
-    """Rows that at least two designs have, and how many one alone has."""
+    """Rows that two designs have or that demand something of one, and how many others one alone has."""
     ends = table.names, table.names + designs
-    rows = [row for row in table.rows if sum(cell != NOTHING for cell in row[slice(*ends)]) > 1]
+    rows = [
+        row
+        for row in table.rows
+        if row[0] in _DEMANDS or sum(cell != NOTHING for cell in row[slice(*ends)]) > 1
+    ]
     return replace(table, rows=rows), len(table.rows) - len(rows)
 
 

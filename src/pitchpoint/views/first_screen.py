@@ -95,14 +95,13 @@ def first_screen(
 
 def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     """Values of the key figures of several variants: a row for each figure, a column for each variant."""
+    figures = {variant: key_figures(in_order(), outcome) for variant, outcome in outcomes.items()}
     values = {
-        variant: {
-            figure.name: figure.beside or figure.value
-            for figure in key_figures(in_order(), outcome)
-        }
-        for variant, outcome in outcomes.items()
+        variant: {figure.name: figure.beside or figure.value for figure in every}
+        for variant, every in figures.items()
     }
-    names = dict.fromkeys(name for of_variant in values.values() for name in of_variant)
+    ranked = sorted(chain(*figures.values()), key=lambda figure: figure.order)
+    names = dict.fromkeys(figure.name for figure in ranked)
     return [
         {"": name} | {variant: own.get(name, "–") for variant, own in values.items()}
         for name in names

@@ -183,7 +183,8 @@ def _one(value: Any, row: Row, name: str = "") -> str:
     kind = row["kind"].get(name, "") if isinstance(row["kind"], dict) else row["kind"]
     if not kind or not isinstance(value, float):
         return "undefined" if value is None else str(value)
-    if row["table"] == DIMENSIONS and abs(value) < _ROUNDING:
+    follows = row["table"] == DIMENSIONS or row.get("status") == "derived"
+    if follows and abs(value) < _ROUNDING:
         value = 0.0
     return _shown(value, kind, _unit(row["table"], f"{row['key']}.{name}".removesuffix("."), kind))
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from math import isfinite
 from typing import Any
 
 from pitchpoint.runs.run import Outcome
@@ -10,6 +11,7 @@ from pitchpoint.views.designs import input_tables, named_inputs
 from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
+from pitchpoint.views.point import speed_ratio
 from pitchpoint.views.section import Page, Paragraph, Table, key_figures
 from pitchpoint.views.sections.answer import operation_words, sharing_words
 
@@ -24,6 +26,9 @@ _PICTURE = 20
 
 _LINE, _BESIDE = 280, 90
 """Characters of a doubt, and of what stands beside a key figure."""
+
+_OF_MODELS = ("Friction", "Load sharing")
+"""Facts that a comparison of designs tells beside its results."""
 
 _CHOSEN = ("assumed", "fitted", "corrected")
 _USUAL = ("default", "derived")
@@ -41,15 +46,15 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
     blocks = [] if page.designs else [b for s in page.sections for b in s.sums_up(outcome)]
     tables = [block for block in blocks if isinstance(block, Table)]
     if not any(table.caption == "Gears" for table in tables):
-        tables = [_given_gears(outcome), *tables]
+        summed_up = any(table.caption.startswith("Gears") for table in tables)
+        tables = [_given_gears(outcome, _SUMMED_UP if summed_up else ()), *tables]
     remarks = [str(block.words) for block in blocks if isinstance(block, Paragraph)]
-    every = page.outcomes.values()
-    doubts = list(dict.fromkeys(text for one in every for text in one.manifest["warnings"]))
+    doubts = _doubts(page)
     return {
         "of": next(iter(page.outcomes)) if page.several else "",
         "columns": _columns([] if page.designs else [_cut(table, _GEARS) for table in tables]),
         "facts": [] if page.designs else _facts(outcome),
-        "differing": _differing(page),
+        "differing": [table for table in (_standing(page), _differing(page)) if table],
         "results": _results(page, outcome),
         "more_variants": max(len(page.outcomes) - _COLUMNS, 0),
         "figures": list(_main_figures(page, shown)),
@@ -83,14 +88,20 @@ def _cut(table: Table, room: int) -> Table:
     return replace(table, rows=rows[:room], caption=f"{table.caption}, {rest} more below")
 
 
-def _given_gears(outcome: Outcome) -> Table:
+_SUMMED_UP = ("teeth", "module", "face_width", "profile_shift")
+"""Keys whose values stand in the tables of gears."""
+
+
+def _given_gears(outcome: Outcome, apart: Sequence[str]) -> Table:
     """Inputs of gears that no section sums up, those left as they are by default apart."""
     rows = [
         (_plain_key(row["key"]), show.pretty(row["value"]))
         for row in input_rows(outcome.manifest)
-        if row["table"] in ("gears", "stages") and row["status"] not in _USUAL
+        if row["table"] in ("gears", "stages", "train")
+        and row["status"] not in _USUAL
+        and row["key"].rpartition(".")[2] not in apart
     ]
-    return Table(["Gears, as given", ""], rows, caption="Gears")
+    return Table(["Drive, as given" if apart else "Gears, as given", ""], rows, caption="Gears")
 
 
 def _plain_key(key: str) -> str:
@@ -116,14 +127,43 @@ def _facts(outcome: Outcome) -> list[tuple[str, str]]:
         if row["table"] == "materials"
     ]
     laws = "; ".join(str(law["title"]) for law in manifest["laws"])
+    rated = [
+        f"{_plain_key(row['key'])} {show.pretty(row['value'])}"
+        for row in rows
+        if row["table"] == "strength" and row["status"] not in _USUAL
+    ]
+    ratio = speed_ratio(outcome)
     facts = [
         ("Operating point", operation_words(outcome)),
+        ("Ratio", show.number(ratio, 6) if isfinite(ratio) else ""),
         ("Materials", ", ".join(materials)),
+        ("Rating", ", ".join(rated)),
         ("Oil", str(manifest["oil"])),
         ("Friction", laws),
         ("Load sharing", sharing_words(outcome)),
     ]
     return [(term, words) for term, words in facts if words]
+
+
+def _standing(page: Page) -> Table | None:
+    """What the numbers of designs stand on, side by side."""
+    few = dict([*page.outcomes.items()][:_COLUMNS])
+    if not page.designs:
+        return None
+    facts = {name: dict(_facts(one)) for name, one in few.items()}
+    terms = dict.fromkeys(term for own in facts.values() for term in own if term not in _OF_MODELS)
+    rows = [(term, *(own.get(term, "–") for own in facts.values())) for term in terms]
+    return Table(["", *few], rows, caption="Designs")
+
+
+def _doubts(page: Page) -> list[str]:
+    """Warnings of all, each once, with the names of those that have it where not all do."""
+    of: dict[str, list[str]] = {}
+    for name, outcome in page.outcomes.items():
+        for text in outcome.manifest["warnings"]:
+            of.setdefault(str(text), []).append(name)
+    everyone = len(page.outcomes)
+    return [t if len(of[t]) == everyone else f"{', '.join(of[t])}: {t}" for t in of]
 
 
 def _differing(page: Page) -> Table | None:

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.running import TORQUES
+from pitchpoint.doubts import doubts_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -267,19 +268,24 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield from [Paragraph(show.pretty(told), "note")] if told else []
 
 
-_FROM_REST = 70.1
-"""Place of what starts a drive either way, for which a joint is chosen: before its lost motion."""
+_FROM_REST, _DOUBTED = 70.1, 79.6
+"""Place of what starts a drive either way, for which a joint is chosen: before its lost motion.
+
+Where nothing was said of what holds bearings at rest, behind all that is known.
+"""
 
 
 def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     """Torque without load and torques from rest, under the first law."""
     data = outcome.parts.get("running")
     if data is not None:
+        doubted = any("starting_torque" in doubt.about for doubt in doubts_of(data.attrs))
+        from_rest = _DOUBTED if doubted else _FROM_REST
         for place, (name, value) in enumerate(starting_answer(outcome, laws(data)[0])):
             brief, _, speed = name.partition(" at ")
             told, _, band = value.partition(", ")
             detail = f"at {speed}" if speed else band
-            order = 76.0 if speed else _FROM_REST + 0.1 * place
+            order = 76.0 if speed else from_rest + 0.1 * place
             yield KeyFigure(order, brief.capitalize(), told, detail)
 
 

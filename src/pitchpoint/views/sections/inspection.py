@@ -163,7 +163,8 @@ def _of_allowances(data: xr.Dataset) -> str:
     """Where a backlash is not by tolerances, that it is as drawn; of none that nothing was given for it."""
     if data.sizes["case"] > 1:
         return ""
-    return "nominal, " if data["backlash_on_circle"].any() else "nominal, no allowance is given; "
+    none = bool((abs(data["backlash_on_circle"]) < 1e-12).all())
+    return "nominal, no allowance is given; " if none else "nominal, "
 
 
 def _printed(outcome: Outcome) -> Iterator[Printed]:

@@ -100,12 +100,13 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         yield KeyFigure(79.0, f"Inertia at the {end}", value, f"{more}gears {mass}{without}")
     if '"from_stiffness" do' in outcome.manifest["lacks"].get("torsion", ""):
         how = 'load_sharing = "from_stiffness" has it'
-        yield KeyFigure(70.0, "Torsional stiffness", "not asked", how)
+        yield KeyFigure(79.5, "Torsional stiffness", "not asked", how)
 
 
 def _of_nominal(backlash: float) -> str:
     """What goes with a backlash without tolerances."""
-    return "nominal, the input held" if backlash else "nominal: no allowance is given"
+    none = abs(backlash) < 1e-9
+    return "nominal: no allowance is given" if none else "nominal, the input held"
 
 
 def reflected_printed(outcome: Outcome) -> Iterator[Printed]:
