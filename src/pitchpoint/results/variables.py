@@ -445,6 +445,17 @@ VARIABLES: dict[str, Variable] = {
     ),
     "young_2": Variable("Young's modulus of gear 2", "E2", "Pa", "GPa", "pressure"),
     "module": length("normal module", "m_n"),
+    "base_pitch": length("base pitch in the transverse section", "p_bt"),
+    "tangent_length": length("length of the line of action between the base circles", "N1N2"),
+    "reference_radius": length("reference radius", "r"),
+    "base_radius": length("base radius", "r_b"),
+    "working_radius": length("pitch radius in operation", "r_w"),
+    "tip_radius": length("tip radius", "r_a"),
+    "root_radius": length("root radius", "r_f"),
+    "form_radius": length("radius at which the involute ends towards the root", "r_Ff"),
+    "active_root_radius": length("radius of the active flank nearest to the root", "r_Nf"),
+    "tip_thickness": length("tooth thickness on the tip circle", "s_a"),
+    "face_width": length("face width in mesh", "b"),
     "centre_distance": length("centre distance", "a"),
     "mounting_distance": length(
         "distance from the pinion's axis to the rack's reference line", "a"

@@ -103,9 +103,29 @@ def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     ranked = sorted(chain(*figures.values()), key=lambda figure: figure.order)
     names = dict.fromkeys(figure.name for figure in ranked)
     return [
-        {"": name} | {variant: own.get(name, "–") for variant, own in values.items()}
-        for name in names
+        *_unlike(outcomes),
+        *(
+            {"": name} | {variant: own.get(name, "–") for variant, own in values.items()}
+            for name in names
+        ),
     ]
+
+
+def _unlike(outcomes: Mapping[str, Outcome]) -> Iterator[dict[str, str]]:
+    """Friction law and mean of variants whose figures are not by the same."""
+    told = {
+        "Friction": {variant: _law(outcome) for variant, outcome in outcomes.items()},
+        "Mean over": {
+            variant: show.pretty(str(outcome.manifest.get("averaging", "–")))
+            for variant, outcome in outcomes.items()
+        },
+    }
+    yield from ({"": name} | each for name, each in told.items() if len({*each.values()}) > 1)
+
+
+def _law(outcome: Outcome) -> str:
+    """Friction law by which figures of an outcome are."""
+    return str(headline(outcome.parts)["law"].values[0]) if "operation" in outcome.parts else "–"
 
 
 def swept_beside(outcomes: Mapping[str, Outcome]) -> list[list[dict[str, str]]]:

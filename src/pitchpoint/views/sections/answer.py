@@ -542,7 +542,8 @@ def _clauses(*words: str) -> str:
 def _by_other_laws(outcome: Outcome, data: xr.Dataset) -> Iterator[str]:
     """Efficiency under each further law of the case, and whether it is out of its range."""
     operation, outside = outcome.parts["operation"], why_not(outcome.parts)
-    for law, value in zip(laws(operation), operation["mean_efficiency"].values[:, 0], strict=True):
+    each = zip(laws(operation), operation["mean_efficiency"].values[:, 0], strict=True)
+    for law, value in sorted(each, key=lambda one: one[0] in outside):
         if law != laws(data)[0]:
             of_case = "" if any(holding(outcome.parts)) else " of the case"
             outside_here = law in outside and data is not operation

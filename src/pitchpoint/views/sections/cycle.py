@@ -268,7 +268,8 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     ratio = data["lambda_ratio"].values[0][data["load"].values[0] > 0.0]
     if ratio.size and np.isfinite(ratio).any():
         value = show.number(float(np.nanmin(ratio)))
-        detail = "thinnest film over composite Rq"
+        law = show.pretty(input_words(outcome, "models", "film_thickness"))
+        detail = f"thinnest film by {law} over composite Rq"
         yield KeyFigure(76.5, "Film ratio", value, detail)
     if "asperity_load_ratio" in data:
         share = data["asperity_load_ratio"].values[0]
