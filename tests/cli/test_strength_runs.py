@@ -225,12 +225,12 @@ def test_teeth_that_do_not_bear_their_stress_stand_first(pair_file: Path) -> Non
     first, second = told(flanks)
     stress, limit = flanks["contact_stress"].values / 1e6, flanks["contact_limit"].values / 1e6
     assert first == (
-        f"Fails: the flanks of gear 1 bear {limit[0]:.4g} MPa and have {stress[0]:.4g} MPa (safety "
-        f"{limit[0] / stress[0]:.3g}): they pit within the life that is asked."
+        f"Fails: the flanks of gear 1 have a stress of {stress[0]:.4g} MPa, of which {limit[0]:.4g} MPa are "
+        f"permissible (safety {limit[0] / stress[0]:.3g}): they pit within the life that is asked."
     )
-    assert second.startswith("Fails: the flanks of gear 2 bear ")
+    assert second.startswith("Fails: the flanks of gear 2 have ")
     both = told(strength_of(pair_file, {"operation.torque": "9000 N m"}))
-    assert [text.split(" bear ")[0] for text in both] == [
+    assert [text.split(" have ")[0] for text in both] == [
         f"Fails: the {part} of gear {gear}" for gear in (1, 2) for part in ("flanks", "roots")
     ]
     assert all(text.endswith("sooner or later.") for text in both)

@@ -355,7 +355,7 @@ def _light_motor(built: Built) -> list[str]:
             f"{both[0]} is less than that of the {name} alone, {both[1]} by its dimensions; the natural "
             "frequency on a motor that runs free is too high.",
             moves=1.0 - motor / own,
-            brief=f"Inertia of the motor with the {name}, {both[0]}, is below {both[1]}.",
+            brief=f"Motor's inertia, {both[0]}, is below that of the {name}.",
         )
     ]
 
@@ -373,7 +373,7 @@ def _unloaded(
             f"Torsional vibration: flanks change sides at {beyond.size} of {speeds.size} speeds; the torque "
             "swings by more than the load there, which amplitudes by the tangent of the wind-up leave out.",
             moves=beyond.size / speeds.size,
-            brief=f"Joint vibration lifts teeth at {beyond.size} of {speeds.size} speeds, left out there.",
+            brief=f"Joint vibration lifts teeth at {beyond.size} of {speeds.size} speeds.",
         )
     ]
 

@@ -220,8 +220,8 @@ def _failing(built: Built, found: Numbers) -> Iterator[str]:
                     when = when if np.isnan(cycles) else f"within {cycles:g} load cycles"
                 bears, has = (found[name][at] / 1e6 for name in (limit, stress))
                 yield fails(
-                    f"the {part} of {gear} bear {bears:.4g} MPa and have {has:.4g} MPa (safety "
-                    f"{reached:.3g}): they {how} {when}.",
+                    f"the {part} of {gear} have a stress of {has:.4g} MPa, of which {bears:.4g} MPa are "
+                    f"permissible (safety {reached:.3g}): they {how} {when}.",
                     f"{part} of {gear} {how} {when}, safety {reached:.3g}.",
                 )
 

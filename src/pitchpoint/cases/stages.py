@@ -332,7 +332,7 @@ def _few_meetings(built: Sequence[Built]) -> Iterator[str]:
                 "phases, and means are those over all of them.",
                 moves=REMARKED,
                 about=("torque_ripple",),
-                brief=f"Shaft {shaft}: few phases of {first} and {second} teeth meet; the worst ripple.",
+                brief=f"Shaft {shaft}: the ripple is that of the worst meeting of phases.",
             )
 
 

@@ -120,7 +120,46 @@ def figures(outcome: Outcome) -> dict[str, Any]:
 def _entry(kind: str, model: Any, limits: str) -> dict[str, str]:
     name, title, note = str(model.name), str(model.title), str(model.note)
     sources = ", ".join(model.sources)
-    return dict(kind=kind, name=name, title=title, range=limits, sources=sources, note=note)
+    return dict(
+        kind=kind, name=name, title=title, values="", range=limits, sources=sources, note=note
+    )
+
+
+_VALUES = {
+    "young": ("Young's modulus", "pressure", "GPa"),
+    "poisson": ("Poisson's ratio", "", ""),
+    "density": ("density", "density", "kg/m3"),
+    "contact_limit": ("largest Hertz pressure", "pressure", "MPa"),
+    "hardness": ("hardness", "hardness", "GPa"),
+    "sigma_hlim": ("sigma_Hlim", "pressure", "MPa"),
+    "sigma_flim": ("sigma_Flim", "pressure", "MPa"),
+    "tensile_strength": ("tensile strength", "pressure", "MPa"),
+    "nu_1": ("kinematic viscosity at 40 degC", "kinematic viscosity", "mm2/s"),
+    "nu_2": ("at 100 degC", "kinematic viscosity", "mm2/s"),
+    "density_15": ("density at 15 degC", "density", "kg/m3"),
+    "gold_s": ("pressure-viscosity by Gold's s", "", ""),
+    "gold_t": ("Gold's t", "", ""),
+    "lubricant_factor": ("X_L of mean friction laws", "", ""),
+    "conductivity": ("thermal conductivity", "", "W/m/K"),
+    "specific_heat": ("specific heat", "", "J/kg/K"),
+}
+"""Values of a material or an oil on its sheet: words, kind of the quantity, unit in which they are told."""
+
+
+def _told_values(record: Any) -> str:
+    """Values of a record with their units, and the status of those that nobody measured."""
+    held = {name: getattr(record, name, None) for name in _VALUES}
+    return "; ".join(
+        _told_value(datum, *_VALUES[name])
+        for name, datum in held.items()
+        if isinstance(datum, Datum)
+    )
+
+
+def _told_value(datum: Datum, words: str, kind: str, unit: str) -> str:
+    value = units.convert(datum.value, unit, kind) if kind else datum.value
+    status = "" if datum.status in ("given", "printed") else f" ({datum.status})"
+    return f"{words} {value:.5g} {unit}".rstrip() + status
 
 
 def _record(kind: str, record: Any, limits: str) -> dict[str, str]:
@@ -128,6 +167,7 @@ def _record(kind: str, record: Any, limits: str) -> dict[str, str]:
         kind=kind,
         name=record.name,
         title=record.title,
+        values=_told_values(record),
         range=limits,
         sources=_sources(record),
         note="",

@@ -154,6 +154,8 @@ def _unlike(figure: Figure, first: Outcome, other: Outcome) -> bool:
     told: Callable[[Outcome], str]
     if any(part in figure.name for part in _OF_POWER):
         told = _efficiency
+    elif "backlash" in figure.name:
+        told = _tolerances
     elif figure.part == "torsion" or "stiffness" in figure.name:
         told = _yields
     else:
@@ -198,6 +200,12 @@ def _efficiency(outcome: Outcome) -> str:
     if operation is None or "mean_efficiency" not in operation:
         return ""
     return covers(operation).partition(":")[0] or "whole drive"
+
+
+def _tolerances(outcome: Outcome) -> str:
+    """Whether a backlash is by tolerances or as drawn."""
+    parts = (outcome.parts.get(name) for name in ("reflected", "inspection"))
+    return str(max((one.sizes.get("case", 1) for one in parts if one is not None), default=1) > 1)
 
 
 def _yields(outcome: Outcome) -> str:

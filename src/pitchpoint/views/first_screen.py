@@ -112,7 +112,12 @@ def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
 
 
 def _unlike(outcomes: Mapping[str, Outcome]) -> Iterator[dict[str, str]]:
-    """Friction law and mean of variants whose figures are not by the same."""
+    """Ratios of drives of several meshes; friction law and mean of variants where these are not the same."""
+    ratios = {variant: speed_ratio(outcome) for variant, outcome in outcomes.items()}
+    if any(one.manifest.get("stages") for one in outcomes.values()):
+        yield {"": "Ratio"} | {
+            v: show.number(ratio, 6) if isfinite(ratio) else "–" for v, ratio in ratios.items()
+        }
     told = {
         "Friction": {variant: _law(outcome) for variant, outcome in outcomes.items()},
         "Mean over": {

@@ -48,6 +48,9 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
     if not any(table.caption == "Gears" for table in tables):
         summed_up = any(table.caption.startswith("Gears") for table in tables)
         tables = [_given_gears(outcome, _SUMMED_UP if summed_up else ()), *tables]
+    if page.several:
+        first = next(iter(page.outcomes))
+        tables = [replace(t, head=[f"{t.head[0]}, {first}", *t.head[1:]]) for t in tables]
     remarks = [str(block.words) for block in blocks if isinstance(block, Paragraph)]
     doubts = _doubts(page)
     return {

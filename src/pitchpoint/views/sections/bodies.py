@@ -45,7 +45,7 @@ def bodies_facts(outcome: Outcome) -> Iterator[KeyFigure]:
             for name, inertia in others
         ]
         name, of = ("Inertia at the input", []) if where.startswith("at ") else ("Inertia", [where])
-        yield KeyFigure(79.0, name, value, "; ".join([*of, *more]))
+        yield KeyFigure(75.0, name, value, "; ".join([*of, *more]))
 
 
 def bodies_printed(outcome: Outcome) -> Iterator[Printed]:

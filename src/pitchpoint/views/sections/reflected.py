@@ -81,11 +81,13 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         nominal, least, _, largest = (float(v) for v in data["output_backlash"].values)
         ends = [least, largest] if _by_tolerances(data) else [nominal]
         value = " to ".join(_cell("output_backlash", end) for end in ends)
+        unit = show.unit_of("output_backlash")
         yield KeyFigure(
             59.0,
             "Backlash at the output",
-            f"{value} {show.unit_of('output_backlash')}",
+            f"{value} {unit}",
             "by tolerances, the input held" if _by_tolerances(data) else _of_nominal(nominal),
+            "" if _by_tolerances(data) else f"{value} {unit} nominal",
         )
     inertias = zip(data["end"].values, data["reflected_inertia"].values, strict=True)
     known = [
@@ -97,7 +99,7 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         more = "".join(f"{inertia} at the {name}; " for name, inertia in others)
         mass = show.quantity("drive_mass", float(data["drive_mass"]))
         without = f", without the {_carriers(data)}" if _carriers(data) else ""
-        yield KeyFigure(79.0, f"Inertia at the {end}", value, f"{more}gears {mass}{without}")
+        yield KeyFigure(75.0, f"Inertia at the {end}", value, f"{more}gears {mass}{without}")
     if '"from_stiffness" do' in outcome.manifest["lacks"].get("torsion", ""):
         how = 'load_sharing = "from_stiffness" has it'
         yield KeyFigure(79.5, "Torsional stiffness", "not asked", how)
