@@ -34,6 +34,19 @@ FILES = {
         "line 2 has a comma in a number, 20,000; write 20000 or 20.000",
     ),
     "a bare unit": (b"module = 2.5 mm  # m", 'unit outside of quotation marks; write "2.5 mm"'),
+    "a path of Windows": (
+        b'[wear]\nprofile = "C:\\Users\\me\\rough.csv"\n',
+        "line 2 has a backslash between quotation marks; write profile = 'C:\\Users\\me\\rough.csv', or /",
+    ),
+    "null": (b"[gears]\nteeth = null\n", "line 2 has no value for teeth; leave the line out"),
+    "True of Python": (b"locating = True\n", "line 1 has True; write locating = true"),
+    "a bare word": (
+        b"friction = xu_2007\n",
+        'outside of quotation marks; write friction = "xu_2007"',
+    ),
+    "a semicolon": (b'module = "2 mm";\n', 'line 1 has ; behind a value; write module = "2 mm"'),
+    "a remark of C": (b'module = "2 mm" // m_n\n', 'write module = "2 mm"  # m_n'),
+    "a key of two words": (b'face width = "2 mm"\n', "has a space inside a key; write face_width"),
     "a colon": (b'[gears]\nmodule: "2 mm"', 'line 2 has a colon; write module = "2 mm"'),
     "spaces": (b"# a\nteeth = [20 -50];\n", "line 2 has a list without commas; write [20, -50]"),
     "an open table": (b"[gears", "line 1 opens a table that it does not close; write [gears]"),
@@ -42,7 +55,10 @@ FILES = {
         b"# Spur pair, both gears of steel.\n# And more; so far.\n[gears]\nteeth = 20\n[gears]\n",
         "line 5 has a table that was there before, [gears]; write it once",
     ),
-    "another": (b"[gears]\nteeth =", "is not a TOML file: Invalid value"),
+    "another": (
+        b"[gears]\nteeth =",
+        "line 2 has no value for teeth; leave the line out, or give one",
+    ),
 }
 
 

@@ -12,10 +12,12 @@ import pytest
 from pitchpoint import Case
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.schema import Case as Schema
-from pitchpoint.cases.schema import validate
+from pitchpoint.cases.schema import Loss, validate
 from pitchpoint.cases.wishes import WISHES
 from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.table import Inspection
 from pitchpoint.gears.families import TABLES
+from pitchpoint.gears.planetary import PlanetaryGears
 from pitchpoint.registry import letters
 
 BASE = tomllib.loads("""
@@ -300,12 +302,21 @@ def test_python_and_settings_answer_too():
         Case(BASE).set({"gears.j_wt": "0.1 mm"})
 
 
+OTHER_TABLES = {
+    "": [Schema],
+    "gears": TABLES,
+    "gears of a set": [PlanetaryGears],
+    "gears.inspection": [Inspection],
+    "losses.NAME": [Loss],
+}
+
+
 @pytest.mark.parametrize("table", WISHES)
 def test_no_wish_is_a_key_and_none_stands_twice(table):
     names = [letters(name) for wish in WISHES[table] for name in wish.names]
     assert len(names) == len(set(names))
-    annotation = Schema.model_fields[table].annotation if table else Schema
-    tables = TABLES if table == "gears" else [*(get_args(annotation) or [annotation])]
+    tables = OTHER_TABLES.get(table) or [Schema.model_fields[table].annotation]
+    tables = [form for one in tables for form in (get_args(one) or [one])]
     for one in filter(lambda one: one is not NoneType, tables):
         fields = {letters(key): key for key in one.model_fields}
         taken = {fields[name] for name in names if name in fields}
@@ -338,3 +349,111 @@ def test_what_a_wish_is_told_to_write_has_its_unit():
 def test_an_oil_of_a_maker_is_answered_with_its_grade():
     told = refused(BASE | {"lubricant": {"name": "Mobil SHC 220"}})
     assert told.endswith("did you mean mineral-vg-220 or pao-vg-220 or pag-vg-220?")
+
+
+SET = BASE | {
+    "gears": {
+        "family": "planetary",
+        "teeth": [24, 30, 84],
+        "module": "1 mm",
+        "face_width": "12 mm",
+    },
+    "operation": BASE["operation"] | {"torque": "60 N m"},
+}
+OF_SET = {
+    "n_planets": (4, "planets = 4"),
+    "planet_count": (4, "planets = 4"),
+    "floating_sun": (True, 'floating = "sun"'),
+    "pin_error": (["10 um", "0 um", "0 um"], 'pin_errors = ["10 um", "0 um", "0 um"]'),
+    "fixed": ("ring", 'held = "ring"'),
+    "z": ([24, 30, 84], "teeth = [24, 30, 84]"),
+}
+
+
+@pytest.mark.parametrize("name", OF_SET)
+def test_keys_of_a_set_by_other_names(name):
+    value, line = OF_SET[name]
+    told = refused(SET | {"gears": SET["gears"] | {name: value}})
+    assert told.startswith(f"case: gears.{name}: is not a known key: ") and told.endswith(line)
+    pins = {"pin_tolerance": "20 um"} if name == "floating_sun" else {}
+    read(SET | {"gears": SET["gears"] | pins | tomllib.loads(line)})
+
+
+def test_teeth_of_a_set_each_by_itself_make_one_list():
+    rest = {key: value for key, value in SET["gears"].items() if key != "teeth"}
+    for names in (("sun_teeth", "planet_teeth", "ring_teeth"), ("z1", "z2", "z3")):
+        told = refused(SET | {"gears": rest | dict(zip(names, (24, 30, -84), strict=True))})
+        assert told.count("write teeth = [24, 30, 84]") == 3 and "missing" not in told
+    assert refused(SET | {"gears": rest}).endswith("is missing; write a list such as [24, 30, 84]")
+
+
+@pytest.mark.parametrize("name", ["backlash", "inspection", "deviations"])
+def test_what_a_set_does_not_have_its_meshes_as_stages_have(name):
+    value = "60 um" if name == "backlash" else {"iso_class": 6}
+    assert "write its meshes as [[stages]] with a [train]" in refused(
+        SET | {"gears": SET["gears"] | {name: value}}
+    )
+    common = {"module": "1 mm", "face_width": "12 mm", "fillet_radius": 0.2, name: value}
+    drive = {key: table for key, table in SET.items() if key != "gears"}
+    meshes = {("sun", "planet"): [24, 30], ("planet", "ring"): [30, -84]}
+    read(
+        drive
+        | {
+            "stages": [
+                {"bodies": [*bodies], "gears": common | {"teeth": teeth}}
+                for bodies, teeth in meshes.items()
+            ],
+            "train": {"input": "sun", "output": "carrier", "held": "ring", "planets": 3},
+        }
+    )
+
+
+def test_load_of_a_set_by_its_input_counts_what_is_held():
+    point = {"speed": "1000 rpm", "temperature": "60 degC", "input_torque": "10 N m"}
+    assert 'write torque = "45 N m"' in refused(SET | {"operation": point})  # 1 + 84 / 24
+    held = SET["gears"] | {"held": "carrier", "output": "ring"}
+    assert 'write torque = "35 N m"' in refused(SET | {"gears": held, "operation": point})
+
+
+def test_places_of_losses_and_of_inspection_have_wishes_of_their_own():
+    told = refused(BASE | {"losses": {"seal": {"torque": "0.1 N m"}}})
+    assert 'sliding seal; write seal_torque = "0.1 N m"' in told
+    assert 'losses.seal.between: is missing; write a list such as ["gear 1", "housing"]' in told
+    read(BASE | {"losses": {"seal": {"seal_torque": "0.1 N m", "between": ["gear 1", "housing"]}}})
+    for place in ({"losses": {"lubricant": {"temperature": "60 degC"}}},):
+        assert "the temperature of the oil" not in refused(BASE | place)
+    told = refused(BASE | {"gears": BASE["gears"] | {"inspection": {"quality": 6}}})
+    assert told.endswith("write iso_class = 6")
+    told = refused(BASE | {"gears": BASE["gears"] | {"inspection": {"x": 6}}})
+    assert "profile shifts" not in told
+
+
+def test_a_wish_in_another_table_is_sent_to_its_own():
+    told = refused(BASE | {"operation": BASE["operation"] | {"K_A": 1.25}})
+    assert told.endswith("K_A is the application factor: application_factor in [strength]")
+    told = refused(BASE | {"operation": BASE["operation"] | {"b": 1}})  # one letter means too much
+    assert "face" not in told
+
+
+SLIPS = {
+    "rpm": (1200, 'write speed = "1200 rpm"'),
+    "load_spectrum": ([[60, 1200, 1]], "each further one is a table [variants.NAME]"),
+    "version": (1, "it decides nothing; write it into title or summary"),
+    "variant": ({"cold": {}}, "tables [variants.NAME], each with what differs"),
+    "pinion": ("steel", "in the order of their numbers of teeth"),
+    "accuracy": ("AGMA 10", "is a key of [gears.deviations] and of [gears.inspection]; the key is"),
+}
+
+
+@pytest.mark.parametrize("name", SLIPS)
+def test_names_that_mean_something_else_than_their_neighbours(name):
+    value, words = SLIPS[name]
+    places = {"rpm": "operation", "load_spectrum": "operation", "accuracy": "gears"}
+    tree = copy.deepcopy(BASE) | {"materials": {}}
+    table = (
+        tree["materials" if name == "pinion" else places[name]]
+        if name in places or name == "pinion"
+        else tree
+    )
+    table[name] = value
+    assert words in (told := refused(tree)) and "did you mean" not in told

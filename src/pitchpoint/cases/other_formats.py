@@ -29,6 +29,14 @@ _BARE = re.compile(
 )
 _SPACED = re.compile(r"\[\s*[+-]?[\d.]+(?:\s+[+-]?[\d.]+)+\s*\]")
 _COLON = re.compile(r"([\w.]+)\s*:\s+(\S.*)")
+_PATH = re.compile(r"([\w.]+)\s*=\s*\"([^\"]*\\[^\"]*)\"")
+_KEY = re.compile(r"([A-Za-z]\w*(?:[ \t]+\w+)+)\s*=(?!=)")
+_NOTHING = re.compile(r"([\w.]+)\s*=\s*(null|None|nil|NULL|NaN|undefined|-)?")
+_TRUTH = re.compile(r"([\w.]+)\s*=\s*(True|False|TRUE|FALSE|yes|no|on|off)")
+_WORD = re.compile(r"([\w.]+)\s*=\s*([A-Za-z][\w-]*)")
+_AFTER = re.compile(
+    r"([\w.]+\s*=\s*(?:\"[^\"]*\"|'[^']*'|[\w.+-]+|\[.*\]))\s*(;|,|//|%|--|\\)\s*(.*)"
+)
 _AGAIN = re.compile(r"Cannot (declare .* twice|overwrite a value)")
 _LINE = re.compile(r"\(at line (\d+), column")
 
@@ -80,6 +88,17 @@ def _mended(line: str, number: int, again: bool) -> str:
         return (
             f'{at} has a value with its unit outside of quotation marks; write "{shorten(bare[1])}"'
         )
+    if path := _PATH.fullmatch(code):
+        plain = shorten(f"{path[1]} = '{path[2]}'")
+        return f"{at} has a backslash between quotation marks; write {plain}, or / in its place"
+    if nothing := _NOTHING.fullmatch(code):
+        return f"{at} has no value for {shorten(nothing[1])}; leave the line out, or give one"
+    if truth := _TRUTH.fullmatch(code):
+        plain = "true" if truth[2].lower() in ("true", "yes", "on") else "false"
+        return f"{at} has {truth[2]}; write {shorten(f'{truth[1]} = {plain}')}"
+    if word := _WORD.fullmatch(code):
+        told = shorten(f'{word[1]} = "{word[2]}"')
+        return f"{at} has a word outside of quotation marks; write {told}"
     if comma := _COMMA.search(code):
         meant = comma_readings(comma[0])
         which = "before decimals" if len(meant) == 1 else "in a number"
@@ -93,6 +112,12 @@ def _mended(line: str, number: int, again: bool) -> str:
     if spaced := _SPACED.search(code):
         told = f"[{', '.join(spaced[0].strip('[]').split())}]"
         return f"{at} has a list without commas; write {shorten(told)}"
+    if after := _AFTER.fullmatch(code):
+        remark = f"  # {after[3]}" if after[3] else ""
+        return f"{at} has {after[2]} behind a value; write {shorten(after[1] + remark)}"
+    if key := _KEY.match(code):
+        joined = "_".join(key[1].split())
+        return f"{at} has a space inside a key; write {shorten(joined)}"
     if colon := _COLON.fullmatch(code):
         return f"{at} has a colon; write {shorten(f'{colon[1]} = {colon[2]}')}"
     return ""

@@ -1,5 +1,6 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
+import json
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
@@ -518,7 +519,7 @@ class Loss(Table):
     A breakaway model and its torque by value hold the bodies at rest, beside the bearing and the seal.
     """
 
-    between: tuple[Text, Text]
+    between: Annotated[tuple[Text, Text], Field(examples=[["gear 1", "housing"]])]
     """The two bodies that brake each other; one of them may be the housing."""
     bearing: Annotated[str, BeforeValidator(named(BEARING_LOSS.keys, "bearing loss model"))] = (
         "none"
@@ -2412,7 +2413,7 @@ def _causes(details: Sequence[Any], document: Document) -> list[Any]:
         for place, same in places.items()
         if place not in inside
         and (_misspelt_form(same) or not any(place[:end] in forms_of for end in range(len(place))))
-        and not _left_missing(place, same, unknown)
+        and not _left_missing(place, same, unknown, document.tree)
         and not _told_with_another(place, same, places)
     ]
 
@@ -2441,14 +2442,17 @@ def _misspelt_form(same: Sequence[Any]) -> bool:
 
 
 def _left_missing(
-    place: tuple[str, ...], same: Sequence[Any], unknown: Sequence[tuple[str, ...]]
+    place: tuple[str, ...],
+    same: Sequence[Any],
+    unknown: Sequence[tuple[str, ...]],
+    tree: Mapping[str, Any],
 ) -> bool:
     """True for a missing key that stands there in another spelling."""
     from pitchpoint.cases.wishes import answered
 
     beside = (one for one in unknown if one[:-1] == place[:-1])
     return same[0]["type"] == "missing" and any(
-        place[-1] in answered(one) or alike(one[-1], place[-1:]) for one in beside
+        place[-1] in answered(one, tree) or alike(one[-1], place[-1:]) for one in beside
     )
 
 
@@ -2584,8 +2588,10 @@ def _meant(place: Sequence[str], known: Collection[str], model: type[BaseModel],
     tables = [f"[{stage}{name}]" for name in (near or flat or every)[:_FEW_TABLES]]
     if key in model.model_fields and forms(model.model_fields[key].annotation):
         return f"; [{key}] is a table of its own"
+    from pitchpoint.cases.wishes import elsewhere
+
     if alike(key, known, _SLIP) or not tables:
-        return nearest(key, known)
+        return ("" if alike(key, known) else elsewhere(key)) or nearest(key, known)
     return f"; {' and '.join(tables)} {'has' if len(tables) == 1 else 'have'} that key"
 
 
@@ -2658,6 +2664,8 @@ def _needed(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     info = fields.get(str(location[-1]))
     if info is None:
         return ""
+    if info.examples and get_origin(info.annotation) is tuple:
+        return f"; write a list such as {json.dumps(info.examples[0])}"
     quantity = quantity_of(info)
     if quantity is not None:
         return f"; write {quantity.example}; {quantity.allowed}"

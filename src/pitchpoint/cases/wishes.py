@@ -17,6 +17,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.inspection import Toothing
 from pitchpoint.gears.cylindrical.table import TIP, CylindricalGears
 from pitchpoint.gears.families import Gears
+from pitchpoint.gears.planetary import PLANETARY, PlanetaryGears
 from pitchpoint.gears.table import (
     ANGLE,
     DEVIATION,
@@ -32,7 +33,7 @@ from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.materials.data import oil_names
 from pitchpoint.registry import letters, listed, nearest
 
-__all__ = ["WISHES", "Wish", "answer", "answered"]
+__all__ = ["WISHES", "Wish", "answer", "answered", "elsewhere"]
 
 Tree = Mapping[str, Any]
 Write = Callable[[Any, Tree, Tree], str]
@@ -81,13 +82,13 @@ def answer(place: Sequence[str], value: Any, tree: Tree, fields: Collection[str]
         tree: plain values of the case.
         fields: keys of the table in which it stands.
     """
-    wish = _wish(place)
+    wish = _wish(place, tree, fields)
     if wish is None:
         return None
     if wish.keys and not any(key in fields for key in wish.keys):
         return f"; known are {listed(fields)}"  # a neighbour in spelling would mean something else
     line = _line(wish, place, value, tree)
-    if line or not wish.keys:
+    if line or not wish.keys or wish in WISHES[""]:
         return f": {wish.why}{f'; write {line}' if line else ''}"
     return f": {wish.why}; the key is {wish.keys[0]}"
 
@@ -119,15 +120,43 @@ _NO_FAMILIES = {
 }
 
 
-def answered(place: Sequence[str]) -> tuple[str, ...]:
-    """Keys that say what stands at a place under a name of its own; none where it is no wish."""
-    wish = _wish(place)
+def answered(place: Sequence[str], tree: Tree) -> tuple[str, ...]:
+    """Keys that say what stands at a place under a name of its own; none where it is no wish.
+
+    Args:
+        place: tables and key.
+        tree: plain values of the case.
+    """
+    wish = _wish(place, tree)
     return () if wish is None else wish.keys
 
 
-def _wish(place: Sequence[str]) -> Wish | None:
-    table = next((part for part in reversed(place[:-1]) if not part.isdecimal()), "")
-    return _BY_NAME.get((table, letters(place[-1])))
+def elsewhere(name: str) -> str:
+    """End of a sentence on a wish that one other table answers; empty where none does, or several do.
+
+    A name of one letter is none: it means too much.
+    """
+    plain = letters(name)
+    tables = [table for table, known in _BY_NAME if known == plain and table in _OF_CASE]
+    if len(plain) < 2 or len(tables) != 1:
+        return ""
+    wish = _BY_NAME[tables[0], plain]
+    return f"; {wish.why}{f': {wish.keys[0]} in [{tables[0]}]' if wish.keys else ''}"
+
+
+def _wish(place: Sequence[str], tree: Tree, fields: Collection[str] = ()) -> Wish | None:
+    """The wish of a name in its table: that of a stage as of a case alone, of a set before that of a pair.
+
+    The table of a set is read by itself, before its meshes are.
+    """
+    tables = [part for part in place[:-1] if not part.isdecimal()]
+    tables = tables[1:] if tables[:1] == ["stages"] else tables
+    if tables[:1] == ["losses"] and len(tables) == 2:
+        tables[1] = "NAME"
+    table, name = ".".join(tables), letters(place[-1])
+    if tree.get("family") == PLANETARY or (table == "gears" and "planets" in fields):
+        return _BY_NAME.get((_SET, name)) or _BY_NAME.get(("gears", name))
+    return _BY_NAME.get((table, name))
 
 
 def _line(wish: Wish, place: Sequence[str], value: Any, tree: Tree) -> str:
@@ -315,6 +344,12 @@ def _chain(tree: Tree) -> list[tuple[GearsTable, str]]:
 def _at_output(tree: Tree) -> tuple[float, bool]:
     """Load of the output for a unit torque of the input without losses [N m or N], and True for a force."""
     ratio, force = 1.0, False
+    if "train" in tree and "gears" not in tree:
+        raise LookupError  # by what turns and is held, not by a chain of stages
+    if "train" in tree:
+        train, teeth = tree["train"], PlanetaryGears.model_validate(tree["gears"]).teeth
+        loads = {"sun": teeth[0], "ring": teeth[2], "carrier": teeth[0] + teeth[2]}
+        return loads[train["output"]] / loads[train["input"]], False
     for gears, driver in _chain(tree):
         torques = gears.relative_torques
         loaded = [one for one in torques if one not in (driver, getattr(gears, "fixed", ""))]
@@ -353,6 +388,31 @@ def _by_rz(value: Any, table: Tree, tree: Tree) -> str:
     return f"{_said('ra', _ROUGHNESS, *(_ROUGHNESS.read(one) / 6.0 for one in each))}, Rz/6 as ISO 6336-2"
 
 
+def _by_class(value: Any, table: Tree, tree: Tree) -> str:
+    return f"inspection = {{ iso_class = {_RATIO.read(value):.0f} }}"
+
+
+def _in_rpm(value: Any, table: Tree, tree: Tree) -> str:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return _said("speed", _SPEED, _SPEED.read(f"{value:g} rpm" if number else value))
+
+
+def _floating(body: str) -> Write:
+    """The body that floats where a key named after it is true."""
+    return lambda value, table, tree: f'floating = "{body}"' if value is True else ""
+
+
+def _of_members(*names: str) -> Write:
+    """Numbers of teeth of sun, planet and ring, each of which stands under a name of its own."""
+
+    def write(value: Any, table: Tree, tree: Tree) -> str:
+        by_letters = {letters(name): number for name, number in table.items()}
+        teeth = [abs(_TEETH.each.read(by_letters[letters(name)])) for name in names]
+        return f"teeth = [{', '.join(f'{number:g}' for number in teeth)}]"
+
+    return write
+
+
 def _by_grade(value: Any, table: Tree, tree: Tree) -> str:
     names = [one for one in oil_names() if one.endswith(f"-vg-{value}")]
     return f'name = "{names[0]}", say' if names else ""
@@ -382,6 +442,23 @@ _IN_ONE_LIST = {
 
 _RACK = "the teeth are those of a basic rack"
 
+_SET = "gears of a set"
+"""Place of the wishes for the table [gears] of a planetary set."""
+
+_BODIES = ("sun", "carrier", "ring")
+_TEETH_OF_SET = (
+    ("sun_teeth", "planet_teeth", "ring_teeth"),
+    ("teeth_sun", "teeth_planet", "teeth_ring"),
+    ("z_sun", "z_planet", "z_ring"),
+    ("z_s", "z_p", "z_r"),
+    ("z_1", "z_2", "z_3"),
+    ("sun", "planet", "annulus"),
+)
+_AS_STAGES = (
+    "write its meshes as [[stages]] with a [train] (pitchpoint docs stages), where the gears of each mesh "
+    "have"
+)
+
 WISHES: Mapping[str, tuple[Wish, ...]] = {
     "": (
         Wish(
@@ -403,6 +480,192 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             ("material",),
             ("materials",),
             "materials have a table [materials] with gear_1 and gear_2",
+        ),
+        Wish(
+            ("variant", "configurations", "load_cases", "loadcase"),
+            (),
+            "several forms of a case are tables [variants.NAME], each with what differs",
+        ),
+        Wish(
+            ("version", "author", "date", "project", "name", "description", "comment", "customer"),
+            (),
+            "it decides nothing; write it into title or summary, or behind a #",
+        ),
+    ),
+    _SET: (
+        Wish(
+            (
+                *("n_planets", "number_of_planets", "planet_count", "planets_count", "num_planets"),
+                *("planet_number", "n_p"),
+            ),
+            ("planets",),
+            "planets says how many there are",
+            _renamed("planets"),
+        ),
+        *(
+            Wish(
+                names,
+                ("teeth",),
+                "numbers of teeth stand in one list, of sun, planet and ring, all positive",
+                _of_members(*names),
+            )
+            for names in _TEETH_OF_SET
+        ),
+        Wish(
+            ("z", "number_of_teeth", "numbers_of_teeth", "tooth_number", "tooth_count", "n_teeth"),
+            ("teeth",),
+            "numbers of teeth stand in one list, of sun, planet and ring, all positive",
+            _renamed("teeth"),
+        ),
+        Wish(
+            ("x_1", "x_2", "x_3", "x_sun", "x_planet", "x_ring", "profile_shift_sun"),
+            ("profile_shift",),
+            "profile shifts stand in one list, of sun, planet and ring",
+        ),
+        Wish(
+            ("b_1", "b_2", "b_3", "b_sun", "b_planet", "b_ring"),
+            ("face_width",),
+            "face widths stand in one list, of sun, planet and ring",
+        ),
+        Wish(
+            ("pin_error", "pin_position_error", "pin_position_errors", "planet_position_error"),
+            ("pin_errors",),
+            "pin_errors is a list with one for each planet, and pin_tolerance the circle in which each lies",
+            lambda value, table, tree: (
+                f"pin_errors = {_each([*value])}" * (not isinstance(value, str))
+            ),
+        ),
+        *(
+            Wish(
+                (f"floating_{body}", f"{body}_floating", f"{body}_floats", f"free_{body}"),
+                ("floating",),
+                "floating names the body that is free to move sideways, where pins are out of place",
+                _floating(body),
+            )
+            for body in _BODIES
+        ),
+        Wish(
+            (
+                *("fixed", "fixed_member", "fixed_body", "stationary", "grounded", "ground"),
+                "held_body",
+            ),
+            ("held",),
+            "held names the body that stands still",
+            _renamed("held"),
+        ),
+        Wish(
+            ("driver", "driving", "input_body", "driving_member"),
+            ("input",),
+            "input names the body that drives",
+            _renamed("input"),
+        ),
+        Wish(
+            ("driven", "output_body", "load_body", "driven_member"),
+            ("output",),
+            "output names the body that takes the load",
+            _renamed("output"),
+        ),
+        Wish(
+            ("ratio", "gear_ratio", "transmission_ratio", "reduction"),
+            ("teeth",),
+            "the ratio follows from the numbers of teeth, and from which body is input, output and held",
+        ),
+        Wish(
+            (
+                *("backlash", "circumferential_backlash", "nominal_backlash", "j_wt", "j_t"),
+                *("normal_backlash", "j_bn", "j_n"),
+            ),
+            (),
+            f"a set has no backlash by value; {_AS_STAGES} the same backlash",
+        ),
+        Wish(
+            (
+                *("inspection", "deviations", "quality", "accuracy", "accuracy_grade"),
+                *("iso_quality", "din_quality", "agma_quality", "iso_class", "modifications"),
+            ),
+            (),
+            f"a set has no drawing dimensions, deviations or modified flanks; {_AS_STAGES} tables "
+            "inspection, deviations or modifications",
+        ),
+    ),
+    "gears.inspection": (
+        Wish(
+            ("quality", "accuracy", "accuracy_grade", "iso_quality", "din_quality", "class"),
+            ("iso_class",),
+            "the class is that of ISO 1328-1",
+            lambda value, table, tree: f"iso_class = {_RATIO.read(value):.0f}",
+        ),
+        Wish(
+            ("backlash", "nominal_backlash", "normal_backlash", "j_bn", "j_wt"),
+            (),
+            "the backlash of toleranced teeth is a result of their thickness allowances; one by value is "
+            "backlash in [gears]",
+        ),
+        Wish(
+            ("span", "k", "teeth_spanned", "number_of_teeth_spanned"),
+            ("span_teeth",),
+            "the number of teeth over which a span is measured",
+            _renamed("span_teeth"),
+        ),
+        Wish(
+            ("ball", "pin_diameter", "measuring_ball", "d_m", "roller_diameter"),
+            ("ball_diameter",),
+            "tooth thickness is measured over balls",
+            _renamed("ball_diameter"),
+        ),
+    ),
+    "losses.NAME": (
+        Wish(
+            ("torque", "drag_torque", "friction_torque", "drag", "seal", "loss"),
+            ("seal_torque",),
+            "a torque that is the same at every speed is that of a sliding seal",
+            _renamed("seal_torque"),
+        ),
+        Wish(
+            ("diameter", "d_m", "pitch_diameter", "shaft_diameter", "bore"),
+            ("mean_diameter",),
+            "bearing and seal count by their mean diameter",
+            _renamed("mean_diameter"),
+        ),
+        Wish(
+            ("bodies", "location", "where", "shaft", "body", "gear"),
+            ("between",),
+            'between names the two bodies that brake each other, such as ["gear 1", "housing"]',
+        ),
+        Wish(
+            ("friction", "mu", "coefficient", "friction_coefficient", "model", "type"),
+            ("bearing",),
+            "the friction of a rolling bearing has a model, bearing, with mean_diameter, f0 and f1",
+        ),
+        Wish(
+            ("starting_torque", "static_torque", "stiction", "static_friction", "holding_torque"),
+            ("breakaway_torque",),
+            "what holds at rest is the breakaway torque",
+            _renamed("breakaway_torque"),
+        ),
+        Wish(
+            ("churning", "oil_churning", "splash_torque"),
+            ("churning_torque",),
+            "churning is a torque at a speed, churning_torque with churning_speed",
+            _renamed("churning_torque"),
+        ),
+    ),
+    "materials": (
+        Wish(
+            ("pinion", "wheel", "driver", "driven"),
+            ("gear_1", "gear_2"),
+            "gear_1 and gear_2 are the gears in the order of their numbers of teeth in [gears]",
+        ),
+        Wish(
+            ("sun", "planet", "planets", "ring"),
+            (),
+            "of a set gear_1 is sun and planet, gear_2 planet and ring: give both the same, or write the "
+            "meshes as [[stages]] with a [train], each with materials of its own",
+        ),
+        Wish(
+            ("material", "steel", "name", "both"),
+            ("gear_1", "gear_2"),
+            "each gear has its own, gear_1 and gear_2",
         ),
     ),
     "gears": (
@@ -544,7 +807,7 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             _by_lead_angle,
         ),
         Wish(
-            ("planets", "number_of_planets", "planet_count"),
+            ("planets", "number_of_planets", "planet_count", "n_planets"),
             (),
             'planets are those of gears with family = "planetary", teeth of sun, planet and ring; a pair of '
             "them alone is at its share of the torque",
@@ -641,7 +904,7 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             ),
             ("inspection",),
             "the class of ISO 1328-1 is a key of [gears.deviations] and of [gears.inspection]",
-            lambda value, table, tree: f"inspection = {{ iso_class = {_plain(value)} }}",
+            _by_class,
         ),
     ),
     "operation": (
@@ -687,7 +950,22 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             _renamed("speed"),
         ),
         Wish(
-            ("oil_temperature", "ambient_temperature"),
+            (
+                *("rpm", "n", "rotational_speed", "angular_velocity", "angular_speed", "omega"),
+                "revolutions",
+            ),
+            ("speed",),
+            "the speed is that of the driving member",
+            _in_rpm,
+        ),
+        Wish(
+            ("duty_cycle", "spectrum", "load_spectrum", "load_cases", "collective", "duty"),
+            (),
+            "an operating point is one load at one speed; each further one is a table [variants.NAME], or a "
+            'step of --sweep operation.torque="10 N m:60 N m:6"',
+        ),
+        Wish(
+            ("oil_temperature", "ambient_temperature", "oil_temp", "temp"),
             ("temperature",),
             "the temperature is that of the oil and around the gears",
             _renamed("temperature"),
@@ -792,3 +1070,6 @@ _BY_NAME = {
     for wish in wishes
     for name in wish.names
 }
+
+_OF_CASE = {"gears", "operation", "strength", "roughness", "lubricant", "materials"}
+"""Tables whose wishes are answered in any other table."""

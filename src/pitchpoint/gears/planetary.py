@@ -128,7 +128,7 @@ class PlanetaryGears(Table):
 
     family: Literal["planetary"] = "planetary"
     """Family of these gears: a planetary set."""
-    teeth: Annotated[Three, OfThree(TEETH)]
+    teeth: Annotated[Three, OfThree(TEETH), Field(examples=[[24, 30, 84]])]
     """Numbers of teeth of sun, planet and ring, all positive."""
     planets: Annotated[float, PLANETS] = 3.0
     """Number of planets."""
