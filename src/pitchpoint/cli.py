@@ -173,7 +173,7 @@ def main() -> None:
         if told:  # without arguments the help is all there is to say
             context = getattr(error, "ctx", None)
             of = "pitchpoint" if context is None else context.command_path
-            _complain(f"error: {shorten(told, 200)}; see {of} --help")
+            _complain(f"error: {shorten(told, 200)}; see {of} --help{_advice(told, of)}")
         status = error.exit_code
     except BrokenPipeError:
         sys.stderr.close()
@@ -184,6 +184,56 @@ def main() -> None:
     if status == _INTERRUPTED:
         _complain("interrupted")
     raise SystemExit(status)
+
+
+_OTHER_COMMANDS = {
+    "report": "run writes report.html into its folder, and pitchpoint open FOLDER opens it",
+    "plot": "run writes report.html with its figures, and pitchpoint open FOLDER opens it",
+    **dict.fromkeys(
+        ("validate", "verify", "lint"), "pitchpoint check CASE tells what is wrong with it"
+    ),
+    **dict.fromkeys(("solve", "compute", "calc", "calculate"), "pitchpoint run CASE computes it"),
+    **dict.fromkeys(("list", "ls"), "pitchpoint cases lists the shipped ones"),
+    **dict.fromkeys(("init", "create", "template"), "pitchpoint new FAMILY writes a case file"),
+    "help": "pitchpoint docs has the pages",
+    "sweep": 'it is an option: pitchpoint run CASE --sweep operation.speed="500 rpm:3000 rpm:11"',
+}
+"""Commands as other programs have them, with what to call."""
+
+_OPTIONS = {
+    "--set": '--set operation.torque="50 N m"',
+    "--sweep": '--sweep operation.speed="500 rpm:3000 rpm:11"',
+    "--units": "--units angle=arcmin",
+}
+"""Options whose values have a form, with one."""
+
+
+def _advice(told: str, of: str) -> str:
+    """End of a sentence on a command line that is none: what to call in its place.
+
+    Args:
+        told: what is wrong with it.
+        of: command that was called, with the program.
+    """
+    name = ([*told.split("'"), ""])[1] if "'" in told else ""
+    if told.startswith("No such command") and name in _OTHER_COMMANDS:
+        return f"; {_OTHER_COMMANDS[name]}"
+    if "requires an argument" in told and name in _OPTIONS:
+        return f"; write {_OPTIONS[name]}"
+    if told.startswith("No such option") and of == "pitchpoint":
+        return "; options stand behind the command: pitchpoint run CASE -o FOLDER"
+    if told.startswith("Got unexpected extra") and of.split()[-1] in (
+        "run",
+        "check",
+        "show",
+        "explore",
+    ):
+        return "; it takes one case, pitchpoint compare several"
+    if told.startswith("Missing argument 'CASE"):
+        return (
+            "; a case is a TOML file (pitchpoint new writes one) or a name out of pitchpoint cases"
+        )
+    return ""
 
 
 def _tell_version(asked: bool) -> None:

@@ -1589,6 +1589,24 @@ def test_no_such_command(refuse: Callable[..., str]) -> None:
     assert "Missing argument 'CASE'" in refuse("run")
 
 
+OTHER_CALLS = {
+    "report out": "pitchpoint open FOLDER opens it",
+    "validate pair.toml": "pitchpoint check CASE",
+    "help": "pitchpoint docs",
+    "-o out run pair.toml": "options stand behind the command: pitchpoint run CASE -o FOLDER",
+    "run pair.toml --set": '; write --set operation.torque="50 N m"',
+    "run pair.toml other.toml": "it takes one case, pitchpoint compare several",
+    "show": "a name out of pitchpoint cases",
+}
+
+
+@pytest.mark.parametrize("called", OTHER_CALLS)
+def test_commands_as_others_have_them_are_told_what_to_call(
+    called: str, refuse: Callable[..., str]
+) -> None:
+    assert OTHER_CALLS[called] in refuse(*called.split())
+
+
 def test_a_study_that_goes_wrong_half_way() -> None:
     tree = tomllib.loads(PAIR)
     sweep = {"key": "gears.profile_shift.1", "values": [0.0, 1.4, 0.1]}
