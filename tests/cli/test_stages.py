@@ -307,3 +307,16 @@ def test_a_table_of_films_belongs_to_a_stage(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="elliptic") as caught:
         Variant(tomllib.loads(inside + POINT.format(300)), "two.toml", "default").built({})
     assert caught.value.key == "stages.1.film.solver"
+
+
+@pytest.mark.parametrize(("place", "over"), [("24 mm", ""), ("20 mm", "4 mm"), ("-10 mm", "14 mm")])
+def test_faces_that_lie_over_each_other_on_a_shaft_are_told(place: str, over: str) -> None:
+    tree = tomllib.loads(TWO.replace("40 mm", place))
+    told = " ".join(Variant(tree, "two.toml", "default").built({}).warnings)
+    assert (f"On shaft 2 the gears of stages 1 and 2 lie {over} over each other" in told) == bool(
+        over
+    )
+    del tree["stages"][1]["place"]  # nothing is said of places, and nothing hangs on them
+    assert "over each other" not in " ".join(
+        Variant(tree, "two.toml", "default").built({}).warnings
+    )

@@ -30,7 +30,7 @@ from pitchpoint.cases.schema import (
     StageTable,
     validated,
 )
-from pitchpoint.doubts import REMARKED, Doubt
+from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
@@ -115,7 +115,7 @@ def _together(case: DriveCase, built: Sequence[Built], documents: Sequence[Docum
         from pitchpoint.cases.trains import about_trains, train_of
 
         return BuiltTrain(*parts, train_of(case, built), point, about_trains(case, built))
-    told = (*_few_meetings(built), *_adding_thrusts(built))
+    told = (*_few_meetings(built), *_adding_thrusts(built), *_on_one_place(case, built))
     return BuiltDrive(*parts, _drive(case, built), point, told)
 
 
@@ -355,4 +355,23 @@ def _adding_thrusts(built: Sequence[Built]) -> Iterator[str]:
             yield (
                 f"On shaft {shaft} the helical {gear}s of stages {shaft - 1} and {shaft} have opposite "
                 "hands: their axial forces add up. Those of a gear 2 and a gear 1 counteract."
+            )
+
+
+def _on_one_place(case: DriveCase, built: Sequence[Built]) -> Iterator[str]:
+    """Shafts on which faces of two gears lie over each other along the axis, where a case says any places."""
+    tables = [*case.stages.values()]
+    if not any("place" in table.model_fields_set for table in tables):
+        return
+    for shaft, (first, second) in enumerate(pairwise(zip(tables, built, strict=True)), 2):
+        apart = abs(second[0].place - first[0].place)
+        half = [getattr(one.case.gears, "face_width", 0.0) / 2.0 for _, one in (first, second)]
+        if over := max(sum(half) - apart, 0.0):
+            yield Doubt(
+                f"On shaft {shaft} the gears of stages {shaft - 1} and {shaft} lie {1e3 * over:.4g} mm over "
+                f"each other: their places are {1e3 * apart:.4g} mm apart and half their face widths sum to "
+                f"{1e3 * sum(half):.4g} mm. Loads of bearings are those of these places; write a place "
+                "for each stage.",
+                moves=LEFT_OUT,
+                brief=f"Gears on shaft {shaft} lie {1e3 * over:.4g} mm over each other.",
             )
