@@ -9,12 +9,13 @@ import pytest
 from sound import PAIR, WAVE
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.analyses.caveats import why_outside
 from pitchpoint.analyses.cycle import CYCLE
 from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, OPERATION
 from pitchpoint.analyses.running import RUNNING
-from pitchpoint.analyses.summaries import summaries
+from pitchpoint.analyses.summaries import profiles, summaries
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.film_map import FilmMap
@@ -222,7 +223,14 @@ def test_points_of_a_sweep_have_films_by_their_own_choices():
     film = {"solver": "line", "nodes": 33}
     points = [built(film={**film, "boundary_friction": one}) for one in (0.05, 0.1)]
     points.append(built(film={**film, "inlet": "0.12 mm"}))
-    swept = summaries(points, points[0].models, {}, title="sweep")["mean_loss"].values[0]
+    found = summaries(points, points[0].models, {}, title="sweep", several=True)
+    swept, why = found["mean_loss"].values[0], found["out_of_range"].values[0]
+    for point, marked in zip(points, why.tolist(), strict=True):
+        (run,) = profiles(point, point.models)
+        reasons = why_outside(point, point.models[0].law, run)
+        assert len(marked.split("; ")) == len(reasons)  # one a few words, the other a sentence
+        assert ("starved" in marked) == (point is points[2])
+    assert "out of its range at 3 of 3 points" in found.attrs["warnings"]
     alone = [summarise([(one.design, one.operation)], one.models[0])["mean_loss"] for one in points]
     np.testing.assert_array_equal(swept, np.concatenate(alone))
     assert swept[1] > 1.05 * swept[0]

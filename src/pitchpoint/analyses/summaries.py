@@ -98,6 +98,7 @@ def summaries(
     travels = points[0].travels
     runs = [_grouped(points, models, progress) for models in under]
     turns = _turns(runs)
+    unsure = [run.pop("outside_films", np.full(run["locked"].shape, "")) for run in runs]
     lost = films_lost(turns["turns_code"])
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
     carrying, slices = (out.pop(name, None) for name in ("carrying_slices", "slices"))
@@ -121,7 +122,8 @@ def summaries(
         out = {name: values for name, values in out.items() if name not in OF_STAGE_DRIVERS}
     out["efficiency_fluctuation"] = difference(out["max_efficiency"], out["min_efficiency"])
     out["torque_ripple"] = difference(out["max_input_torque"], out["min_input_torque"])
-    reasons = _why_not([models.law for models in under], points, extremes) if extremes else None
+    laws = [models.law for models in under]
+    reasons = _why_not(laws, points, extremes, unsure) if extremes else None
     if reasons is not None and several and len(under) > 1:
         out |= _of_laws_in_range(out["mean_efficiency"], reasons == "")
     if not _touching(points[0]):
@@ -170,13 +172,28 @@ def summaries(
 
 
 def _why_not(
-    laws: Sequence[FrictionLaw], points: Sequence[Ready], extremes: Mapping[str, np.ndarray]
+    laws: Sequence[FrictionLaw],
+    points: Sequence[Ready],
+    extremes: Mapping[str, np.ndarray],
+    unsure: Sequence[np.ndarray],
 ) -> np.ndarray:
-    """Why a law does not hold [law, point], in words; empty where it does."""
+    """Why a law does not hold [law, point], in words; empty where it does.
+
+    Args:
+        laws: of friction.
+        points: of one mesh.
+        extremes: see `why_not_at`, each [law, point].
+        unsure: of each law what there is to be wary of about the films that it solves [point].
+    """
     told = [
         [
             "; ".join(
-                why_not_at(point, law, {name: values[k, at] for name, values in extremes.items()})
+                [
+                    *filter(None, [str(unsure[k][at])]),
+                    *why_not_at(
+                        point, law, {name: values[k, at] for name, values in extremes.items()}
+                    ),
+                ]
             )
             for at, point in enumerate(_meshes(points))
         ]

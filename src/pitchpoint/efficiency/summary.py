@@ -224,7 +224,8 @@ def summarise(
 
     Returns:
         Figures; where the law solves films, `turns_code`, `turns` and `turns_change` tell what became of each
-        point, and figures of films that were not solved are NaN.
+        point, `outside_films` in words what is to be wary of about its films, and figures of films that were
+        not solved are NaN.
     """
     prepared = list(_prepared(points, models))
     if models.law.films is not None:
@@ -272,12 +273,13 @@ def _by_films(
     prepared: Sequence[Prepared], models: Models, progress: Callable[[int], None] | None
 ) -> dict[str, np.ndarray]:
     """Summaries of points whose films are solved, one after the other."""
-    alone, rows, ends = models.without_friction, [], []
+    alone, rows, ends, doubts = models.without_friction, [], [], []
     for done, (design, operation, engaged) in enumerate(prepared, 1):
         known = engaged or one_engagement(design, operation.load, alone, NODES)
         found = in_turns(design, operation, models, known)
         rows.append(((design, operation, replace(known, body=None)), found.balance))
         ends.append(found.status)
+        doubts.append("; ".join(getattr(one, "brief", "") or one for one in found.warnings))
         if progress is not None:
             progress(done)
     told = in_chunks(lambda chunk: _summaries(chunk[0], chunk[1], alone, models.film), rows)
@@ -285,6 +287,7 @@ def _by_films(
         "turns_code": [one.code for one in ends],
         "turns_change": [one.residual for one in ends],
         "turns": [one.iterations for one in ends],
+        "outside_films": doubts,
     }
     return {**told, **{name: np.array(values) for name, values in each.items()}}
 
