@@ -97,6 +97,18 @@ def folder(moving: tuple[Ready, Outcome], tmp_path_factory: pytest.TempPathFacto
     return made
 
 
+def test_a_torque_that_holds_hardly_anything_is_told_as_none_is(
+    moving: tuple[Ready, Outcome],
+) -> None:
+    assert "too low" not in moving[1].parts["running"].attrs["warnings"]
+    for held in ('breakaway_torque = "1e-6 N m"\n', ""):
+        losses = MOVING.replace('breakaway_torque = "1 N m"\nbreakaway_spread = 2.0\n', held)
+        built = variant(PAIR + losses).built({})
+        (told,) = json.loads(RUNNING.compute(built, {}, silent).attrs["warnings"])
+        # 0.1 N m and 2 N m over the ratio of 10, at rest as in slow motion
+        assert "A torque to start of 0.3 N m beside 0.3 N m in slow motion is too low" in told
+
+
 def command(*arguments: object) -> int:
     with pytest.MonkeyPatch.context() as changed, pytest.raises(SystemExit) as caught:
         changed.setattr(sys, "argv", ["pitchpoint", *map(str, arguments)])

@@ -51,6 +51,9 @@ COLD = 243.15
 CREEPING = 2.0 * np.pi / 60.0
 """Speed of a driver that begins to turn, at which laws of tooth friction are taken [rad/s]."""
 
+AT_REST = 1.1
+"""Least starting torque over that in slow motion, in which seals and greased bearings do not stick."""
+
 _DIMS = ("law", "speed", "temperature")
 _AT_REST = ("law", "temperature")
 
@@ -66,8 +69,9 @@ def running_part(built: Ready) -> xr.Dataset:
     speeds, degrees = running_axes(built)
     back, creeping = built.backwards, creeping_speed(built)
     turned = creeping * float(back.operation.speed) / float(built.operation.speed)
+    running = _running(built, np.append(speeds, creeping), degrees)
     data = {
-        "no_load_torque": (_DIMS, _running(built, speeds, degrees)),
+        "no_load_torque": (_DIMS, running[:, :-1]),
         "starting_torque": (_AT_REST, from_rest(built, 0.0, creeping, degrees)[1]),
         "back_driving_torque": (_AT_REST, from_rest(back, 0.0, turned, degrees)[1]),
     }
@@ -85,7 +89,7 @@ def running_part(built: Ready) -> xr.Dataset:
         },
         title="running without load",
         travels=built.travels,
-        warnings=_unloaded(built),
+        warnings=_easily_started(built, data["starting_torque"][1], running[:, -1], degrees),
         solve=told(np.concatenate([_held(values).ravel() for _, values in data.values()])),
         note="NaN where friction holds the drive whatever the torque",
         fitted=" ".join(filter(None, [_fitted(built), _of_set(built, data, degrees)])),
@@ -195,16 +199,34 @@ def _held(torques: np.ndarray) -> np.ndarray:
     return locked_or_lost(np.isnan(torques))
 
 
-def _unloaded(built: Ready) -> list[str]:
-    """Starting torques without what mostly makes them."""
-    if any(float(drag.preload) or drag.holds for drag in built.drags):
+def _easily_started(
+    built: Ready, starting: np.ndarray, slow: np.ndarray, degrees: np.ndarray
+) -> list[str]:
+    """Starting torques that do not exceed those of slow motion, where measured ones do by far.
+
+    Args:
+        built: the case.
+        starting: from rest [law, temperature].
+        slow: at a creeping speed, as `starting`.
+        degrees: temperatures [K].
+    """
+    at = int(np.argmin(np.abs(degrees - built.case.operation.temperature)))
+    some = np.isfinite(starting[:, at]) & np.isfinite(slow[:, at])
+    if not some.any():
         return []
+    law = int(np.argmin(np.where(some, starting[:, at] - AT_REST * slow[:, at], np.inf)))
+    rest, moving = float(starting[law, at]), float(slow[law, at])
+    if rest >= AT_REST * moving:
+        return []
+    kind = "force" if "driver" in built.travels else "torque"
+    unit = "N" if kind == "force" else "N m"
     return [
         Doubt(
-            "Torques to start are too low without what holds bearings at rest; measured drives take many "
-            "times as much, either way, and no preload, breakaway model or breakaway_torque is given.",
+            f"A {kind} to start of {rest:.3g} {unit} beside {moving:.3g} {unit} in slow motion is too low: "
+            "seals and greased bearings stick at rest, and measured drives take up to many times as much, "
+            "either way; a breakaway model or a breakaway_torque in [losses] says what holds them.",
             about=("starting_torque", "back_driving_torque"),
-            brief="Torques to start are too low: nothing holds bearings at rest.",
+            brief=f"A {kind} to start of {rest:.3g} {unit} is too low: too little holds.",
         )
     ]
 
