@@ -485,3 +485,12 @@ def test_a_driver_that_does_not_move(odd: dict[str, Any], tmp_path: Path) -> Non
     ):
         with pytest.raises(InputError, match=words):
             describe(kept({**odd, **change}, tmp_path))
+
+
+def test_the_lubricant_factor_of_a_mineral_oil_stands_among_what_is_fitted(tmp_path: Path) -> None:
+    path = tmp_path / "pair.toml"
+    path.write_text(PAIR.replace("75W90-A", "mineral-vg-150"))
+    rows = input_rows(describe(str(path))[0])
+    (row,) = (one for one in rows if "X_L" in one["key"])
+    assert row["status"] == "fitted" and row["value"].startswith("0.846")
+    assert "friction by iso_tr_14179_2 alone" in row["note"] and row["where"] == "fernandes_2022"
