@@ -25,6 +25,7 @@ from pitchpoint.analyses.four_quadrants import (
     table_of,
 )
 from pitchpoint.analyses.loss_map import maps
+from pitchpoint.analyses.operation import BACK_DRIVING, OPERATION
 from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.analyses.running import BANDS, RUNNING, from_rest
 from pitchpoint.cases.built_drive import Ready
@@ -107,6 +108,16 @@ def test_a_torque_that_holds_hardly_anything_is_told_as_none_is(
         (told,) = json.loads(RUNNING.compute(built, {}, silent).attrs["warnings"])
         # 0.1 N m and 2 N m over the ratio of 10, at rest as in slow motion
         assert "A torque to start of 0.3 N m beside 0.3 N m in slow motion is too low" in told
+
+
+def test_the_input_of_a_drive_that_runs_backwards_is_the_member_that_is_loaded() -> None:
+    built = variant(PAIR + '[models]\nfriction = "frictionless"\n').built({})
+    forth, back = (
+        one.compute(built, {}, silent)["mean_input_torque"] for one in (OPERATION, BACK_DRIVING)
+    )
+    ratio = 120 / 12  # without losses the load of 50 N m turns it backwards
+    assert (forth.item() * ratio, back.item()) == pytest.approx((50.0, 50.0), rel=1e-6)
+    assert "note" not in forth.attrs and back.attrs["note"].endswith("loads, which drives here")
 
 
 def command(*arguments: object) -> int:

@@ -185,7 +185,11 @@ def _why_outside(built: Ready, under: Sequence[Any]) -> list[list[str]]:
 def _back_driving(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """The loaded member drives at its own speed and carries the same power to the former driver."""
     back = built.backwards
-    return summaries([back], back.models, {}, title="back-driving", may_lock=True)
+    data = summaries([back], back.models, {}, title="back-driving", may_lock=True)
+    for name in ("mean_input_torque", "max_input_torque", "min_input_torque", "torque_ripple"):
+        if name in data:
+            data[name].attrs["note"] = "of the member that the case loads, which drives here"
+    return data
 
 
 def _law_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
