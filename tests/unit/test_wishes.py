@@ -327,6 +327,7 @@ def test_no_wish_is_a_key_and_none_stands_twice(table):
 
 UNITS_LEFT_OUT = {
     ("roughness", "ra", 0.4): 'write "0.4 um" or use one of m',  # 0.4 mm is out of the range
+    ("roughness", "ra", 400): 'write "400 nm" or use one of m',  # out of the range in um and in mm
     ("operation", "speed", 1200): 'write "1200 rpm" or',
     ("strength", "life", 20000): 'write "20000 h" or use one of s',
     ("materials", "hardness", 200): 'write "200 HV" or',  # 200 GPa is out of the range
@@ -457,3 +458,13 @@ def test_names_that_mean_something_else_than_their_neighbours(name):
     )
     table[name] = value
     assert words in (told := refused(tree)) and "did you mean" not in told
+
+
+def test_two_values_in_one_text_are_a_list_of_both_gears():
+    for key, value, line in (
+        ("teeth", "20,40", "[20, 40]"),
+        ("profile_shift", "0.4, -0.2", "[0.4, -0.2]"),
+    ):
+        told = refused(BASE | {"gears": BASE["gears"] | {key: value}})
+        assert f"for gear 1 and gear 2 write the list {line}; allowed is" in told
+        read(BASE | {"gears": BASE["gears"] | tomllib.loads(f"{key} = {line}")})

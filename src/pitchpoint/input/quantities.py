@@ -172,8 +172,15 @@ class Quantity:
         unit = re.escape(usual.partition(" ")[2])
         missing = re.search(rf'write "([^" ]+) {unit}"', message)
         meant = f"{missing[1]} {self.unit}" if missing else ""
-        if missing is None or not self._reads(meant):
+        if missing is None:
             return message
+        if not self._reads(meant):
+            # A number out of the range in the usual unit is not offered in it: 400 is no roughness in mm.
+            others = (f"{missing[1]} {one}" for one in units.units_of(self.kind))
+            fitting = next(filter(self._reads, others), "")
+            if not fitting or self._reads(missing[0].removeprefix("write ").strip('"')):
+                return message
+            return message.replace(missing[0], f'write "{fitting}"')
         return message.replace(f' or "{meant}"', "").replace(missing[0], f'write "{meant}"')
 
 
@@ -218,7 +225,19 @@ class Pair:
                     f"of two{_with_points(value)}; {self.each.allowed}"
                 )
             return self.each.read(value[0]), self.each.read(value[1])
-        both = self.each.read(value)
+        try:
+            both = self.each.read(value)
+        except InputError:
+            parts = value.split(",") if isinstance(value, str) else []
+            if len(parts) != 2 or not all(map(self.each._reads, parts)):
+                raise
+            plain = ", ".join(
+                one.strip() if units.plain(self.each.kind) else f'"{one.strip()}"' for one in parts
+            )
+            raise InputError(
+                f"{shown(value)} is one text; for gear 1 and gear 2 write the list [{plain}]; "
+                f"{self.each.allowed}"
+            ) from None
         return both, both
 
 
