@@ -226,7 +226,7 @@ def _easily_started(
             "seals and greased bearings stick at rest, and measured drives take up to many times as much, "
             "either way; a breakaway model or a breakaway_torque in [losses] says what holds them.",
             about=("starting_torque", "back_driving_torque"),
-            brief=f"A {kind} to start of {rest:.3g} {unit} is too low: too little holds.",
+            brief=f"{rest:.3g} {unit} to start: too low, too little holds.",
         )
     ]
 
