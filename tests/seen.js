@@ -73,5 +73,27 @@
       }
     });
   }
+
+  // Pages of paper as columns that are as high, which the browser parts by the same rules.
+  if (height) {
+    const main = document.querySelector("main");
+    const summed = document.querySelector("#one-page");
+    const styles = [main, summed].map((one) => one?.style.cssText ?? "");
+    if (summed) summed.style.display = "none";
+    main.style.cssText += `; columns: ${width}px; column-gap: 0; column-fill: auto; height: ${height}px`;
+    const page = (one) => Math.floor((one.left - box(main).left + 2) / width);
+    for (const one of main.querySelectorAll("figure, .mesh svg, .drive svg, tr, .card, .tiles > div, .legend, h2, h3, h4")) {
+      const parts = [...one.getClientRects()].filter((part) => part.height > 1);
+      if (shown(one) && new Set(parts.map(page)).size > 1) faults.push("parted by the end of a page: " + name(one));
+    }
+    for (const one of main.querySelectorAll("h2, h3, h4, .legend")) {
+      let next = one.nextElementSibling;
+      while (next && !shown(next)) next = next.nextElementSibling;
+      if (shown(one) && next && next.getClientRects().length && page(next.getClientRects()[0]) > page(box(one))) {
+        faults.push("alone at the end of a page: " + name(one));
+      }
+    }
+    [main, summed].forEach((one, k) => { if (one) one.style.cssText = styles[k]; });
+  }
   return [...new Set(faults)];
 })

@@ -9,6 +9,7 @@ __all__ = [
     "ALL",
     "HIGHEST",
     "LARGEST",
+    "PAPER",
     "faults_on_paper",
     "faults_on_screen",
     "faults_shown",
@@ -23,7 +24,7 @@ LARGEST = 2_500_000
 HIGHEST = 20_000
 """Pixels of a report 1280 px wide, with nothing unfolded."""
 
-_PAPER = 688, 1013
+PAPER = 688, 1013
 """Pixels of a page of A4 within its margins."""
 
 _FAULTS = Path(__file__).with_suffix(".js").read_text("utf-8").rstrip()
@@ -41,14 +42,14 @@ def faults_on_screen(page: Browser, path: Path, width: int, scheme: str) -> list
     return faults
 
 
-def faults_shown(page: Browser, width: int) -> list[str]:
-    """What is wrong with a page as it is now, in a window so wide."""
-    return [str(fault) for fault in page.run(f"{_FAULTS}([{width}, 0])")]
+def faults_shown(page: Browser, width: int, height: int = 0) -> list[str]:
+    """What is wrong with a page as it is now, in a window so wide, or on paper that is as high as told."""
+    return [str(fault) for fault in page.run(f"{_FAULTS}([{width}, {height}])")]
 
 
 def faults_on_paper(page: Browser) -> list[str]:
     """What is wrong with a report that is open once it is printed; it is left as it was."""
-    width, height = _PAPER
+    width, height = PAPER
     window = page.run("[innerWidth, innerHeight]")
     _, media = page.window or (0, {})
     features = [{"name": name.replace("_", "-"), "value": value} for name, value in media.items()]
@@ -56,7 +57,7 @@ def faults_on_paper(page: Browser) -> list[str]:
     _size(page, width, height)
     page.call("Emulation.setEmulatedMedia", media="print", features=features)
     page.run("new Promise(done => setTimeout(done, 500))")
-    faults = [f"on paper: {one}" for one in page.run(f"{_FAULTS}([{width}, {height}])")]
+    faults = [f"on paper: {one}" for one in faults_shown(page, width, height)]
     page.call("Emulation.setEmulatedMedia", media="", features=features)
     _size(page, *window)
     page.run("dispatchEvent(new Event('afterprint'))")

@@ -9,9 +9,10 @@ from xml.etree import ElementTree
 import pytest
 from browser import CHROMIUM, Browser, browser
 from pages import payload
-from seen import faults_on_paper, faults_on_screen, faults_shown, pages
+from seen import PAPER, faults_on_paper, faults_on_screen, faults_shown, pages
 from sound import SMOOTH, quick_first
 
+from pitchpoint import views
 from pitchpoint.runs.run import run
 from pitchpoint.views.report import write_report
 
@@ -123,6 +124,34 @@ def test_what_is_cut_empty_or_overlapping_is_found(wide: Browser, fault: str) ->
     wide.run(f"({_SPOILED[fault]}, null)")
     assert any(fault in words for words in faults_shown(wide, 1280))
     wide.window = None
+
+
+def test_figures_stay_whole_and_with_what_is_above_them_wherever_a_page_ends(
+    chromium: Browser, tmp_path: Path
+) -> None:
+    """Wherever a panel begins on a page; a legend of flexible parts lets go of its figures."""
+    figure = "<figure><figcaption>Loss</figcaption><svg width=300 height=230></svg></figure>"
+    law = f"<label>{'Friction law ' * 3}</label>"
+    panel = f"""<div class=above></div><h3>Study</h3><p class=note>Swept.</p><div class=legend>{4 * law}
+        </div><div class=figures>{4 * figure}</div>"""
+    style = (Path(views.__file__).parent / "templates" / "style.css").read_text("utf-8")
+    page = f"<style>{style}</style><style></style><main><section>{panel}</section></main>"
+    (tmp_path / "panel.html").write_text(f"<html data-drawn=all>{page}</html>", "utf-8")
+    chromium.open(tmp_path / "panel.html", PAPER[0])
+    chromium.call("Emulation.setEmulatedMedia", media="print")
+
+    def faults(rule: str) -> set[str]:
+        chromium.run(f"document.querySelectorAll('style')[1].textContent = '{rule}'")
+        found = set()
+        for above in range(600, 1000, 25):
+            chromium.run(f"document.querySelector('.above').style.height = '{above}px'")
+            found.update(faults_shown(chromium, *PAPER))
+        return found
+
+    assert faults("") == set()
+    assert any("end of a page" in one for one in faults(".legend { display: flex !important; }"))
+    chromium.call("Emulation.setEmulatedMedia", media="")
+    chromium.window = None
 
 
 def test_the_page_that_sums_up_fills_its_sheet_however_long_it_is(wide: Browser) -> None:
