@@ -439,7 +439,8 @@ def test_sweeps_of_two_points_are_one_table(published: Outcomes) -> None:
     page = render(cut)
     assert not any(name.startswith("study_shape") for name in payload(page)["figures"])
     (table,) = re.findall(r"<caption[^>]*>Few values: addendum.*?</table>", page, re.S)
-    assert table.count('<th scope="row">Shape</th>') == 2 * 3
+    assert table.count('<th scope="row">') == 2 * 3
+    assert "The same in all rows: Study Shape" in page
     data = cut["physical"].parts["study_shape"]
     for value in data["mean_efficiency"].values[0]:
         assert f'<td class="n">{show.number(100 * value)}</td>' in table
@@ -470,10 +471,29 @@ def test_tables_of_studies_leave_out_what_does_not_vary(published: Outcomes) -> 
     assert "Idle" not in with_loss
     assert not re.findall("100.00|efficiency|power loss|ripple|friction coefficient", without)
     rows = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row) for row in without.split("<tr>")[2:]]
-    assert {row[0] for row in rows} == {"Idle"}
-    columns = [*zip(*rows, strict=True)][3:]
-    assert columns
+    assert "The same in all rows: Study Idle" in page
+    columns = [*zip(*rows, strict=True)]
+    assert len(columns) > 2
     assert all(len({*column}) > 1 for column in columns)
+
+
+def test_quantities_beyond_what_a_page_has_room_for_stand_in_a_table_of_their_own(
+    published: Outcomes,
+) -> None:
+    """Names of studies and laws stand on the left in both, in words; every quantity once."""
+    names = ("mean_stiffness", "stiffness_variation", "transmission_error_range")
+    cut = {}
+    for name, one in published.items():
+        two = one.parts["study_shape"].isel(point=[0, 2])
+        two = two.assign({more: (k + 1.0) * two["mean_loss"] for k, more in enumerate(names)})
+        cut[name] = replace(one, parts={**one.parts, "study_shape": two})
+    told = re.findall(r"<caption[^>]*>Few values: addendum.*?</table>", render(cut), re.S)
+    heads = [re.findall(r'<th scope="col"( class="n")?>(.*?)</th>', table) for table in told]
+    assert [each[0] for each in heads] == [("", "Friction law")] * 2
+    assert [each[1][1] for each in heads] == ["addendum of both basic racks [modules]"] * 2
+    quantities = [head for each in heads for _, head in each[2:]]
+    assert len(quantities) == len({*quantities}) > 12
+    assert max(map(len, heads)) < 12
 
 
 def test_sweeps_of_one_key_share_their_figures(published: Outcomes) -> None:
@@ -1071,3 +1091,22 @@ def test_what_fails_alike_in_several_variants_is_said_once() -> None:
     told = {"warm": ["Teeth melt."], "cold": ["Teeth jam."], "hot": ["Teeth melt."]}
     outcomes = {name: Outcome({"implausible": texts}, {}) for name, texts in told.items()}
     assert _failing(outcomes) == {"Teeth melt.": ["warm", "hot"], "Teeth jam.": ["cold"]}
+
+
+def test_what_a_result_of_another_build_lacks_is_said_with_how_to_make_it_anew(
+    published: Outcomes,
+) -> None:
+    """Whatever one of its parts lacks; a result of this build that lacks something is a fault of ours."""
+    one = published["physical"]
+    parts = one.parts | {
+        part: one.parts[part].drop_vars(name)
+        for part, name in (("strength", "mesh_load_factor"), ("cycle", "efficiency"))
+    }
+    with pytest.raises(KeyError, match=r"mesh_load_factor|efficiency"):
+        render({"physical": replace(one, parts=parts)})
+    surroundings = one.manifest["surroundings"] | {"code": "0123456789abcdef"}
+    older = Outcome(one.manifest | {"surroundings": surroundings}, parts)
+    page = render({"physical": older})
+    assert "lacks: mesh load factor (mesh_load_factor). Make it anew: " in page
+    assert "<code>pitchpoint run FOLDER/physical/manifest.json</code>" in page
+    assert "(efficiency). Make it anew: " in page

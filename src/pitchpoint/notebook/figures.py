@@ -95,7 +95,7 @@ def _sections(
     for section in page.sections:
         found = {
             figure.name: (panel, figure)
-            for panel in panels(section.blocks(page))
+            for panel in panels(section.shows(page))
             for figure in panel.figures
             if figure.drawn
         }

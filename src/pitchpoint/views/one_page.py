@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from math import isfinite
 from typing import Any
 
@@ -12,7 +13,7 @@ from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
 from pitchpoint.views.point import speed_ratio
-from pitchpoint.views.section import Page, Paragraph, Table, key_figures
+from pitchpoint.views.section import Page, Paragraph, Table, key_figures, made_of
 from pitchpoint.views.sections.answer import operation_words, sharing_words
 
 __all__ = ["one_page"]
@@ -43,7 +44,15 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
     """
     outcome = next(iter(page.outcomes.values()))
     manifest = outcome.manifest
-    blocks = [] if page.designs else [b for s in page.sections for b in s.sums_up(outcome)]
+    blocks = (
+        []
+        if page.designs
+        else [
+            block
+            for section in page.sections
+            for block in made_of([outcome], partial(section.sums_up, outcome))
+        ]
+    )
     tables = [block for block in blocks if isinstance(block, Table)]
     if not any(table.caption == "Gears" for table in tables):
         summed_up = any(table.caption.startswith("Gears") for table in tables)

@@ -133,7 +133,7 @@ def _made(section: Section, page: Page) -> dict[str, Any]:
         "short": short,
         "folded": section.folded or beside,
         "beside": beside,
-        "blocks": _captioned(section.blocks(page), title),
+        "blocks": _captioned(section.shows(page), title),
     }
 
 

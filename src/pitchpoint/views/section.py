@@ -1,11 +1,15 @@
 """The contract of a section of the report and the screen: what it shows, what it lacks, its words."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from pitchpoint.programs import surroundings
 from pitchpoint.registry import Deferred, code_at
 from pitchpoint.results.by_stage import of_stage, stages_of
+from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import Curves, Panel
 
@@ -30,6 +34,7 @@ __all__ = [
     "by_variant",
     "key_figure",
     "key_figures",
+    "made_of",
     "naming",
     "of_meshes",
     "of_part",
@@ -38,6 +43,8 @@ __all__ = [
     "said",
     "tabbed",
 ]
+
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
@@ -59,9 +66,9 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Table:
-    """A table: names in the first column, numbers in the others.
+    """A table: names in the first columns, one of them unless `names` says how many, numbers in the others.
 
-    Its caption is the heading above it unless it has one of its own. A wide one keeps its lines whole and
+    Its caption is the heading above it unless it has one of its own. A wide one keeps its numbers whole and
     scrolls sideways under its first column. A caption that repeats the heading is for ears alone.
     """
 
@@ -71,6 +78,7 @@ class Table:
     caption: str = ""
     wide: bool = False
     repeats: bool = False
+    names: int = 1
     block: ClassVar[str] = "table"
 
 
@@ -417,22 +425,81 @@ class Section:
 
     def lacking(self, page: Page) -> str | None:
         """None if the section is shown, else why not."""
-        if self.lacks is not None:
-            return self.lacks(page)
+        if (lacks := self.lacks) is not None:
+            (why,) = made_of(page.outcomes.values(), lambda: [lacks(page)], lambda told: [told])
+            return why
         return None if page.having(*self.parts) else reason(page, *self.parts)
+
+    def shows(self, page: Page) -> list[Block]:
+        """What stands in it, or what results of another build lack for it."""
+        return made_of(
+            page.outcomes.values(),
+            lambda: map(_settled, self.blocks(page)),
+            lambda told: [Paragraph(told, "warning")],
+        )
 
     def answers(self, outcome: Outcome) -> Iterator[KeyFigure]:
         """Main figures of one variant, those of each stage by its name."""
         for stage, mesh in of_meshes(outcome, *self.parts):
-            for figure in self.answer(mesh):
+            for figure in made_of([outcome], partial(self.answer, mesh)):
                 yield figure.of(stage) if stage else figure
 
     def prints(self, outcome: Outcome) -> Iterator[Printed]:
         """What the command line prints of one variant, that of each stage under its name."""
         for stage, mesh in of_meshes(outcome, *self.parts):
-            for printed in self.screen(mesh):
+            made = partial(self.screen, mesh)
+            for printed in made_of([outcome], made, lambda told: [Printed(line=told)]):
                 titles = [stage.capitalize(), printed.title]
                 yield replace(printed, title=": ".join(filter(None, titles))) if stage else printed
+
+
+def made_of(
+    outcomes: Iterable[Outcome],
+    make: Callable[[], Iterable[Made]],
+    instead: Callable[[str], Iterable[Made]] = lambda told: (),
+) -> list[Made]:
+    """What is made of some outcomes; where one of another build lacks something for it, what stands instead.
+
+    Args:
+        outcomes: that it is made of.
+        make: looks at them.
+        instead: by a sentence that says what is lacking, and how the result is made anew.
+
+    Raises:
+        KeyError: all outcomes are of this build, which keeps all that it looks at.
+    """
+    try:
+        return [*make()]
+    except KeyError as error:
+        here = surroundings()["code"]
+        older = (
+            one.manifest for one in outcomes if one.manifest["surroundings"].get("code") != here
+        )
+        for manifest in older:
+            return [*instead(_lacking(manifest, error))]
+        raise
+
+
+def _lacking(manifest: Mapping[str, Any], error: KeyError) -> str:
+    """What a result of another build lacks, in a sentence with the command that makes it anew."""
+    name = next(iter(re.findall(r"'(\w+)'", str(error))), "")
+    known = VARIABLES.get(name)
+    words = f"{known.long_name} ({name})" if known else name or str(error)
+    return (
+        f"This result was kept by another build of Pitchpoint and lacks: {words}. "
+        f"Make it anew: `pitchpoint run FOLDER/{manifest['variant']}/manifest.json`, FOLDER being its folder."
+    )
+
+
+def _settled(block: Block) -> Block:
+    """A block that reads no result any more."""
+    if isinstance(block, Table):
+        return replace(block, rows=[*block.rows])
+    if isinstance(block, Folded):
+        return replace(block, inside=[*map(_settled, block.inside)])
+    if isinstance(block, Variants):
+        return Variants({name: [*map(_settled, them)] for name, them in block.each.items()})
+    return block
 
 
 def key_figures(sections: "Iterable[Section]", outcome: Outcome) -> list[KeyFigure]:

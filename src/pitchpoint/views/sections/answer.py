@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,16 @@ from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
 from pitchpoint.views.point import operating_point, speed_ratio
 from pitchpoint.views.screen import cell, efficiency_of, head, shown
-from pitchpoint.views.section import Block, Drawn, KeyFigure, Page, Printed, Section, key_figures
+from pitchpoint.views.section import (
+    Block,
+    Drawn,
+    KeyFigure,
+    Page,
+    Printed,
+    Section,
+    key_figures,
+    made_of,
+)
 from pitchpoint.views.sections.back_driving import (
     back_driving,
     back_driving_figure,
@@ -68,7 +78,7 @@ def _blocks(page: Page) -> Iterator[Block]:
     }
     yield Drawn("answer.html.jinja", values)
     for section in page.sections:
-        yield from section.closing(page)
+        yield from made_of(page.outcomes.values(), partial(section.closing, page))
 
 
 _SUMS = ("mean_efficiency", "mean_loss", "mean_input_torque", "torque_ripple")
@@ -247,7 +257,11 @@ def _answer(page: Page, outcome: Outcome, law: str, position: int, curve: Curve)
         "borne": list(_borne(outcome, position)),
         "drag": _drag(data, position),
         "bearings": _bearings(outcome, position),
-        "more": [row for section in page.sections for row in section.card(outcome, law)],
+        "more": [
+            row
+            for section in page.sections
+            for row in made_of([outcome], partial(section.card, outcome, law))
+        ],
     }
 
 

@@ -48,6 +48,9 @@ __all__ = ["FORMULAS"]
 _WIDE = 6
 """Columns of numbers that a table has room for."""
 
+_LONG = 12
+"""Rows beyond which a table stands in two columns where its heads are short."""
+
 _FEW = 4
 """Places that a sentence has room for."""
 
@@ -245,13 +248,15 @@ def _side_by_side(name: str, studies: list[_Study], beside: Beside) -> Panel:
 def _family(name: str, one: Curves, points: list[_Where], titles: list[str]) -> Figure:
     """One course at each of several points."""
     (variable,) = one.names
-    keys = [Key(title, PALETTE[k]) for k, title in enumerate(titles)]
+    keys = [Key(show.pretty(title), PALETTE[k]) for k, title in enumerate(titles)]
     unit = show.unit_of(variable)
     traces = [
         plain(key, *_course(variable, study.data, point, one), unit)
         for key, (study, point) in zip(keys, points, strict=True)
     ]
-    return _drawn(name, one, traces, keys)
+    figure = _drawn(name, one, traces, keys)
+    alike = all(trace[axis] == traces[0][axis] for trace in traces for axis in "xy")
+    return replace(figure, note="All curves are the same.") if alike else figure
 
 
 def _drawn(name: str, one: Curves, traces: list[Trace], keys: list[Key]) -> Figure:
@@ -355,7 +360,7 @@ def _table(data: xr.Dataset, beside: Beside) -> Table:
         )
         for told, names in rows
     ]
-    return Table(["Quantity", *heads], wide)
+    return Table(["Quantity", *heads], wide, compact=len(wide) > _LONG)
 
 
 def _titled(told: str, name: str) -> str:

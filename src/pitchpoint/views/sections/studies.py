@@ -48,13 +48,16 @@ _OF_LOSS = (
 )
 """What a mesh without loss has at its limit, whatever else it is."""
 
-_NAMES = 3
-"""Columns that say which study, place and law a row is of."""
+_PLACE = 2
+"""Column of the place on the axis of a row, behind those with the names of its study and law."""
 
 _WITHOUT = "Without friction the efficiency is 100 %, and the torque has no ripple."
 
 _WIDE = 8
 """Columns from beyond which a table is a wide one."""
+
+_MOST = 12
+"""Columns of quantities that a page has room for; those beyond stand in a table of their own."""
 
 _FEW = 3
 
@@ -137,21 +140,26 @@ def _table(studies: list[Seen], note: str, *, lossless: bool, named: bool) -> It
         columns = [name for name in columns if name not in _OF_LOSS]
     swept = "axis" in like
     titles = (show.axis_title(name, like) for name in columns)
-    heads = ["Study", _swept(like)[1] if swept else "", "Friction law", *titles]
+    heads = ["Study", "Friction law", _swept(like)[1] if swept else "", *titles]
     rows = [row for seen in studies for row in _rows(seen, columns)]
-    told = [
-        k for k in range(_NAMES, len(heads)) if len(rows) > 1 and len({r[k] for r in rows}) == 1
-    ]
-    same = f"The same in all rows: {', '.join(f'{heads[k]} {rows[0][k]}' for k in told)}."
-    if note or told:
-        yield Paragraph(" ".join(filter(None, (note, same if told else ""))), "note")
-    left_out = {*told, *([] if named or swept else [0]), *([] if swept else [1])}
-    kept = [k for k in range(len(heads)) if k not in left_out]
-    yield Table(
-        [heads[k] for k in kept],
-        [tuple(row[k] for k in kept) for row in rows],
-        wide=len(kept) > _WIDE,
-    )
+    shown = [k for k in range(len(heads)) if (named or swept or k) and (swept or k != _PLACE)]
+    same = [k for k in shown if k != _PLACE and len(rows) > 1 and len({r[k] for r in rows}) == 1]
+    kept = [k for k in shown if k not in same]
+    if same:
+        told = ", ".join(f"{heads[k]} {rows[0][k]}" for k in same)
+        note = " ".join(filter(None, (note, f"The same in all rows: {told}.")))
+    if note:
+        yield Paragraph(note, "note")
+    names = [k for k in kept if k <= _PLACE]
+    numbers = np.array(kept[len(names) :], dtype=int)
+    for part in np.array_split(numbers, max(-(-numbers.size // _MOST), 1)):
+        of_part = [*names, *part]
+        yield Table(
+            [heads[k] for k in of_part],
+            [tuple(row[k] for k in of_part) for row in rows],
+            wide=len(of_part) > _WIDE,
+            names=sum(k < _PLACE for k in names),
+        )
 
 
 def _rows(seen: Seen, columns: list[str]) -> Iterator[tuple[str, ...]]:
@@ -160,7 +168,7 @@ def _rows(seen: Seen, columns: list[str]) -> Iterator[tuple[str, ...]]:
         for point in range(data.sizes["point"]):
             place = _valued(data, point) if "axis" in data else ""
             cells = _cells(data, law, columns, point)
-            yield str(data.attrs["title"]), place, curve.label, *cells
+            yield str(data.attrs["title"]), curve.label, place, *cells
 
 
 def _valued(data: xr.Dataset, point: int) -> str:
