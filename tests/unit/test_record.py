@@ -34,6 +34,7 @@ GOOD: dict[str, Any] = {
     "own": "",
     "implausible": [],
     "warnings": ["dry"],
+    "briefs": ["dry: no film"],
     "laws": [LAW],
     "models": [{**LAW, "effect": "load sharing"}],
     "family": "cylindrical",

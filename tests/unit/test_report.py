@@ -20,7 +20,7 @@ from records import entries
 from sound import quick_first
 
 from pitchpoint.cases.build import ALONE
-from pitchpoint.doubts import stored
+from pitchpoint.doubts import as_doubt, stored
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.family import Family
@@ -666,9 +666,17 @@ def test_inputs_that_differ_are_shown_for_each_variant(page: str) -> None:
 
 def test_reopened_results_give_the_same_report(published: Outcomes, folder: Path) -> None:
     """Beside those that the run itself gives: results of the bank are opened again too."""
-    page = render(run(folder / "published.toml", folder=folder / "published"))
-    write_report(open_result(folder / "published"), folder / "report.html")
-    assert (folder / "report.html").read_text("utf-8") == page
+    new = run(folder / "published.toml", folder=folder / "published")
+    kept = open_result(folder / "published")
+    write_report(kept, folder / "report.html")
+    assert (folder / "report.html").read_text("utf-8") == render(new)
+    for name, one in new.items():
+        told, again = (
+            [(text, as_doubt(text).brief) for text in outcome.manifest["warnings"]]
+            for outcome in (one, kept[name])
+        )
+        assert told == again
+        assert any(text != brief for text, brief in again)
     assert [path.name for path in folder.glob(".report*")] == []
 
 

@@ -252,6 +252,7 @@ class Manifest(_Kept):
         surroundings: versions of the packages that computed it, and of what else decides its last bits.
         own: name of a friction law of the user's own that took the place of those of the case, or empty.
         implausible: sentences on what cannot be, above every number.
+        briefs: of these and of the warnings for a screen, see `Doubt`; none in a record of an older build.
         members: body of each coordinate.
         stages: the same of each mesh of a drive by itself, in the order of the power.
         motion: nominal rate of each coordinate for one radian of the driver.
@@ -273,6 +274,7 @@ class Manifest(_Kept):
     own: str
     implausible: list[str] = []
     warnings: list[str]
+    briefs: list[str] = []
     laws: list[Law]
     models: list[Model]
     family: str
@@ -302,7 +304,18 @@ class Manifest(_Kept):
         for body in (self.driver, self.loaded):
             if body not in self.members:
                 raise ValueError(f"'{shorten(body)}' is none of the members")
+        if self.briefs and len(self.briefs) != len(self.implausible) + len(self.warnings):
+            raise ValueError("briefs are not as many as what is implausible and warnings together")
         return self
+
+    @property
+    def doubts(self) -> dict[str, list[Doubt]]:
+        """What is implausible, and warnings, with their briefs."""
+        briefs = iter(self.briefs)
+        return {
+            kind: [Doubt(text, brief=next(briefs, "")) for text in getattr(self, kind)]
+            for kind in ("implausible", "warnings")
+        }
 
     @property
     def tree(self) -> Tree:

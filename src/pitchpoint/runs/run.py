@@ -31,7 +31,7 @@ from pitchpoint.cases.record import CASE, MANIFEST, OUTPUT, RUN, Manifest, Recor
 from pitchpoint.cases.schema import Loss, Study, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
-from pitchpoint.doubts import apart, concerns, doubts_of
+from pitchpoint.doubts import apart, as_doubt, concerns, doubts_of
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
@@ -132,7 +132,9 @@ class Outcome:
         """Add sentences to what is implausible, and to the warnings: as far as parts are there for them."""
         self.doubts += sentences
         there = {str(name) for part in self.parts.values() for name in part}
-        self.manifest.update(apart(text for text in self.doubts if concerns(text, there)))
+        told = apart(text for text in self.doubts if concerns(text, there))
+        briefs = [as_doubt(text).brief for sentences in told.values() for text in sentences]
+        self.manifest.update(told, briefs=briefs)
 
 
 @double_precision()
@@ -557,7 +559,8 @@ def _unwatched(_: Path | None) -> Iterator[Progress]:
 
 
 def _opened(path: Path) -> Outcome:
-    manifest = Manifest.read(path).model_dump()
+    kept = Manifest.read(path)
+    manifest = kept.model_dump() | kept.doubts
     publication_of(manifest["source"])  # whose variables the parts may hold
     parts = {name: load(path.parent / f"{name}.nc") for name in manifest["parts"]}
     return Outcome(manifest, parts)
@@ -766,6 +769,7 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
         "own": ", ".join(law.name for law in variant.own if isinstance(law, FrictionLaw)),
         "implausible": [],
         "warnings": [],
+        "briefs": [],
         "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],
         "models": [
             {"effect": effect, "name": law.name, "title": law.title, "note": law.note}
