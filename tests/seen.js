@@ -86,13 +86,6 @@
       const parts = [...one.getClientRects()].filter((part) => part.height > 1);
       if (shown(one) && new Set(parts.map(page)).size > 1) faults.push("parted by the end of a page: " + name(one));
     }
-    for (const one of main.querySelectorAll("h2, h3, h4, .legend")) {
-      let next = one.nextElementSibling;
-      while (next && !shown(next)) next = next.nextElementSibling;
-      if (shown(one) && next && next.getClientRects().length && page(next.getClientRects()[0]) > page(box(one))) {
-        faults.push("alone at the end of a page: " + name(one));
-      }
-    }
     [main, summed].forEach((one, k) => { if (one) one.style.cssText = styles[k]; });
   }
   return [...new Set(faults)];

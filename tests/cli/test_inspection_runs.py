@@ -120,6 +120,7 @@ def test_the_report_and_the_screen_show_it(asked, data) -> None:
     rows = {row[0]: row[1:] for one in tables.values() for row in one.rows}
     assert rows["measuring balls D_M [mm]"] == ("3.500", "0.500")
     assert rows["over balls, in a ring between them, M_d, thickest teeth [mm]"][1] == "–"
+    assert {"single pitch f_pT [µm]", "profile form f_fαT [µm]"} <= {*rows}
     assert tables["tolerance by ISO 1328-1"].head[1:] == ["gear 1, class 6", "gear 2, class 7"]
     words = " ".join(str(one.words) for one in blocks if isinstance(one, Paragraph))
     assert "come on top" in words

@@ -607,11 +607,24 @@ def test_designs_have_their_results_as_rows_and_their_curves_on_the_same_axes(
     assert rows["mean_drag_loss", ""] == float(operation["mean_drag_loss"].values[0, 0])
 
 
-def test_play_that_rounding_leaves_is_none(whole: Outcome) -> None:
+@pytest.mark.parametrize("play", [1e-17, 5e-4])
+def test_play_that_rounding_leaves_or_nobody_feels_is_none(whole: Outcome, play: float) -> None:
+    """The play is a part of the largest wind-up."""
     data = whole.parts["torsion"].copy()
-    data["kinematic_play"] = 1e-17
+    data["kinematic_play"] = play * data["wind_up"].max()
     one = replace(whole, parts={**whole.parts, "torsion": data})
     assert "without load" not in torsion_answer(one)
+
+
+@pytest.mark.parametrize(("ratio", "told"), [(2.5e-3, "0.0025"), (2e-4, "below 0.001")])
+def test_a_film_thinner_than_a_molecule_has_no_digits(
+    whole: Outcome, ratio: float, told: str
+) -> None:
+    cycle = whole.parts["cycle"]
+    films = cycle.assign(lambda_ratio=ratio + 0.0 * cycle["lambda_ratio"])
+    one = replace(whole, parts={**whole.parts, "cycle": films})
+    values = {figure.name: figure.value for figure in key_figures(in_order(), one)}
+    assert values["Film ratio"] == told
 
 
 def test_both_ends_are_one_line_only_if_they_are_alike(whole: Outcome) -> None:

@@ -390,19 +390,22 @@ def gone(data: xr.Dataset) -> Iterator[Paragraph]:
         )
 
 
-def solved_how(data: xr.Dataset, contacts: str, grid: str) -> str:
+def solved_how(
+    data: xr.Dataset, contacts: str, grid: str, times: str = "phases of the mesh cycle"
+) -> str:
     """How the films were solved, in words.
 
     Args:
         data: films of the cycle.
         contacts: what they are, in words.
         grid: on which they were solved, in words.
+        times: what the phases are of.
     """
     solve, chosen = json.loads(data.attrs["solve"]), json.loads(data.attrs["choices"])
     named = ", ".join(f"{name.replace('_', ' ')} {chosen[name]}" for name in _CHOSEN)
     return (
         f"Pressure, film and load of each of {int(data['loaded_contacts'])} {contacts} together, at "
-        f"{data.sizes['phase']} phases of the mesh cycle under the forces of the balance with the first "
+        f"{data.sizes['phase']} {times} under the forces of the balance with the first "
         f"friction law: {solve['sentence']}; at most {solve['iterations']} iterations, largest defect "
         f"{solve['residual']:.0e} of Hertz's pressure. {grid}; {named}, "
         f"boundary friction {chosen['boundary_friction']:g}. {_warmth(data)}"
@@ -432,6 +435,8 @@ def figures_table(outcome: Outcome, data: xr.Dataset) -> Table:
     rows += [row(name, empty) for name in _SERIES if name in data]
     for own, by_law in _BESIDE.items():
         values = data[by_law].values
+        if own == "film_efficiency" and not np.isfinite(values).any():
+            continue  # nothing is transmitted
         rows.append(row(own, [show.quantity(by_law, float(one), of=data) for one in values]))
         rows += [row(part, empty) for part in _PARTS.get(own, ())]
     named = [law_title(outcome, law) for law in known]

@@ -260,6 +260,10 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
             yield Printed(line=f"{law['title']}: {name} {words}.")
 
 
+_NO_FILM = 1e-3
+"""Film over composite Rq below which it is thinner than a molecule, where the entrainment turns."""
+
+
 def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     """The thinnest film over roughness and what asperities carry at most, under the first law."""
     data = outcome.parts.get("cycle")
@@ -267,7 +271,8 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         return
     ratio = data["lambda_ratio"].values[0][data["load"].values[0] > 0.0]
     if ratio.size and np.isfinite(ratio).any():
-        value = show.number(float(np.nanmin(ratio)))
+        least = float(np.nanmin(ratio))
+        value = show.number(least) if least >= _NO_FILM else f"below {_NO_FILM:g}"
         law = show.pretty(input_words(outcome, "models", "film_thickness"))
         detail = f"thinnest film by {law} over composite Rq"
         yield KeyFigure(76.5, "Film ratio", value, detail)

@@ -438,15 +438,18 @@ def finite_film_blocks(page: Page) -> Iterator[Block]:
 def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts["finite_film"]
     yield from gone(data)
-    yield Paragraph(solved_how(data, _CONTACTS[data.attrs["solver"]], _grid(data)))
+    still = np.unique(data["central_film"].values).size == 1  # one contact, the same at all phases
+    times = {"times": "times, at all of which the contact is the same,"} if still else {}
+    yield Paragraph(solved_how(data, _CONTACTS[data.attrs["solver"]], _grid(data), **times))
     yield figures_table(outcome, data)
     yield from beneath(data)
     if int(data["solved_contacts"]):
         yield from _of_kept(position, data)
-    yield Heading("Over the mesh cycle")
-    name = f"finite{position}"
-    more = [_pressures(f"{name}_pressures", outcome, data)]
-    yield courses(name, outcome, data, more)
+    if not still:
+        yield Heading("Over the mesh cycle")
+        name = f"finite{position}"
+        more = [_pressures(f"{name}_pressures", outcome, data)]
+        yield courses(name, outcome, data, more)
     yield from film_laws(data)
 
 

@@ -105,10 +105,26 @@ def _count(value: float) -> str:
     return f"{value:.0f}" if np.isfinite(value) else "–"
 
 
+_DEVIATIONS = {
+    "f_pT": "single pitch",
+    "F_pT": "cumulative pitch, total",
+    "f_HαT": "profile slope",
+    "f_fαT": "profile form",
+    "f_HβT": "helix slope",
+    "f_fβT": "helix form",
+    "F_αT": "profile, total",
+    "F_βT": "helix, total",
+}
+"""What tolerances of ISO 1328-1 are of."""
+
+
 def _tolerance_rows(data: xr.Dataset) -> list[Row]:
     tolerance = show.described("flank_tolerance")
     return [
-        _row(show.bracketed(name, tolerance), [show.number(tolerance.displayed(v)) for v in values])
+        _row(
+            show.bracketed(f"{_DEVIATIONS[name]} {name}", tolerance),
+            [show.number(tolerance.displayed(v)) for v in values],
+        )
         for name, values in zip(
             data["tolerance"].values, data["flank_tolerance"].values.T, strict=True
         )
@@ -135,7 +151,8 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
             "centre distance gives the least, mean and largest backlash.",
             "note",
         )
-    yield Paragraph(" ".join([_USUAL, *json.loads(data.attrs["unmeasured"])]), "note")
+    untold = (text[:1].upper() + text[1:] for text in json.loads(data.attrs["unmeasured"]))
+    yield Paragraph(" ".join([_USUAL, *untold]), "note")
 
 
 def _answer(outcome: Outcome) -> Iterator[KeyFigure]:

@@ -63,8 +63,8 @@ _SLOPES = ("torsional_stiffness", "tangent_torsional_stiffness")
 _BENT = 0.01
 """Part by which torque over wind-up differs from its slope, from which on both are told."""
 
-_PLAY = 1e-5
-"""Play over the largest wind-up below which it is what dimensions are known to."""
+_PLAY = 1e-3
+"""Play over the largest wind-up below which nobody feels it, and dimensions are not known to it."""
 
 
 def torsion_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:

@@ -384,6 +384,17 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
         (value, detail), *others = told
         details = [detail, *(" ".join(other) for other in others)]
         yield KeyFigure(35.0, "Transmission error", value, "; ".join(details))
+        yield _natural(outcome)
+
+
+def _natural(outcome: Outcome) -> KeyFigure:
+    """Natural frequency at the operating torque, and the driver speed at which it is the mesh frequency."""
+    data = outcome.parts["vibration"]
+    natural = float(data["natural_frequency"].values[-1])
+    met = show.quantity("speed", natural * period_of(outcome).angle, of=data)
+    driver = show.the(outcome.manifest["driver"])
+    value = show.quantity("natural_frequency", natural)
+    return KeyFigure(36.0, "Natural frequency", value, f"that of the mesh at {met} of {driver}")
 
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:
