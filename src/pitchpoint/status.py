@@ -156,8 +156,6 @@ def locked_or_lost(locked: np.ndarray | bool, lost: np.ndarray | bool = False) -
 
 
 def _counted(codes: np.ndarray) -> Iterator[str]:
-    for code in Code:
-        count = int(np.sum(codes == code))
-        if count:
-            part = "" if count == codes.size else f"{count} of {codes.size}: "
-            yield f"{part}{code.sentence}"
+    for code, count in zip(*np.unique(codes, return_counts=True), strict=True):
+        part = "" if count == codes.size else f"{count} of {codes.size}: "
+        yield f"{part}{Code(int(code)).sentence}"

@@ -100,7 +100,7 @@ def summaries(
     turns = _turns(runs)
     unsure = [run.pop("outside_films", np.full(run["locked"].shape, "")) for run in runs]
     lost = films_lost(turns["turns_code"])
-    out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
+    out = {name: np.array([run[name] for run in runs]) for name in runs[0]}
     carrying, slices = (out.pop(name, None) for name in ("carrying_slices", "slices"))
     extremes = {name: out.pop(name) for name in [*out] if name.startswith(_ENDS)}
     if points[0].transmits and "lowest_lambda_ratio" in extremes:

@@ -100,6 +100,8 @@ _OIL = {
 
 Row = dict[str, Any]
 
+_DEFAULT = Provenance("default")
+
 
 def resolved(
     built: Ready, document: Document, studies: Mapping[str, Study] | None = None
@@ -282,20 +284,22 @@ def _rows(
 ) -> Iterator[Row]:
     """Rows of a table of the case file; `following` are values of what it leaves open."""
     asked = dict(leaves({table: document.tree[table]})) if table in document.tree else {}
+    ends = ((path, at) for path in asked for at, sign in enumerate(f"{path}.") if sign == ".")
+    held = {path[:end] for path, end in ends}  # with the tables above each value
     derived = following or {}
     usual = marks_of(document.tree.get(table)) if table == "losses" else {}
     for key, left in _leaves(getattr(case, table)):
-        found = _followed(derived.get(key))
-        path, value = f"{table}.{key}", found.value if left is None else left
+        found = _followed(derived.get(key)) if left is None else None
+        path, value = f"{table}.{key}", left if found is None else found.value
         if value is None:
             continue
         value = _plain(value)
-        if any(one == path or one.startswith(f"{path}.") for one in asked):
+        if path in held:
             mark = document.provenance.get(path, Provenance())
             mark = _scaled(mark, path, document, asked.get(path))
             yield _row(table, key, value, _kind(path, value), mark, given=True)
         else:
-            mark = usual.get(key, _mark(found) if left is None else Provenance("default"))
+            mark = usual.get(key, _DEFAULT if found is None else _mark(found))
             yield _row(table, key, value, _kind(path, value), mark)
     for path, value in asked.items():
         key = path[len(table) + 1 :]
@@ -376,15 +380,15 @@ def _kind(key: str, value: Any) -> str | dict[str, str]:
 
 def _plain(value: Any) -> Any:
     """A value as JSON has it."""
-    if isinstance(value, FrictionChoice):
-        return {"name": value.name, **value.parameters}
-    if isinstance(value, BaseModel):
-        return value.model_dump()
+    if isinstance(value, str | bool | dict):  # first what most of them are
+        return value
+    if isinstance(value, float | int):
+        return float(value)
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
-    if isinstance(value, float | int) and not isinstance(value, bool):
-        return float(value)
-    return value if isinstance(value, str | bool | dict) else np.asarray(value, float).tolist()
+    if isinstance(value, FrictionChoice):
+        return {"name": value.name, **value.parameters}
+    return value.model_dump() if isinstance(value, BaseModel) else np.asarray(value, float).tolist()
 
 
 def _dimensions(built: Built) -> Iterator[Row]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import equinox as eqx
@@ -173,7 +174,7 @@ class Models(eqx.Module):
     """
 
     friction: tuple[FrictionLaw, ...] = eqx.field(static=True)
-    choice: Int[Array, ""]
+    choice: Int[Arrays, ""]
     parameters: Mapping[str, Mapping[str, Float[Array, ""]]]
     sharing: LoadSharing = eqx.field(static=True)
     rolling: RollingResistance = eqx.field(static=True)
@@ -185,7 +186,7 @@ class Models(eqx.Module):
     def __repr__(self) -> str:
         return brief(self)
 
-    @property
+    @cached_property
     def law(self) -> FrictionLaw:
         """The friction law that acts."""
         return self.friction[int(self.choice)]
@@ -195,13 +196,18 @@ class Models(eqx.Module):
         """The same models under each of the friction laws."""
         return tuple(replace(self, choice=array(number)) for number in range(len(self.friction)))
 
-    @property
+    @cached_property
+    def without_film(self) -> "Models":
+        """The same without the law of the film, for what does not ask for it."""
+        return replace(self, film=None)
+
+    @cached_property
     def without_friction(self) -> "Models":
         """The same without friction laws, for what does not ask for them: its programs serve every law."""
         return replace(
             self,
             friction=(),
-            choice=array(0),
+            choice=as_array(np.array(0)),  # one of JAX might belong to whatever is traced now
             parameters={},
             held=None,
             held_rolling=None,

@@ -87,12 +87,18 @@ def balances(rows: Row, models: Models) -> Balance:
 
 def balances_of(rows: Row, models: Models) -> Balance:
     """Balance of every row; no balance asks for the law of the film, and one program serves them all."""
-    return balances(rows, replace(models, film=None))
+    return balances(rows, models.without_film)
 
 
 def stacked(rows: list[Any]) -> Any:
-    """Trees of arrays as one with an axis in front; what is one object in all of them is looked at once."""
-    return jax.tree.map(_stack, *rows)
+    """Trees of arrays as one with an axis in front; what is one object in all of them is looked at once.
+
+    Args:
+        rows: of equal structure.
+    """
+    leaves = {key: jax.tree.leaves(row) for key, row in {id(row): row for row in rows}.items()}
+    stacks = map(_stack, *(leaves[id(row)] for row in rows))
+    return jax.tree.unflatten(jax.tree.structure(rows[0]), stacks)
 
 
 def _stack(first: Any, *others: Any) -> np.ndarray:

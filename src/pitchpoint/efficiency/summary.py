@@ -405,6 +405,8 @@ def in_groups(
         leaves, structure = jax.tree.flatten(tree(one))
         groups.setdefault((structure, *map(np.shape, leaves)), []).append(position)
     parts = [(where, compute([inputs[i] for i in where])) for where in groups.values()]
+    if len(parts) == 1:
+        return dict(parts[0][1])
     result = {
         name: np.empty((len(inputs), *values.shape[1:]), values.dtype)
         for name, values in parts[0][1].items()

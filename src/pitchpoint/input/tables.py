@@ -3,7 +3,7 @@
 import ast
 import inspect
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from functools import cache
 from itertools import pairwise
 from typing import Any, get_args
@@ -71,8 +71,13 @@ def tag(table: type[BaseModel]) -> str:
     return table.__name__
 
 
-def alternatives(annotation: Any) -> dict[str, type[BaseModel]]:
+def alternatives(annotation: Any) -> Mapping[str, type[BaseModel]]:
     """Tables that a field may hold, by name."""
+    return _by_tag(annotation)
+
+
+@cache
+def _by_tag(annotation: Hashable) -> Mapping[str, type[BaseModel]]:
     return {tag(table): table for table in _tables(annotation)}
 
 
