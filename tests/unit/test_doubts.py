@@ -1,5 +1,6 @@
 """What is doubtful: ranked by what it moves, told once, and only of what was computed."""
 
+import pickle
 from copy import copy
 from typing import Any
 
@@ -86,6 +87,18 @@ def test_sentences_are_told_of_parts_that_are_there() -> None:
     for each, told in ((outcome, ["Tips are thin."]), (other, [TEETH_ALONE, "Tips are thin."])):
         each.tell([TEETH_ALONE, "Tips are thin."])
         assert each.manifest["warnings"] == told
+
+
+def test_a_manifest_is_made_when_it_is_asked_for_with_what_was_noted_before() -> None:
+    asked: list[str] = []
+    outcome = Outcome(lambda: asked.append("once") or {"title": "pair", "warnings": [], "rows": []})
+    outcome.tell(["Tips are thin."])
+    assert not asked
+    copied = pickle.loads(pickle.dumps(outcome))
+    outcome.note(title="two pairs")
+    assert (copied.manifest["title"], outcome.manifest["title"]) == ("pair", "two pairs")
+    assert copied.manifest["warnings"] == outcome.manifest["warnings"] == ["Tips are thin."]
+    assert asked == ["once"]
 
 
 def test_few_teeth_matter_by_how_far_the_formula_goes() -> None:

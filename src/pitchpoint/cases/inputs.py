@@ -28,7 +28,16 @@ from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.units import hardness_scale
 
-__all__ = ["DIMENSIONS", "OIL", "SOLIDS", "STUDIES", "resolved"]
+__all__ = [
+    "DIMENSIONS",
+    "OIL",
+    "SOLIDS",
+    "STUDIES",
+    "Row",
+    "following_rows",
+    "input_rows",
+    "resolved",
+]
 
 DIMENSIONS, SOLIDS, OIL, STUDIES = "dimensions", "solids", "oil", "studies"
 """Tables of rows on what follows from the gears, on materials and oil as they are used, and on studies."""
@@ -106,7 +115,14 @@ _DEFAULT = Provenance("default")
 def resolved(
     built: Ready, document: Document, studies: Mapping[str, Study] | None = None
 ) -> list[Row]:
-    """Rows of table, key, value, kind, status, where and note for every input.
+    """Rows for every input: those of `input_rows`, then those of `following_rows`."""
+    return [*input_rows(built, document, studies), *following_rows(built)]
+
+
+def input_rows(
+    built: Ready, document: Document, studies: Mapping[str, Study] | None = None
+) -> list[Row]:
+    """Rows of table, key, value, kind, status, where and note for every key of the tables of a case.
 
     Values are SI numbers, texts, or lists of them or of tables; `kind` is that of the numbers, of a list
     of tables by their keys. Rows with `given` are those that the case file holds, and enough to make the
@@ -118,17 +134,11 @@ def resolved(
         studies: beside those of the case.
     """
     every = {**built.case.studies, **(studies or {})}
+    own = _of_drive(built, document) if isinstance(built, BuiltDrive) else _of_mesh(built, document)
     return [
-        *_given(built, document),
+        *own,
         *(row for name, study in every.items() for row in _of_study(name, study, document)),
-        *_following(built),
     ]
-
-
-def _given(built: Ready, document: Document) -> Iterator[Row]:
-    if isinstance(built, BuiltDrive):
-        return _of_drive(built, document)
-    return _of_mesh(built, document)
 
 
 def _of_mesh(built: Built, document: Document) -> Iterator[Row]:
@@ -230,8 +240,8 @@ def _in_stage(row: Row, number: int, *, given: bool) -> Row:
     return {**row, **changed, "given": given, "status": status}
 
 
-def _following(built: Ready) -> Iterator[Row]:
-    """What follows from gears, materials and oil; of a drive by stage."""
+def following_rows(built: Ready) -> Iterator[Row]:
+    """Rows of what follows from gears, materials and oil; of a drive by stage."""
     several = len(built.meshes) > 1
     one_oil = all(one.lubricant == built.meshes[0].lubricant for one in built.meshes)
     for number, one in enumerate(built.meshes, 1):

@@ -5,6 +5,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import count
 from math import prod
 from pathlib import Path
@@ -103,18 +104,34 @@ class Progress:
         """Points of the part that are finished, and what is being done where they take long."""
 
 
+class _Made:
+    """The manifest of an outcome, given as it is or as what makes it when it is first asked for."""
+
+    def __get__(self, entry: "Outcome | None", owner: type) -> dict[str, Any]:
+        if entry is None:
+            raise AttributeError("manifest")  # by this a dataclass knows that it has no default
+        held = vars(entry)["manifest"]
+        if callable(held):
+            held = vars(entry)["manifest"] = held()
+        manifest: dict[str, Any] = held
+        return manifest
+
+    def __set__(self, entry: "Outcome", given: dict[str, Any] | Callable[[], Any]) -> None:
+        vars(entry)["manifest"] = given
+
+
 @dataclass
 class Outcome:
     """One variant of a case with its results.
 
     Attributes:
         manifest: title, inputs in SI, what is implausible, warnings, laws, sources, issues, printed against
-            computed.
+            computed; or a function that makes it, called when it is first asked for.
         parts: datasets by name.
         doubts: sentences that were told of it, of which the manifest keeps those that are felt.
     """
 
-    manifest: dict[str, Any]
+    manifest: _Made = _Made()
     parts: dict[str, xr.Dataset] = field(default_factory=dict)
     doubts: list[str] = field(default_factory=list)
 
@@ -122,6 +139,9 @@ class Outcome:
         told = f"{len(self.manifest['warnings'])} warnings, {len(self.rows)} rows compared"
         title, listed = shorten(str(self.manifest["title"])), ", ".join(self.parts)
         return f"Outcome({title!r})\n  {told}\n  parts {shorten(listed, LONGEST_LIST)}"
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "manifest": self.manifest}  # laws of the user's own cannot be pickled
 
     @property
     def rows(self) -> list[Row]:
@@ -134,7 +154,16 @@ class Outcome:
         there = {str(name) for part in self.parts.values() for name in part}
         told = apart(text for text in self.doubts if concerns(text, there))
         briefs = [as_doubt(text).brief for sentences in told.values() for text in sentences]
-        self.manifest.update(told, briefs=briefs)
+        self.note(**told, briefs=briefs)
+
+    def note(self, **entries: Any) -> None:
+        """Put entries into the manifest, which is not made for it."""
+        held = vars(self)["manifest"]
+        self.manifest = partial(_noted, held, entries) if callable(held) else held | entries
+
+
+def _noted(make: Callable[[], dict[str, Any]], entries: Mapping[str, Any]) -> dict[str, Any]:
+    return {**make(), **entries}
 
 
 @double_precision()
@@ -235,18 +264,20 @@ def run_variant(
     Where they are not the `whole` of the case, nobody asks why it lacks others.
     """
     built = work[0].built if work else variant.built({})
-    lacks = _lacking(built) if whole else {}
-    outcome = Outcome(_manifest(variant, built, studies) | {"lacks": lacks})
+    rows = inputs.input_rows(built, variant.document(), studies)
+    outcome = Outcome(partial(_manifest, variant, built, rows))
+    if whole:
+        outcome.note(lacks=_lacking(built))
     outcome.tell(_of_design(variant, built))
     if folder is not None:
         _hand_over(variant, outcome.manifest["title"], folder, studies)
     for job in work:
-        mark = _mark(outcome.manifest, job)
+        mark = _mark(variant, built, rows, job)
         outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
         if not is_study(job.name):
             outcome.tell([*doubts_of(part.attrs), *unlikely(built, outcome.parts)])
         _note(outcome, folder, finished=False)
-    outcome.manifest["rows"] = [row.as_json() for row in _rows(built, variant, outcome.parts)]
+    outcome.note(rows=[row.as_json() for row in _rows(built, variant, outcome.parts)])
     _note(outcome, folder, finished=True)
     if folder is not None:
         for left in _LEFT:
@@ -273,7 +304,8 @@ def compute_alone(
     """
     built = variant.built({})
     job = Job(analysis, built)
-    mark = fingerprint(_mark(_manifest(variant, built, {}), job), told)
+    rows = inputs.input_rows(built, variant.document())
+    mark = fingerprint(_mark(variant, built, rows, job), told)
     return _part(job, variant, mark, folder, progress)
 
 
@@ -449,7 +481,11 @@ def describe(
     for variant in made:
         _jobs(variant, studies or {})  # made, not computed: a wrong study shows now
     built = [(variant, variant.built({})) for variant in made]
-    return [_manifest(*each, studies or {}) | apart(_of_design(*each)) for each in built]
+    return [
+        _manifest(*each, inputs.input_rows(each[1], each[0].document(), studies))
+        | apart(_of_design(*each))
+        for each in built
+    ]
 
 
 @double_precision()
@@ -566,31 +602,32 @@ def _opened(path: Path) -> Outcome:
     return Outcome(manifest, parts)
 
 
-def _mark(manifest: Mapping[str, Any], job: Job) -> str:
-    """Digest of the inputs of a part: the same for a case and for its record."""
+def _mark(variant: Variant, built: Ready, rows: Sequence[inputs.Row], job: Job) -> str:
+    """Digest of the inputs of a part, out of their rows: the same for a case and for its record."""
     study = inputs.STUDIES
     given = [
         [row["table"], row["key"], row["value"]]
-        for row in manifest["inputs"]
+        for row in rows
         if row["given"]
         and row["table"] != OUTPUT
         and (row["table"] != study or f"study_{row['key']}.".startswith(f"{job.name}."))
         and not _names_file(row)
     ]
     # What a function of the user's own gave is nobody else's result, nor that of its next version.
-    own = uuid4().hex if manifest["own"] else ""
-    return fingerprint(surroundings(), manifest["source"], given, job.name, own, *_held(manifest))
+    own = uuid4().hex if any(isinstance(law, FrictionLaw) for law in variant.own) else ""
+    source = built.case.source
+    return fingerprint(surroundings(), source, given, job.name, own, *_digests(rows))
 
 
 def _names_file(row: Mapping[str, Any]) -> bool:
-    """True for the name of a file: what it holds counts, see `_held`, not where it lies."""
+    """True for the name of a file: what it holds counts, see `_digests`, not where it lies."""
     *above, last = f"{row['table']}.{row['key']}".split(".")
     return last == "file" and bool({"film", "worn"} & {*above})
 
 
-def _held(manifest: Mapping[str, Any]) -> list[str]:
+def _digests(rows: Sequence[inputs.Row]) -> list[str]:
     """Digests of files that a case names: what they hold is part of its inputs."""
-    return [row["value"] for row in manifest["inputs"] if row["key"].split(".")[-1] == "digest"]
+    return [row["value"] for row in rows if row["key"].split(".")[-1] == "digest"]
 
 
 def _part(
@@ -674,7 +711,7 @@ def _keep(data: xr.Dataset, path: Path | None) -> None:
 
 
 def _note(outcome: Outcome, folder: Path | None, *, finished: bool) -> None:
-    outcome.manifest.update(parts=list(outcome.parts), finished=finished)
+    outcome.note(parts=list(outcome.parts), finished=finished)
     if folder is not None:
         write_text(
             folder / MANIFEST,
@@ -742,7 +779,9 @@ def _period(mesh: Built) -> dict[str, Any]:
     }
 
 
-def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> dict[str, Any]:
+@double_precision()
+def _manifest(variant: Variant, built: Ready, rows: Sequence[inputs.Row]) -> dict[str, Any]:
+    """Record of a variant before its parts; `rows` are those of `inputs.input_rows`."""
     case, document = built.case, variant.document()
     laws, others, meshes = built.laws, _models(built), built.meshes
     solids = [used for mesh in meshes for used in mesh.solids]
@@ -761,7 +800,7 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
         "title": case.title or variant.label,
         "summary": case.summary,
         "source": case.source,
-        "inputs": inputs.resolved(built, document, studies),
+        "inputs": [*rows, *inputs.following_rows(built)],
         "targets": [
             target.model_dump(mode="json", exclude_unset=True)
             for target in (case.targets if _measured(variant) else ())
