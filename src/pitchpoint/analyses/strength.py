@@ -87,17 +87,20 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     stages = _rated(built)
     each = _ratings([one for _, one in stages])
     several = isinstance(built, BuiltDrive)
-    values = {name: np.stack([found[name] for found in each]) for name in each[0]}
-    dims = {name: ("stage", "gear")[: np.ndim(found)] for name, found in values.items()}
+    values = each[0]
+    labels: dict[str, list[Any]] = {"gear": ["gear 1", "gear 2"]}
+    if several:
+        values = {name: np.stack([found[name] for found in each]) for name in each[0]}
+        labels = {"stage": [number for number, _ in stages], **labels}
+    dims = {name: tuple(labels)[: np.ndim(found)] for name, found in values.items()}
     extremes = _extremes(each)
-    labels = {"stage": [number for number, _ in stages], "gear": ["gear 1", "gear 2"]}
 
     def told(of: Callable[[Built, Numbers], Iterable[str]]) -> list[str]:
         pairs = zip(stages, each, strict=True)
         every = [(number, text) for (number, one), found in pairs for text in of(one, found)]
         return [in_stage(number, text) if several else text for number, text in every]
 
-    data = dataset(
+    return dataset(
         {name: (dims[name], found) for name, found in values.items()}
         | {name: ((), found) for name, found in extremes.items()},
         labels,
@@ -108,7 +111,6 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         remarks=[*told(lambda one, _: [*_remarks(one)]), *built.on_strength],
         warnings=told(lambda one, found: [*_failing(one, found), *_doubts(one, found)]),
     )
-    return data if several else data.isel(stage=0, drop=True)
 
 
 def _rated(built: Ready) -> list[tuple[int, Built]]:
