@@ -105,7 +105,8 @@ class LossTable(NamedTuple):
         Returns:
             The state. The torque that is lost is linear between nodes over torque, temperature and the
             logarithm of the speed; below the lowest speed that is not zero it stays as it is there. Torque of
-            the driver and efficiency follow from the balance of power.
+            the driver and efficiency follow from the balance of power; at a speed of zero they are NaN, since
+            the drive stands under any torque of the band that `at_rest` gives.
 
         Raises:
             ValueError: there is no such law.

@@ -71,7 +71,8 @@ static inline int loss_table_law(const char *name)
     return -1;
 }
 
-/* State at a torque and speed of the output with their signs; law counts from 0. */
+/* State at a torque and speed of the output with their signs; law counts from 0. At a speed of 0 torque of the
+ * driver and efficiency are NaN: loss_table_at_rest has the band of torques under which the drive stands. */
 static inline struct loss_table_point loss_table_at(double torque, double speed, double temperature, int law)
 {
     struct loss_table_point found = {NAN, NAN, NAN, 0, 0};
