@@ -186,11 +186,19 @@ class Case:
         return made
 
 
+_A_CASE = "a case is a file, the name of a shipped case, or a dictionary of tables"
+
 CaseLike = Case | str | Path | Mapping[str, Any]
 
 
 def as_case(case: CaseLike) -> Case:
-    """A case out of whatever may stand for one."""
+    """A case out of whatever may stand for one.
+
+    Raises:
+        InputError: it is None: that is no case, while `Case()` is one to begin with.
+    """
+    if case is None:
+        raise InputError(f"None was given; {_A_CASE}")
     return case if isinstance(case, Case) else Case(case)
 
 
@@ -265,8 +273,7 @@ def _read(source: "Source | Case") -> tuple[str, Sequence[Variant]]:
     if isinstance(source, Mapping):
         return "", _of_tables(source)
     if not isinstance(source, str | Path):
-        told = "a case is a file, the name of a shipped case, or a dictionary of tables"
-        raise InputError(f"{shown(source)} was given; {told}")
+        raise InputError(f"{shown(source)} was given; {_A_CASE}")
     return str(source), variants_of(str(source))
 
 
