@@ -576,7 +576,7 @@ def _warnings(
         told.append(
             Doubt(
                 f"Wear: pressures on worn flanks depend on wear.cells; contacts reach {1e6 * span:.2g} um to "
-                f"each side on average, less than {BRIDGED:g} cells of {1e6 * longest:.2g} um, over which "
+                f"each side on average, less than {BRIDGED:g} cells of {1e6 * longest:.3g} um, over which "
                 "curvatures are averaged.",
                 brief=f"Wear: contacts span {span / longest:.2g} cells, {BRIDGED:g} are asked: wear.cells.",
             )
