@@ -43,6 +43,18 @@ def test_gears_are_the_discs_that_a_vibration_takes(table):
         assert inertia == pytest.approx(taken, rel=1e-12)
 
 
+def test_what_is_felt_at_the_ends_is_all_that_turns_by_its_ratio():
+    """Of a pair J_1 + J_2/i^2 at the input and that times i^2 at the output."""
+    tree = tomllib.loads(sample_of(TorusGears).read_text())
+    found = bodies_of(built(tree), {}, lambda *_: None)
+    first, second = found["body_inertia"].values
+    ratio = np.divide(*tree["gears"]["teeth"][::-1])
+    at_input = first + second / ratio**2
+    assert found["reflected_inertia"].values == pytest.approx([at_input, at_input * ratio**2])
+    travels = bodies_of(built(tomllib.loads(sample_of(RackAndPinionGears).read_text())), {}, print)
+    assert "reflected_inertia" not in travels
+
+
 def test_a_rack_without_a_mass_has_none():
     tree = tomllib.loads(sample_of(RackAndPinionGears).read_text())
     del tree["gears"]["mass"]

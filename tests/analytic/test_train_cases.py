@@ -380,6 +380,7 @@ def test_stiffness_at_the_output_is_that_of_the_springs_of_all_planets():
         ({"gears.input": "carrier"}, r"gears.input: .* the sun is none of them"),
         ({"gears.teeth": [24, 30, 20]}, r"20 teeth is not around a planet of 30; .* some 84"),
         ({"gears.teeth": [24, 30]}, r"has 2 values; give those of sun, planet and ring"),
+        ({"gears.profile_shift": [0.1]}, r"has 1 values; give those of sun, planet and ring"),
         (
             {"gears.held": "planet"},
             r"gears.held: 'planet' is not allowed; use|\"planet\" is not allowed",
@@ -392,6 +393,7 @@ def test_stiffness_at_the_output_is_that_of_the_springs_of_all_planets():
         ({"gears.profile_shift": [-0.9, -0.9, 0]}, r"always have backlash; give larger ones"),
         ({"gears.teeth": [24, 30, 60]}, r"asks for a profile shift of .*; .* it has some 84"),
         ({"film.solver": "line"}, r"write the meshes of the set as \[\[stages\]\]"),
+        ({"dynamics.damping_ratio": 0.1}, r"a load of inertia J on it have a natural frequency"),
     ],
 )
 def test_a_wrong_number_gets_a_sentence_in_the_words_of_the_set(settings, words):
@@ -405,6 +407,7 @@ def test_a_wrong_number_gets_a_sentence_in_the_words_of_the_set(settings, words)
     [
         {"gears.fillet_radius": [0.38, 0.22, 0.38]},
         {"gears.profile_shift": [0.3, 0.1, "from centre distance"]},
+        {"gears.profile_shift": [0.3, 0.1]},
         {"gears.profile_shift.2": 0.1},
         {"gears.planets": 4},
         {"gears.input": "ring", "gears.held": "sun"},

@@ -4,6 +4,7 @@ import json
 import sys
 import tomllib
 import webbrowser
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,13 @@ from pitchpoint.runs.designs import Figure, as_json, designs, main_results, want
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, open_result, run, run_variant
 from pitchpoint.views import show
-from pitchpoint.views.designs import differing, input_tables, law_words, result_table
+from pitchpoint.views.designs import (
+    differing,
+    input_tables,
+    law_words,
+    of_several,
+    result_table,
+)
 from pitchpoint.views.report import render
 
 PAIR = """
@@ -133,6 +140,33 @@ def test_inputs_that_differ(compared: Outcomes) -> None:
     assert given.head == ("table", "key", "pair@new", "pair@worn")
     assert given.rows == [("roughness", "ra", "0.4 µm", "0.8 µm")]
     assert not following.rows
+
+
+def test_what_is_demanded_of_one_design_alone_stands_first(compared: Outcomes) -> None:
+    """A factor that one design gives shifts its safeties; defaults of a bearing that it has say nothing."""
+    first, second = compared.values()
+
+    def also(outcome: Outcome, *rows: tuple[str, str, str]) -> Outcome:
+        more = [
+            {"table": table, "key": key, "value": 0.7, "status": status, "kind": "dimensionless"}
+            | {"where": "", "note": ""}
+            for table, key, status in rows
+        ]
+        manifest = {**outcome.manifest, "inputs": [*outcome.manifest["inputs"], *more]}
+        return replace(outcome, manifest=manifest)
+
+    rated = also(
+        second,
+        ("gears", "own", "given"),
+        ("strength", "mean_stress_factor", "given"),
+        ("losses", "b1.preload", "default"),
+    )
+    given, _ = input_tables({"first": first, "second": rated})
+    names = [row[:2] for row in given.rows]
+    assert names[0] == ("strength", "mean_stress_factor")
+    assert ("losses", "b1.preload") not in names and ("gears", "own") in names
+    shown, alone = of_several(given, 2)
+    assert [row[:2] for row in shown.rows] == names[:2] and alone == 1
 
 
 def test_differences_are_those_of_the_results(compared: Outcomes) -> None:
@@ -272,7 +306,7 @@ def test_what_cannot_be_stands_before_every_number(
     assert not caught.value.code
     outcomes = designs(drives)
     failing = {name: one.manifest["implausible"] for name, one in outcomes.items()}
-    assert any("stage 2: the flanks of gear 1 bear" in text for text in failing["narrow"])
+    assert any("stage 2: the flanks of gear 1 have" in text for text in failing["narrow"])
     assert not any("stage 2" in text for text in failing["wide"])
     expected = [f"{name}: {text}" for name, texts in failing.items() for text in texts]
     assert capsys.readouterr().out.splitlines()[: len(expected)] == expected

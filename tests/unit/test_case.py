@@ -91,6 +91,8 @@ def test_what_is_no_case() -> None:
         Case("tian2025")
     with pytest.raises(InputError, match="3 was given; a case is a file, the name of a shipped"):
         Case(3)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="None was given; a case is a file"):
+        held(None)  # type: ignore[arg-type]
     with pytest.raises(InputError, match='"printed" is not a variant of this case'):
         Case("tian2024", variant="printed")
     with pytest.raises(InputError, match=r"case: gears\.teeth: is missing"):

@@ -203,11 +203,18 @@ def test_a_drive_of_stages_tells_ratio_output_speed_and_what_is_doubtful_of_a_st
     assert re.match(
         r"losses behind it add 1\.1 % at roots, 0\.\d+ % at flanks; no ", by_name["Stress of roots"]
     )
+    rows = {row[""]: row["default"] for row in beside_each_other(outcomes)}
+    assert rows["Ratio"] == "9.77117" and rows["Backlash at the output"].endswith(" nominal")
     manifest = {**outcome.manifest, "stages": [dict(one) for one in outcome.manifest["stages"]]}
     manifest["stages"][0]["bodies"] = "sun and planet"
     train = replace(outcome, manifest=manifest)
     assert member_names(train, 1) == {"gear 1": "sun", "gear 2": "planet"}
     assert [row["gear"] for row in strength_rows(train)] == ["sun", "planet", "gear 1", "gear 2"]
+
+
+def by_another_law(outcome: Outcome) -> Outcome:
+    operation = outcome.parts["operation"].isel(law=[0]).assign_coords(law=["another"])
+    return replace(outcome, parts={"operation": operation})
 
 
 def test_variants_stand_side_by_side(pair: dict[str, Outcome]) -> None:
@@ -217,6 +224,10 @@ def test_variants_stand_side_by_side(pair: dict[str, Outcome]) -> None:
     rows = beside_each_other(two)
     assert [row[""] for row in rows] == [figure.name for figure in key_figures(in_order(), one)]
     assert all(row["default"] == row["bad"] for row in rows)
+    averaged = replace(one, manifest=one.manifest | {"averaging": "path"})
+    law, mean, *_ = beside_each_other({"default": one, "other": by_another_law(averaged)})
+    assert law[""] == "Friction" and law["default"] != law["other"] == "another"
+    assert mean == {"": "Mean over", "default": "base_pitch", "other": "path"}
 
 
 def test_printed_numbers_of_variants_take_a_line_each_where_there_is_no_room(
