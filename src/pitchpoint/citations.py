@@ -10,7 +10,7 @@ from importlib import resources
 from pitchpoint.errors import InputError
 from pitchpoint.registry import unknown_name
 
-__all__ = ["Reference", "available", "bibtex", "cite", "reference"]
+__all__ = ["Reference", "available", "bibtex", "cite", "of_program", "reference"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,6 +127,28 @@ def bibtex(key: str) -> str:
     }
     lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
     return "\n".join([f"@{kind}{{{key},", *lines, "}"])
+
+
+def of_program(version: str, *, bibtex: bool = False) -> str:
+    """Pitchpoint itself, in words or as a BibTeX entry.
+
+    Args:
+        version: of the package.
+        bibtex: True for an entry.
+
+    Example:
+        >>> of_program("0.1.0")
+        'pitchpoint: The Pitchpoint authors. Pitchpoint, version 0.1.0. Software.'
+    """
+    if not bibtex:
+        return f"pitchpoint: The Pitchpoint authors. Pitchpoint, version {version}. Software."
+    fields = {
+        "author": "{The Pitchpoint authors}",
+        "title": "Pitchpoint",
+        "note": f"version {version}",
+    }
+    lines = [f"  {name} = {{{value}}}," for name, value in fields.items()]
+    return "\n".join(["@misc{pitchpoint,", *lines, "}"])
 
 
 def _escaped(text: str) -> str:

@@ -601,8 +601,8 @@ def cite(
     bibtex: Annotated[bool, typer.Option("--bibtex", help="BibTeX entries.")] = False,
     json_: AsJson = False,
 ) -> None:
-    """List the sources behind a result or a case."""
-    from pitchpoint import citations
+    """List the sources behind a result or a case, and the program."""
+    from pitchpoint import __version__, citations
     from pitchpoint.runs.run import manifests
 
     sources = {
@@ -613,6 +613,7 @@ def cite(
         return
     for key, text in sources.items():
         typer.echo(citations.bibtex(key) if bibtex else visible(f"{key}: {text}"))
+    typer.echo(citations.of_program(__version__, bibtex=bibtex))
 
 
 def _laws_from(incomplete: str) -> list[str]:

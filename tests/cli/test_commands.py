@@ -399,6 +399,7 @@ def test_cite(pitchpoint: Callable[..., Told], finished: Path, tiny: Path) -> No
     assert "xu_2007" in [source["key"] for source in sources]
     assert "xu_2007: " in pitchpoint("cite", finished).out
     assert "{xu_2007," in pitchpoint("cite", finished, "--bibtex").out
+    assert "@misc{pitchpoint," in pitchpoint("cite", finished, "--bibtex").out
     assert pitchpoint("cite", tiny, "--json").json == sources
 
 

@@ -143,15 +143,18 @@ def swept_beside(outcomes: Mapping[str, Outcome]) -> list[list[dict[str, str]]]:
         for name, data in outcome.parts.items():
             if is_swept(name, data):
                 named = {"variant": variant} if len(outcomes) > 1 else {}
-                sweeps.setdefault(name, []).extend(named | row for row in _swept(data))
+                rows = _swept(data, solved="film" in outcome.parts)
+                sweeps.setdefault(name, []).extend(named | row for row in rows)
     return [rows for rows in sweeps.values() if len(rows) <= MOST_SWEPT]
 
 
-def _swept(data: xr.Dataset) -> Iterator[dict[str, str]]:
-    """A row for each point under each law."""
+def _swept(data: xr.Dataset, *, solved: bool) -> Iterator[dict[str, str]]:
+    """A row for each point under each law; beside solved films that of a formula is called so."""
     points, laws = (range(data.sizes[dim]) for dim in ("point", "law"))
     units = {name: show.unit_of(name, data) for name in SWEPT_HEADS}
     heads = {n: f"{head} [{units[n]}]" if units[n] else head for n, head in SWEPT_HEADS.items()}
+    if solved:
+        heads["min_lambda_ratio"] = "film ratio by formula"
     known = {n: head for n, head in heads.items() if n in data and not data[n].isnull().all()}
     for point in points:
         for law in laws:
