@@ -152,7 +152,7 @@ def parts_of_one(built: Built, repeats: int) -> None:
     points = Operation(jnp.full(speed.shape, load), speed, degree)
     work = {
         "contacts": lambda: contacts_at(design.mesh, known.phase),
-        "ring": lambda: coupling(design, known.contacts),
+        "ring": lambda: coupling(design.mesh.body, design.solids, known.contacts),
         "load on the pairs": lambda: shares_at(design, known.contacts, load, models, known.body),
         "balance": lambda: _balance(design, points, models, known),
         "one torque in all": lambda: torque_of(built, -1)["mean_loss"].values,

@@ -27,7 +27,7 @@ def passing(mesh, phases):
     """Contacts and what couples them, in parts of so many phases; the last ones begin anew."""
     rows = np.resize(phases, (-(-len(phases) // NODES), NODES))
     parts = [contacts_at(mesh, jnp.asarray(row)) for row in rows]
-    return [(part, coupling(design(mesh), part)) for part in parts]
+    return [(part, coupling(mesh.body, design(mesh).solids, part)) for part in parts]
 
 
 def wound(mesh, part, torque, terms=WEBER):

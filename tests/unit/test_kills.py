@@ -11,6 +11,7 @@ import pytest
 SCRIPT = """
 import json, os, signal, sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import xarray as xr
@@ -41,14 +42,16 @@ def job(name, *numbers):
         pieces=lambda built: pieces,
         joined=lambda built, parts: xr.concat(parts, "point", combine_attrs="override"),
     )
-    return Job(analysis, None)
+    return Job(analysis, BUILT)
 
 
+BUILT = SimpleNamespace(case=SimpleNamespace(source=""))
 JOBS = [job("teeth", 0), job("study_sweep", 1, 2, 3)]
-Variant.built = lambda self, changes: None
+Variant.built = lambda self, changes: BUILT
 TOLD = {"title": "A pair", "implausible": [], "warnings": [], "inputs": [], "source": "", "own": ""}
 running._manifest = lambda *_: dict(TOLD)
 running._lacking = lambda built: {}
+running.inputs.input_rows = lambda *_: []
 running._of_design = lambda variant, built: []
 running._rows = lambda *_: []
 variant = Variant({}, "pair.toml", "default")

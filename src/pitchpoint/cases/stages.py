@@ -365,7 +365,8 @@ def _on_one_place(case: DriveCase, built: Sequence[Built]) -> Iterator[str]:
         return
     for shaft, (first, second) in enumerate(pairwise(zip(tables, built, strict=True)), 2):
         apart = abs(second[0].place - first[0].place)
-        half = [getattr(one.case.gears, "face_width", 0.0) / 2.0 for _, one in (first, second)]
+        widths = (getattr(one.case.gears, "face_width", 0.0) for _, one in (first, second))
+        half = [float(np.max(width)) / 2.0 for width in widths]
         if over := max(sum(half) - apart, 0.0):
             yield Doubt(
                 f"On shaft {shaft} the gears of stages {shaft - 1} and {shaft} lie {1e3 * over:.4g} mm over "
