@@ -713,7 +713,7 @@ def test_a_drive_that_locks_or_nearly_does_is_told_among_the_first_figures(wheel
     back = outcome.parts["back_driving"].copy(deep=True)
     law = laws(back)[0]
     far = back_driving_figure(outcome, law)
-    assert far.order > 60.0 and far.detail.startswith("of the same power carried back")
+    assert far.order > 60.0 and far.detail.startswith("efficiency with the output driving")
     back["nearest_friction"].values[:], back["nearest_jamming_coefficient"].values[:] = 0.25, 0.29
     near = replace(outcome, parts={**outcome.parts, "back_driving": back})
     figure = back_driving_figure(near, law)
@@ -765,9 +765,9 @@ def test_the_coefficient_that_locks_stands_beside_the_efficiency(wheel: Outcomes
     assert limit > float(data["nearest_friction"].values[0, 0]) == pytest.approx(0.05)
     assert limit > 1.0
     told = Words(render(wheel)).text
-    assert f"{LOCKS} not below 1" in told
+    assert f"{LOCKS} above 1" in told
     assert "friction does not lock the mesh (nor would it below μ = 1)" in told
-    assert summary(wheel["default"]).rows[0][LOCKS] == "not below 1"
+    assert summary(wheel["default"]).rows[0][LOCKS] == "above 1"
     less = data.assign(jamming_coefficient=0.3 * data["jamming_coefficient"])
     rough = replace(wheel["default"], parts={**wheel["default"].parts, "operation": less})
     assert summary(rough).rows[0][LOCKS] == show.number(0.3 * limit)

@@ -51,7 +51,7 @@ def back_driving_figure(outcome: Outcome, law: str) -> KeyFigure:
         return KeyFigure(_NEARLY_LOCKED, _NAME, words, at)
     if not np.isfinite(value):
         return KeyFigure(_MOVES, _NAME, "undefined", "no power")
-    words = "of the same power carried back; friction does not lock it"
+    words = "efficiency with the output driving; friction does not lock it"
     would = f"; {_would(data, position)}" if np.isfinite(_limit(data, position)) else ""
     return KeyFigure(_MOVES, _NAME, show.quantity("mean_efficiency", value), f"{words}{would}")
 
@@ -91,9 +91,9 @@ def locks_from(limit: float, shown: str) -> str:
 
     Example:
         >>> locks_from(0.45, "0.4500"), locks_from(4.9, "4.9000")
-        ('0.4500', 'not below 1')
+        ('0.4500', 'above 1')
     """
-    return shown if limit <= ROUGHEST else f"not below {ROUGHEST:g}"
+    return shown if limit <= ROUGHEST else f"above {ROUGHEST:g}"
 
 
 def _limit(data: Any, position: int) -> float:
