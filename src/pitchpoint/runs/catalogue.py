@@ -146,17 +146,17 @@ _VALUES = {
 """Values of a material or an oil on its sheet: words, kind of the quantity, unit in which they are told."""
 
 
-def _told_values(record: Any) -> str:
+def _values_in_words(record: Any) -> str:
     """Values of a record with their units, and the status of those that nobody measured."""
     held = {name: getattr(record, name, None) for name in _VALUES}
     return "; ".join(
-        _told_value(datum, *_VALUES[name])
+        _value_in_words(datum, *_VALUES[name])
         for name, datum in held.items()
         if isinstance(datum, Datum)
     )
 
 
-def _told_value(datum: Datum, words: str, kind: str, unit: str) -> str:
+def _value_in_words(datum: Datum, words: str, kind: str, unit: str) -> str:
     value = units.convert(datum.value, unit, kind) if kind else datum.value
     status = "" if datum.status in ("given", "printed") else f" ({datum.status})"
     return f"{words} {value:.5g} {unit}".rstrip() + status
@@ -167,7 +167,7 @@ def _record(kind: str, record: Any, limits: str) -> dict[str, str]:
         kind=kind,
         name=record.name,
         title=record.title,
-        values=_told_values(record),
+        values=_values_in_words(record),
         range=limits,
         sources=_sources(record),
         note="",

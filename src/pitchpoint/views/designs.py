@@ -53,18 +53,18 @@ def input_tables(outcomes: Mapping[str, Outcome]) -> tuple[Compared, Compared]:
     What others lack and nobody gave is left out: a bearing that one design has brings many such values.
     """
     rows: dict[tuple[str, str], dict[str, str]] = {}
-    given_ones: set[tuple[str, str]] = set()
+    stated: set[tuple[str, str]] = set()
     for design, outcome in outcomes.items():
         for row in input_rows(outcome.manifest):
             words = show.pretty(row["value"]) or NOTHING
             rows.setdefault((row["table"], row["key"]), {})[design] = words
             if row["status"] != "default":
-                given_ones.add((row["table"], row["key"]))
+                stated.add((row["table"], row["key"]))
     differing = [
         (table, key, *(each.get(one, NOTHING) for one in outcomes))
         for (table, key), each in rows.items()
         if len({each.get(one, NOTHING) for one in outcomes}) > 1
-        and (len({*each.values()}) > 1 or (table, key) in given_ones)
+        and (len({*each.values()}) > 1 or (table, key) in stated)
     ]
     head = ("table", "key", *outcomes)
     following = [row for row in differing if row[0] in FOLLOWING]

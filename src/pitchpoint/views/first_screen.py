@@ -103,7 +103,7 @@ def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     ranked = sorted(chain(*figures.values()), key=lambda figure: figure.order)
     names = dict.fromkeys(figure.name for figure in ranked)
     return [
-        *_unlike(outcomes),
+        *_differing_bases(outcomes),
         *(
             {"": name} | {variant: own.get(name, "–") for variant, own in values.items()}
             for name in names
@@ -111,7 +111,7 @@ def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     ]
 
 
-def _unlike(outcomes: Mapping[str, Outcome]) -> Iterator[dict[str, str]]:
+def _differing_bases(outcomes: Mapping[str, Outcome]) -> Iterator[dict[str, str]]:
     """Ratios of drives of several meshes; friction law and mean of variants where these are not the same."""
     ratios = {variant: speed_ratio(outcome) for variant, outcome in outcomes.items()}
     if any(one.manifest.get("stages") for one in outcomes.values()):
