@@ -30,8 +30,6 @@ app = typer.Typer(
 )
 
 _INTERRUPTED = 130
-_FEW_DESIGNS = 3
-"""Designs up to which their differences have room on a screen."""
 
 _LONGEST = 2000  # characters of one complaint
 _SWEEP = re.compile(r"([^=]{0,500})=([^:]*):([^:]*):\s*([1-9][0-9]{0,4}|100000)\s*", re.ASCII)
@@ -486,6 +484,7 @@ def _compare_designs(
 def _differences(outcomes: "dict[str, Outcome]") -> None:
     """What cannot be, results with their differences, inputs that differ, and what warns of each design."""
     from pitchpoint.views.designs import (
+        FEW_DESIGNS,
         differing,
         law_words,
         named_inputs,
@@ -496,7 +495,7 @@ def _differences(outcomes: "dict[str, Outcome]") -> None:
     for name, outcome in outcomes.items():
         _failing(f"{name}: {text}" for text in outcome.manifest["implausible"])
     _console().print(_plain(law_words(outcomes)))
-    results = result_table(outcomes, differences=len(outcomes) <= _FEW_DESIGNS)
+    results = result_table(outcomes, differences=len(outcomes) <= FEW_DESIGNS)
     for title, whole in {"Results": results, **differing(outcomes)}.items():
         table, alone = of_several(whole, len(outcomes))
         _console().print(f"\n[bold]{title}[/]" if whole.rows else f"\n[bold]{title}[/]: none")

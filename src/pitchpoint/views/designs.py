@@ -15,6 +15,7 @@ from pitchpoint.views.inputs import FOLLOWING, input_rows
 from pitchpoint.views.point import speed_ratio
 
 __all__ = [
+    "FEW_DESIGNS",
     "NOTHING",
     "Compared",
     "differing",
@@ -27,6 +28,9 @@ __all__ = [
 
 NOTHING = "–"
 """Stands for what a design does not have."""
+
+FEW_DESIGNS = 3
+"""Most designs of which differences have room beside their results."""
 
 _ROUNDING = 1e-6
 """Part of a result below which a difference is what solvers leave."""
