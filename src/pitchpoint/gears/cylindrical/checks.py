@@ -44,8 +44,8 @@ _TOLD_DISTANCE = 1e-4
 _SAMPLES = 400
 # A tip that enters a fillet no deeper is told of and runs [modules].
 _DEEPEST_IN_FILLET = 5e-3
-# A third of the profile form that class 5 of ISO 1328-1 leaves small teeth: no fillet is as true [modules].
-_TOLD_IN_FILLET = 1e-3
+# The usual fillet radius 0.38 is rounded up from 0.25/(1 - sin 20 deg): that is no overlap [modules].
+_TOLD_IN_FILLET = 1e-4
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
