@@ -484,7 +484,6 @@ def _compare_designs(
 def _differences(outcomes: "dict[str, Outcome]") -> None:
     """What cannot be, results with their differences, inputs that differ, and what warns of each design."""
     from pitchpoint.views.designs import (
-        FEW_DESIGNS,
         differing,
         law_words,
         named_inputs,
@@ -495,7 +494,7 @@ def _differences(outcomes: "dict[str, Outcome]") -> None:
     for name, outcome in outcomes.items():
         _failing(f"{name}: {text}" for text in outcome.manifest["implausible"])
     _console().print(_plain(law_words(outcomes)))
-    results = result_table(outcomes, differences=len(outcomes) <= FEW_DESIGNS)
+    results = result_table(outcomes)
     for title, whole in {"Results": results, **differing(outcomes)}.items():
         table, alone = of_several(whole, len(outcomes))
         _console().print(f"\n[bold]{title}[/]" if whole.rows else f"\n[bold]{title}[/]: none")

@@ -388,8 +388,12 @@ def _by_rz(value: Any, table: Tree, tree: Tree) -> str:
     return f"{_said('ra', _ROUGHNESS, *(_ROUGHNESS.read(one) / 6.0 for one in each))}, Rz/6 as ISO 6336-2"
 
 
+def _iso_class(value: Any, table: Tree, tree: Tree) -> str:
+    return f"iso_class = {_RATIO.read(value):.0f}"
+
+
 def _by_class(value: Any, table: Tree, tree: Tree) -> str:
-    return f"inspection = {{ iso_class = {_RATIO.read(value):.0f} }}"
+    return f"inspection = {{ {_iso_class(value, table, tree)} }}"
 
 
 def _in_rpm(value: Any, table: Tree, tree: Tree) -> str:
@@ -593,7 +597,7 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             ("quality", "accuracy", "accuracy_grade", "iso_quality", "din_quality", "class"),
             ("iso_class",),
             "the class is that of ISO 1328-1",
-            lambda value, table, tree: f"iso_class = {_RATIO.read(value):.0f}",
+            _iso_class,
         ),
         Wish(
             ("backlash", "nominal_backlash", "normal_backlash", "j_bn", "j_wt"),

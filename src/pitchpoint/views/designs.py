@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
 
 import numpy as np
 
@@ -12,10 +11,9 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import law_title
 from pitchpoint.views.inputs import FOLLOWING, input_rows
-from pitchpoint.views.point import speed_ratio
+from pitchpoint.views.point import ratio_words
 
 __all__ = [
-    "FEW_DESIGNS",
     "NOTHING",
     "Compared",
     "differing",
@@ -29,7 +27,7 @@ __all__ = [
 NOTHING = "–"
 """Stands for what a design does not have."""
 
-FEW_DESIGNS = 3
+_FEW_DESIGNS = 3
 """Most designs of which differences have room beside their results."""
 
 _ROUNDING = 1e-6
@@ -116,14 +114,13 @@ def law_words(outcomes: Mapping[str, Outcome]) -> str:
     return f"The designs share no friction law; each stands under its first one, {'; '.join(each)}."
 
 
-def result_table(outcomes: Mapping[str, Outcome], *, differences: bool = True) -> Compared:
-    """Main results of the designs but those that rounding leaves, and differences from the first one.
+def result_table(outcomes: Mapping[str, Outcome]) -> Compared:
+    """Main results of the designs but those that rounding leaves; of few designs differences from the first.
 
     Args:
         outcomes: by design.
-        differences: False to leave these out.
     """
-    first, *others = outcomes if differences else [*outcomes][:1]
+    first, *others = outcomes if len(outcomes) <= _FEW_DESIGNS else [*outcomes][:1]
     figures = [one for one in main_results(outcomes) if not _left_by_rounding(one)]
     by_law = len({one.law for one in figures if one.law}) > 1
     rows = [
@@ -180,10 +177,7 @@ def of_several(table: Compared, designs: int) -> tuple[Compared, int]:
 
 def _meant(outcomes: Mapping[str, Outcome], more: int) -> Iterator[tuple[str, ...]]:
     """Ratios that differ, and what efficiencies and stiffnesses are of, where that is not the whole."""
-    ratios = [
-        show.number(ratio, 6) if isfinite(ratio := speed_ratio(one)) else NOTHING
-        for one in outcomes.values()
-    ]
+    ratios = [ratio_words(one) or NOTHING for one in outcomes.values()]
     if len({*ratios}) > 1:
         yield (
             "ratio, speed of the driver over that of the output",

@@ -17,7 +17,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.inputs import number
 from pitchpoint.views.inputs import words as input_words
-from pitchpoint.views.point import speed_ratio
+from pitchpoint.views.point import ratio_words, speed_ratio
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import KeyFigure, Page, key_figures, said
 from pitchpoint.views.sections.studies import is_swept, swept_place
@@ -113,11 +113,8 @@ def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
 
 def _differing_bases(outcomes: Mapping[str, Outcome]) -> Iterator[dict[str, str]]:
     """Ratios of drives of several meshes; friction law and mean of variants where these are not the same."""
-    ratios = {variant: speed_ratio(outcome) for variant, outcome in outcomes.items()}
     if any(one.manifest.get("stages") for one in outcomes.values()):
-        yield {"": "Ratio"} | {
-            v: show.number(ratio, 6) if isfinite(ratio) else "–" for v, ratio in ratios.items()
-        }
+        yield {"": "Ratio"} | {v: ratio_words(outcome) or "–" for v, outcome in outcomes.items()}
     told = {
         "Friction": {variant: _law(outcome) for variant, outcome in outcomes.items()},
         "Mean over": {
@@ -185,7 +182,7 @@ def _operation(outcome: Outcome) -> str:
     loaded, load = manifest["loaded"], torque or force
     if manifest.get("stages") and isfinite(ratio):
         speed_out = show.quantity("output_speed", number(outcome, "operation", "speed") / ratio)
-        loaded, load = f"{loaded} at {speed_out}", f"{load}, ratio {show.number(ratio, 6)}"
+        loaded, load = f"{loaded} at {speed_out}", f"{load}, ratio {ratio_words(outcome)}"
     elif "operation" in outcome.parts:
         law = f", friction {headline(outcome.parts)['law'].values[0]}"
     return f"{manifest['driver']} at {speed}, {loaded} with {load}, oil {temperature}{law}"

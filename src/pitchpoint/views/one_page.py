@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from math import isfinite
 from typing import Any
 
 from pitchpoint.runs.run import Outcome
@@ -12,7 +11,7 @@ from pitchpoint.views.designs import input_tables, named_inputs
 from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
-from pitchpoint.views.point import speed_ratio
+from pitchpoint.views.point import ratio_words
 from pitchpoint.views.section import Page, Paragraph, Table, key_figures, made_of
 from pitchpoint.views.sections.answer import operation_words, sharing_words
 
@@ -144,10 +143,9 @@ def _facts(outcome: Outcome) -> list[tuple[str, str]]:
         for row in rows
         if row["table"] == "strength" and row["status"] not in _USUAL
     ]
-    ratio = speed_ratio(outcome)
     facts = [
         ("Operating point", operation_words(outcome)),
-        ("Ratio", show.number(ratio, 6) if isfinite(ratio) else ""),
+        ("Ratio", ratio_words(outcome)),
         ("Materials", ", ".join(materials)),
         ("Rating", ", ".join(rated)),
         ("Oil", str(manifest["oil"])),

@@ -1,6 +1,7 @@
 """Where a result was run, and the period of its mesh."""
 
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 
@@ -16,6 +17,7 @@ __all__ = [
     "of_geometry",
     "operating_point",
     "period_of",
+    "ratio_words",
     "speed_ratio",
 ]
 
@@ -101,6 +103,12 @@ def speed_ratio(outcome: Outcome) -> float:
     if manifest.get("travels") or not motion.get(loaded) or driver not in motion:
         return np.nan
     return float(motion[driver]) / float(motion[loaded])
+
+
+def ratio_words(outcome: Outcome) -> str:
+    """That ratio as a number; empty where one of them travels."""
+    ratio = speed_ratio(outcome)
+    return show.number(ratio, 6) if isfinite(ratio) else ""
 
 
 def period_of(outcome: Outcome) -> Period:

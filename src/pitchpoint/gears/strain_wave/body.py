@@ -20,7 +20,7 @@ from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.materials.solids import Solid
 from pitchpoint.roots import hypot
 
-__all__ = ["StrainWaveBody", "end_of_wave"]
+__all__ = ["StrainWaveBody", "end_of_wave", "left_behind"]
 
 Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
@@ -35,7 +35,8 @@ class StrainWaveBody(GearBody):
         rim: rim, cup and support of the flexspline.
         bearing: balls that take the place of that support; None without.
         series: what yields behind them.
-        relation, loaded: of the coordinates, see the mesh.
+        teeth: numbers of both splines z1, z2.
+        loaded: one for the member that carries the load.
     """
 
     couples: ClassVar[bool] = True
@@ -46,7 +47,7 @@ class StrainWaveBody(GearBody):
     rim: FlexibleRing
     bearing: BallBearing | None
     series: InSeries
-    relation: Float[Array, "3"]
+    teeth: Float[Array, "2"]
     loaded: Float[Array, "3"]
 
     @property
@@ -68,7 +69,7 @@ class StrainWaveBody(GearBody):
 
     def in_series(self, solids: tuple[Solid, Solid]) -> dict[str, Float[Array, ""]]:
         """Bottom of the cup, flange, shaft of the wave generator, circular spline given by value."""
-        return self.series.by_part(solids[0], self.relation, self.loaded)
+        return self.series.by_part(solids[0], left_behind(self.teeth), self.loaded)
 
     def compliance(self, contacts: Contacts, solids: tuple[Solid, Solid]) -> Body:
         """The flexspline's rim couples all its teeth, and so does a circular spline that yields."""
@@ -139,6 +140,12 @@ class StrainWaveBody(GearBody):
             radial=-loads.radial,
             height=hypot(contacts.point[0], contacts.point[1]) - ring.radius,
         )
+
+
+def left_behind(teeth: Float[Array, "2"]) -> Float[Array, "3"]:
+    """Teeth that are left behind in a turn of each member: factors of the rates, whose sum is zero."""
+    z1, z2 = teeth
+    return jnp.stack([z2 - z1, z1, -z2])
 
 
 def end_of_wave(contacts: Contacts) -> Float[Array, "pair 1 *b"]:

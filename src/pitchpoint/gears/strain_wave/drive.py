@@ -17,7 +17,7 @@ from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.ball_bearing import BallBearing
-from pitchpoint.gears.strain_wave.body import StrainWaveBody, end_of_wave
+from pitchpoint.gears.strain_wave.body import StrainWaveBody, end_of_wave, left_behind
 from pitchpoint.gears.strain_wave.contact_width import curvature_in_contact
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
@@ -228,8 +228,7 @@ class StrainWave(Mesh):
     @property
     def relation(self) -> Float[Array, "3"]:
         """Teeth that are left behind in a turn of the wave, see `rates`."""
-        z1, z2 = self.teeth
-        return jnp.stack([z2 - z1, z1, -z2])
+        return left_behind(self.teeth)
 
     @property
     def motion(self) -> Float[Array, "3"]:
@@ -414,7 +413,7 @@ class StrainWave(Mesh):
             rim=self.rim,
             bearing=self.bearing,
             series=self.series,
-            relation=self.relation,
+            teeth=self.teeth,
             loaded=self.loaded,
         )
 

@@ -33,19 +33,17 @@ def bodies_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         for member, value in zip(data["member"].values, data["body_inertia"].values, strict=True)
         if np.isfinite(value)
     ]
+    members = [f"{member} {inertia}" for member, inertia in inertias]
     if "reflected_inertia" in data:
-        at_ends = (
+        at_input, at_output = (
             show.quantity("reflected_inertia", float(value))
             for value in data["reflected_inertia"].values
         )
-        inertias = [*zip(("at the input", "at the output"), at_ends, strict=True), *inertias]
-    for (where, value), *others in [inertias] if inertias else []:
-        more = [
-            f"{inertia} {name}" if name.startswith("at ") else f"{name} {inertia}"
-            for name, inertia in others
-        ]
-        name, of = ("Inertia at the input", []) if where.startswith("at ") else ("Inertia", [where])
-        yield KeyFigure(75.0, name, value, "; ".join([*of, *more]))
+        detail = "; ".join([f"{at_output} at the output", *members])
+        yield KeyFigure(75.0, "Inertia at the input", at_input, detail)
+    elif inertias:
+        (member, inertia), *_ = inertias
+        yield KeyFigure(75.0, "Inertia", inertia, "; ".join([member, *members[1:]]))
 
 
 def bodies_printed(outcome: Outcome) -> Iterator[Printed]:

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from pitchpoint.views.designs import (
-    FEW_DESIGNS,
     Compared,
     differing,
     law_words,
@@ -21,7 +20,7 @@ def _blocks(page: Page) -> Iterator[Block]:
     yield from given
     yield Heading("Results")
     yield Paragraph(law_words(page.outcomes))
-    results = result_table(page.outcomes, differences=len(page.outcomes) <= FEW_DESIGNS)
+    results = result_table(page.outcomes)
     shared, _ = of_several(results, len(page.outcomes))
     yield Table(shared.head, shared.rows)
     alone = [row for row in results.rows if row not in shared.rows]
