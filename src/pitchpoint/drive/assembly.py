@@ -60,7 +60,7 @@ def check_neighbours(
 
 def planet_phases(
     links: Sequence[Link], planets: Sequence[str], angles: Float[np.ndarray, " copy"]
-) -> list[Float[np.ndarray, " copy"]]:
+) -> list[Float[np.ndarray, " _"]]:
     """Phases of all meshes of planets, where the first planet enters its first mesh.
 
     Gears of a stepped planet have the middle of a tooth in one line.

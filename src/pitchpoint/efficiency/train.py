@@ -163,7 +163,7 @@ def gear_train(
     ends: Ends,
     *,
     planets: Sequence[str] = (),
-    phases: Sequence[Float[np.ndarray, " copy"]] = (),
+    phases: Sequence[Float[np.ndarray, " _"]] = (),
     angles: Float[np.ndarray, " planet"] | None = None,
     drag: Sequence[Drag] = (),
     braked: Sequence[tuple[str, str]] = (),
