@@ -90,6 +90,15 @@ class InputError(PitchpointError, ValueError):
         located.key = key if key is not None else self.key
         return located
 
+    def followed_by(self, clause: str) -> Self:
+        """Return a copy whose sentence ends with a further clause; the same where that is empty."""
+        longer = copy.copy(self)
+        if clause and self.message.endswith("?"):
+            longer.message = f"{self.message} {clause[0].upper()}{clause[1:]}"
+        elif clause:
+            longer.message = f"{self.message}; {clause}"
+        return longer
+
 
 class CollectedInputError(InputError):
     """Several things wrong with one input, each told in one sentence on a line of its own.

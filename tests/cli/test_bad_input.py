@@ -920,6 +920,9 @@ def bad_names() -> Iterator[Bad]:
         yield Bad(f"variant {name!r}", ("variants",), {name: {}}, words, "variants")
     yield Bad("variants", ("variants",), 3, ("3", "table"), "variants")
     yield Bad("variant", ("variants",), {"a": 3}, ("3", "table"), "variants.a")
+    flat = {"a": {"friction": "xu_2007"}}
+    told = ("[variants.a.models]", "friction")
+    yield Bad("a key of a variant in no table", ("variants",), flat, told, "variants.a.friction")
 
 
 def bad_stages() -> Iterator[Bad]:
@@ -1561,7 +1564,13 @@ def test_nothing_to_cite(name: str, refuse: Callable[..., str], tmp_path: Path) 
         ),
         (["--bogus"], ["No such option: --bogus; see pitchpoint run --help"]),
         (["--variant"], ["--variant", "requires an argument; see pitchpoint --help"]),
-        (["--variant", "x"], ['variants: "x" is not a variant', "known are default"]),
+        (["--variant", "x"], ["this case has no variants", "[variants.x.operation]"]),
+        (["--set", "lubricant.name=Omala 7"], ["any other oil is given by base, viscosity_40"]),
+        (["--set", "roughness.ra=N6"], ["roughness.ra: ", "grade N6 is Ra 0.8 um"]),
+        (["--set", "roughness.ra=Rz 4"], ["roughness.ra: ", "Ra is about Rz/6"]),
+        (["--set", "strength.life=infinite"], ["leave life out for teeth that are to endure"]),
+        (["--set", "operation.torque=-60 N m"], ["which member drives says driver"]),
+        (["--set", "operation.torque=['1 N m', '2 N m']"], ["--sweep operation.torque="]),
         (["extra"], ["extra", "see pitchpoint run --help"]),
     ],
     ids=lambda given: " ".join(given)[:50],
@@ -1597,6 +1606,7 @@ OTHER_CALLS = {
     "run pair.toml --set": '; write --set operation.torque="50 N m"',
     "run pair.toml other.toml": "it takes one case, pitchpoint compare several",
     "show": "a name out of pitchpoint cases",
+    "new pair.toml": "'pair.toml' is a file and no family of gears; write new spur -o FILE",
 }
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from pitchpoint.cases.library import names
 from pitchpoint.cases.schema import validate
@@ -33,6 +34,7 @@ def test_numbers_of_python_are_si(case: Case) -> None:
     assert case["gears.face_width"] == pytest.approx(18e-3, rel=1e-15)
     assert case["roughness.ra"] == (4e-7, 4e-7)
     assert case["operation.temperature"] == 323.15
+    assert case.set(torque=xr.DataArray(5.0))["torque"] == 5.0
 
 
 def test_a_change_gives_another_case(case: Case) -> None:

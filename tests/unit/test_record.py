@@ -433,7 +433,7 @@ def test_a_law_of_the_users_own_is_asked_for_again(odd: dict[str, Any], tmp_path
     law = running._own(lambda *, pressure: pressure)
     (variant,) = held(str(path), own=law)
     assert variant.own is law
-    with pytest.raises(InputError, match='"physical" is not a variant of this case'):
+    with pytest.raises(InputError, match="this case has no variants"):
         describe(kept(odd, tmp_path), ["physical"])
 
 

@@ -6,7 +6,7 @@ import math
 import os
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,7 @@ __all__ = [
     "read",
     "setting",
     "strip",
+    "unknown_variant",
 ]
 
 _NAMING_FILES = (("film", "heights", "*"), ("worn",), ("stages", "*", "film", "heights", "*"))
@@ -241,6 +242,20 @@ def variants(tree: Tree) -> list[str]:
     return list(_overlays(tree)) or ["default"]
 
 
+def unknown_variant(variant: str, known: Sequence[str]) -> InputError:
+    """Error for a variant that a case does not have."""
+    if [*known] == ["default"]:
+        name = variant if _NAME.fullmatch(variant) else "NAME"
+        return InputError(
+            f"{shown(variant)} was asked for, and this case has no variants; leave it out, or write its "
+            f"changes as tables, such as [variants.{name}.operation]",
+            key="variants",
+        )
+    return InputError(
+        f"{shown(variant)} is not a variant of this case{nearest(variant, known)}", key="variants"
+    )
+
+
 def _overlays(tree: Tree) -> Tree:
     given = tree.get("variants", {})
     if not isinstance(given, dict):
@@ -253,9 +268,25 @@ def _overlays(tree: Tree) -> Tree:
         check_name(name, "variants")
         if not isinstance(overlay, dict):
             raise InputError(
-                f"{shown(overlay)} was given where a table belongs", key=f"variants.{name}"
+                f"{shown(overlay)} was given where a table belongs; a variant has the tables that it "
+                f"changes, such as [variants.{name}.operation]",
+                key=f"variants.{name}",
             )
+        for key, value in overlay.items():
+            _demand_table(key, value, name, tree)
     return overlays
+
+
+def _demand_table(key: str, value: Any, variant: str, tree: Tree) -> None:
+    """InputError for a key of a table of the case that stands in a variant by itself."""
+    *above, last = key.split(".")
+    tables = [name for name, table in tree.items() if isinstance(table, dict) and last in table]
+    holding = ".".join(above) or next(iter(tables), "")
+    if not isinstance(value, dict) and holding and key not in tree:
+        raise InputError(
+            f"stands in no table; write [variants.{variant}.{holding}] and {last} below it",
+            key=f"variants.{variant}.{key}",
+        )
 
 
 def check_name(name: str, key: str) -> None:
@@ -290,11 +321,7 @@ def resolve(
     """
     known = variants(tree)
     if variant not in known:
-        raise InputError(
-            f"{shown(variant)} is not a variant of this case{nearest(variant, known)}",
-            file=name,
-            key="variants",
-        )
+        raise unknown_variant(variant, known).at(file=name)
     base = {key: value for key, value in tree.items() if key != "variants"}
     merged = _tables_merged(_numbered(base), _numbered(_overlays(tree).get(variant, {})))
     for key, value in (settings or {}).items():

@@ -2462,9 +2462,13 @@ def _sentences(detail: Any, document: Document, model: type[BaseModel]) -> Seque
     key = ".".join(shorten(str(part)) for part in detail["loc"] if str(part) in words)
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
+        from pitchpoint.cases.wishes import value_advice
+
         each = cause.errors if isinstance(cause, CollectedInputError) else (cause,)
+        places = [".".join(filter(None, (key, one.key))) for one in each]
         return [
-            one.at(file=document.name, key=".".join(filter(None, (key, one.key)))) for one in each
+            one.at(file=document.name, key=place).followed_by(value_advice(place, detail["input"]))
+            for one, place in zip(each, places, strict=True)
         ]
     return [InputError(_message(detail, document, model), file=document.name, key=key)]
 

@@ -64,6 +64,10 @@ def template(family: str) -> str:
         InputError: there is no such family.
     """
     found = known_as(family, FAMILIES)
+    if found is None and family.endswith(".toml"):
+        raise InputError(
+            f"'{shorten(family)}' is a file and no family of gears; write new spur -o FILE"
+        )
     if found is None:
         raise InputError(f"'{shorten(family)}' is no family of gears{no_family(family, FAMILIES)}")
     model, tree = _sample(found)

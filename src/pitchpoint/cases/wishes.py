@@ -4,6 +4,7 @@ A name that is spelled like a key may mean something else: "input_torque" is no 
 asked for often stands here, and is answered before any neighbour is offered.
 """
 
+import re
 import tomllib
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -33,7 +34,7 @@ from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.materials.data import oil_names
 from pitchpoint.registry import letters, listed, nearest
 
-__all__ = ["WISHES", "Wish", "answer", "answered", "elsewhere"]
+__all__ = ["WISHES", "Wish", "answer", "answered", "elsewhere", "value_advice"]
 
 Tree = Mapping[str, Any]
 Write = Callable[[Any, Tree, Tree], str]
@@ -91,6 +92,34 @@ def answer(place: Sequence[str], value: Any, tree: Tree, fields: Collection[str]
     if line or not wish.keys or wish in WISHES[""]:
         return f": {wish.why}{f'; write {line}' if line else ''}"
     return f": {wish.why}; the key is {wish.keys[0]}"
+
+
+def value_advice(key: str, value: Any) -> str:
+    """What is to be known of a value that its key does not take but others use, as a clause; else empty.
+
+    Args:
+        key: dotted, of the case or of one of its stages.
+        value: that stands there.
+    """
+    key = re.sub(r"^stages\.\d+\.", "", key)
+    words = value.strip().casefold() if isinstance(value, str) else ""
+    if isinstance(value, list | tuple) and (len(value) > 2 or key.startswith("operation.")):
+        return f"several values are swept: --sweep {key}=FIRST:LAST:COUNT, or a study in Python"
+    if key == "lubricant.name":
+        return "any other oil is given by base, viscosity_40 and viscosity_100 in place of its name"
+    if key == "roughness.ra" and (grade := re.fullmatch(r"n\s?(1[0-2]|[1-9])", words)):
+        return f"grade N{grade[1]} is Ra {_RA_OF_GRADES[int(grade[1]) - 1]} um: write that length"
+    if key == "roughness.ra" and words.startswith("rz"):
+        return "Rz has a key of its own in [strength], and Ra is about Rz/6 as in ISO 6336-2"
+    if key == "strength.life" and words.startswith(("inf", "endless", "permanent", "unlimited")):
+        return "leave life out for teeth that are to endure"
+    if key in ("operation.torque", "operation.force", "operation.speed") and words.startswith("-"):
+        return "it has no sign: which member drives says driver in [operation]"
+    return ""
+
+
+_RA_OF_GRADES = (0.025, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.3, 12.5, 25, 50)
+"""Ra of the roughness grades N1 to N12 [um], ISO 1302."""
 
 
 def no_family(name: str, known: Collection[str]) -> str:

@@ -18,6 +18,7 @@ from pitchpoint.cases.document import (
     Tree,
     demand_shallow,
     leaves,
+    unknown_variant,
     variants,
 )
 from pitchpoint.cases.schema import DriveCase, StageTable, in_form, keys, quantity_at, validate
@@ -273,7 +274,8 @@ def _read(source: "Source | Case") -> tuple[str, Sequence[Variant]]:
     if isinstance(source, Mapping):
         return "", _of_tables(source)
     if not isinstance(source, str | Path):
-        raise InputError(f"{shown(source)} was given; {_A_CASE}")
+        several = "; run several one by one" if isinstance(source, Sequence) else ""
+        raise InputError(f"{shown(source)} was given; {_A_CASE}{several}")
     return str(source), variants_of(str(source))
 
 
@@ -290,8 +292,7 @@ def _of_tables(source: Mapping[str, Any]) -> Sequence[Variant]:
 def _only(made: Sequence[Variant], name: str) -> list[Variant]:
     known = [one.variant for one in made]
     if name not in known:
-        told = f"{shown(name)} is not a variant of this case{nearest(name, known)}"
-        raise InputError(told, file=made[0].name, key="variants")
+        raise unknown_variant(name, known).at(file=made[0].name)
     return [one for one in made if one.variant == name]
 
 

@@ -53,6 +53,8 @@ class _Gate:
             raise InputError(f"is nested more than {MAX_DEPTH} levels deep, the most allowed")
         if hasattr(value, "tolist"):
             value = _from_array(value)
+        elif hasattr(value, "__array__"):  # of xarray
+            value = _from_array(np.asarray(value))
         if isinstance(value, Mapping):
             return {_key(name): self.plain(item, depth + 1) for name, item in value.items()}
         if isinstance(value, Sequence) and not isinstance(value, str | bytes | bytearray):
