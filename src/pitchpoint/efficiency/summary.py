@@ -385,6 +385,8 @@ def in_chunks(
         done += used
         if progress is not None:
             progress(done)
+    if len(chunks) == 1:
+        return chunks[0]
     return {name: np.concatenate([part[name] for part in chunks]) for name in chunks[0]}
 
 

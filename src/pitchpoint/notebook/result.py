@@ -2,7 +2,7 @@
 
 import html
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,7 @@ from pitchpoint.notebook import tables
 from pitchpoint.notebook.figures import Plots
 from pitchpoint.notebook.gradients import gradients
 from pitchpoint.registry import nearest
-from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
+from pitchpoint.results.chosen_units import Choice, UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.labelled import Units, attributes, demand_units, labelled
 from pitchpoint.runs import run as runs
 from pitchpoint.runs.case import Case, CaseLike, written
@@ -56,7 +56,10 @@ class Result(Mapping[str, Outcome]):
     ) -> None:
         self._outcomes, self._origins, self._friction = dict(outcomes), origins, friction
         self._studies = studies
-        self._units = recorded_units(outcomes)
+
+    @cached_property
+    def _units(self) -> Choice:
+        return recorded_units(self._outcomes)  # of the record, which is made when it is asked for
 
     def __getitem__(self, name: str) -> Any:
         """Outcome of a variant, else the dataset of a part, as `dataset` gives it.
