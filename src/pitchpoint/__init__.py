@@ -20,6 +20,8 @@ _LAZY: dict[str, str] = {
     "run": "pitchpoint.notebook.result",
     "open_result": "pitchpoint.notebook.result",
     "study": "pitchpoint.runs.study",
+    "three_k_sets": "pitchpoint.sizing.three_k",
+    "three_k_tables": "pitchpoint.sizing.three_k",
     "gradients": "pitchpoint.notebook.gradients",
     "models": "pitchpoint.notebook.tables",
     "cite": "pitchpoint.notebook.tables",

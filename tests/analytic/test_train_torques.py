@@ -9,6 +9,7 @@ from trains import EFFICIENCIES, link, planetary, stepped, three_k
 from pitchpoint.drive.kinematics import Ends
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.errors import InputError
+from pitchpoint.sizing.three_k import three_k_efficiencies
 
 SEED = 20261127
 LOAD = 100.0
@@ -99,20 +100,6 @@ def test_random_sets_of_two_central_gears_agree_with_willis():
     assert signs > 300
 
 
-def of_3k(first, second, sun, ring, output, backwards):
-    """Efficiency of a 3K by its closed form; not a number where it is locked."""
-    e_1, e_2, e_s = ring, output, sun
-    if not backwards and second < 1.0:
-        return (1 + e_s * e_1 * first) * (1 - second) / ((1 + first) * (1 - e_1 * e_2 * second))
-    if not backwards:
-        return (e_1 + e_s * first) * (second - 1) / ((1 + first) * (second / e_2 - e_1))
-    if second < 1.0:
-        over = (1 + first) * e_s * (e_1 * e_2 - second)
-        return over / (e_2 * (e_s * e_1 + first) * (1 - second)) if over > 0.0 else nan
-    over = (1 + first) * e_s * (e_1 * e_2 * second - 1)
-    return over / ((e_s + e_1 * first) * (second - 1)) if over > 0.0 else nan
-
-
 @pytest.mark.whole
 def test_random_3k_trains_agree_with_their_closed_forms():
     random = np.random.default_rng(SEED)
@@ -125,10 +112,18 @@ def test_random_3k_trains_agree_with_their_closed_forms():
         if second_planet == planet or second_ring <= second_planet:
             continue
         etas = random.uniform(0.95, 1.0, 3).tolist()
-        links = three_k(sun, planet, ring, second_planet, second_ring)
+        teeth = sun, planet, ring, second_planet, second_ring
+        ways = dict(
+            zip(
+                ("sun", "output ring"),
+                map(float, three_k_efficiencies(np.array(teeth, float), np.array(etas))),
+                strict=True,
+            )
+        )
+        links = three_k(*teeth)
         for turned, loaded in (("sun", "output ring"), ("output ring", "sun")):
             found = train_torques(links, Ends({turned: 1.0}, ("ring",), loaded), LOAD, etas)
-            asked = of_3k(ring / sun, second, *etas, turned != "sun")
+            asked = ways[turned] or nan
             assert found.efficiency == pytest.approx(asked, rel=1e-9, nan_ok=True)
             locked, above = locked + isnan(asked), above + (second > 1.0)
     assert locked > 50

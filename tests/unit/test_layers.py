@@ -46,6 +46,7 @@ FLOW = (
     {"cases"},
     {"analyses"},
     {"runs"},
+    {"sizing"},
     {"views"},
     {"notebook"},
     {"exports"},
