@@ -15,6 +15,7 @@ from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
 import pitchpoint
+from pitchpoint.gears.dimensions import drawing
 
 __all__ = ["setup"]
 
@@ -49,7 +50,7 @@ def moving_teeth(gears: dict[str, Any]) -> str:
     """
     mesh = pitchpoint.load_case({"title": "Teeth", "gears": gears, **RUNNING}).design.mesh
     with pitchpoint.double_precision():
-        drawn = {name: np.asarray(value) for name, value in mesh.drawing().items()}
+        drawn = {name: np.asarray(value) for name, value in drawing(mesh).items()}
     tip = 1e3 * drawn["tip_radius"][0]
     box = f"{-1.7 * tip:.1f} {-1.6 * tip:.1f} {3.4 * tip:.1f} {1.5 * tip:.1f}"
     bodies = "".join(_turning(drawn, body, side) for body, side in ((0, 1.0), (1, -1.0)))

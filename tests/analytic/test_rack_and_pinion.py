@@ -10,6 +10,7 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.loading.registry import LOAD_SHARING
@@ -41,7 +42,7 @@ def rack(**values):
 @program
 def dimensions(mesh):
     return {
-        **mesh.dimensions(),
+        **main_dimensions(mesh),
         "motion": mesh.motion,
         "period": mesh.period,
         "contact_ratio": mesh.contact_ratio,

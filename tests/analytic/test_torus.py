@@ -13,6 +13,7 @@ from scipy.optimize import minimize_scalar
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.errors import InputError
+from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.compliance import slice_stiffness
@@ -41,7 +42,7 @@ def pair(**values):
 
 @eqx.filter_jit
 def figures(mesh):
-    return mesh.dimensions() | {"limits": mesh.limits, "base_pitch": mesh.base_pitch}
+    return main_dimensions(mesh) | {"limits": mesh.limits, "base_pitch": mesh.base_pitch}
 
 
 contacts_of = eqx.filter_jit(lambda mesh, phase: mesh.contacts(phase))

@@ -15,6 +15,7 @@ from pitchpoint.contact.contacts import total
 from pitchpoint.contact.surface import Spot, missing
 from pitchpoint.contact.worn import WIDEST, Worn, WornAt, averaged
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.conditions import Conditions
@@ -466,7 +467,7 @@ def test_tips_lose_what_the_flank_loses_over_the_cosine_of_its_angle():
     built = pair("equal")
     start, cells = begun(built)
     mesh, tips = built.design.mesh, tips_of(built.design.mesh, cells, start)
-    arc = np.asarray(mesh.dimensions()["tip_thickness"])
+    arc = np.asarray(main_dimensions(mesh)["tip_thickness"])
     radius, base = np.asarray(mesh.tip_radii), np.asarray(mesh.base_radii)
     half = arc / (2.0 * radius)
     assert tips.width == pytest.approx(2.0 * radius * np.sin(half), rel=1e-6)
@@ -486,7 +487,7 @@ def test_cells_lie_on_the_involutes_of_the_teeth():
     mesh, found = built.design.mesh, half_teeth(built.design.mesh, cells)
     base = np.asarray(mesh.base_radii)[:, None]
     radius = np.sqrt(base**2 + 2.0 * base * np.asarray(cells.middles[0]))
-    tips, arc = np.asarray(mesh.tip_radii), np.asarray(mesh.dimensions()["tip_thickness"])
+    tips, arc = np.asarray(mesh.tip_radii), np.asarray(main_dimensions(mesh)["tip_thickness"])
     pressure = np.arccos(base / np.hstack([tips[:, None], radius]))
     involute = np.tan(pressure) - pressure
     half = (arc / (2.0 * tips))[:, None] + involute[:, :1] - involute[:, 1:]

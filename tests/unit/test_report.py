@@ -23,6 +23,7 @@ from pitchpoint.cases.build import ALONE
 from pitchpoint.doubts import as_doubt, stored
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
+from pitchpoint.gears.dimensions import drawing
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
@@ -834,7 +835,7 @@ def racked(driver: str = "pinion") -> Outcome:
 
 def drawn_teeth(mesh: Mesh, family: Family, driver: str, members: list[str]) -> Outcome:
     """The part `teeth` of a mesh, and the record that a picture needs."""
-    numbers = {name: np.asarray(value) for name, value in mesh.drawing().items()}
+    numbers = {name: np.asarray(value) for name, value in drawing(mesh).items()}
     teeth = dataset(
         {n: (family.drawing.get(n, ("gear",)[: v.ndim]), v) for n, v in numbers.items()},
         dict(family.coordinates),

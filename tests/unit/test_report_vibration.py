@@ -17,6 +17,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
+from pitchpoint.gears.dimensions import drawing
 from pitchpoint.gears.mesh import PATHS
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
@@ -45,7 +46,7 @@ def pair_of(**changes: Any) -> CylindricalPair:
     )
 
 
-drawing_of = eqx.filter_jit(CylindricalPair.drawing)
+drawing_of = eqx.filter_jit(drawing)
 contacts_of = eqx.filter_jit(CylindricalPair.contacts)
 
 

@@ -7,6 +7,7 @@ from jaxtyping import Array
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.cases.build import Built
+from pitchpoint.gears.dimensions import drawing
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
@@ -41,7 +42,7 @@ def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
 
 @program
 def _drawing(mesh: Mesh) -> dict[str, Array]:
-    return mesh.drawing()
+    return drawing(mesh)
 
 
 def _undrawn(built: Built) -> str | None:

@@ -51,6 +51,7 @@ from pitchpoint.efficiency.summary import engaged
 from pitchpoint.efficiency.warm_teeth import balance
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.coordinates import Coordinate
+from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.families import Gears, built_gears, family_of
 from pitchpoint.gears.family import Family, Followed
 from pitchpoint.gears.mesh import PATHS, Mesh
@@ -1101,7 +1102,7 @@ def _numbers(mesh: Mesh) -> dict[str, dict[str, Any]]:
         "events": mesh.events(),
         "pitch_line_speed": mesh.reference.pitch_line_speed if mesh.pitch_point else jnp.zeros(()),
     }
-    return {"dimensions": mesh.dimensions(), "nominal": nominal}
+    return {"dimensions": main_dimensions(mesh), "nominal": nominal}
 
 
 _modulus = program(reduced_modulus)

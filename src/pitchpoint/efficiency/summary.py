@@ -34,6 +34,7 @@ from pitchpoint.efficiency.rows import (
     one_engagement,
     stacked,
 )
+from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.reactions import radial_and_axial
@@ -104,7 +105,7 @@ def summary(design: Design, result: Cycle, factor: Array) -> dict[str, Array]:
     torque_low, torque_high = result.extremes(state.input_torque)
     acting, limit = result.nearest_to_jamming
     return {
-        **_by_gear(design.mesh.dimensions()),
+        **_by_gear(main_dimensions(design.mesh)),
         "contact_ratio": design.mesh.contact_ratio,
         "loss_factor": factor,
         "mean_loss": result.mean_loss,

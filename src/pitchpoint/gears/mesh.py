@@ -282,14 +282,6 @@ class Mesh(eqx.Module):
         """
         return jnp.full(len(self.coordinates), jnp.nan)
 
-    def dimensions(self) -> dict[str, Float[Array, "..."]]:
-        """Main dimensions by name, one value or one for each member; for results and tables."""
-        return {}
-
-    def drawing(self) -> dict[str, Float[Array, "..."]]:
-        """What a drawing of the teeth to scale needs; empty where there is none."""
-        return {}
-
     @property
     @abc.abstractmethod
     def coordinates(self) -> tuple[Coordinate, ...]:

@@ -18,6 +18,7 @@ from pitchpoint.gears.contact_lines import (
 )
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
+from pitchpoint.gears.dimensions import drawing, main_dimensions
 from pitchpoint.gears.involute import (
     InvoluteGear,
     base_helix,
@@ -606,51 +607,6 @@ class InvolutePair(Mesh):
         bore = jnp.where(ring, root * self.rim_ratio, root / self.rim_ratio)
         return jnp.pi / 2.0 * density * self.face_width * jnp.abs(outer**4 - bore**4)
 
-    def dimensions(self) -> dict[str, Float[Array, "..."]]:
-        """Contact ratios, centre distance, and for each gear its shortening, tip and undercut limit."""
-        gears = self.gears
-        return {
-            "module": self.module,
-            "transverse_contact_ratio": self.transverse_contact_ratio,
-            "overlap_ratio": self.overlap_ratio,
-            "centre_distance": self.centre_distance,
-            "circumferential_backlash": self.backlash,
-            "normal_backlash": self.normal_backlash,
-            "tip_alteration": self.tip_alteration,
-            "tip_thickness": jnp.stack([gear.tip_thickness for gear in gears]),
-            "undercut_limit": jnp.stack([gear.undercut_limit for gear in gears]),
-        }
-
-    def drawing(self) -> dict[str, Float[Array, "..."]]:
-        """Layers of the picture, circles, points of the path; radii without sign [m]."""
-        gears = self.gears
-        radii = {
-            "base_radius": self.base_radii,
-            "tip_radius": self.tip_radii,
-            "root_radius": jnp.stack([gear.root_radius for gear in gears]),
-            "reference_radius": jnp.stack([gear.reference_radius for gear in gears]),
-            "working_radius": self.working_radii,
-            "form_radius": hypot(
-                self.base_radii, jnp.stack([gear.form_roll_length for gear in gears])
-            ),
-            "active_root_radius": hypot(self.base_radii, self._innermost),
-        }
-        return {
-            **self._layers(),
-            "points": self.points,
-            "teeth": self.teeth,
-            **{name: jnp.abs(values) for name, values in radii.items()},
-            "working_pressure_angle": self.working_pressure_angle,
-            "tangent_length": self.tangent_length,
-            "base_pitch": self.base_pitch,
-            "base_helix_angle": self.base_helix_angle,
-            "face_width": self.face_width,
-            "contact_ratio": self.contact_ratio,
-            "specific_sliding_A": self.specific_sliding(self.limits[0]),
-            "specific_sliding_E": self.specific_sliding(self.limits[1]),
-            **self.dimensions(),
-        }
-
     def _layers(self) -> dict[str, Float[Array, "..."]]:
         """The transverse section at the middle of the face, gear 2 above gear 1, a ring below.
 
@@ -746,3 +702,50 @@ class InvolutePair(Mesh):
             cutter_teeth=self.cutter_teeth if is_ring else None,
             cutter_shift=self.cutter_shift if is_ring else None,
         )
+
+
+@main_dimensions.register
+def _main_dimensions(pair: InvolutePair) -> dict[str, Float[Array, "..."]]:
+    """Contact ratios, centre distance, and for each gear its shortening, tip and undercut limit."""
+    gears = pair.gears
+    return {
+        "module": pair.module,
+        "transverse_contact_ratio": pair.transverse_contact_ratio,
+        "overlap_ratio": pair.overlap_ratio,
+        "centre_distance": pair.centre_distance,
+        "circumferential_backlash": pair.backlash,
+        "normal_backlash": pair.normal_backlash,
+        "tip_alteration": pair.tip_alteration,
+        "tip_thickness": jnp.stack([gear.tip_thickness for gear in gears]),
+        "undercut_limit": jnp.stack([gear.undercut_limit for gear in gears]),
+    }
+
+
+@drawing.register
+def _drawing(pair: InvolutePair) -> dict[str, Float[Array, "..."]]:
+    """Layers of the picture, circles, points of the path; radii without sign [m]."""
+    gears = pair.gears
+    radii = {
+        "base_radius": pair.base_radii,
+        "tip_radius": pair.tip_radii,
+        "root_radius": jnp.stack([gear.root_radius for gear in gears]),
+        "reference_radius": jnp.stack([gear.reference_radius for gear in gears]),
+        "working_radius": pair.working_radii,
+        "form_radius": hypot(pair.base_radii, jnp.stack([gear.form_roll_length for gear in gears])),
+        "active_root_radius": hypot(pair.base_radii, pair._innermost),
+    }
+    return {
+        **pair._layers(),
+        "points": pair.points,
+        "teeth": pair.teeth,
+        **{name: jnp.abs(values) for name, values in radii.items()},
+        "working_pressure_angle": pair.working_pressure_angle,
+        "tangent_length": pair.tangent_length,
+        "base_pitch": pair.base_pitch,
+        "base_helix_angle": pair.base_helix_angle,
+        "face_width": pair.face_width,
+        "contact_ratio": pair.contact_ratio,
+        "specific_sliding_A": pair.specific_sliding(pair.limits[0]),
+        "specific_sliding_E": pair.specific_sliding(pair.limits[1]),
+        **main_dimensions(pair),
+    }

@@ -13,6 +13,7 @@ from pitchpoint.contact.surface import Offset, Spot, Surfaces, other_side
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.contact_lines import PathOfContact
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
+from pitchpoint.gears.dimensions import drawing, main_dimensions
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
@@ -317,47 +318,6 @@ class RackAndPinion(Mesh):
         disc = jnp.pi / 2.0 * density[0] * self.face_width * (outer**4 - bore**4)
         return jnp.stack([disc, self.moved_mass])
 
-    def dimensions(self) -> dict[str, Float[Array, "..."]]:
-        """Contact ratios, distance and backlash, and of the pinion tip and undercut limit."""
-        line, pinion = self.line, self.pinion
-        return {
-            "module": pinion.module,
-            "transverse_contact_ratio": line.transverse_contact_ratio,
-            "overlap_ratio": line.overlap_ratio,
-            "mounting_distance": self.distance,
-            "circumferential_backlash": self.backlash,
-            "normal_backlash": self.normal_backlash,
-            "tip_thickness_1": pinion.tip_thickness,
-            "undercut_limit_1": pinion.undercut_limit,
-        }
-
-    def drawing(self) -> dict[str, Float[Array, "..."]]:
-        """Layers of the picture, circles of the pinion alone, points of the path [m]."""
-        line, pinion = self.line, self.pinion
-        radii = {
-            "base_radius": pinion.base_radius,
-            "tip_radius": pinion.tip_radius,
-            "root_radius": pinion.root_radius,
-            "reference_radius": pinion.reference_radius,
-            "form_radius": hypot(pinion.base_radius, pinion.form_roll_length),
-            "active_root_radius": hypot(pinion.base_radius, line.limits[0]),
-        }
-        own = {"tip_thickness": pinion.tip_thickness, "undercut_limit": pinion.undercut_limit}
-        alone = {"teeth": pinion.teeth, **radii, **own}
-        none = jnp.asarray(jnp.nan)
-        named = self.dimensions()
-        return {
-            **self._layers(line),
-            "points": line.points,
-            **{name: jnp.stack([value, none]) for name, value in alone.items()},
-            "working_pressure_angle": line.angle,
-            "base_pitch": line.base_pitch,
-            "base_helix_angle": pinion.base_helix_angle,
-            "face_width": self.face_width,
-            "contact_ratio": line.contact_ratio,
-            **{name: value for name, value in named.items() if not name.endswith("_1")},
-        }
-
     def _layers(self, line: LineOfAction) -> dict[str, Float[Array, "..."]]:
         """The transverse section at the middle of the face, the rack above the pinion."""
         side, base = self._side, line.base_radius
@@ -410,3 +370,48 @@ class RackAndPinion(Mesh):
     @property
     def _side(self) -> Float[Array, ""]:
         return jnp.where(self.right_flank, -1.0, 1.0)
+
+
+@main_dimensions.register
+def _main_dimensions(mesh: RackAndPinion) -> dict[str, Float[Array, "..."]]:
+    """Contact ratios, distance and backlash, and of the pinion tip and undercut limit."""
+    line, pinion = mesh.line, mesh.pinion
+    return {
+        "module": pinion.module,
+        "transverse_contact_ratio": line.transverse_contact_ratio,
+        "overlap_ratio": line.overlap_ratio,
+        "mounting_distance": mesh.distance,
+        "circumferential_backlash": mesh.backlash,
+        "normal_backlash": mesh.normal_backlash,
+        "tip_thickness_1": pinion.tip_thickness,
+        "undercut_limit_1": pinion.undercut_limit,
+    }
+
+
+@drawing.register
+def _drawing(mesh: RackAndPinion) -> dict[str, Float[Array, "..."]]:
+    """Layers of the picture, circles of the pinion alone, points of the path [m]."""
+    line, pinion = mesh.line, mesh.pinion
+    radii = {
+        "base_radius": pinion.base_radius,
+        "tip_radius": pinion.tip_radius,
+        "root_radius": pinion.root_radius,
+        "reference_radius": pinion.reference_radius,
+        "form_radius": hypot(pinion.base_radius, pinion.form_roll_length),
+        "active_root_radius": hypot(pinion.base_radius, line.limits[0]),
+    }
+    own = {"tip_thickness": pinion.tip_thickness, "undercut_limit": pinion.undercut_limit}
+    alone = {"teeth": pinion.teeth, **radii, **own}
+    none = jnp.asarray(jnp.nan)
+    named = main_dimensions(mesh)
+    return {
+        **mesh._layers(line),
+        "points": line.points,
+        **{name: jnp.stack([value, none]) for name, value in alone.items()},
+        "working_pressure_angle": line.angle,
+        "base_pitch": line.base_pitch,
+        "base_helix_angle": pinion.base_helix_angle,
+        "face_width": mesh.face_width,
+        "contact_ratio": line.contact_ratio,
+        **{name: value for name, value in named.items() if not name.endswith("_1")},
+    }

@@ -13,6 +13,7 @@ from pitchpoint.contact.surface import Spot, Surfaces, other_side
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
+from pitchpoint.gears.dimensions import drawing, main_dimensions
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path
 from pitchpoint.gears.strain_wave import MEMBERS
@@ -487,43 +488,6 @@ class StrainWave(Mesh):
             half, heights[-1] - radius, rate / hypot(1.0, slope), -jnp.arctan(slope), ends
         )
 
-    def dimensions(self) -> dict[str, Float[Array, "..."]]:
-        """Speed ratio, deflection, radii and the depth to which the teeth reach into each other."""
-        return {
-            "module": self.module,
-            "speed_ratio": jnp.abs(self.ratio),
-            "deflection": self.line.deflection,
-            "neutral_radius": self.line.radius,
-            "engagement_depth": self.groove.high - self.groove.low,
-        }
-
-    def drawing(self) -> dict[str, Float[Array, "..."]]:
-        """Outlines of tooth and space, the deformed neutral line, the tooth on its way; lengths in m.
-
-        Points are (across, outwards): of the tooth from its axis and the neutral line, of the space from
-        its middle and the common axis.
-        """
-        tooth = self._outline
-        angle = jnp.deg2rad(jnp.linspace(-90.0, 90.0, 37))
-        foot, axis = self.tooth_motion.foot(angle)
-        placed = foot[:, None] + unit(axis[:, None]) * tooth
-        width, heights = self.groove.half_width + self.backlash / 2.0, self.groove.made
-        space = jnp.concatenate([heights - 1j * width, (heights + 1j * width)[::-1]])
-        return {
-            "teeth": self.teeth,
-            "tooth": _points(tooth),
-            "space": _points(space),
-            "passing_angle": angle,
-            "passing": _points(placed),
-            "neutral_radius": self.line.radius,
-            "deflection": self.line.deflection,
-            "wave_weights": self.line.weights,
-            "rim_thickness": self.rim.thickness,
-            "tip_height": self.tip_height,
-            "clearance_angle": self.surveyed.angle,
-            "clearance": self.surveyed.clearance,
-        }
-
     @property
     def _outline(self) -> Array:
         """Flexspline tooth from root to root over its tip."""
@@ -811,3 +775,44 @@ def _section(
         rim_ratio=jnp.ones(()),
         stiff=RING_RIM,
     )
+
+
+@main_dimensions.register
+def _main_dimensions(drive: StrainWave) -> dict[str, Float[Array, "..."]]:
+    """Speed ratio, deflection, radii and the depth to which the teeth reach into each other."""
+    return {
+        "module": drive.module,
+        "speed_ratio": jnp.abs(drive.ratio),
+        "deflection": drive.line.deflection,
+        "neutral_radius": drive.line.radius,
+        "engagement_depth": drive.groove.high - drive.groove.low,
+    }
+
+
+@drawing.register
+def _drawing(drive: StrainWave) -> dict[str, Float[Array, "..."]]:
+    """Outlines of tooth and space, the deformed neutral line, the tooth on its way; lengths in m.
+
+    Points are (across, outwards): of the tooth from its axis and the neutral line, of the space from
+    its middle and the common axis.
+    """
+    tooth = drive._outline
+    angle = jnp.deg2rad(jnp.linspace(-90.0, 90.0, 37))
+    foot, axis = drive.tooth_motion.foot(angle)
+    placed = foot[:, None] + unit(axis[:, None]) * tooth
+    width, heights = drive.groove.half_width + drive.backlash / 2.0, drive.groove.made
+    space = jnp.concatenate([heights - 1j * width, (heights + 1j * width)[::-1]])
+    return {
+        "teeth": drive.teeth,
+        "tooth": _points(tooth),
+        "space": _points(space),
+        "passing_angle": angle,
+        "passing": _points(placed),
+        "neutral_radius": drive.line.radius,
+        "deflection": drive.line.deflection,
+        "wave_weights": drive.line.weights,
+        "rim_thickness": drive.rim.thickness,
+        "tip_height": drive.tip_height,
+        "clearance_angle": drive.surveyed.angle,
+        "clearance": drive.surveyed.clearance,
+    }

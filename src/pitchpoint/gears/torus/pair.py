@@ -10,6 +10,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.factored import Numbers
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
+from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.gears.torus.face import TorusFace, least
 
@@ -170,16 +171,6 @@ class TorusPair(InvolutePair):
         """Moments of inertia of discs as wide as the face of each gear [kg m2]."""
         return super().inertia(density) * self.widths / self.face_width
 
-    def dimensions(self) -> dict[str, Float[Array, "..."]]:
-        """Those of a spur pair in the section of the contacts, and where these lie."""
-        return {
-            **super().dimensions(),
-            "transverse_radius": self.transverse_radius,
-            "contact_place": self.place,
-            "contact_room": self.contact_room,
-            "misalignment_approach": self.misalignment_approach,
-        }
-
     @property
     def _bends(self) -> Float[Array, "2"]:
         """Curvature of both flanks across the profile where they touch [1/m]."""
@@ -188,3 +179,15 @@ class TorusPair(InvolutePair):
 
     def _least(self, inclination: Float[Array, ""]) -> tuple[Float[Array, ""], Float[Array, ""]]:
         return least(*self.faces, axial_offset=self.axial_offset, inclination=inclination)
+
+
+@main_dimensions.register
+def _main_dimensions(pair: TorusPair) -> dict[str, Float[Array, "..."]]:
+    """Those of a spur pair in the section of the contacts, and where these lie."""
+    return {
+        **main_dimensions.dispatch(InvolutePair)(pair),
+        "transverse_radius": pair.transverse_radius,
+        "contact_place": pair.place,
+        "contact_room": pair.contact_room,
+        "misalignment_approach": pair.misalignment_approach,
+    }
