@@ -20,6 +20,7 @@ from pitchpoint.efficiency.gradients import (
 )
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.dimensions import completed
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
@@ -68,7 +69,7 @@ def models(choice=0, mu=0.06, laws=("xu_2007", "iso_tr_14179_2", "constant"), ro
 def figures(inputs, chosen):
     """Mean loss, ripple, and input torque at one phase."""
     design, point = inputs
-    design = dataclasses.replace(design, mesh=design.mesh.completed())
+    design = dataclasses.replace(design, mesh=completed(design.mesh))
     found = cycle(design, point, chosen)
     torque = state(design, point, PHASE, chosen).input_torque
     return jnp.stack([found.mean_loss, found.ripple, torque])

@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import demand_double, jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
 from pitchpoint.errors import ConvergenceError
+from pitchpoint.gears.dimensions import completed
 from pitchpoint.programs import program
 
 __all__ = [
@@ -100,7 +101,7 @@ def _told(value: Array, derivatives: Inputs) -> Inputs:
 
 def _completed(inputs: Inputs) -> Inputs:
     design, operation = inputs
-    return dataclasses.replace(design, mesh=design.mesh.completed()), operation
+    return dataclasses.replace(design, mesh=completed(design.mesh)), operation
 
 
 @program

@@ -127,8 +127,6 @@ class Mesh(eqx.Module):
         along_action: of the class; True if it has a `line_of_action`.
         counts: of the class; what `Contacts.path` counts, a key of `PATHS`.
         goes_round: of the class; True if every flank of a member takes its turn, see `flanks_in_turn`.
-        chosen: of the class; fields whose numbers are chosen one by one, what follows from them is
-            `completed`.
     """
 
     pitch_point: ClassVar[bool] = False
@@ -137,22 +135,9 @@ class Mesh(eqx.Module):
     along_action: ClassVar[bool] = False
     counts: ClassVar[Path] = "turn"
     goes_round: ClassVar[bool] = True
-    chosen: ClassVar[tuple[str, ...]] = ()
 
     def __repr__(self) -> str:
         return brief(self)
-
-    def completed(self) -> Self:
-        """The same mesh with dimensions that follow from others computed from them again.
-
-        Derivatives with respect to one dimension then see what follows from it.
-        """
-        return self
-
-    @property
-    def independent(self) -> tuple[str, ...]:
-        """Fields of `chosen` that follow from no others here."""
-        return self.chosen
 
     @property
     def overlap_ratio(self) -> Float[Array, ""]:

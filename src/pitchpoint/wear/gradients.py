@@ -9,6 +9,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.gears.dimensions import completed, independent
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.programs import program
 from pitchpoint.wear.history import Cells, Start, WearModel, reached, travelled, turn_alone
@@ -66,7 +67,7 @@ def changed(inputs: Inputs, names: Sequence[str], part: Float[Array, " input"] |
     return (
         replace(
             design,
-            mesh=replace(design.mesh, **_fields(design.mesh, values)).completed(),
+            mesh=completed(replace(design.mesh, **_fields(design.mesh, values))),
             solids=(solids[0], solids[1]),
             roughness=replace(design.roughness, rq_1=rq_1, rq_2=rq_2),
         ),
@@ -102,7 +103,7 @@ def _words(name: str) -> str:
 
 def _of_mesh(mesh: Mesh) -> Iterator[tuple[str, str, int | None, Array]]:
     """Name, field, member and value of the numbers of a mesh that are chosen."""
-    for field in mesh.independent:
+    for field in independent(mesh):
         value = getattr(mesh, field)
         if not np.ndim(value):
             yield _words(field), field, None, value

@@ -8,6 +8,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
+from pitchpoint.gears.dimensions import independent
 from pitchpoint.gears.rigs.rig import Rig
 
 __all__ = ["BallOnDisc"]
@@ -29,7 +30,6 @@ class BallOnDisc(Rig):
     """
 
     shape: ClassVar[Shape] = "ellipse"
-    chosen: ClassVar[tuple[str, ...]] = ("radius", "track_radius", "slide_roll_ratio")
 
     radius: Float[Array, "2"]
     track_radius: Float[Array, ""]
@@ -60,3 +60,6 @@ class BallOnDisc(Rig):
         curvature = jnp.stack([jnp.zeros(2), 1.0 / self.radius])
         arms = (self.track_radius, self.radius[0])
         return self._contacts(phase, curvature, arms, jnp.asarray(1.0))
+
+
+independent.register(BallOnDisc, lambda _: ("radius", "track_radius", "slide_roll_ratio"))

@@ -18,7 +18,7 @@ from pitchpoint.gears.contact_lines import (
 )
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
-from pitchpoint.gears.dimensions import drawing, main_dimensions
+from pitchpoint.gears.dimensions import completed, drawing, independent, main_dimensions
 from pitchpoint.gears.involute import (
     InvoluteGear,
     base_helix,
@@ -160,6 +160,7 @@ class InvolutePair(Mesh):
     near N1, where gear 2 has its tip; E the other end.
 
     Attributes:
+        chosen: of the class; fields that are chosen one by one unless they follow, see `independent`.
         teeth: numbers of teeth z1, z2; z2 negative for a ring.
         module: normal module [m].
         pressure_angle: normal pressure angle of the basic rack [rad].
@@ -246,12 +247,6 @@ class InvolutePair(Mesh):
             pair = dataclasses.replace(pair, tip_alteration=jnp.stack([change, change]))
             pair = dataclasses.replace(pair, tip_alteration=pair._shortened_tips())
         return dataclasses.replace(pair, surfaces=pair._fitted_surfaces())
-
-    @property
-    def independent(self) -> tuple[str, ...]:
-        """Fields of `chosen` that follow from no others here."""
-        follows = dict(zip(("centre_distance", "tip_alteration"), self.follows, strict=True))
-        return tuple(name for name in self.chosen if not follows.get(name))
 
     def _fitted_surfaces(self) -> Surfaces:
         """Surfaces on the flanks as they end now."""
@@ -749,3 +744,13 @@ def _drawing(pair: InvolutePair) -> dict[str, Float[Array, "..."]]:
         "specific_sliding_E": pair.specific_sliding(pair.limits[1]),
         **main_dimensions(pair),
     }
+
+
+@independent.register
+def _independent(pair: InvolutePair) -> tuple[str, ...]:
+    """Fields of `chosen` that follow from no others here."""
+    follows = dict(zip(("centre_distance", "tip_alteration"), pair.follows, strict=True))
+    return tuple(name for name in pair.chosen if not follows.get(name))
+
+
+completed.register(InvolutePair, lambda pair: pair.completed())

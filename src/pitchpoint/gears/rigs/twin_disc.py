@@ -1,13 +1,12 @@
 """Two cylinders that roll and slide on each other."""
 
-from typing import ClassVar
-
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
+from pitchpoint.gears.dimensions import independent
 from pitchpoint.gears.rigs.rig import Rig
 
 __all__ = ["TwinDisc"]
@@ -22,8 +21,6 @@ class TwinDisc(Rig):
         speed_ratio: surface speed of disc 1 over that of disc 0; 1 rolls without sliding.
         surfaces: how the discs differ from cylinders.
     """
-
-    chosen: ClassVar[tuple[str, ...]] = ("radii", "length", "speed_ratio")
 
     radii: Float[Array, "2"]
     length: Float[Array, ""]
@@ -54,3 +51,6 @@ class TwinDisc(Rig):
         """The one contact line, the same at every phase."""
         curvature = jnp.stack([1.0 / self.radii, jnp.zeros(2)], axis=-1)
         return self._contacts(phase, curvature, (self.radii[0], -self.radii[1]), self.length)
+
+
+independent.register(TwinDisc, lambda _: ("radii", "length", "speed_ratio"))

@@ -13,7 +13,7 @@ from pitchpoint.contact.surface import Spot, Surfaces, other_side
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
-from pitchpoint.gears.dimensions import drawing, main_dimensions
+from pitchpoint.gears.dimensions import completed, drawing, independent, main_dimensions
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path
 from pitchpoint.gears.strain_wave import MEMBERS
@@ -153,7 +153,6 @@ class StrainWave(Mesh):
 
     toothed: ClassVar[bool] = True
     counts: ClassVar[Path] = "wave"
-    chosen: ClassVar[tuple[str, ...]] = ("face_width",)
 
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
@@ -816,3 +815,7 @@ def _drawing(drive: StrainWave) -> dict[str, Float[Array, "..."]]:
         "clearance_angle": drive.surveyed.angle,
         "clearance": drive.surveyed.clearance,
     }
+
+
+completed.register(StrainWave, StrainWave.completed)
+independent.register(StrainWave, lambda _: ("face_width",))
