@@ -43,6 +43,7 @@ from pitchpoint.efficiency.quasi_static import (
     engagement,
     shares_at,
 )
+from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.gears.strain_wave import drive as strain_wave
 from pitchpoint.gears.strain_wave.groove import swept
 from pitchpoint.loading.compliance import compliance
@@ -174,7 +175,7 @@ def theirs(
     once, found = timed(lambda: rival.geometry(drive, np.asarray(known.phase)))
     same = package_geometry(built, known)
     places = np.arange(known.contacts.active.shape[0])
-    (first,) = built.design.mesh.in_pairs(places[:, None], 0)[:, :1].T
+    (first,) = in_pairs(built.design.mesh, places[:, None], 0)[:, :1].T
     seconds, own, shared = [], [], []
     for torque in torques:
         every = np.asarray(_compliance(tree, known.contacts, built.terms, jnp.asarray(torque)))

@@ -13,6 +13,7 @@ from scipy.optimize import nnls
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import ACTION, WAVE, way
 from pitchpoint.loading import equilibrium as module
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import equilibrium, touch
@@ -296,19 +297,18 @@ class _Looked(Mesh):
     overlap_ratio: ClassVar[jax.Array] = jnp.asarray(0.0)
     contact_ratio: ClassVar[jax.Array] = jnp.asarray(1.5)
     events = relation = motion = driver = driven_by = period = reference = None
-    coordinates = rigid_contacts = spots = flanks_in_turn = None
+    coordinates = rigid_contacts = spots = None
 
     @property
     def touching(self):
         return not self.separate
 
     @property
-    def counts(self):
-        return "wave" if self.separate else "action"
-
-    @property
     def loaded(self):
         return jnp.asarray([0.0, 0.0, 1.0])
+
+
+way.register(_Looked, lambda looked: WAVE if looked.separate else ACTION)
 
 
 @partial(jax.jit, static_argnames="separate")

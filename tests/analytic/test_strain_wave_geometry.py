@@ -18,6 +18,7 @@ from strain_wave_positions import bend, drive, slope
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.errors import InputError
+from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave, double_arc_flank
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, WAVE_SHAPES, DoubleArcForm
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
@@ -443,7 +444,7 @@ def loaded(pair):
     found = engaged(mesh, [0.0, 0.21, 0.43, 0.64, 0.86], 16.0)
     at, clear, rise = by.valleys(found.angle, pair.space)
     places = np.arange(found.angle.shape[0])
-    found.first = np.isin(places, mesh.in_pairs(places[:, None], 0)[:, 0])[:, None]
+    found.first = np.isin(places, in_pairs(mesh, places[:, None], 0)[:, 0])[:, None]
     turned = np.isfinite(clear[1]) & (at[1] < at[0]) & (rise > LOW_RIDGE)
     own = found.first != turned
     found.clearance = np.where(own, clear[0], clear[1])

@@ -15,6 +15,7 @@ from strain_wave_positions import drive
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import Models, Operation, cycle, engagement
+from pitchpoint.gears.pairs import of_pairs
 from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.loading.registry import LOAD_SHARING
@@ -197,7 +198,7 @@ def forces(mesh, parts, terms, torque):
 
 @eqx.filter_jit
 def in_pairs(mesh, force):
-    return mesh.of_pairs(jnp.sum(force, axis=1))
+    return of_pairs(mesh, jnp.sum(force, axis=1))
 
 
 @pytest.mark.whole

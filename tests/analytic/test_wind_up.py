@@ -14,6 +14,7 @@ from pitchpoint.contact.surface import Spot, Waves
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import of_pairs
 from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.drive import places
 from pitchpoint.loading import wind_up as module
@@ -72,6 +73,7 @@ def springs(monkeypatch):
     pressed = jnp.asarray([0.1, 0.2, 0.3, 0.4, 0.5, 0.6]).reshape(6, 1, 1)
     zones = jnp.repeat(jnp.eye(2), 3, axis=1).reshape(2, 6, 1, 1)
     monkeypatch.setattr(module, "compliance", compliance)
+    monkeypatch.setattr(module, "on_edge", lambda mesh, contacts: at.gap == jnp.max(at.gap))
     return Mock(
         spec=Mesh,
         contacts=lambda phase: at,
@@ -81,8 +83,6 @@ def springs(monkeypatch):
             in_series=lambda solids: {},
         ),
         loaded=LOADED,
-        of_pairs=lambda places: places,
-        on_edge=lambda contacts: at.gap == jnp.max(at.gap),
     )
 
 
@@ -178,7 +178,7 @@ def test_without_torque_the_first_pairs_touch(drive, found, at):
     assert np.all(zero.stiffness <= found.stiffness[0])
     play = at.gap / np.abs(along(at.normal, np.asarray(drive.loaded)))
     first = play <= zero.touch[0] + 1e-7 * play[at.active].max()
-    pairs = np.asarray(drive.of_pairs((first & at.active).any(axis=1) * 1.0)) > 0.0
+    pairs = np.asarray(of_pairs(drive, (first & at.active).any(axis=1) * 1.0)) > 0.0
     np.testing.assert_array_equal(zero.loaded_pairs[0], pairs.sum(axis=0))
     least = np.where(at.active, play, np.inf).min(axis=(0, 1))
     np.testing.assert_allclose(zero.touch[0], least, rtol=1e-9, atol=1e-17)  # of two programs

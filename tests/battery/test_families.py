@@ -21,6 +21,7 @@ from pitchpoint.gears.ball_on_disc.mesh import BallOnDisc
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import ACTION, TURN, way
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave.design import build_strain_wave
@@ -637,12 +638,12 @@ def test_pairs_go_on_where_a_period_ends(family):
         leaves_of(contacts_of(family.mesh, jnp.asarray(0.0 * INSIDE + at)))
         for at in (1.0 - near, near)
     )
-    counted = ("path", "flank") if family.mesh.counts == "turn" else ()
+    counted = ("path", "flank") if way(family.mesh) is TURN else ()
     names = ("path", "curvature", "surface", "normal", "flank", "gap", "weight", "width")
     last, first = (np.argwhere(one["active"][..., 0]) for one in (end, start))
     distance = np.linalg.norm(points(end, last)[:, :, None] - points(start, first)[:, None], axis=0)
     then = [distance[number].argmin() for number in range(len(last))]
-    if family.mesh.counts == "action":
+    if way(family.mesh) is ACTION:
         then = [int(np.flatnonzero((first == k + np.array([1, 0])).all(axis=1))[0]) for k in last]
     goes_on = distance[np.arange(len(last)), then] < 1e-7
     # At both ends of the window of a strain wave gear a tooth comes and goes without load.

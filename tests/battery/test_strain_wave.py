@@ -17,6 +17,7 @@ from strain_wave_positions import drive
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
@@ -179,13 +180,13 @@ def test_teeth_that_touch_close_by_themselves_and_the_others_after_projection(pa
 def test_places_beyond_the_pairs_stay_empty(passing):
     mesh, active = passing.mesh, passing.found.active
     places = np.arange(active.shape[0])
-    held = mesh.in_pairs(places[:, None] + 1, 0)
+    held = in_pairs(mesh, places[:, None] + 1, 0)
     assert held.shape == (2 * int(mesh.held), 2)
     assert 2 * int(mesh.held) < 2 * mesh.lanes < active.shape[0]
     empty = np.setdiff1d(places, held[held > 0] - 1)
     assert not active[empty].any()
     assert active[held[:, 0] - 1].any()
-    alike = mesh.in_pairs(passing.found.path, 0, like_first=True)
+    alike = in_pairs(mesh, passing.found.path, 0, like_first=True)
     np.testing.assert_array_equal(alike[:, 0], alike[:, 1])
 
 

@@ -19,6 +19,7 @@ from pitchpoint.cases.schema import Case, quantity_at, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.surface import Waves
 from pitchpoint.errors import InputError
+from pitchpoint.gears.pairs import largest_radius
 from pitchpoint.gears.strain_wave.design import check_strain_wave
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
@@ -355,16 +356,15 @@ def test_balls_that_press_teeth_or_stand_elsewhere_are_told() -> None:
 
 
 def test_conformal_contacts_that_carry_are_told() -> None:
-    from types import SimpleNamespace
-
     from pitchpoint.analyses.caveats import conformal_warning
 
-    run = {"load": np.array([0.0, 1.0, 2.0]), "radius": np.array([1.0, 1.0, 0.5])}
-    (told,) = conformal_warning(SimpleNamespace(largest_radius=1.0), run)
+    wave, pair = (one.built({}).design.mesh for one in (drive(), Variant(PAIR, "", "default")))
+    assert float(largest_radius(wave)) == pytest.approx(2000 * 0.3e-3)
+    assert largest_radius(pair) == np.inf
+    run = {"load": np.array([0.0, 1.0, 2.0]), "radius": 2000 * 0.3e-3 * np.array([1.0, 1.0, 0.5])}
+    (told,) = conformal_warning(wave, run)
     assert told.startswith("1 of 2 loaded contacts of the mesh cycle are conformal")
-    assert conformal_warning(SimpleNamespace(largest_radius=np.inf), run) == []
-    assert float(drive().built({}).design.mesh.largest_radius) == pytest.approx(2000 * 0.3e-3)
-    assert Variant(PAIR, "pair.toml", "default").built({}).design.mesh.largest_radius == np.inf
+    assert conformal_warning(pair, run) == []
 
 
 def test_a_groove_that_was_not_found_whole_is_told() -> None:

@@ -25,7 +25,8 @@ from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.dimensions import drawing
 from pitchpoint.gears.family import Family
-from pitchpoint.gears.mesh import PATHS, Mesh
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import way
 from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.results.store import dataset
@@ -841,7 +842,7 @@ def drawn_teeth(mesh: Mesh, family: Family, driver: str, members: list[str]) -> 
         dict(family.coordinates),
         title="teeth",
     )
-    teeth["points"].attrs.update(PATHS[mesh.counts].attributes(members))
+    teeth["points"].attrs.update(way(mesh).attributes(members))
     inputs = {
         "operation.torque": 5.0,
         "operation.speed": 60.0 * pi,

@@ -14,7 +14,7 @@ from pages import payload
 from records import entries
 
 from pitchpoint.analyses.kinematic_error import _turns
-from pitchpoint.gears.mesh import PATHS
+from pitchpoint.gears.pairs import WAVE
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.drive import rates
 from pitchpoint.gears.strain_wave.family import FAMILY
@@ -90,7 +90,7 @@ def angles(phase: np.ndarray) -> np.ndarray:
 def on_the_way(*args: Any, **told: Any) -> xr.Dataset:
     """A dataset whose places of contacts are those along a wave."""
     data = dataset(*args, **told)
-    data["path"].attrs.update(PATHS["wave"].attributes(MEMBERS[1:]))
+    data["path"].attrs.update(WAVE.attributes(MEMBERS[1:]))
     return data
 
 
@@ -283,8 +283,8 @@ def outcome(parts: Mapping[str, xr.Dataset], **changes: Any) -> Outcome:
         "motion": turning.tolist(),
         "period": 2.0 * pi / Z1 / abs(turning[1] - turning[0]),
         "travels": [],
-        "pitch": PATHS["wave"].pitch,
-        "against": PATHS["wave"].against if turning[1] < turning[0] else "",
+        "pitch": WAVE.pitch,
+        "against": WAVE.against if turning[1] < turning[0] else "",
         "averaging": "base_pitch",
         "finished": True,
         "implausible": [],

@@ -18,7 +18,7 @@ from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.dimensions import drawing
-from pitchpoint.gears.mesh import PATHS
+from pitchpoint.gears.pairs import way
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import Figure, Panel, continued
@@ -58,7 +58,7 @@ def teeth_of(pair: CylindricalPair) -> xr.Dataset:
         dict(FAMILY.coordinates),
         title="teeth",
     )
-    teeth["points"].attrs.update(PATHS[pair.counts].attributes(["gear 1", "gear 2"]))
+    teeth["points"].attrs.update(way(pair).attributes(["gear 1", "gear 2"]))
     return teeth
 
 
@@ -349,7 +349,7 @@ def test_time_runs_against_the_phase_where_gear_2_drives(whole: Outcome) -> None
 def test_speeds_without_a_steady_state_are_gaps(whole: Outcome) -> None:
     panels = resonance_panels({"default": whole})
     traces = named(figure(panels, "_transmission_error_range"))
-    falling, rising = (traces[f"5.355 N m, {way}"] for way in ("falling", "rising"))
+    falling, rising = (traces[f"5.355 N m, {sense}"] for sense in ("falling", "rising"))
     assert [k for k, y in enumerate(falling["y"]) if y is None] == [4, 5]
     assert None not in rising["y"]
     assert falling["line"]["dash"] != rising["line"]["dash"]

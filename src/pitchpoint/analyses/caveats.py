@@ -13,6 +13,7 @@ from pitchpoint.cases.schema import SPEED, TEMPERATURE
 from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, fails, reworded
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import largest_radius
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.applicability import Limited, limits_words
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
@@ -161,7 +162,7 @@ def _where(built: Ready) -> str:
 
 def conformal(mesh: Mesh, run: Mapping[str, Any]) -> np.ndarray:
     """True for loaded contacts whose flanks have the same curvature nearly: their relative radius is cut."""
-    flat = np.asarray(run["radius"]) > float(mesh.largest_radius) * (1.0 - 1e-9)
+    flat = np.asarray(run["radius"]) > float(largest_radius(mesh)) * (1.0 - 1e-9)
     found: np.ndarray = (np.asarray(run["load"]) > 0.0) & flat
     return found
 
@@ -174,7 +175,7 @@ def conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
     return [
         Doubt(
             f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
-            f"radius is cut at {float(mesh.largest_radius):.3g} m, and pressure and film there say little.",
+            f"radius is cut at {float(largest_radius(mesh)):.3g} m, and pressure and film there say little.",
             moves=flat.sum() / loaded.sum(),
             brief=f"{flat.sum()} of {loaded.sum()} contacts conformal: film says little.",
         )

@@ -22,6 +22,7 @@ from pitchpoint.analyses.caveats import (
 from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.build import Built
+from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.store import dataset
@@ -62,8 +63,8 @@ def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
     common = {
         "phase": (("node",), runs[0]["phase"]),
         "weight": (("node",), runs[0]["weight"]),
-        "path": (lanes[1:], mesh.in_pairs(runs[0]["path"], 1, like_first=True)),
-        "active": (lanes[1:], mesh.in_pairs(runs[0]["active"], 1)),
+        "path": (lanes[1:], in_pairs(mesh, runs[0]["path"], 1, like_first=True)),
+        "active": (lanes[1:], in_pairs(mesh, runs[0]["active"], 1)),
     }
     stacked = {
         name: np.stack([run[name] for run in runs])
@@ -71,7 +72,7 @@ def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
         if name not in common and not name.startswith("outside")
     }
     each = {
-        name: (lanes, mesh.in_pairs(values, 2)) if values.ndim == 4 else (lanes[:2], values)
+        name: (lanes, in_pairs(mesh, values, 2)) if values.ndim == 4 else (lanes[:2], values)
         for name, values in stacked.items()
     }
     warnings = [

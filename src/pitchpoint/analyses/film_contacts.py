@@ -24,6 +24,7 @@ from pitchpoint.efficiency.quasi_static import (
 )
 from pitchpoint.efficiency.rows import one_engagement
 from pitchpoint.efficiency.summary import engaged
+from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
 from pitchpoint.lubrication.ehl.model import FilmModel
@@ -200,4 +201,4 @@ def _spread(values: Array, shape: tuple[int, ...]) -> Array:
 def by_pairs(built: Built, values: np.ndarray) -> np.ndarray:
     """Values [..., pair, slice, node] as [..., node, pair, slice] of the pairs that the mesh holds."""
     ordered = np.moveaxis(np.asarray(values), -1, -3)
-    return built.design.mesh.in_pairs(ordered, ordered.ndim - 2)
+    return in_pairs(built.design.mesh, ordered, ordered.ndim - 2)

@@ -22,6 +22,7 @@ from pitchpoint.efficiency.quasi_static import Design, Engagement, coupling, eng
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body, OnBalls, opened
+from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.loading.equilibrium import touch
 from pitchpoint.loading.wind_up import body_parts, hysteresis, wound_up
 from pitchpoint.programs import program
@@ -434,7 +435,7 @@ def _by_balls(
 
 def _of_pairs(mesh: Mesh, path: np.ndarray, force: np.ndarray) -> dict[str, np.ndarray]:
     """Way of every pair [phase, pair] and the force on it [torque, phase, pair]."""
-    way, loads = mesh.in_pairs(path, 0, like_first=True), mesh.in_pairs(force, 1)
+    way, loads = in_pairs(mesh, path, 0, like_first=True), in_pairs(mesh, force, 1)
     return {
         "path": way.mean(axis=1)[:, ::SHOWN].T,
         "tooth_force": np.moveaxis(loads.sum(axis=2), 1, 2)[:, ::SHOWN],

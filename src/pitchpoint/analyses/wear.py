@@ -8,6 +8,8 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.cases.build import Built
+from pitchpoint.gears.mesh import has
+from pitchpoint.gears.pairs import flanks_in_turn
 
 __all__ = ["WEAR"]
 
@@ -27,7 +29,7 @@ _OF_TEETH = ("worn_tip_land", "backlash_growth", "backlash_growth_error")
 
 def _unasked(built: Built) -> str | None:
     """Why a case has no wear: nobody asks for it, or a member has no end."""
-    if not built.design.mesh.goes_round:
+    if not has(built.design.mesh, flanks_in_turn):
         return "a rack has no number of teeth among which wear goes round"
     return Unasked("the case has no [wear]") if built.case.wear is None else None
 

@@ -54,7 +54,8 @@ from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.families import Gears, built_gears, family_of
 from pitchpoint.gears.family import Family, Followed
-from pitchpoint.gears.mesh import PATHS, Mesh
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import way
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.loading.reactions import Bearing, InnerBearing
@@ -402,7 +403,7 @@ class Built:
     def way(self) -> dict[str, str | float]:
         """Words of the way of a pair, as attributes of places on it."""
         touching = [one.body for one in self.bodies if one.member is not None]
-        return PATHS[self.design.mesh.counts].attributes(touching)
+        return way(self.design.mesh).attributes(touching)
 
     @property
     def carried(self) -> Quantity:

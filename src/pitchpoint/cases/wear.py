@@ -13,7 +13,8 @@ from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.contact.contacts import KINDS, TOUCH
 from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import Mesh, has
+from pitchpoint.gears.pairs import flanks_in_turn
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.registry import SMOOTH
 from pitchpoint.lubrication.flash_temperature import Conductor
@@ -56,7 +57,7 @@ def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
     table = case.wear
     if table is None:
         return
-    if not mesh.goes_round:
+    if not has(mesh, flanks_in_turn):
         told = "was given; a rack has no number of teeth among which wear goes round, leave the table out"
         raise InputError(told, key="wear")
     if case.worn is not None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Array
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
 from pitchpoint.efficiency.in_turns import balance_under
 from pitchpoint.efficiency.quasi_static import (
@@ -17,6 +17,8 @@ from pitchpoint.efficiency.quasi_static import (
     cycle_of,
 )
 from pitchpoint.efficiency.rows import one_engagement
+from pitchpoint.gears.dimensions import main_dimensions
+from pitchpoint.gears.pairs import largest_inclination
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.applicability import Limited
 from pitchpoint.lubrication.conditions import evaluate
@@ -128,8 +130,8 @@ def _profile(
         ellipse = at.ellipse
         each |= {"semi_axis_along": ellipse.along, "semi_axis_across": ellipse.across}
         longest = jnp.max(jnp.where(contacts.active, ellipse.across, 0.0), axis=(0, 1))
-        mesh["contact_room"] = design.mesh.contact_room
-        mesh["largest_inclination"] = design.mesh.largest_inclination(longest)
+        mesh["contact_room"] = main_dimensions(design.mesh).get("contact_room", array(np.inf))
+        mesh["largest_inclination"] = largest_inclination(design.mesh, longest)
     if design.drag:
         mesh["drag_loss"] = state.drag_loss
     mesh = {name: jnp.broadcast_to(v, result.phase.shape) for name, v in mesh.items()}

@@ -6,6 +6,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import WAVE, way
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import equilibrium
 from pitchpoint.loading.registry import LOAD_SHARING, LoadSharing
@@ -52,7 +53,7 @@ def _limit(sharing: LoadSharing, mesh: Mesh) -> str | None:
         return f"holds for {KINDS[sharing.shape]}, and these touch {TOUCH[mesh.shape]}"
     if sharing.flanks == "touching" and not mesh.touching:
         return "holds where all rigid flanks in mesh touch, and some of these have a gap"
-    if sharing.flanks == "wave" and mesh.counts != "wave":
+    if sharing.flanks == "wave" and way(mesh) is not WAVE:
         return "holds for strain-wave gears, and these are not"
     if not sharing.straight and sharing.ratio_range == (0.0, float("inf")):
         return None

@@ -9,6 +9,7 @@ from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body
+from pitchpoint.gears.pairs import of_pairs, on_edge
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touch
 from pitchpoint.loading.tooth_compliance import Terms
@@ -32,7 +33,7 @@ class WindUp(eqx.Module):
         loaded_pairs: number of pairs that carry.
         force: normal force of each slice [N].
         share: part of the sum of all forces; without load the limit for a vanishing one.
-        edge_load: sum of the forces at ends of flanks and on roundings, see `Mesh.on_edge` [N].
+        edge_load: sum of the forces at ends of flanks and on roundings, see `on_edge` [N].
         inner_load: on the bearing inside the drive in each zone, see `GearBody.inner_load` [N].
         slip_torque: sum of forces times their sliding arms: what a friction coefficient of one would
             hold at the driven coordinate [N m or N].
@@ -121,8 +122,8 @@ def wind_up(
         wind_up=moved - free,
         touch=free,
         stiffness=1.0 / slope,
-        loaded_pairs=jnp.sum(mesh.of_pairs(jnp.any(found.loaded, axis=1) * 1.0) > 0.0, axis=0),
-        edge_load=total(jnp.where(mesh.on_edge(contacts), found.force, 0.0)),
+        loaded_pairs=jnp.sum(of_pairs(mesh, jnp.any(found.loaded, axis=1) * 1.0) > 0.0, axis=0),
+        edge_load=total(jnp.where(on_edge(mesh, contacts), found.force, 0.0)),
         force=found.force,
         share=found.share,
         inner_load=jnp.sum(mesh.body.inner_load(contacts) * found.force, axis=(1, 2)),

@@ -14,6 +14,8 @@ from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.schema import with_meshes
 from pitchpoint.gears.families import TABLES, sample_of
+from pitchpoint.gears.mesh import has
+from pitchpoint.gears.pairs import flanks_in_turn
 from pitchpoint.input.tables import tag
 from pitchpoint.runs.run import load_case
 
@@ -76,7 +78,7 @@ def _asking(sample: str) -> list[Ready]:
     assert isinstance(built, Built)
     solvers = FILM_SOLVERS[built.design.mesh.shape]
     films = [load_case(sample, settings=_films(one)) for one in solvers]
-    worn = [load_case(sample, settings=_WEAR)] if built.design.mesh.goes_round else []
+    worn = [load_case(sample, settings=_WEAR)] if has(built.design.mesh, flanks_in_turn) else []
     maps = [load_case(sample, settings=_OF_OUTPUT)] if built.transmits else []
     return [built, *films, *worn, *maps]
 

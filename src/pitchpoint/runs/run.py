@@ -36,7 +36,7 @@ from pitchpoint.doubts import apart, as_doubt, concerns, doubts_of
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
-from pitchpoint.gears.mesh import PATHS
+from pitchpoint.gears.pairs import way
 from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.ehl.registry import ASPERITIES, ISOTHERMAL, SMOOTH, THERMAL
@@ -771,11 +771,11 @@ def _stages(built: Ready) -> list[dict[str, Any]]:
 
 def _period(mesh: Built) -> dict[str, Any]:
     """Period of a mesh, what it is called, and why time runs against its phase, if it does."""
-    way, backwards = PATHS[mesh.design.mesh.counts], mesh.nominal["onward"] < 0.0
+    words, backwards = way(mesh.design.mesh), mesh.nominal["onward"] < 0.0
     return {
         "period": float(mesh.nominal["period"]),
-        "pitch": way.pitch,
-        "against": way.against.format(mesh.driver) if backwards else "",
+        "pitch": words.pitch,
+        "against": words.against.format(mesh.driver) if backwards else "",
     }
 
 

@@ -24,6 +24,7 @@ from pitchpoint.efficiency.quasi_static import (
 )
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, as_array
+from pitchpoint.gears.pairs import flanks_in_turn
 from pitchpoint.gears.period import edges
 from pitchpoint.loading.tooth_compliance import TeethAt, teeth_at
 from pitchpoint.lubrication.conditions import UNITS, Conditions, evaluate
@@ -627,7 +628,7 @@ def wear_of(
     periods = 2.0 * jnp.pi / mesh.period
     lasts = known.weight * mesh.period / at.speed
     slid = jnp.where(carries, at.load * as_array(at.sliding), 0.0) * lasts
-    turns = periods / mesh.flanks_in_turn
+    turns = periods / flanks_in_turn(mesh)
     gone = jnp.stack([turns[k] * rate * slid for k, rate in enumerate(rates)])
     along = jnp.stack([_spread(at, way, known.weight) for way in ways])
     depths = _laid(cells, at, along, gone)

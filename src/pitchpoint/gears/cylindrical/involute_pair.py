@@ -28,7 +28,8 @@ from pitchpoint.gears.involute import (
 )
 from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
-from pitchpoint.gears.mesh import Mesh, Path, Reference
+from pitchpoint.gears.mesh import Mesh, Reference
+from pitchpoint.gears.pairs import ACTION, flanks_in_turn, way
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.roots import hypot, root
 
@@ -194,7 +195,6 @@ class InvolutePair(Mesh):
     pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
     along_action: ClassVar[bool] = True
-    counts: ClassVar[Path] = "action"
     chosen: ClassVar[tuple[str, ...]] = (
         "module",
         "pressure_angle",
@@ -566,11 +566,6 @@ class InvolutePair(Mesh):
         surfaces = ((*first, Offset(self.normal_backlash)), second)
         return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
 
-    @property
-    def flanks_in_turn(self) -> Float[Array, "2"]:
-        """Numbers of teeth."""
-        return jnp.abs(self.teeth)
-
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the line of action, against which both gears turn; teeth follow each other."""
         lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
@@ -754,3 +749,12 @@ def _independent(pair: InvolutePair) -> tuple[str, ...]:
 
 
 completed.register(InvolutePair, lambda pair: pair.completed())
+
+
+@flanks_in_turn.register
+def _flanks_in_turn(pair: InvolutePair) -> Float[Array, "2"]:
+    """Numbers of teeth."""
+    return jnp.abs(pair.teeth)
+
+
+way.register(InvolutePair, lambda _: ACTION)

@@ -17,7 +17,8 @@ from pitchpoint.gears.dimensions import drawing, main_dimensions
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
-from pitchpoint.gears.mesh import Mesh, Path, Reference
+from pitchpoint.gears.mesh import Mesh, Reference
+from pitchpoint.gears.pairs import ACTION, way
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.rack_and_pinion.rack import Rack
 from pitchpoint.gears.tooth_section import ToothSection
@@ -108,8 +109,6 @@ class RackAndPinion(Mesh):
     pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
     along_action: ClassVar[bool] = True
-    goes_round: ClassVar[bool] = False
-    counts: ClassVar[Path] = "action"
 
     pinion: InvoluteGear
     rack: Rack
@@ -290,11 +289,6 @@ class RackAndPinion(Mesh):
         surfaces = ((*first, Offset(self.normal_backlash)), second)
         return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
 
-    @property
-    def flanks_in_turn(self) -> Float[Array, "2"]:
-        """A rack has no number of teeth here."""
-        raise self._without("number of teeth among which engagements go round")
-
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """The line of action stands still; the pinion turns on against it, the rack travels past it."""
         lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
@@ -415,3 +409,6 @@ def _drawing(mesh: RackAndPinion) -> dict[str, Float[Array, "..."]]:
         "contact_ratio": line.contact_ratio,
         **{name: value for name, value in named.items() if not name.endswith("_1")},
     }
+
+
+way.register(RackAndPinion, lambda _: ACTION)

@@ -12,6 +12,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import flanks_in_turn
 
 __all__ = ["Rig"]
 
@@ -69,12 +70,6 @@ class Rig(Mesh):
     def events(self) -> Float[Array, "1"]:
         """Nothing enters or leaves."""
         return jnp.zeros(1)
-
-    @property
-    def flanks_in_turn(self) -> Float[Array, "2"]:
-        """Ways that a body rolls in one period of body 0, over its circumference."""
-        rates = self.motion[:2]
-        return jnp.abs(rates[0] / jnp.where(rates == 0.0, jnp.nan, rates))
 
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Both bodies turn on under the contact."""
@@ -134,3 +129,10 @@ def _everywhere(values: Float[Array, "..."], lanes: tuple[int, ...]) -> Float[Ar
     return jnp.broadcast_to(
         values.reshape(*values.shape, *(1 for _ in lanes)), (*values.shape, *lanes)
     )
+
+
+@flanks_in_turn.register
+def _flanks_in_turn(rig: Rig) -> Float[Array, "2"]:
+    """Ways that a body rolls in one period of body 0, over its circumference."""
+    rates = rig.motion[:2]
+    return jnp.abs(rates[0] / jnp.where(rates == 0.0, jnp.nan, rates))

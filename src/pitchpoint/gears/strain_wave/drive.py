@@ -15,7 +15,16 @@ from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.dimensions import completed, drawing, independent, main_dimensions
 from pitchpoint.gears.members import number_of
-from pitchpoint.gears.mesh import Mesh, Path
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import (
+    WAVE,
+    flanks_in_turn,
+    in_pairs,
+    largest_radius,
+    of_pairs,
+    on_edge,
+    way,
+)
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.ball_bearing import BallBearing
 from pitchpoint.gears.strain_wave.body import StrainWaveBody, end_of_wave, left_behind
@@ -152,7 +161,6 @@ class StrainWave(Mesh):
     """
 
     toothed: ClassVar[bool] = True
-    counts: ClassVar[Path] = "wave"
 
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
@@ -269,11 +277,6 @@ class StrainWave(Mesh):
         """Most teeth of a zone have a clearance that load must close."""
         return False
 
-    @property
-    def largest_radius(self) -> Float[Array, ""]:
-        """Flatter contacts would be wider under load than the flank is high."""
-        return _FLATTEST * self.module
-
     def events(self) -> Float[Array, " event"]:
         """Phases at which the sliding of a tooth changes its sense; pairs enter and leave without load."""
         phase = jnp.mod(self.reversal / self.tooth_angle, 1.0)
@@ -292,17 +295,6 @@ class StrainWave(Mesh):
     def pitch_diameter(self) -> float:
         """Reference diameter of the flexspline, of plain numbers, for which nothing is compiled [m]."""
         return float(self.module) * float(np.asarray(self.teeth)[0])
-
-    def in_pairs(self, values: np.ndarray, axis: int, *, like_first: bool = False) -> np.ndarray:
-        """Values by pairs that are held, of two places the one nearer to the root first."""
-        number, zone = _numbers(np.asarray(self.teeth), self.lanes, np).astype(int), self._zone
-        (first,) = np.nonzero(~self._second & (number < float(self.held)))
-        same = (zone == zone[first, None]) & (number == number[first, None]) & self._second
-        other = np.where(same.any(axis=1), same.argmax(axis=1), -1)
-        own, beside = np.take(values, first, axis), np.take(values, other, axis)
-        lone = (other < 0).reshape(-1, *(1 for _ in range(values.ndim - axis - 1)))
-        empty = own if like_first else np.zeros_like(own)
-        return np.concatenate([own, np.where(lone, empty, beside)], axis=axis + 1)
 
     @property
     def _zone(self) -> np.ndarray:
@@ -323,18 +315,6 @@ class StrainWave(Mesh):
     def _start(self) -> Float[Array, ""]:
         """Teeth from the long axis to the first pair that is held."""
         return jnp.ceil(WINDOW[0] / self.tooth_angle)
-
-    def on_edge(self, contacts: Contacts) -> Bool[Array, "pair slice *b"]:
-        """True at the end of a flexspline flank, or on the rounding of either tip."""
-        groove, ends = self.groove, self.flank.plain * (1.0 - _SLACK)
-        rounded = groove.depth(self.tip_height + self.tips.rounding)
-        return (contacts.flank[0] >= ends) | (contacts.flank[1] > rounded)
-
-    def of_pairs(self, places: Float[Arrays, "place *#b"]) -> Float[Array, "pair *#b"]:
-        """Sums over both places at which a pair may touch."""
-        pair = (jnp.asarray(self._zone) * self.lanes + self._number).astype(int)
-        empty = jnp.zeros((2 * self.lanes, *places.shape[1:]))
-        return empty.at[pair].add(places, mode="drop")
 
     def nearest(self, angle: Float[Array, "*b"]) -> Touching:
         """Nearest points of the flank and its groove for teeth at angles from the long axis [rad]."""
@@ -376,14 +356,14 @@ class StrainWave(Mesh):
         # Flanks that overlap do so by the error of the groove's table. The play comes on top of
         # that: cut off together, its derivative would be the sign of rounding where flanks touch.
         play = self.backlash / 2.0 * jnp.cos(at.direction)
-        sum_curvature = jnp.maximum(at.curvature + found.mate, 1.0 / self.largest_radius)
+        sum_curvature = jnp.maximum(at.curvature + found.mate, 1.0 / largest_radius(self))
         roll = (at.turning - found.mate * at.sliding) / sum_curvature
         roll = jnp.where(found.held, 0.0, roll)
         velocity = jnp.stack([-at.shift, at.shift + at.whole, -at.whole])
         local = unit(-at.direction) * velocity
         first = jnp.stack([roll, -roll, none])
         mate = sum_curvature - at.curvature
-        flat = self.module, self.largest_radius
+        flat = self.module, largest_radius(self)
         # The space that a tooth meets lies at its angle around the circular spline.
         zone = _as_lanes(self._zone, jnp.asarray(phase))
         turned = unit(given * self.teeth[0] / self.teeth[1] + jnp.pi * zone)
@@ -416,11 +396,6 @@ class StrainWave(Mesh):
             teeth=self.teeth,
             loaded=self.loaded,
         )
-
-    @property
-    def flanks_in_turn(self) -> Float[Array, "2"]:
-        """Numbers of teeth of both splines."""
-        return self.teeth
 
     @property
     def other_flanks(self) -> Self:
@@ -819,3 +794,49 @@ def _drawing(drive: StrainWave) -> dict[str, Float[Array, "..."]]:
 
 completed.register(StrainWave, StrainWave.completed)
 independent.register(StrainWave, lambda _: ("face_width",))
+
+
+@largest_radius.register
+def _largest_radius(drive: StrainWave) -> Float[Array, ""]:
+    """Flatter contacts would be wider under load than the flank is high."""
+    return _FLATTEST * drive.module
+
+
+@in_pairs.register
+def _in_pairs(
+    drive: StrainWave, values: np.ndarray, axis: int, *, like_first: bool = False
+) -> np.ndarray:
+    """Values by pairs that are held, of two places the one nearer to the root first."""
+    number, zone = _numbers(np.asarray(drive.teeth), drive.lanes, np).astype(int), drive._zone
+    (first,) = np.nonzero(~drive._second & (number < float(drive.held)))
+    same = (zone == zone[first, None]) & (number == number[first, None]) & drive._second
+    other = np.where(same.any(axis=1), same.argmax(axis=1), -1)
+    own, beside = np.take(values, first, axis), np.take(values, other, axis)
+    lone = (other < 0).reshape(-1, *(1 for _ in range(values.ndim - axis - 1)))
+    empty = own if like_first else np.zeros_like(own)
+    return np.concatenate([own, np.where(lone, empty, beside)], axis=axis + 1)
+
+
+@on_edge.register
+def _on_edge(drive: StrainWave, contacts: Contacts) -> Bool[Array, "pair slice *b"]:
+    """True at the end of a flexspline flank, or on the rounding of either tip."""
+    groove, ends = drive.groove, drive.flank.plain * (1.0 - _SLACK)
+    rounded = groove.depth(drive.tip_height + drive.tips.rounding)
+    return (contacts.flank[0] >= ends) | (contacts.flank[1] > rounded)
+
+
+@of_pairs.register
+def _of_pairs(drive: StrainWave, places: Float[Arrays, "place *#b"]) -> Float[Array, "pair *#b"]:
+    """Sums over both places at which a pair may touch."""
+    pair = (jnp.asarray(drive._zone) * drive.lanes + drive._number).astype(int)
+    empty = jnp.zeros((2 * drive.lanes, *places.shape[1:]))
+    return empty.at[pair].add(places, mode="drop")
+
+
+@flanks_in_turn.register
+def _flanks_in_turn(drive: StrainWave) -> Float[Array, "2"]:
+    """Numbers of teeth of both splines."""
+    return drive.teeth
+
+
+way.register(StrainWave, lambda _: WAVE)

@@ -11,6 +11,7 @@ from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.factored import Numbers
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
 from pitchpoint.gears.dimensions import main_dimensions
+from pitchpoint.gears.pairs import largest_inclination
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.gears.torus.face import TorusFace, least
 
@@ -88,20 +89,6 @@ class TorusPair(InvolutePair):
         ends = self.widths / 2.0
         own = jnp.abs(jnp.stack([self.place, self.place - self.axial_offset]))
         return jnp.min(ends - own)
-
-    def largest_inclination(self, semi_axis: Float[Array, "..."]) -> Float[Array, "..."]:
-        """Inclination up to which, in either sense, a contact reaches no end of a face [rad]; zero if none.
-
-        Args:
-            semi_axis: of the contact across the rolling direction [m].
-
-        From the place at which flanks touch, where their slopes across the face and the inclination cancel.
-        """
-        low = jnp.maximum(-self.widths[0] / 2.0, self.axial_offset - self.widths[1] / 2.0)
-        high = jnp.minimum(self.widths[0] / 2.0, self.axial_offset + self.widths[1] / 2.0)
-        ends = jnp.stack([low + semi_axis, high - semi_axis])
-        leaning = self.faces[0].slope(ends) + self.faces[1].slope(ends - self.axial_offset)
-        return jnp.maximum(jnp.minimum(-leaning[0], leaning[1]), 0.0)
 
     @property
     def transverse_radius(self) -> Float[Array, ""]:
@@ -191,3 +178,19 @@ def _main_dimensions(pair: TorusPair) -> dict[str, Float[Array, "..."]]:
         "contact_room": pair.contact_room,
         "misalignment_approach": pair.misalignment_approach,
     }
+
+
+@largest_inclination.register
+def _largest_inclination(pair: TorusPair, semi_axis: Float[Array, "..."]) -> Float[Array, "..."]:
+    """Inclination up to which, in either sense, a contact reaches no end of a face [rad]; zero if none.
+
+    Args:
+        semi_axis: of the contact across the rolling direction [m].
+
+    From the place at which flanks touch, where their slopes across the face and the inclination cancel.
+    """
+    low = jnp.maximum(-pair.widths[0] / 2.0, pair.axial_offset - pair.widths[1] / 2.0)
+    high = jnp.minimum(pair.widths[0] / 2.0, pair.axial_offset + pair.widths[1] / 2.0)
+    ends = jnp.stack([low + semi_axis, high - semi_axis])
+    leaning = pair.faces[0].slope(ends) + pair.faces[1].slope(ends - pair.axial_offset)
+    return jnp.maximum(jnp.minimum(-leaning[0], leaning[1]), 0.0)

@@ -15,6 +15,7 @@ from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import largest_inclination
 from pitchpoint.gears.torus.family import middle_pair
 from pitchpoint.gears.torus.pair import TorusPair
 from pitchpoint.gears.torus.table import TorusGears
@@ -178,8 +179,8 @@ def _contact(design: Design, operation: Operation) -> Known:
     exact, near = hertz_1881(**points, **both), hamrock_brewe_1983(**points, **both)
     return {
         "static_force": load,
-        "tilt_limit": mesh.largest_inclination(exact.across),
-        "tilt_limit_2_mm": mesh.largest_inclination(jnp.asarray(_SEMI_AXIS)),
+        "tilt_limit": largest_inclination(mesh, exact.across),
+        "tilt_limit_2_mm": largest_inclination(mesh, jnp.asarray(_SEMI_AXIS)),
         "ellipse_across": exact.across,
         "ellipse_along": exact.along,
         "ellipse_pressure": exact.pressure,

@@ -1,0 +1,170 @@
+"""Pairs on their way through a mesh: words of it, places where they touch, flanks that take turns, room.
+
+Gears with a way of their own, second places, ends that are watched or flanks that take turns register it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import singledispatch
+from math import inf
+from typing import Any
+
+import numpy as np
+from jaxtyping import Array, Bool, Float
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.factored import Arrays
+
+__all__ = [
+    "ACTION",
+    "TURN",
+    "WAVE",
+    "Way",
+    "flanks_in_turn",
+    "in_pairs",
+    "largest_inclination",
+    "largest_radius",
+    "of_pairs",
+    "on_edge",
+    "way",
+]
+
+
+@dataclass(frozen=True)
+class Way:
+    """Words of the way of a pair through the mesh, which `Contacts.path` counts, see `way`.
+
+    Attributes:
+        long_name, symbol: of a place on it.
+        axis: title of an axis of it.
+        scale: of one in the unit of that axis.
+        pitch: what a period of the phase is.
+        against: why time runs against the phase, where it does; {} is the driver.
+        title: of figures along it; empty where there is no way to show.
+        told: what stands above them.
+        origin: what lies at zero, where it has a name.
+        sliding: whose speed over whose the sliding is; {} are the two members that touch.
+        zones: number of zones of mesh that are alike, in which pairs stand one zone after the other.
+    """
+
+    long_name: str
+    symbol: str
+    axis: str
+    scale: float
+    pitch: str
+    against: str = "{} drives"
+    title: str = ""
+    told: str = ""
+    origin: str = ""
+    sliding: str = "Flank of {} over flank of {}."
+    zones: int = 1
+
+    def attributes(self, members: Sequence[str]) -> dict[str, str | float]:
+        """What a figure along it needs, for the places in a dataset.
+
+        Args:
+            members: names of the two that touch.
+        """
+        sliding = self.sliding.format(*members)
+        return {**asdict(self), "sliding": sliding[:1].upper() + sliding[1:]}
+
+
+ACTION = Way(
+    "position on the path of contact from A, in base pitches",
+    "x/p_b",
+    "place on the path from A [base pitches]",
+    1.0,
+    "base pitch",
+    title="Along the path of contact",
+    sliding="Flank of {} over flank of {}; zero at the pitch point C.",
+)
+WAVE = Way(
+    "angle from the long axis, in turns",
+    "p/2π",
+    "angle from the long axis p [°]",
+    360.0,
+    "tooth pitch",
+    "teeth come from positive angles",
+    title="Along the wave",
+    told="One tooth on its way through the zone of mesh, over its angle from the end of the long axis "
+    "that is nearest; the dotted line is the long axis. Values stand where the tooth carries, at one "
+    "end of that axis.",
+    origin="the long axis",
+    sliding="{} over {}; teeth slide most far from the long axis.",
+    zones=2,
+)
+TURN = Way("turns of the driver", "θ/2π", "angle of the driver [°]", 360.0, "period")
+
+
+@singledispatch
+def way(mesh: Any) -> Way:
+    """Words of the way of pairs through a mesh, turns of the driver unless its gears say other ones."""
+    return TURN
+
+
+@singledispatch
+def in_pairs(mesh: Any, values: np.ndarray, axis: int, *, like_first: bool = False) -> np.ndarray:
+    """Values by pairs that a mesh holds, and the places at which each may touch.
+
+    Empty places let meshes of several tooth numbers share their programs, and a family may give a pair
+    a second one; the slices are then its places.
+
+    Args:
+        mesh: any family.
+        values: with places and slices on two neighbouring axes.
+        axis: of the places.
+        like_first: True if a place that a pair does not have gets the value of its first, else zero.
+    """
+    return values
+
+
+@singledispatch
+def of_pairs(mesh: Any, places: Float[Arrays, "place *#b"]) -> Float[Array, "pair *#b"]:
+    """Sums over the places at which each pair may touch: its only one, unless a family has more.
+
+    Args:
+        mesh: any family.
+        places: a value for each place.
+    """
+    return jnp.asarray(places)
+
+
+@singledispatch
+def on_edge(mesh: Any, contacts: Contacts) -> Bool[Array, "pair slice *b"]:
+    """True for contacts at an end of a flank or on the rounding of a tip, of families that watch for it.
+
+    Args:
+        mesh: any family.
+        contacts: of the mesh.
+    """
+    return jnp.zeros(contacts.active.shape, bool)
+
+
+@singledispatch
+def largest_radius(mesh: Any) -> Float[Array, ""]:
+    """Relative radius of curvature at which conformal contacts are cut [m]; infinite where none is."""
+    return array(inf)
+
+
+@singledispatch
+def largest_inclination(mesh: Any, semi_axis: Float[Array, "..."]) -> Float[Array, "..."]:
+    """Inclination of the axes at which elliptic contacts reach an end of a face [rad]; infinite without.
+
+    Args:
+        mesh: any family.
+        semi_axis: of the contact across the rolling direction [m].
+    """
+    return jnp.full_like(semi_axis, inf)
+
+
+@singledispatch
+def flanks_in_turn(mesh: Any) -> Float[Array, "2"]:
+    """Flanks of each member among which the engagements of one period go round.
+
+    A flank takes part, in the mean, in one period over their number.
+
+    Raises:
+        TypeError: they do not go round, see `has`.
+    """
+    raise TypeError(f"engagements of {type(mesh).__name__} do not go round")
