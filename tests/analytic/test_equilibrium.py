@@ -294,9 +294,8 @@ def mesh(separate):
 class _Looked(Mesh):
     separate: bool = eqx.field(static=True)
     toothed: ClassVar[bool] = True
-    overlap_ratio: ClassVar[jax.Array] = jnp.asarray(0.0)
     contact_ratio: ClassVar[jax.Array] = jnp.asarray(1.5)
-    events = relation = motion = driver = driven_by = period = reference = None
+    events = relation = motion = driver = driven_by = period = None
     coordinates = rigid_contacts = spots = None
 
     @property

@@ -21,6 +21,7 @@ from pitchpoint.dynamics.transient import transient
 from pitchpoint.dynamics.vibration import Vibrating, excited, steady
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
 from pitchpoint.errors import InputError
+from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.torus.table import TorusGears
@@ -71,7 +72,7 @@ def torus():
 
 
 SPUR = design_of(spur())
-ACTION = np.asarray(SPUR.mesh.line_of_action)
+ACTION = np.asarray(line_of_action(SPUR.mesh))
 MOTION = np.asarray(SPUR.mesh.motion)
 ORDERS = (1, 2)
 
@@ -275,7 +276,7 @@ def test_an_ellipse_alone_swings_about_its_approach_at_the_slope_of_its_force():
     """Hertz: F is proportional to approach^1.5, so that dF/d(approach) is 1.5 F/approach."""
     mesh = torus()
     design = design_of(dataclasses.replace(mesh, widths=1e12 * mesh.widths))  # rigid teeth
-    phase, arm = array(0.9), float(mesh.line_of_action[1])  # one pair alone
+    phase, arm = array(0.9), float(line_of_action(mesh)[1])  # one pair alone
     contacts = program(mesh.contacts)(phase)
     (at,) = np.argwhere(np.asarray(contacts.active))
     contact = hertz_1881(

@@ -9,6 +9,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
+from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.families import built_gears
@@ -46,7 +47,7 @@ def dimensions(mesh):
         "motion": mesh.motion,
         "period": mesh.period,
         "contact_ratio": mesh.contact_ratio,
-        "reference": mesh.reference,
+        "reference": pitch_point(mesh),
     }
 
 

@@ -18,9 +18,10 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.registry import BEARING_LOSS
 from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.gears.ball_on_disc.mesh import BallOnDisc
+from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import built_gears
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.pairs import ACTION, TURN, way
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
@@ -261,7 +262,7 @@ def models_for(mesh, law="constant", rolling="none"):
 
 
 def laws_for(mesh):
-    return WHOLE_MESH if mesh.pitch_point and mesh.shape == "line" else LOCAL
+    return WHOLE_MESH if has(mesh, pitch_point) and mesh.shape == "line" else LOCAL
 
 
 def sharing_for(mesh):

@@ -16,6 +16,8 @@ from pitchpoint.analyses.figures import (
 )
 from pitchpoint.analyses.lacking import rigid
 from pitchpoint.cases.build import Built
+from pitchpoint.gears.contact_lines import line_of_action
+from pitchpoint.gears.mesh import has
 
 __all__ = ["MOTION", "MOTIONS", "RESONANCE", "START_UP", "STIFFNESS", "VIBRATIONS"]
 
@@ -69,7 +71,7 @@ def _start_up(built: Built, _: Piece, __: Progress) -> xr.Dataset:
 
 
 def _no_line(built: Built) -> str | None:
-    if built.design.mesh.along_action:
+    if has(built.design.mesh, line_of_action):
         return None
     return "these gears have no line of action, along which stiffness and vibration are computed"
 

@@ -4,6 +4,8 @@ from pitchpoint.analyses.analysis import Unasked, has_key
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, BuiltTrain, Ready
 from pitchpoint.drive.kinematics import HOUSING
+from pitchpoint.gears.contact_lines import line_of_action
+from pitchpoint.gears.mesh import has
 from pitchpoint.loading.registry import LOAD_SHARING
 
 __all__ = [
@@ -111,7 +113,7 @@ def no_joint(built: Built) -> str | None:
     """Only where a case asks for it, and its gears have no vibration of another kind."""
     if not built.transmits:
         return Unasked("nothing is transmitted by a test rig")
-    if built.design.mesh.along_action:
+    if has(built.design.mesh, line_of_action):
         return Unasked("the vibration of these gears is computed along their line of action")
     return Unasked("the case has no [dynamics]") if built.case.dynamics is None else None
 

@@ -29,6 +29,7 @@ from pitchpoint.dynamics.system import modal_damping, reduced_mass
 from pitchpoint.dynamics.transient import Transient, transient
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
+from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.registry import FilmThickness
 from pitchpoint.programs import fast_program, program
@@ -130,7 +131,7 @@ def _mean(moving: Moving, ratio: Array) -> tuple[Array, Array]:
     """Damping along the line of action, and the fastest sliding for a unit speed."""
     assert moving.passage is not None
     mesh = moving.design.mesh
-    whole, line = mean_stiffness(moving), mesh.line_of_action
+    whole, line = mean_stiffness(moving), line_of_action(mesh)
     mass = reduced_mass(jnp.stack([body.inertia for body in moving.bodies]), line)
     spring = along_action(whole, line)
     damping = modal_damping(mass[None, None], spring[None, None], ratio)[0, 0]
@@ -596,7 +597,7 @@ def start_up_part(built: Built) -> xr.Dataset:
     lost = np.sum(np.asarray(moved.found.lost), axis=(0, 1))
     found = jax.device_get(moved)
     size, rates = len(built.bodies), found.rate
-    line = np.asarray(ready.design.mesh.line_of_action)
+    line = np.asarray(line_of_action(ready.design.mesh))
     act, energy = found.found, found.energy
     code = _code_of_start(moving, found)
     held = np.asarray(bearing_forces(ready.bodies, array(found.place), array(rates)))[size:]

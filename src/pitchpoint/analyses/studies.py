@@ -18,6 +18,8 @@ from pitchpoint.cases.document import leaves
 from pitchpoint.cases.schema import Study, Sweep, quantity_at
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import Complaints, InputError, shorten
+from pitchpoint.gears.contact_lines import line_of_action
+from pitchpoint.gears.mesh import has
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.published.publication import Point
 from pitchpoint.published.registry import PUBLICATIONS
@@ -159,7 +161,7 @@ def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
 def _at(point: Built) -> Point:
     """What the formulas of a publication are read at."""
     case = point.case
-    vibrates = case.dynamics is not None and point.design.mesh.along_action
+    vibrates = case.dynamics is not None and has(point.design.mesh, line_of_action)
     return Point(
         gears=case.gears,
         design=point.design,

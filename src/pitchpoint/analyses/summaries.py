@@ -24,6 +24,8 @@ from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.rows import NODES
 from pitchpoint.efficiency.summary import in_groups, summarise
+from pitchpoint.gears.contact_lines import line_of_action
+from pitchpoint.gears.mesh import has
 from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.rounding import difference
 from pitchpoint.results.store import dataset
@@ -379,7 +381,7 @@ def temperatures(points: Sequence[Built], laws: int) -> dict[str, Any]:
 
 def vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
     """Figures of stiffness and vibration, the same under every friction law."""
-    if points[0].case.dynamics is None or not points[0].design.mesh.along_action:
+    if points[0].case.dynamics is None or not has(points[0].design.mesh, line_of_action):
         return {}
     from pitchpoint.analyses.vibration import figures_of
 

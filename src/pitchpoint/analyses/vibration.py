@@ -29,6 +29,7 @@ from pitchpoint.dynamics.vibration import (
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import bare
 from pitchpoint.loading.iso_6336_stiffness import estimate
@@ -130,7 +131,7 @@ def _stiffness(
     length = jnp.sum(jnp.where(contacts.active, contacts.weight, 0.0), axis=1)
     entered = found.phase + jnp.arange(found.single.shape[0])[:, None, None]
     single, total = found.along_action, found.total
-    error = found.approach * jnp.abs(mesh.line_of_action @ mesh.loaded)
+    error = found.approach * jnp.abs(line_of_action(mesh) @ mesh.loaded)
     mean = jnp.sum(total * found.weight)
     lanes = {"entered": entered, "pair_stiffness": single, "line_length": length}
     whole = {

@@ -20,8 +20,9 @@ from pitchpoint.contact.worn import BRIDGED, WIDEST
 from pitchpoint.doubts import Doubt
 from pitchpoint.efficiency.quasi_static import contacts_at, shares_at
 from pitchpoint.errors import InputError
+from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.coordinates import Coordinate
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.lubrication.ehl.grid import fewer
 from pitchpoint.lubrication.ehl.solve import OF_HALF
 from pitchpoint.results.store import dataset
@@ -661,7 +662,8 @@ def _radius(mesh: Mesh, body: Coordinate, contacts: Contacts, flank: np.ndarray)
     centre, axis = np.asarray(body.place), np.asarray(body.axis)
     away = np.linalg.norm(np.cross((point - centre[:, None]).T, axis), axis=1)
     along = np.broadcast_to(contacts.flank[body.member], active.shape)[active]
-    if mesh.along_action:  # of an involute the square of the radius grows with the arc length
+    # Of an involute the square of the radius grows with the arc length.
+    if has(mesh, line_of_action):
         straight = np.polynomial.Polynomial.fit(along, away**2, 1)
         return np.asarray(np.sqrt(straight(flank)))
     order = np.argsort(along)

@@ -50,11 +50,12 @@ from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.efficiency.warm_teeth import balance
 from pitchpoint.errors import Complaints, InputError
+from pitchpoint.gears.contact_lines import line_of_action, pitch_point
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.families import Gears, built_gears, family_of
 from pitchpoint.gears.family import Family, Followed
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.pairs import way
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.input.quantities import Quantity
@@ -516,9 +517,8 @@ def build(case: Case, document: Document, own: ChosenLaws = ()) -> Built:
     )
     told = [*warnings, *_yielding(case, mesh), *_of_oil(oil)]
     told += _half_of_a_line(case.lubricant)
-    told += (
-        _inertia_of_both(document) if case.dynamics is not None and not mesh.along_action else []
-    )
+    if case.dynamics is not None and not has(mesh, line_of_action):
+        told += _inertia_of_both(document)
     models = _models(case, own, used, mesh)
     name = named_set(document.tree.get("losses"))
     fitted = loss_sets()[name].fitted if name else None
@@ -849,7 +849,7 @@ def _check_models(case: Case, mesh: Mesh, wrong: Complaints) -> None:
     wrong.tried(_check_map, case, mesh)
     if models.tooth_temperature != "isothermal":
         wrong.tried(_check_heat, case, mesh)
-    if case.dynamics is not None and mesh.along_action:
+    if case.dynamics is not None and has(mesh, line_of_action):
         wrong.tried(_check_masses, case, mesh)
         wrong.tried(_check_motion, case, mesh)
     elif case.dynamics is not None:
@@ -871,10 +871,10 @@ def _check_heat(case: Case, mesh: Mesh) -> None:
     """InputError for gears that a model of the tooth temperature is not for."""
     missing = (
         "a pitch point, which these gears do not have"
-        if not mesh.pitch_point
+        if not has(mesh, pitch_point)
         else "two gears that turn, each with its number of teeth"
     )
-    if not mesh.pitch_point or not case.gears.tooth_numbers:
+    if not has(mesh, pitch_point) or not case.gears.tooth_numbers:
         raise InputError(
             f"'{case.models.tooth_temperature}' asks for {missing}; use isothermal",
             key="models.tooth_temperature",
@@ -1101,7 +1101,9 @@ def _numbers(mesh: Mesh) -> dict[str, dict[str, Any]]:
         "period": mesh.period,
         "onward": mesh.onward,
         "events": mesh.events(),
-        "pitch_line_speed": mesh.reference.pitch_line_speed if mesh.pitch_point else jnp.zeros(()),
+        "pitch_line_speed": pitch_point(mesh).pitch_line_speed
+        if has(mesh, pitch_point)
+        else jnp.zeros(()),
     }
     return {"dimensions": main_dimensions(mesh), "nominal": nominal}
 

@@ -22,7 +22,9 @@ from pitchpoint.cases.schema import (
     quantity_at,
     with_meshes,
 )
+from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.family import Followed
+from pitchpoint.gears.mesh import has
 from pitchpoint.gears.table import SmallerOfTwo
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.results.variables import VARIABLES
@@ -415,7 +417,7 @@ def _dimensions(built: Built) -> Iterator[Row]:
 def _inertia(built: Built) -> Iterator[Row]:
     """Moments of inertia that a vibration takes where the case gives none; those that travel have a mass."""
     mesh, asked = built.design.mesh, built.case.dynamics
-    if asked is None or asked.inertia is not None or not mesh.along_action:
+    if asked is None or asked.inertia is not None or not has(mesh, line_of_action):
         return
     density = array([float(solid.density) for solid in built.design.solids])
     every = np.asarray(mesh.inertia(density)).tolist()

@@ -16,6 +16,7 @@ from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.efficiency.warm_teeth import Heated
 from pitchpoint.errors import Complaints, InputError
+from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials import solids
 from pitchpoint.materials.data import Datum, Status
@@ -260,7 +261,7 @@ def datum(value: float, key: str, document: Document) -> Datum:
 
 
 def _warm(case: Case, mesh: Mesh, used: Used, gear: int, found: Mapping[str, float]) -> SolidInUse:
-    pair, point, gears = mesh.reference, case.operation, case.gears
+    pair, point, gears = pitch_point(mesh), case.operation, case.gears
     temperature = TOOTH_TEMPERATURE[case.models.tooth_temperature].function(
         ambient=point.temperature,
         power=point.load * abs(float(mesh.loaded @ mesh.motion)) * point.speed,

@@ -348,7 +348,9 @@ def _adding_thrusts(built: Sequence[Built]) -> Iterator[str]:
     The frame of a mesh gives its two members opposite hands, and other flanks turn both over.
     """
     for shaft, (before, behind) in enumerate(pairwise(built), 2):
-        helical = [float(one.design.mesh.overlap_ratio) > 0.0 for one in (before, behind)]
+        helical = [
+            float(one.dimensions.get("overlap_ratio", 0.0)) > 0.0 for one in (before, behind)
+        ]
         members = np.argmax(before.nominal["loaded"]), np.argmax(behind.nominal["driver"])
         if all(helical) and members[0] == members[1]:
             gear = before.case.gears.members[members[0]]

@@ -20,7 +20,8 @@ from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.passage import Passage, on_springs
 from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.contact_lines import line_of_action
+from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 
 __all__ = [
@@ -364,9 +365,9 @@ def _engaged(moving: Moving, phase: Each) -> tuple[Contacts, Lanes]:
 
 def _leaning(mesh: Mesh, contacts: Contacts) -> Lanes:
     """Closing along the normal for a unit of closing along the line of action."""
-    if not mesh.along_action:
+    if not has(mesh, line_of_action):
         return jnp.ones_like(contacts.gap)
-    action = mesh.line_of_action
+    action = line_of_action(mesh)
     return along(contacts.normal, action) / jnp.sum(action**2)
 
 

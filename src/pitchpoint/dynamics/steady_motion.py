@@ -35,6 +35,8 @@ from pitchpoint.dynamics.shooting import Shot, search
 from pitchpoint.dynamics.transient import CLOSED, demand_bodies, demand_effects, where_known
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.contact_lines import line_of_action
+from pitchpoint.gears.mesh import has
 from pitchpoint.gears.period import nodes
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.registry import FilmThickness
@@ -648,7 +650,7 @@ def _described(
     torque = torques(moving, jnp.zeros_like(turned), beside, rate, found)
     mesh = moving.design.mesh
     loaded, dof = moving.padded(mesh.loaded), len(mesh.coordinates)
-    action = mesh.line_of_action if mesh.along_action else found.line[:dof, 0, 0]
+    action = line_of_action(mesh) if has(mesh, line_of_action) else found.line[:dof, 0, 0]
     values: dict[str, Any] = {
         "turned": turned,
         "time": turned * turning.way / turning.speed + lag,

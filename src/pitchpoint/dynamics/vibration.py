@@ -10,6 +10,7 @@ from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.steady_state import separating_steady_state, steady_state
 from pitchpoint.dynamics.system import System, modal_damping, reduced_mass
 from pitchpoint.efficiency.quasi_static import Design, Operation
+from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import Terms
@@ -84,7 +85,7 @@ def system(
 
     Source: Atanasiu et al. (2011), eqs. 10, 12 and 13, the last with the indices in their places.
     """
-    action = mesh.line_of_action
+    action = line_of_action(mesh)
     mass = reduced_mass(vibrating.inertia, action).reshape(1, 1)
     return System(
         mass=mass,

@@ -15,8 +15,9 @@ from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.factored import Arrays, Numbers, as_array
+from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.gear_body import GearBody
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
@@ -135,7 +136,7 @@ class Design(eqx.Module):
             roughness_ra=self.roughness.mean_ra,
             roughness_rq=self.roughness.composite_rq,
             hardness=jnp.minimum(*(solid.hardness for solid in self.solids)),
-            reference=mesh.reference if mesh.pitch_point else None,
+            reference=pitch_point(mesh) if has(mesh, pitch_point) else None,
             elliptic=self.elliptic,
         )
 

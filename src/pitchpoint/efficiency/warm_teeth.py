@@ -11,6 +11,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import heat
 from pitchpoint.efficiency.tooth_temperature import ToothTemperature
+from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
 
@@ -157,8 +158,7 @@ def _temperatures(
 ) -> ToothTemperature:
     """Temperatures of flanks and roots of both gears for a loss [K]."""
     mesh, around = design.mesh, operation.temperature
-    reference = mesh.reference
-    assert reference is not None
+    reference = pitch_point(mesh)
     each = [
         heated.function(
             ambient=around,

@@ -1,14 +1,24 @@
 """Contact lines of involute flanks in the plane of action: along the path of contact, and across the face."""
 
 import abc
-from functools import cached_property
+from functools import cached_property, singledispatch
+from typing import Any
 
+import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
 
-__all__ = ["LARGEST_CONTACT_RATIO", "SLICES", "PathOfContact", "lanes_for"]
+__all__ = [
+    "LARGEST_CONTACT_RATIO",
+    "SLICES",
+    "PathOfContact",
+    "PitchPoint",
+    "lanes_for",
+    "line_of_action",
+    "pitch_point",
+]
 
 # Few values, so that few programs are compiled for many pairs.
 _LANES_FOR_RATIO_BELOW = (2.0, 3.0, 4.0, 6.0, 9.0, 14.0, 24.0)
@@ -130,3 +140,44 @@ def lanes_for(contact_ratio: float, *, helical: bool = False) -> int:
             return max(int(limit), 3) if helical else int(limit)
     message = f"contact ratio {contact_ratio:.3g} is out of reach"
     raise InputError(message, value=contact_ratio)
+
+
+class PitchPoint(eqx.Module):
+    """Values at the pitch point for laws that describe a whole mesh.
+
+    Attributes:
+        width: face width [m].
+        line_length: length of a contact line across the whole face [m]: longer than the face on
+            helical teeth.
+        radius: relative radius of curvature at the pitch point [m].
+        sum_speed: sum of the surface speeds there for a unit rate of the driver [m/rad or 1].
+        pitch_line_speed: speed of the pitch circles for a unit rate of the driver [m/rad or 1].
+    """
+
+    width: Float[Array, ""]
+    line_length: Float[Array, ""]
+    radius: Float[Array, ""]
+    sum_speed: Float[Array, ""]
+    pitch_line_speed: Float[Array, ""]
+
+
+@singledispatch
+def pitch_point(mesh: Any) -> PitchPoint:
+    """Values at the pitch point of a mesh.
+
+    Raises:
+        TypeError: its gears have none, see `has`.
+    """
+    raise TypeError(f"{type(mesh).__name__} has no pitch point")
+
+
+@singledispatch
+def line_of_action(mesh: Any) -> Float[Array, " dof"]:
+    """Closing along the line of action for a unit rate of each coordinate [m/rad or 1].
+
+    Transmission error is measured along it.
+
+    Raises:
+        TypeError: the gears of the mesh have none, see `has`.
+    """
+    raise TypeError(f"{type(mesh).__name__} has no line of action")

@@ -17,26 +17,7 @@ from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.tooth_section import ToothSection
 
-__all__ = ["Mesh", "Reference", "has"]
-
-
-class Reference(eqx.Module):
-    """Pitch-point values for laws that describe a whole mesh.
-
-    Attributes:
-        width: face width [m].
-        line_length: length of a contact line across the whole face [m]: longer than the face on
-            helical teeth.
-        radius: relative radius of curvature at the pitch point [m].
-        sum_speed: sum of the surface speeds there for a unit rate of the driver [m/rad or 1].
-        pitch_line_speed: speed of the pitch circles for a unit rate of the driver [m/rad or 1].
-    """
-
-    width: Float[Array, ""]
-    line_length: Float[Array, ""]
-    radius: Float[Array, ""]
-    sum_speed: Float[Array, ""]
-    pitch_line_speed: Float[Array, ""]
+__all__ = ["Mesh", "has"]
 
 
 class Mesh(eqx.Module):
@@ -46,32 +27,15 @@ class Mesh(eqx.Module):
     rotations counter-clockwise [rad], or translations [m] where a family has them.
 
     Attributes:
-        pitch_point: of the class; True if it has a `reference`.
         shape: of the class; that of all its contacts.
         toothed: of the class; True if `sections` holds teeth that yield.
-        along_action: of the class; True if it has a `line_of_action`.
     """
 
-    pitch_point: ClassVar[bool] = False
     shape: ClassVar[Shape] = "line"
     toothed: ClassVar[bool] = False
-    along_action: ClassVar[bool] = False
 
     def __repr__(self) -> str:
         return brief(self)
-
-    @property
-    def overlap_ratio(self) -> Float[Array, ""]:
-        """Part of the contact ratio that contact lines inclined to the axes add."""
-        return jnp.zeros(())
-
-    @property
-    def line_of_action(self) -> Float[Array, " dof"]:
-        """Closing along the line of action for a unit rate of each coordinate [m/rad or 1].
-
-        Transmission error is measured along it, by families that say so, see `along_action`.
-        """
-        raise self._without("line of action")
 
     @property
     def sections(self) -> tuple[ToothSection, ToothSection]:
@@ -197,11 +161,6 @@ class Mesh(eqx.Module):
     @abc.abstractmethod
     def period(self) -> Float[Array, ""]:
         """Motion of the driver in one period [rad or m]."""
-
-    @property
-    def reference(self) -> Reference:
-        """Values at the pitch point, that laws for a whole mesh ask for, see `pitch_point`."""
-        raise self._without("pitch point")
 
     def _without(self, what: str) -> TypeError:
         return TypeError(f"{type(self).__name__} has no {what}")

@@ -6,6 +6,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges, nodes
 from pitchpoint.loading.equilibrium import Equilibrium
@@ -117,5 +118,5 @@ def _mean_gap(gap: Lanes, springs: Lanes) -> Float[Array, "pair *b"]:
 
 def _action_arm(mesh: Mesh, contacts: Contacts) -> Lanes:
     """Closing along the normal of each contact while the gears close by one along the line of action."""
-    action = mesh.line_of_action
+    action = line_of_action(mesh)
     return along(contacts.normal, action) / jnp.sum(action**2)

@@ -5,6 +5,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, along
 from pitchpoint.errors import InputError
+from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import WAVE, way
 from pitchpoint.loading.compliance import Compliance
@@ -67,7 +68,7 @@ def _limit(sharing: LoadSharing, mesh: Mesh) -> str | None:
 
 @program
 def _ratios(mesh: Mesh) -> tuple[Float[Array, ""], Float[Array, ""]]:
-    return mesh.contact_ratio, mesh.overlap_ratio
+    return mesh.contact_ratio, jnp.asarray(main_dimensions(mesh).get("overlap_ratio", 0.0))
 
 
 def equal(contacts: Contacts, mesh: Mesh, yielding: Compliance | None = None) -> Share:

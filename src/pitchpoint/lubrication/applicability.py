@@ -3,7 +3,8 @@
 from math import inf
 
 from pitchpoint import units
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.contact_lines import pitch_point
+from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.lubrication.conditions import UNITS, arguments, of_other_shape
 from pitchpoint.lubrication.registry import AsperityLoad, FilmThickness, FrictionLaw
 
@@ -45,7 +46,7 @@ def applies(law: FrictionLaw, mesh: Mesh) -> str | None:
     """
     if told := of_other_shape(law, mesh.shape):
         return told
-    if mesh.pitch_point or not asks_for_pitch_point(law):
+    if has(mesh, pitch_point) or not asks_for_pitch_point(law):
         return None
     return f"'{law.name}' is a law for a whole mesh, and these gears have no pitch point"
 

@@ -17,7 +17,7 @@ from pitchpoint.contact.ellipse import Ellipse
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Numbers, as_array, product
-from pitchpoint.gears.mesh import Reference
+from pitchpoint.gears.contact_lines import PitchPoint
 
 __all__ = [
     "FILM",
@@ -76,7 +76,7 @@ class Conditions(eqx.Module):
     roughness_ra: Float[Array, ""]
     roughness_rq: Float[Array, ""]
     hardness: Float[Array, ""]
-    reference: Reference | None
+    reference: PitchPoint | None
     elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT[USUAL_ELLIPSE])
     film: "Law | None" = eqx.field(static=True, default=None)
 
@@ -305,7 +305,7 @@ class Conditions(eqx.Module):
             raise InputError(f"{KINDS[shape]} have a {what}, and these touch {TOUCH[self.shape]}")
 
     @property
-    def _pitch_point(self) -> Reference:
+    def _pitch_point(self) -> PitchPoint:
         if self.reference is None:
             raise InputError(
                 "a law for a whole mesh does not apply: this contact has no pitch point"

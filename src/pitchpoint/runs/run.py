@@ -36,6 +36,8 @@ from pitchpoint.doubts import apart, as_doubt, concerns, doubts_of
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
+from pitchpoint.gears.contact_lines import line_of_action
+from pitchpoint.gears.mesh import has
 from pitchpoint.gears.pairs import way
 from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
@@ -889,7 +891,7 @@ def _of_mesh(built: Built) -> dict[str, Any]:
         found["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
         if case.models.line_stiffness != "integrated":
             found["stiffness of contact lines"] = LINE_STIFFNESS[case.models.line_stiffness]
-    if case.dynamics is not None and built.design.mesh.along_action:
+    if case.dynamics is not None and has(built.design.mesh, line_of_action):
         found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
     if built.film_model is not None:
         found |= _of_films(built.film_model)

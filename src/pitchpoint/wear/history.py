@@ -24,6 +24,8 @@ from pitchpoint.efficiency.quasi_static import (
 )
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, as_array
+from pitchpoint.gears.contact_lines import line_of_action
+from pitchpoint.gears.mesh import has
 from pitchpoint.gears.pairs import flanks_in_turn
 from pitchpoint.gears.period import edges
 from pitchpoint.loading.tooth_compliance import TeethAt, teeth_at
@@ -325,7 +327,7 @@ class Start(eqx.Module):
             teeth = teeth_at(contacts, *given)
             body = mesh.body.compliance(contacts, design.solids) if mesh.body.couples else None
         spots, places, gap = mesh.spots(contacts, phase), None, None
-        if mesh.along_action and contacts.shape == "line":  # an ellipse covers many strips
+        if has(mesh, line_of_action) and contacts.shape == "line":  # an ellipse covers many strips
             lengths = jnp.stack(
                 [
                     jnp.broadcast_to(length, contacts.active.shape)

@@ -13,9 +13,7 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces, other_side
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.contact_lines import (
-    PathOfContact,
-)
+from pitchpoint.gears.contact_lines import PathOfContact, PitchPoint, line_of_action, pitch_point
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.dimensions import completed, drawing, independent, main_dimensions
@@ -28,7 +26,7 @@ from pitchpoint.gears.involute import (
 )
 from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
-from pitchpoint.gears.mesh import Mesh, Reference
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import ACTION, flanks_in_turn, way
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.roots import hypot, root
@@ -192,9 +190,7 @@ class InvolutePair(Mesh):
             fillet radius of gear 2; None without one.
     """
 
-    pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
-    along_action: ClassVar[bool] = True
     chosen: ClassVar[tuple[str, ...]] = (
         "module",
         "pressure_angle",
@@ -438,25 +434,6 @@ class InvolutePair(Mesh):
     def period(self) -> Float[Array, ""]:
         """Driver angle of one base pitch [rad]."""
         return 2.0 * jnp.pi / jnp.sum(self.driver * jnp.abs(self.teeth))
-
-    @property
-    def line_of_action(self) -> Float[Array, "2"]:
-        """Base radii with the sense in which the gears close along the transverse line of action."""
-        return self._side * self.base_radii
-
-    @property
-    def reference(self) -> Reference:
-        """Values at the pitch point C."""
-        line = self.line
-        speed = jnp.sum(self.driver * jnp.abs(line.working_radii))
-        first, second = line.pitch_position, line.tangent_length - line.pitch_position
-        return Reference(
-            width=self.face_width,
-            line_length=self.face_width / line.slope,
-            radius=first * second / line.tangent_length / line.slope,
-            sum_speed=2.0 * speed * line.sine,
-            pitch_line_speed=speed,
-        )
 
     @property
     def coordinates(self) -> tuple[Coordinate, Coordinate]:
@@ -758,3 +735,24 @@ def _flanks_in_turn(pair: InvolutePair) -> Float[Array, "2"]:
 
 
 way.register(InvolutePair, lambda _: ACTION)
+
+
+@line_of_action.register
+def _line_of_action(pair: InvolutePair) -> Float[Array, "2"]:
+    """Base radii with the sense in which the gears close along the transverse line of action."""
+    return pair._side * pair.base_radii
+
+
+@pitch_point.register
+def _pitch_point(pair: InvolutePair) -> PitchPoint:
+    """Values at the pitch point C."""
+    line = pair.line
+    speed = jnp.sum(pair.driver * jnp.abs(line.working_radii))
+    first, second = line.pitch_position, line.tangent_length - line.pitch_position
+    return PitchPoint(
+        width=pair.face_width,
+        line_length=pair.face_width / line.slope,
+        radius=first * second / line.tangent_length / line.slope,
+        sum_speed=2.0 * speed * line.sine,
+        pitch_line_speed=speed,
+    )

@@ -11,13 +11,13 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Offset, Spot, Surfaces, other_side
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.contact_lines import PathOfContact
+from pitchpoint.gears.contact_lines import PathOfContact, PitchPoint, line_of_action, pitch_point
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.dimensions import drawing, main_dimensions
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
-from pitchpoint.gears.mesh import Mesh, Reference
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import ACTION, way
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.rack_and_pinion.rack import Rack
@@ -106,9 +106,7 @@ class RackAndPinion(Mesh):
         surfaces: how all flanks of both members differ from their design.
     """
 
-    pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
-    along_action: ClassVar[bool] = True
 
     pinion: InvoluteGear
     rack: Rack
@@ -196,25 +194,6 @@ class RackAndPinion(Mesh):
         return jnp.where(self.rack_drives, turn * self.pinion.reference_radius, turn)
 
     @property
-    def line_of_action(self) -> Float[Array, "2"]:
-        """Base radius of the pinion and cos(alpha_t) of the rack, with the sense in which they close."""
-        line = self.line
-        return self._side * jnp.stack([line.base_radius, -jnp.cos(line.angle)])
-
-    @property
-    def reference(self) -> Reference:
-        """Values at the pitch point C, where the rack is straight."""
-        line = self.line
-        speed = jnp.where(self.rack_drives, 1.0, self.pinion.reference_radius)
-        return Reference(
-            width=self.face_width,
-            line_length=self.face_width / line.slope,
-            radius=line.pitch_position / line.slope,
-            sum_speed=2.0 * speed * jnp.sin(line.angle),
-            pitch_line_speed=speed,
-        )
-
-    @property
     def coordinates(self) -> tuple[Coordinate, Coordinate]:
         """Pinion about z at the origin, x towards the rack; the rack along y on its reference line."""
         rack = jnp.zeros(3).at[0].set(self.distance)
@@ -270,7 +249,7 @@ class RackAndPinion(Mesh):
             "surface": everywhere(side * position, none, none, none + side * sine).reshape(
                 2, 2, *none.shape
             ),
-            "normal": everywhere(*(self.line_of_action * line.slope)),
+            "normal": everywhere(*(line_of_action(self) * line.slope)),
             "flank": jnp.stack(
                 [
                     position**2 / (2.0 * line.base_radius),
@@ -412,3 +391,24 @@ def _drawing(mesh: RackAndPinion) -> dict[str, Float[Array, "..."]]:
 
 
 way.register(RackAndPinion, lambda _: ACTION)
+
+
+@line_of_action.register
+def _line_of_action(mesh: RackAndPinion) -> Float[Array, "2"]:
+    """Base radius of the pinion and cos(alpha_t) of the rack, with the sense in which they close."""
+    line = mesh.line
+    return mesh._side * jnp.stack([line.base_radius, -jnp.cos(line.angle)])
+
+
+@pitch_point.register
+def _pitch_point(mesh: RackAndPinion) -> PitchPoint:
+    """Values at the pitch point C, where the rack is straight."""
+    line = mesh.line
+    speed = jnp.where(mesh.rack_drives, 1.0, mesh.pinion.reference_radius)
+    return PitchPoint(
+        width=mesh.face_width,
+        line_length=mesh.face_width / line.slope,
+        radius=line.pitch_position / line.slope,
+        sum_speed=2.0 * speed * jnp.sin(line.angle),
+        pitch_line_speed=speed,
+    )
