@@ -34,7 +34,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.flattening import yang_sun_1985
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
-from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.loading.compliance import slice_stiffness
 from pitchpoint.loading.foundation import sainsot_2004
 from pitchpoint.loading.tooth_compliance import beam_compliance, interpolate, terms_of
@@ -149,7 +149,7 @@ def read_as(pair: CylindricalPair, phase: jax.Array, reading: Reading) -> jax.Ar
     clearance = 2.0 * jnp.tan(pair.pressure_angle) * (pair.dedendum - pair.addendum) / pair.teeth
     teeth = sum(
         interpolate(compliance(section, missing, reading) / STEEL.young, section, arc)
-        for section, missing, arc in zip(pair.sections, clearance, flank, strict=True)
+        for section, missing, arc in zip(tooth_sections(pair), clearance, flank, strict=True)
     )
     young, poisson = jnp.full(2, STEEL.young), jnp.full(2, STEEL.poisson)
     each = pair.face_width / (teeth + yang_sun_1985(young=young, poisson=poisson))

@@ -31,6 +31,7 @@ from pitchpoint.dynamics.steady_state import steady_state
 from pitchpoint.dynamics.system import System
 from pitchpoint.dynamics.vibration import Vibrating, excitation, frequency_ratio, system
 from pitchpoint.efficiency.quasi_static import Operation
+from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
@@ -93,7 +94,7 @@ def excited(pair: CylindricalPair, design: Design) -> Excited:
     """Stiffness of one design's mesh, and the system that it excites."""
     own = dataclasses.replace(pair, profile_shift=design.shift, face_width=design.width).completed()
     none = jnp.zeros(0)
-    inertia = own.inertia(jnp.stack([solid.density for solid in SOLIDS]))
+    inertia = plain_inertia(own, jnp.stack([solid.density for solid in SOLIDS]))
     vibrating = Vibrating(inertia, design.damping_ratio, none, none, orders=())
     found = mesh_stiffness(own, SOLIDS, TERMS, design.torque)
     moved = system(own, vibrating, found.mean, Operation(design.torque, SPEED, jnp.asarray(300.0)))

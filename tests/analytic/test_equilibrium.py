@@ -13,7 +13,8 @@ from scipy.optimize import nnls
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.pairs import ACTION, WAVE, way
+from pitchpoint.gears.pairs import ACTION, WAVE, touching, way
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading import equilibrium as module
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import equilibrium, touch
@@ -293,14 +294,9 @@ def mesh(separate):
 
 class _Looked(Mesh):
     separate: bool = eqx.field(static=True)
-    toothed: ClassVar[bool] = True
     contact_ratio: ClassVar[jax.Array] = jnp.asarray(1.5)
     events = relation = motion = driver = driven_by = period = None
     coordinates = rigid_contacts = spots = None
-
-    @property
-    def touching(self):
-        return not self.separate
 
     @property
     def loaded(self):
@@ -308,6 +304,8 @@ class _Looked(Mesh):
 
 
 way.register(_Looked, lambda looked: WAVE if looked.separate else ACTION)
+touching.register(_Looked, lambda looked: not looked.separate)
+tooth_sections.register(_Looked, lambda _: ())
 
 
 @partial(jax.jit, static_argnames="separate")

@@ -8,6 +8,7 @@ import pytest
 from sound import pair
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import mesh_stiffness
@@ -45,7 +46,7 @@ def plain(mesh, slices=12):
 
 
 _stiffness = eqx.filter_jit(mesh_stiffness)
-sections_of = eqx.filter_jit(lambda mesh: mesh.sections)
+sections_of = eqx.filter_jit(tooth_sections)
 
 
 def stiffness(mesh, model=FULL, solids=BOTH_STEEL, load=200.0, slices=12, line="integrated"):

@@ -14,6 +14,7 @@ from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import beam_compliance, terms_of
 from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
@@ -127,7 +128,7 @@ def test_a_tooth_of_the_rack_yields_as_that_of_a_wheel_with_very_many():
     pair = build_cylindrical_pair(
         teeth=(20, 20_000), module=MODULE, pressure_angle=ANGLE, face_width=0.025
     )
-    own, wheel = (jax.device_get(yielding(mesh.sections[1])) for mesh in (rack(), pair))
+    own, wheel = (jax.device_get(yielding(tooth_sections(mesh)[1])) for mesh in (rack(), pair))
     for at in (0, -1):  # the nodes between lie elsewhere
         np.testing.assert_allclose(own[0][at], wheel[0][at], rtol=2e-3)
         np.testing.assert_allclose(own[1][at], wheel[1][at], rtol=2e-3)

@@ -22,6 +22,7 @@ from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave, double_arc_flank
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, WAVE_SHAPES, DoubleArcForm
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
+from pitchpoint.gears.tooth_section import tooth_sections
 
 MODULE, RIM = 0.3e-3, 0.7e-3
 INVOLUTE = InvoluteForm(3.32)
@@ -521,7 +522,7 @@ def test_load_closes_the_gap_of_every_pair_that_carries(loaded):
 
 @eqx.filter_jit
 def sections_of(mesh):
-    return [(jnp.stack(each.reach), *each.flank, each.slope) for each in mesh.sections]
+    return [(jnp.stack(each.reach), *each.flank, each.slope) for each in tooth_sections(mesh)]
 
 
 def test_tooth_sections_are_the_outlines(pair):

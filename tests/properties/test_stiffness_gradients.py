@@ -11,6 +11,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.vibration import Vibrating, excited, steady, transmission_figures
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
@@ -98,7 +99,7 @@ class Moving:
     def __init__(self, mesh, solids, operation):
         density = jnp.stack([solid.density for solid in solids])
         none = jnp.zeros(0)
-        self.vibrating = Vibrating(mesh.inertia(density), jnp.asarray(0.16), none, none, ())
+        self.vibrating = Vibrating(plain_inertia(mesh, density), jnp.asarray(0.16), none, none, ())
         self.mesh, self.solids = mesh, solids
         self.point = Operation(*map(jnp.asarray, (*operation, 330.0)))
         self.numbers = np.array(

@@ -27,6 +27,7 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
+from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.runs.jobs import jobs
@@ -399,7 +400,7 @@ def test_a_class_enters_the_motion_and_not_the_cycle() -> None:
         pair(**each).built({}) for each in ({"gears__deviations__iso_class": 6}, {})
     )
     assert deviating.design.mesh.surfaces == plain.design.mesh.surfaces == ((), ())
-    assert deviating.design.mesh.touching
+    assert touching(deviating.design.mesh)
     assert (deviating.design.mesh.slices, plain.design.mesh.slices) == (12, 1)
     again = pair(gears__deviations__iso_class=6).built({}).deviations
     for one, other in zip(

@@ -13,7 +13,7 @@ from pitchpoint.cases.schema import SPEED, TEMPERATURE
 from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, fails, reworded
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.pairs import largest_radius
+from pitchpoint.gears.pairs import largest_radius, touching
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.applicability import Limited, limits_words
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
@@ -187,7 +187,7 @@ def face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
     mesh, active = built.design.mesh, np.asarray(run["active"])
     carries = np.asarray(run["load"]) > 0.0
     pairs, slices = carries.any(axis=2), active.shape[2]
-    if mesh.touching or slices == 1 or not pairs.any():
+    if touching(mesh) or slices == 1 or not pairs.any():
         return []
     lines = np.sum(pairs.sum(axis=1) * run["weight"])
     mean = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]) / lines)
@@ -222,7 +222,7 @@ def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndar
     """
     if len(points) == 1:
         return []
-    gaps = np.array([not point.design.mesh.touching for point in points])
+    gaps = np.array([not touching(point.design.mesh) for point in points])
     known = np.where(np.isnan(carrying) | ~gaps, np.inf, carrying).min(axis=0)
     nearly = (known < LEAST_FACE) & (slices > 1)
     partly = (known < slices * (1.0 - 1e-9)) & ~nearly

@@ -6,6 +6,7 @@ from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, BuiltTrain, R
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
+from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.registry import LOAD_SHARING
 
 __all__ = [
@@ -29,8 +30,13 @@ def rigid(built: Ready) -> str | None:
         each = zip(built.numbers, map(rigid, built.stages), strict=True)
         return next((f"stage {number}: {why}" for number, why in each if why), None)
     by_stiffness = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
-    dynamics, touching = built.case.dynamics, built.design.mesh.touching
-    if by_stiffness or dynamics is not None or not touching or any(built.deviations):
+    dynamics = built.case.dynamics
+    if (
+        by_stiffness
+        or dynamics is not None
+        or not touching(built.design.mesh)
+        or any(built.deviations)
+    ):
         return None
     if not built.transmits:
         return "nothing is transmitted by a test rig, so that nothing winds up"
@@ -66,9 +72,9 @@ def without_films(built: Ready) -> str | None:
     why_not = without_formula(built)
     if why_not is None or not isinstance(built, Built):
         return None
-    if built.design.mesh.touching and built.case.loss_map is None:
+    if touching(built.design.mesh) and built.case.loss_map is None:
         return f"{why_not}, and one with a table [loss_map] has it from films at few of them"
-    return None if built.design.mesh.touching else why_not
+    return None if touching(built.design.mesh) else why_not
 
 
 def no_bodies(built: Built) -> str | None:

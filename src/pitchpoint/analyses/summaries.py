@@ -26,6 +26,7 @@ from pitchpoint.efficiency.rows import NODES
 from pitchpoint.efficiency.summary import in_groups, summarise
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
+from pitchpoint.gears.pairs import touching
 from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.rounding import difference
 from pitchpoint.results.store import dataset
@@ -73,7 +74,7 @@ def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
 
 def _touching(point: Ready) -> bool:
     """True for one mesh whose rigid flanks all touch."""
-    return isinstance(point, Built) and point.design.mesh.touching
+    return isinstance(point, Built) and touching(point.design.mesh)
 
 
 def _meshes(points: Sequence[Ready]) -> list[Built]:

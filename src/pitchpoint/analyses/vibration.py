@@ -29,6 +29,7 @@ from pitchpoint.dynamics.vibration import (
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import bare
@@ -88,7 +89,7 @@ def vibrating_of(built: Built) -> Vibrating:
 
 @program
 def _inertia(mesh: Mesh, density: Float[Array, "2"]) -> Array:
-    return mesh.inertia(density)
+    return plain_inertia(mesh, density)
 
 
 def separating(built: Built) -> bool:

@@ -23,6 +23,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh, has
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.lubrication.ehl.grid import fewer
 from pitchpoint.lubrication.ehl.solve import OF_HALF
 from pitchpoint.results.store import dataset
@@ -75,7 +76,7 @@ def _course(built: Built) -> _Course:
         start, cells = as_new(design, built.operation, built.models[0], parts=parts, count=every)
     except InputError as error:
         raise InputError(error.message, key="wear") from None
-    tips = tips_of(design.mesh, cells, start) if design.mesh.toothed else None
+    tips = tips_of(design.mesh, cells, start) if has(design.mesh, tooth_sections) else None
     return _Course(start, cells, model, tips)
 
 

@@ -17,6 +17,8 @@ from pitchpoint.contact.surface import Spot, Surface, Surfaces, missing
 from pitchpoint.efficiency.quasi_static import Design, Engagement
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.mesh import has
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.tooth_compliance import Terms, bending
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
@@ -306,6 +308,6 @@ def _shapes(design: Design, engagement: Engagement, terms: Terms | None) -> dict
             found |= {f"{name}_{member}": 1.0 * getattr(spot, name) for name in _SPOT}
     # Shares by stiffness know how far teeth bend; others take them as rigid.
     found |= {"gap": gap, "bends": jnp.zeros(lanes)}
-    if terms is not None and mesh.toothed and lanes[1] > 1:
-        found["bends"] = bending(contacts, mesh.sections, design.solids, terms)
+    if terms is not None and has(mesh, tooth_sections) and lanes[1] > 1:
+        found["bends"] = bending(contacts, tooth_sections(mesh), design.solids, terms)
     return {name: jnp.broadcast_to(one, lanes) for name, one in found.items()}

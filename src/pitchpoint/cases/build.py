@@ -50,14 +50,15 @@ from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.efficiency.warm_teeth import balance
 from pitchpoint.errors import Complaints, InputError
+from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action, pitch_point
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.families import Gears, built_gears, family_of
 from pitchpoint.gears.family import Family, Followed
 from pitchpoint.gears.mesh import Mesh, has
-from pitchpoint.gears.pairs import way
-from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.gears.pairs import touching, way
+from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
@@ -859,7 +860,7 @@ def _check_models(case: Case, mesh: Mesh, wrong: Complaints) -> None:
 def _check_map(case: Case, mesh: Mesh) -> None:
     """InputError for a loss map whose friction is that of films between teeth with gaps."""
     solved = [one.name for one in case.models.friction if FRICTION[one.name].films is not None]
-    if case.loss_map is not None and solved and not mesh.touching:
+    if case.loss_map is not None and solved and not touching(mesh):
         raise InputError(
             f"teeth with gaps share each load in another way, and '{solved[0]}' solves the films of every "
             "operating point; leave the table out, or name formulas alone in models.friction",
@@ -1113,12 +1114,12 @@ _modulus = program(reduced_modulus)
 
 @program
 def _inertia(mesh: Mesh) -> jax.Array:
-    return mesh.inertia(jnp.ones(2))
+    return plain_inertia(mesh, jnp.ones(2))
 
 
 @program
 def _sections(mesh: Mesh) -> tuple[ToothSection, ToothSection]:
-    return mesh.sections
+    return tooth_sections(mesh)
 
 
 def _lubricant(oil: Oil, document: Document) -> lubricants.LubricantRecord:

@@ -22,6 +22,7 @@ from pitchpoint.cases.schema import (
     quantity_at,
     with_meshes,
 )
+from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.family import Followed
 from pitchpoint.gears.mesh import has
@@ -420,7 +421,7 @@ def _inertia(built: Built) -> Iterator[Row]:
     if asked is None or asked.inertia is not None or not has(mesh, line_of_action):
         return
     density = array([float(solid.density) for solid in built.design.solids])
-    every = np.asarray(mesh.inertia(density)).tolist()
+    every = np.asarray(plain_inertia(mesh, density)).tolist()
     turning = [value for value, one in zip(every, built.bodies, strict=True) if one.turns]
     mark = Provenance("derived", note="discs of the material from bore to reference circle")
     yield _row("dynamics", "inertia", turning, "moment of inertia", mark)

@@ -15,6 +15,7 @@ from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.pairs import flanks_in_turn
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.registry import SMOOTH
 from pitchpoint.lubrication.flash_temperature import Conductor
@@ -81,7 +82,7 @@ def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
     _check_share(case, table, law, mesh, wanted)
     _check_teeth(table, mesh)
     _own(table, law, wanted, used)
-    if table.profile == "updated" and mesh.toothed and not _feels(case):
+    if table.profile == "updated" and has(mesh, tooth_sections) and not _feels(case):
         raise InputError(
             f"worn flanks share the load by their gaps, and '{case.models.load_sharing}' knows of none; "
             'set models.load_sharing = "from_stiffness", or wear.profile = "kept"',
@@ -128,7 +129,7 @@ def _check_share(
 def _check_teeth(table: WearTable, mesh: Mesh) -> None:
     """InputError for a limit of teeth where there are none."""
     for key, what in (("tip_land_limit", "tip"), ("backlash_limit", "backlash")):
-        if getattr(table, key) is not None and not mesh.toothed:
+        if getattr(table, key) is not None and not has(mesh, tooth_sections):
             raise InputError(
                 f"was given, and these bodies have no teeth with a {what}; leave it out",
                 key=f"wear.{key}",

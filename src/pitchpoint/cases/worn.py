@@ -89,7 +89,7 @@ def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str
             "had, and pressures are a guess."
         )
     # Flanks from which nothing is gone are those as new, to the last bit.
-    return mesh.worn(cells.surfaces(array(gone))) if gone.any() else mesh, told
+    return cells.worn(mesh, array(gone)) if gone.any() else mesh, told
 
 
 def _wrong(name: str, told: str) -> InputError:

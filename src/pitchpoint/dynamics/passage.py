@@ -14,8 +14,9 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.dynamics.maps import horner
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.errors import InputError
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.period import edges, lobatto, nodes
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.springs import springs
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.programs import program
@@ -153,7 +154,7 @@ def passage(
         InputError: the stiffness is negative somewhere, or bodies without teeth have none.
     """
     mesh = design.mesh
-    if stiffness is None and not mesh.toothed:
+    if stiffness is None and not has(mesh, tooth_sections):
         raise InputError("bodies without teeth need the stiffness of their contact")
     curve = polynomial(stiffness) if isinstance(stiffness, int | float) else stiffness
     found, lowest, place = _sampled(design, operation, terms, curve)

@@ -24,6 +24,8 @@ from pitchpoint.dynamics.right_hand_side import (
     torques,
 )
 from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import has
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code, Status
 
@@ -256,7 +258,7 @@ def demand_effects(moving: Moving, what: str) -> None:
             raise InputError(f"{told} is not negative, got {float(value):g}")
     if mesh.body.couples:
         raise InputError(f"{what} takes each pair of teeth as a spring, and a ring couples these")
-    if moving.stiffness is None and moving.passage is None and not mesh.toothed:
+    if moving.stiffness is None and moving.passage is None and not has(mesh, tooth_sections):
         raise InputError(f"bodies without teeth need the stiffness of their contact in {what}")
     if moving.design.drag:
         raise InputError(

@@ -25,6 +25,7 @@ from pitchpoint.efficiency.quasi_static import (
     state,
 )
 from pitchpoint.errors import InputError
+from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.programs import program
 from pitchpoint.status import Status
@@ -364,7 +365,7 @@ def drive_cycle(
     pressed: list[tuple[Values, ...]] = []
     weights: list[Float[Array, " node"]] = []
     every = [unmet(operation.load)]
-    ratios, smooth = drive.ratios, tuple(stage.design.mesh.touching for stage in drive.stages)
+    ratios, smooth = drive.ratios, tuple(touching(stage.design.mesh) for stage in drive.stages)
     for number in reversed(range(len(drive.stages))):
         stage, laws = drive.stages[number], models[number]
         known, engaged = engaged, None

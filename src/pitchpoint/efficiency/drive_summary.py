@@ -23,6 +23,7 @@ from pitchpoint.efficiency.rows import CHUNK, NODES
 from pitchpoint.efficiency.summary import engaged, mean_friction
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.programs import program
 
@@ -80,7 +81,7 @@ def _memory(drive: Drive, models: Sequence[Models], nodes: int) -> float:
     for number in reversed(range(len(drive.stages))):
         mesh = drive.stages[number].design.mesh
         lanes, phases = eqx.filter_eval_shape(_sizes, mesh, models[number].sharing, nodes)
-        needed += loads * phases.size * max(OF_A_MEETING, OF_A_LANE[mesh.touching] * lanes.size)
+        needed += loads * phases.size * max(OF_A_MEETING, OF_A_LANE[touching(mesh)] * lanes.size)
         loads = FEW if not felt(drive, number - 1) else phases.size * min(loads, FEW)
     return needed
 
@@ -132,7 +133,7 @@ def _of_one_drive(
     group, number = [], 0
     for drive, operation in points:
         fixed = [*map(np.asarray, jax.tree.leaves(drive))]
-        if not drive.stages[-1].design.mesh.touching:
+        if not touching(drive.stages[-1].design.mesh):
             fixed.append(np.asarray(operation.load))  # its shares are those of one load
         number += not (before and all(map(np.array_equal, before, fixed)))
         before = fixed

@@ -19,6 +19,7 @@ from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.on_balls import Body
+from pitchpoint.gears.pairs import touching
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import Balance, balance, first_guess, tooth_load
@@ -750,7 +751,7 @@ def cycle(
     else:
         phase, weight, nodes = engaged.phase, engaged.weight, engaged.nodes
     found = state(design, _at_nodes(operation), phase, models, engaged=engaged)
-    return Cycle(phase, weight, found, nodes, smooth=design.mesh.touching)
+    return Cycle(phase, weight, found, nodes, smooth=touching(design.mesh))
 
 
 def balanced(design: Design, operation: Operation, known: Engagement, models: Models) -> Balance:
@@ -772,7 +773,7 @@ def cycle_of(design: Design, operation: Operation, known: Engagement, found: Bal
     points = _at_nodes(operation)
     unloaded = _unloaded(design, points, known.contacts, known.share)
     states = _state(design, points, unloaded, found)
-    return Cycle(known.phase, known.weight, states, known.nodes, smooth=design.mesh.touching)
+    return Cycle(known.phase, known.weight, states, known.nodes, smooth=touching(design.mesh))
 
 
 def _at_nodes(operation: Operation) -> Operation:

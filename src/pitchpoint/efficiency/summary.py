@@ -36,6 +36,7 @@ from pitchpoint.efficiency.rows import (
 )
 from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.reactions import radial_and_axial
 from pitchpoint.loading.sharing import equal
@@ -332,7 +333,7 @@ def engaged(
         nodes: in each segment between events.
         like: of the same mesh, solids and nodes under another load.
     """
-    if design.mesh.touching:
+    if touching(design.mesh):
         return None
     for known in _LAST:
         if like is None and known.serves(design, models, nodes):
@@ -427,7 +428,7 @@ def _summaries(
     def one(
         design: Design, operation: Operation, known: Engagement, found: Balance
     ) -> dict[str, Array]:
-        factor = loss_factor(design, models, None if design.mesh.touching else known)
+        factor = loss_factor(design, models, None if touching(design.mesh) else known)
         result = cycle_of(design, operation, known, found)
         return summary(design, result, factor) | _extremes(result, film)
 

@@ -1,9 +1,15 @@
 """Masses and moments of inertia of the bodies of a mesh, as discs, rings and tubes."""
 
 from collections.abc import Iterable
+from functools import singledispatch
 from math import pi
+from typing import Any
 
-__all__ = ["MassInertia", "as_one", "disc"]
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+
+__all__ = ["MassInertia", "as_one", "disc", "plain_inertia"]
 
 MassInertia = tuple[float, float]
 """Mass [kg] and moment of inertia about the axis [kg m2] of a body; not a number where one is not known."""
@@ -35,3 +41,16 @@ def as_one(bodies: Iterable[MassInertia]) -> MassInertia:
     """
     masses, inertias = zip(*bodies, strict=True)
     return sum(masses), sum(inertias)
+
+
+@singledispatch
+def plain_inertia(mesh: Any, density: Float[Array, "2"]) -> Float[Array, " dof"]:
+    """Moments of inertia of plain bodies about their axes [kg m2], masses of those that travel [kg].
+
+    Not a number where gears say nothing of one.
+
+    Args:
+        mesh: any family.
+        density: of both members [kg/m3].
+    """
+    return jnp.full(len(mesh.coordinates), jnp.nan)

@@ -1,8 +1,7 @@
 """What every gear family answers."""
 
 import abc
-from dataclasses import replace
-from typing import Any, ClassVar, Self, cast
+from typing import Any, ClassVar, Self
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -10,12 +9,11 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, Shape
-from pitchpoint.contact.surface import Spot, Surface, Surfaces, with_surfaces
+from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
 from pitchpoint.contact.worn import new_and_worn, with_worn
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.gear_body import GearBody
-from pitchpoint.gears.tooth_section import ToothSection
 
 __all__ = ["Mesh", "has"]
 
@@ -28,29 +26,17 @@ class Mesh(eqx.Module):
 
     Attributes:
         shape: of the class; that of all its contacts.
-        toothed: of the class; True if `sections` holds teeth that yield.
     """
 
     shape: ClassVar[Shape] = "line"
-    toothed: ClassVar[bool] = False
 
     def __repr__(self) -> str:
         return brief(self)
 
     @property
-    def sections(self) -> tuple[ToothSection, ToothSection]:
-        """Teeth of the two members as they yield, of families that say so, see `toothed`."""
-        raise self._without("teeth that yield")
-
-    @property
     def surfaces(self) -> Surfaces:
         """How all flanks of each member differ from those of `rigid_contacts`."""
         return (), ()
-
-    @property
-    def touching(self) -> bool:
-        """True if all rigid flanks in mesh touch; else pairs have a gap, and load makes them carry."""
-        return not any(self.surfaces)
 
     @property
     def onward(self) -> Float[Array, ""]:
@@ -67,16 +53,6 @@ class Mesh(eqx.Module):
         """The same mesh where its other flanks carry; gaps are counted from the same position."""
         return self
 
-    def worn(self, wear: tuple[Surface, Surface]) -> Self:
-        """The same drive with worn flanks.
-
-        Args:
-            wear: of both members, beside the surfaces that they have.
-        """
-        first, second = ((*own, one) for own, one in zip(self.surfaces, wear, strict=True))
-        made: Any = self  # a field of every family, a property here
-        return cast(Self, replace(made, surfaces=(first, second)))
-
     @abc.abstractmethod
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Where contacts lie on both members.
@@ -85,16 +61,6 @@ class Mesh(eqx.Module):
             contacts: of the mesh.
             phase: at which they were taken, counted on beyond one period [periods].
         """
-
-    def inertia(self, density: Float[Array, "2"]) -> Float[Array, " dof"]:
-        """Moments of inertia of plain bodies about their axes [kg m2], masses of those that travel [kg].
-
-        Not a number where the gears say nothing of one.
-
-        Args:
-            density: of both members [kg/m3].
-        """
-        return jnp.full(len(self.coordinates), jnp.nan)
 
     @property
     @abc.abstractmethod
@@ -161,9 +127,6 @@ class Mesh(eqx.Module):
     @abc.abstractmethod
     def period(self) -> Float[Array, ""]:
         """Motion of the driver in one period [rad or m]."""
-
-    def _without(self, what: str) -> TypeError:
-        return TypeError(f"{type(self).__name__} has no {what}")
 
 
 def has(mesh: Mesh, question: Any) -> bool:

@@ -27,6 +27,7 @@ __all__ = [
     "largest_radius",
     "of_pairs",
     "on_edge",
+    "touching",
     "way",
 ]
 
@@ -101,6 +102,12 @@ TURN = Way("turns of the driver", "θ/2π", "angle of the driver [°]", 360.0, "
 def way(mesh: Any) -> Way:
     """Words of the way of pairs through a mesh, turns of the driver unless its gears say other ones."""
     return TURN
+
+
+@singledispatch
+def touching(mesh: Any) -> bool:
+    """True if all rigid flanks in mesh touch; else pairs have a gap, and load makes them carry."""
+    return not any(mesh.surfaces)
 
 
 @singledispatch

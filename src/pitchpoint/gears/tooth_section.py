@@ -1,12 +1,13 @@
 """One tooth cut across its flank lines: the shape that yields under load."""
 
-from functools import cache
+from functools import cache, singledispatch
+from typing import Any
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-__all__ = ["FLANK_NODES", "RING_RIM", "ToothSection", "chebyshev_nodes"]
+__all__ = ["FLANK_NODES", "RING_RIM", "ToothSection", "chebyshev_nodes", "tooth_sections"]
 
 RING_RIM = "a ring's rim"
 """What carries the teeth of a ring."""
@@ -57,3 +58,13 @@ class ToothSection(eqx.Module):
 def chebyshev_nodes(count: int = FLANK_NODES) -> np.ndarray:
     """Chebyshev points of the second kind, from -1 to 1."""
     return -np.cos(np.pi * np.arange(count) / (count - 1))
+
+
+@singledispatch
+def tooth_sections(mesh: Any) -> tuple[ToothSection, ToothSection]:
+    """Teeth of the two members of a mesh as they yield.
+
+    Raises:
+        TypeError: its bodies have no teeth, see `has`.
+    """
+    raise TypeError(f"{type(mesh).__name__} has no teeth that yield")

@@ -7,6 +7,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body, opened
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.tooth_compliance import TeethAt, Terms, teeth_at, unit_stiffness
 from pitchpoint.materials.solids import Solid
 
@@ -107,6 +108,6 @@ def slice_stiffness(
         teeth: where the contacts lie on them, where that is known already.
     """
     if teeth is None:
-        teeth = teeth_at(contacts, mesh.sections, solids, terms)
+        teeth = teeth_at(contacts, tooth_sections(mesh), solids, terms)
     line_load = mean_line_load(mesh, contacts, load)
     return unit_stiffness(contacts, teeth, solids, terms, line_load)

@@ -6,8 +6,9 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.dimensions import main_dimensions
-from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.pairs import WAVE, way
+from pitchpoint.gears.mesh import Mesh, has
+from pitchpoint.gears.pairs import WAVE, touching, way
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import equilibrium
 from pitchpoint.loading.registry import LOAD_SHARING, LoadSharing
@@ -48,11 +49,11 @@ def demand_sharing(sharing: LoadSharing, mesh: Mesh) -> None:
 def _limit(sharing: LoadSharing, mesh: Mesh) -> str | None:
     """What keeps a model from holding for a mesh, as the end of a sentence."""
     low, high = sharing.ratio_range
-    if sharing.by_stiffness and not mesh.toothed:
+    if sharing.by_stiffness and not has(mesh, tooth_sections):
         return "needs teeth that yield, and this mesh has none"
     if sharing.shape not in (None, mesh.shape):
         return f"holds for {KINDS[sharing.shape]}, and these touch {TOUCH[mesh.shape]}"
-    if sharing.flanks == "touching" and not mesh.touching:
+    if sharing.flanks == "touching" and not touching(mesh):
         return "holds where all rigid flanks in mesh touch, and some of these have a gap"
     if sharing.flanks == "wave" and way(mesh) is not WAVE:
         return "holds for strain-wave gears, and these are not"
@@ -97,7 +98,7 @@ def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Compliance | None) 
     From the balance of springs side by side, see `equilibrium`.
     """
     assert yielding is not None
-    if yielding.body is None and mesh.touching:
+    if yielding.body is None and touching(mesh):
         return _normalised(jnp.where(contacts.active, yielding.stiffness * contacts.weight, 0.0))
     return equilibrium(
         yielding.of_teeth(contacts),

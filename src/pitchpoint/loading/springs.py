@@ -6,6 +6,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.compliance import Compliance, compliance
 from pitchpoint.loading.equilibrium import Equilibrium, equilibrium
 from pitchpoint.loading.tooth_compliance import Terms
@@ -65,7 +66,7 @@ def springs(
     arm = jnp.abs(along(contacts.normal, mesh.loaded))
     yields, change = _with_change(mesh, contacts, solids, terms, load)
     own, gap = yields.of_teeth(contacts), yields.gap(contacts)
-    if mesh.touching and yields.body is None:
+    if touching(mesh) and yields.body is None:
         state = None
         unit = jnp.where(contacts.active, arm / own, 0.0)
         approach = load / total(unit * arm)

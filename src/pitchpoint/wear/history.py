@@ -3,7 +3,7 @@
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Self
+from typing import Any, Self
 
 import equinox as eqx
 import numpy as np
@@ -25,9 +25,10 @@ from pitchpoint.efficiency.quasi_static import (
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, as_array
 from pitchpoint.gears.contact_lines import line_of_action
-from pitchpoint.gears.mesh import has
+from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.pairs import flanks_in_turn
 from pitchpoint.gears.period import edges
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.tooth_compliance import TeethAt, teeth_at
 from pitchpoint.lubrication.conditions import UNITS, Conditions, evaluate
 from pitchpoint.lubrication.ehl.model import FilmModel
@@ -157,6 +158,14 @@ class Cells(eqx.Module):
             Worn(depth[k, : self.count], self.flank[k], self.across, self.span) for k in range(2)
         )
         return first, second
+
+    def worn(self, mesh: Mesh, depth: Depths) -> Mesh:
+        """The same mesh with flanks, beside the surfaces that they have, of which so much is gone."""
+        worn = zip(mesh.surfaces, self.surfaces(depth), strict=True)
+        changes: Any = {
+            "surfaces": tuple((*own, gone) for own, gone in worn)
+        }  # a field of every family
+        return replace(mesh, **changes)
 
 
 class WearModel(eqx.Module):
@@ -323,7 +332,7 @@ class Start(eqx.Module):
         phase, weight = midpoints(mesh.events(), parts)
         contacts = mesh.contacts(phase)
         if models.sharing.by_stiffness:
-            given = mesh.sections, design.solids, models.compliance
+            given = tooth_sections(mesh), design.solids, models.compliance
             teeth = teeth_at(contacts, *given)
             body = mesh.body.compliance(contacts, design.solids) if mesh.body.couples else None
         spots, places, gap = mesh.spots(contacts, phase), None, None
@@ -514,7 +523,7 @@ def one_turn(
     if not design.mesh.body.couples and wear.films is None:
         return _turn_alone(design, operation, models, wear, cells, start, depth)
     contacts, flat = worn_contacts(cells, start, depth)
-    worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
+    worn = replace(design, mesh=cells.worn(design.mesh, depth))
     share = shares_at(worn, contacts, operation.load, models, start.body)
     known = start.engaged(share, contacts if contacts.shape == "ellipse" else None)
     known = known.loaded() if design.mesh.body.couples else known
@@ -542,7 +551,7 @@ def turn_alone(
     Arguments as there.
     """
     contacts, flat = worn_contacts(cells, start, depth)
-    worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
+    worn = replace(design, mesh=cells.worn(design.mesh, depth))
     share = models.share(worn, contacts, operation.load, start.body, start.teeth)
     known = start.engaged(share, contacts if contacts.shape == "ellipse" else None)
     known, wide = felt_over_width(design, operation, models, cells, known, depth)

@@ -11,7 +11,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import contacts_at
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.tooth_section import chebyshev_nodes
+from pitchpoint.gears.tooth_section import chebyshev_nodes, tooth_sections
 from pitchpoint.programs import program
 from pitchpoint.wear.history import Cells, Start
 
@@ -67,7 +67,7 @@ class HalfTeeth(NamedTuple):
 
 
 def half_teeth(mesh: Mesh, cells: Cells) -> HalfTeeth:
-    """Half teeth of a mesh that has any, see `Mesh.toothed`.
+    """Half teeth of a mesh that has any, see `tooth_sections`.
 
     Args:
         mesh: with flanks as new.
@@ -92,7 +92,7 @@ def _at_cells(nodes: tuple[Values, ...], flank: Values) -> Values:
 
 
 def tips_of(mesh: Mesh, cells: Cells, start: Start) -> Tips:
-    """Tips of the teeth of a mesh that has any, see `Mesh.toothed`.
+    """Tips of the teeth of a mesh that has any, see `tooth_sections`.
 
     Args:
         mesh: with flanks as new.
@@ -121,7 +121,7 @@ def tips_of(mesh: Mesh, cells: Cells, start: Start) -> Tips:
 @program
 def _tips(mesh: Mesh) -> list[tuple[Array, Array, Array, Array]]:
     """Half thickness, height and angle along the flanks of both members, and the ends of these."""
-    return [(*one.flank, one.load_angle, one.reach) for one in mesh.sections]
+    return [(*one.flank, one.load_angle, one.reach) for one in tooth_sections(mesh)]
 
 
 def backlash_growth(
@@ -145,7 +145,7 @@ def backlash_growth(
         pitch_line: nothing is gone from slices of lines with places between which the sliding turns.
     """
     if start.gap is None:
-        worn = mesh.worn(cells.surfaces(array(depth)))
+        worn = cells.worn(mesh, array(depth))
         before, after = (_least_gap(state, start) for state in (_unworn(mesh, cells), worn))
     else:
         gap = np.asarray(start.gap)
@@ -179,8 +179,7 @@ def _least_at_places(gap: Values, start: Start) -> Values:
 
 def _unworn(mesh: Mesh, cells: Cells) -> Mesh:
     """The same mesh with surfaces that nothing is gone from: its contacts are those of a worn one."""
-    none = jnp.zeros(cells.shape)
-    return mesh.worn(cells.surfaces(none))
+    return cells.worn(mesh, jnp.zeros(cells.shape))
 
 
 def _least_gap(mesh: Mesh, start: Start) -> Float[np.ndarray, " node"]:

@@ -13,6 +13,7 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces, other_side
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import PathOfContact, PitchPoint, line_of_action, pitch_point
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
@@ -28,7 +29,7 @@ from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import ACTION, flanks_in_turn, way
-from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.roots import hypot, root
 
 __all__ = ["InvolutePair", "LineOfAction", "zero_backlash_centre_distance"]
@@ -190,7 +191,6 @@ class InvolutePair(Mesh):
             fillet radius of gear 2; None without one.
     """
 
-    toothed: ClassVar[bool] = True
     chosen: ClassVar[tuple[str, ...]] = (
         "module",
         "pressure_angle",
@@ -261,12 +261,6 @@ class InvolutePair(Mesh):
     def gears(self) -> tuple[InvoluteGear, InvoluteGear]:
         """Both gears for themselves."""
         return self._gear(0), self._gear(1)
-
-    @property
-    def sections(self) -> tuple[ToothSection, ToothSection]:
-        """Teeth of both gears in the normal section."""
-        first, second = self.gears
-        return first.section(self.rim_ratio[0]), second.section(self.rim_ratio[1])
 
     @property
     def line(self) -> LineOfAction:
@@ -563,17 +557,6 @@ class InvolutePair(Mesh):
             )
         return found[0], found[1]
 
-    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
-        """Moments of inertia of discs as wide as the face, from bore to reference circle [kg m2].
-
-        A ring reaches from its reference circle outwards.
-        """
-        outer = jnp.stack([gear.reference_radius for gear in self.gears])
-        root = jnp.abs(jnp.stack([gear.root_radius for gear in self.gears]))
-        ring = jnp.asarray([False, self.internal])
-        bore = jnp.where(ring, root * self.rim_ratio, root / self.rim_ratio)
-        return jnp.pi / 2.0 * density * self.face_width * jnp.abs(outer**4 - bore**4)
-
     def _layers(self) -> dict[str, Float[Array, "..."]]:
         """The transverse section at the middle of the face, gear 2 above gear 1, a ring below.
 
@@ -756,3 +739,23 @@ def _pitch_point(pair: InvolutePair) -> PitchPoint:
         sum_speed=2.0 * speed * line.sine,
         pitch_line_speed=speed,
     )
+
+
+@tooth_sections.register
+def _tooth_sections(pair: InvolutePair) -> tuple[ToothSection, ToothSection]:
+    """Teeth of both gears in the normal section."""
+    first, second = pair.gears
+    return first.section(pair.rim_ratio[0]), second.section(pair.rim_ratio[1])
+
+
+@plain_inertia.register
+def _plain_inertia(pair: InvolutePair, density: Float[Array, "2"]) -> Float[Array, "2"]:
+    """Moments of inertia of discs as wide as the face, from bore to reference circle [kg m2].
+
+    A ring reaches from its reference circle outwards.
+    """
+    outer = jnp.stack([gear.reference_radius for gear in pair.gears])
+    root = jnp.abs(jnp.stack([gear.root_radius for gear in pair.gears]))
+    ring = jnp.asarray([False, pair.internal])
+    bore = jnp.where(ring, root * pair.rim_ratio, root / pair.rim_ratio)
+    return jnp.pi / 2.0 * density * pair.face_width * jnp.abs(outer**4 - bore**4)

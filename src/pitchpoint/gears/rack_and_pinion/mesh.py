@@ -2,7 +2,7 @@
 
 import dataclasses
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import Self
 
 import equinox as eqx
 from jaxtyping import Array, Bool, Float
@@ -11,6 +11,7 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Offset, Spot, Surfaces, other_side
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import PathOfContact, PitchPoint, line_of_action, pitch_point
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.dimensions import drawing, main_dimensions
@@ -21,7 +22,7 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import ACTION, way
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.rack_and_pinion.rack import Rack
-from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.roots import hypot
 
 __all__ = ["RackAndPinion"]
@@ -106,8 +107,6 @@ class RackAndPinion(Mesh):
         surfaces: how all flanks of both members differ from their design.
     """
 
-    toothed: ClassVar[bool] = True
-
     pinion: InvoluteGear
     rack: Rack
     face_width: Float[Array, ""]
@@ -125,11 +124,6 @@ class RackAndPinion(Mesh):
     def line(self) -> LineOfAction:
         """Lengths on the line of action, for one question."""
         return LineOfAction(self)
-
-    @property
-    def sections(self) -> tuple[ToothSection, ToothSection]:
-        """Teeth of pinion and rack in the normal section."""
-        return self.pinion.section(self.rim_ratio), self.rack.section(self.line.angle)
 
     @property
     def contact_ratio(self) -> Float[Array, ""]:
@@ -284,13 +278,6 @@ class RackAndPinion(Mesh):
             Spot(flank[1], across, turned, tooth, ones),
         )
 
-    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
-        """Moment of inertia of the pinion as a disc [kg m2], and the mass that the rack moves [kg]."""
-        root = self.pinion.root_radius
-        outer, bore = self.pinion.reference_radius, root / self.rim_ratio
-        disc = jnp.pi / 2.0 * density[0] * self.face_width * (outer**4 - bore**4)
-        return jnp.stack([disc, self.moved_mass])
-
     def _layers(self, line: LineOfAction) -> dict[str, Float[Array, "..."]]:
         """The transverse section at the middle of the face, the rack above the pinion."""
         side, base = self._side, line.base_radius
@@ -412,3 +399,18 @@ def _pitch_point(mesh: RackAndPinion) -> PitchPoint:
         sum_speed=2.0 * speed * jnp.sin(line.angle),
         pitch_line_speed=speed,
     )
+
+
+@tooth_sections.register
+def _tooth_sections(mesh: RackAndPinion) -> tuple[ToothSection, ToothSection]:
+    """Teeth of pinion and rack in the normal section."""
+    return mesh.pinion.section(mesh.rim_ratio), mesh.rack.section(mesh.line.angle)
+
+
+@plain_inertia.register
+def _plain_inertia(mesh: RackAndPinion, density: Float[Array, "2"]) -> Float[Array, "2"]:
+    """Moment of inertia of the pinion as a disc [kg m2], and the mass that the rack moves [kg]."""
+    root = mesh.pinion.root_radius
+    outer, bore = mesh.pinion.reference_radius, root / mesh.rim_ratio
+    disc = jnp.pi / 2.0 * density[0] * mesh.face_width * (outer**4 - bore**4)
+    return jnp.stack([disc, mesh.moved_mass])

@@ -1,7 +1,7 @@
 """Strain wave gear: wave generator, flexspline and circular spline, and the many contacts between them."""
 
 import dataclasses
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 import equinox as eqx
 import numpy as np
@@ -23,6 +23,7 @@ from pitchpoint.gears.pairs import (
     largest_radius,
     of_pairs,
     on_edge,
+    touching,
     way,
 )
 from pitchpoint.gears.strain_wave import MEMBERS
@@ -35,7 +36,7 @@ from pitchpoint.gears.strain_wave.groove import Groove, Tips, swept
 from pitchpoint.gears.strain_wave.in_series import InSeries
 from pitchpoint.gears.strain_wave.tooth_motion import Passing, ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
-from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes
+from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes, tooth_sections
 from pitchpoint.roots import hypot, root
 
 __all__ = [
@@ -160,8 +161,6 @@ class StrainWave(Mesh):
         surfaces: how the flanks of flexspline and circular spline differ from their design.
     """
 
-    toothed: ClassVar[bool] = True
-
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
     face_width: Float[Array, ""]
@@ -271,11 +270,6 @@ class StrainWave(Mesh):
     def onward(self) -> Float[Array, ""]:
         """A wave that runs ahead of the flexspline meets teeth of growing angle, and phases fall."""
         return jnp.sign(self.motion[1] - self.motion[0])
-
-    @property
-    def touching(self) -> bool:
-        """Most teeth of a zone have a clearance that load must close."""
-        return False
 
     def events(self) -> Float[Array, " event"]:
         """Phases at which the sliding of a tooth changes its sense; pairs enter and leave without load."""
@@ -433,11 +427,6 @@ class StrainWave(Mesh):
             Coordinate(name, centre, axis, member, rigid=stiff)
             for name, member, stiff in zip(MEMBERS, flanks, rigid, strict=True)
         )
-
-    @property
-    def sections(self) -> tuple[ToothSection, ToothSection]:
-        """Teeth of both splines; the bodies under them are rings."""
-        return self._flexspline_section, self._circular_section
 
     @property
     def _flexspline_section(self) -> ToothSection:
@@ -840,3 +829,15 @@ def _flanks_in_turn(drive: StrainWave) -> Float[Array, "2"]:
 
 
 way.register(StrainWave, lambda _: WAVE)
+
+
+@tooth_sections.register
+def _tooth_sections(drive: StrainWave) -> tuple[ToothSection, ToothSection]:
+    """Teeth of both splines; the bodies under them are rings."""
+    return drive._flexspline_section, drive._circular_section
+
+
+@touching.register
+def _touching(drive: StrainWave) -> bool:
+    """Most teeth of a zone have a clearance that load must close."""
+    return False

@@ -9,10 +9,11 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.factored import Numbers
+from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
 from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.pairs import largest_inclination
-from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.gears.torus.face import TorusFace, least
 
 __all__ = ["TorusPair"]
@@ -114,15 +115,6 @@ class TorusPair(InvolutePair):
         other = dataclasses.replace(super().other_flanks, inclination=-self.inclination)
         return other.completed()
 
-    @property
-    def sections(self) -> tuple[ToothSection, ToothSection]:
-        """Teeth of both gears, each with the face over which it bends."""
-        first, second = super().sections
-        return (
-            dataclasses.replace(first, width=self.widths[0]),
-            dataclasses.replace(second, width=self.widths[1]),
-        )
-
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """The one contact of each pair in mesh; phase 0 is the entry of a pair at A [base pitches]."""
         entered = self.entered(phase)
@@ -153,10 +145,6 @@ class TorusPair(InvolutePair):
         angle = gear.half_thickness_angle(jnp.asarray(radius)) + lean
         given = radius * jnp.sin(angle), radius * jnp.cos(angle), jnp.asarray(across)
         return jnp.stack(jnp.broadcast_arrays(*given))
-
-    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
-        """Moments of inertia of discs as wide as the face of each gear [kg m2]."""
-        return super().inertia(density) * self.widths / self.face_width
 
     @property
     def _bends(self) -> Float[Array, "2"]:
@@ -194,3 +182,19 @@ def _largest_inclination(pair: TorusPair, semi_axis: Float[Array, "..."]) -> Flo
     ends = jnp.stack([low + semi_axis, high - semi_axis])
     leaning = pair.faces[0].slope(ends) + pair.faces[1].slope(ends - pair.axial_offset)
     return jnp.maximum(jnp.minimum(-leaning[0], leaning[1]), 0.0)
+
+
+@tooth_sections.register
+def _tooth_sections(pair: TorusPair) -> tuple[ToothSection, ToothSection]:
+    """Teeth of both gears, each with the face over which it bends."""
+    first, second = tooth_sections.dispatch(InvolutePair)(pair)
+    return (
+        dataclasses.replace(first, width=pair.widths[0]),
+        dataclasses.replace(second, width=pair.widths[1]),
+    )
+
+
+@plain_inertia.register
+def _plain_inertia(pair: TorusPair, density: Float[Array, "2"]) -> Float[Array, "2"]:
+    """Moments of inertia of discs as wide as the face of each gear [kg m2]."""
+    return plain_inertia.dispatch(InvolutePair)(pair, density) * pair.widths / pair.face_width

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax
+from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
@@ -78,4 +79,4 @@ def readings(point: Point) -> dict[str, float]:
 
 @program
 def _inertia_and_arms(mesh: CylindricalPair, density: Float[Array, "2"]) -> tuple[Array, Array]:
-    return mesh.inertia(density), line_of_action(mesh)
+    return plain_inertia(mesh, density), line_of_action(mesh)
