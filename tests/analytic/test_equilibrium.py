@@ -295,6 +295,9 @@ def mesh(separate):
 class _Looked(Mesh):
     separate: bool = eqx.field(static=True)
     contact_ratio: ClassVar[jax.Array] = jnp.asarray(1.5)
+    shape: ClassVar[str] = "line"
+    surfaces = ((), ())
+    body = onward = other_flanks = None
     events = relation = motion = driver = driven_by = period = None
     coordinates = rigid_contacts = spots = None
 

@@ -1,18 +1,26 @@
 """Contact lines of involute flanks in the plane of action: along the path of contact, and across the face."""
 
 import abc
+import dataclasses
 from functools import cached_property, singledispatch
-from typing import Any
+from typing import Any, ClassVar, Self
 
 import equinox as eqx
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import Shape
+from pitchpoint.contact.surface import Offset, other_side
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
+from pitchpoint.gears.gear_body import GearBody
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import ACTION, way
 
 __all__ = [
     "LARGEST_CONTACT_RATIO",
     "SLICES",
+    "InvoluteMesh",
     "PathOfContact",
     "PitchPoint",
     "lanes_for",
@@ -159,6 +167,54 @@ class PitchPoint(eqx.Module):
     radius: Float[Array, ""]
     sum_speed: Float[Array, ""]
     pitch_line_speed: Float[Array, ""]
+
+
+class InvoluteMesh(Mesh):
+    """Teeth of which pairs follow each other along a straight line of action, from A to E.
+
+    Attributes:
+        right_flank: False while member 0 pushes with its left flanks (seen with the tip up), turning
+            counter-clockwise when it drives; True for the other ones.
+    """
+
+    shape: ClassVar[Shape] = "line"
+    body: ClassVar[GearBody] = GearBody()
+
+    right_flank: eqx.AbstractVar[Bool[Arrays, ""]]
+
+    @property
+    @abc.abstractmethod
+    def line(self) -> PathOfContact:
+        """Lengths on the line of action, for one question."""
+
+    @property
+    @abc.abstractmethod
+    def normal_backlash(self) -> Float[Array, ""]:
+        """Backlash along the normal of the flanks [m]."""
+
+    @property
+    def contact_ratio(self) -> Float[Array, ""]:
+        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
+        return self.line.contact_ratio
+
+    @property
+    def loaded(self) -> Float[Array, "2"]:
+        """The driven one."""
+        return 1.0 - self.driver
+
+    @property
+    def other_flanks(self) -> Self:
+        """The same teeth on their other flanks, which lie back by the backlash."""
+        first, second = (other_side(own) for own in self.surfaces)
+        surfaces = ((*first, Offset(self.normal_backlash)), second)
+        return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)  # type: ignore[call-arg]
+
+    @property
+    def _side(self) -> Float[Array, ""]:
+        return jnp.where(self.right_flank, -1.0, 1.0)
+
+
+way.register(InvoluteMesh, lambda _: ACTION)
 
 
 @singledispatch

@@ -1,12 +1,11 @@
 """What every gear family answers."""
 
 import abc
-from typing import Any, ClassVar, Self
+from typing import Any, Self, final
 
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
 from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
@@ -22,36 +21,37 @@ class Mesh(eqx.Module):
     """A gear family: contacts that travel, and the coordinates of the bodies that carry them.
 
     One period of `phase` is one engagement: the state of the mesh repeats with it. Coordinates are
-    rotations counter-clockwise [rad], or translations [m] where a family has them.
+    rotations counter-clockwise [rad], or translations [m] where a family has them. What only some gears
+    have is no member: they register it, see `has`.
 
     Attributes:
         shape: of the class; that of all its contacts.
     """
 
-    shape: ClassVar[Shape] = "line"
+    shape: eqx.AbstractClassVar[Shape]
 
     def __repr__(self) -> str:
         return brief(self)
 
     @property
+    @abc.abstractmethod
     def surfaces(self) -> Surfaces:
-        """How all flanks of each member differ from those of `rigid_contacts`."""
-        return (), ()
+        """How all flanks of each member differ from those of `rigid_contacts`; a field of every family."""
 
     @property
+    @abc.abstractmethod
     def onward(self) -> Float[Array, ""]:
         """Sense in which the phase runs while the drive turns on: one, or minus one."""
-        return jnp.ones(())
 
     @property
+    @abc.abstractmethod
     def body(self) -> GearBody:
         """What lies under and behind the teeth."""
-        return GearBody()
 
     @property
+    @abc.abstractmethod
     def other_flanks(self) -> Self:
         """The same mesh where its other flanks carry; gaps are counted from the same position."""
-        return self
 
     @abc.abstractmethod
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
@@ -67,6 +67,7 @@ class Mesh(eqx.Module):
     def coordinates(self) -> tuple[Coordinate, ...]:
         """The bodies and their axes, in the order of `motion`."""
 
+    @final
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts at any phase [periods], with the surfaces that the flanks have."""
         rigid = self.rigid_contacts(phase)
@@ -135,5 +136,14 @@ def has(mesh: Mesh, question: Any) -> bool:
     Args:
         mesh: any family.
         question: of `functools.singledispatch`, such as `flanks_in_turn`.
+
+    Example:
+        >>> import jax.numpy as jnp
+        >>> from pitchpoint.gears.contact_lines import line_of_action
+        >>> from pitchpoint.gears.pairs import flanks_in_turn
+        >>> from pitchpoint.gears.rigs.twin_disc import TwinDisc
+        >>> discs = TwinDisc(jnp.array([0.02, 0.035]), jnp.asarray(0.008), jnp.asarray(0.8))
+        >>> has(discs, flanks_in_turn), has(discs, line_of_action)
+        (True, False)
     """
     return question.dispatch(type(mesh)) is not question.dispatch(object)

@@ -11,10 +11,16 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
-from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces, other_side
+from pitchpoint.contact.surface import Flank, Spot, Surfaces
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.bodies import plain_inertia
-from pitchpoint.gears.contact_lines import PathOfContact, PitchPoint, line_of_action, pitch_point
+from pitchpoint.gears.contact_lines import (
+    InvoluteMesh,
+    PathOfContact,
+    PitchPoint,
+    line_of_action,
+    pitch_point,
+)
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.dimensions import completed, drawing, independent, main_dimensions
@@ -27,8 +33,7 @@ from pitchpoint.gears.involute import (
 )
 from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
-from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.pairs import ACTION, flanks_in_turn, way
+from pitchpoint.gears.pairs import flanks_in_turn
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.roots import hypot, root
 
@@ -151,7 +156,7 @@ class LineOfAction(PathOfContact):
         return pair.face_width * jnp.sin(pair.helix_angle) / (jnp.pi * pair.module)
 
 
-class InvolutePair(Mesh):
+class InvolutePair(InvoluteMesh):
     """Two gears on fixed parallel axes. Coordinates: rotation of gear 1 and of gear 2.
 
     Gear 2 may be a ring: then its number of teeth and its radii are negative, as in ISO 21771, and
@@ -173,8 +178,6 @@ class InvolutePair(Mesh):
         centre_distance: in operation, positive [m].
         rim_ratio: root radius over bore radius (outer over root radius of a ring), for each gear.
         wheel_drives: True if gear 2 drives and gear 1 carries the load; the same flanks touch.
-        right_flank: False while gear 1 pushes with its left flanks (seen with the tip up), turning
-            counter-clockwise when it drives; True for the other ones.
         follows: static; whether centre distance (without backlash) and tip alterations (rack's tip
             clearance) follow from the other dimensions.
         shortened: for each gear whether its tip is shortened to `least_tip`; static.
@@ -367,11 +370,6 @@ class InvolutePair(Mesh):
         """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
         return self.line.overlap_ratio
 
-    @property
-    def contact_ratio(self) -> Float[Array, ""]:
-        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
-        return self.line.contact_ratio
-
     def specific_sliding(self, position: Float[Array, "*b"]) -> Float[Array, "*b 2"]:
         """Sliding speed over own rolling speed of each gear at positions from N1 [m] (ISO 21771).
 
@@ -402,11 +400,6 @@ class InvolutePair(Mesh):
     def driver(self) -> Float[Array, "2"]:
         """Gear 1, or gear 2 if the wheel drives."""
         return jnp.where(self.wheel_drives, jnp.array([0.0, 1.0]), jnp.array([1.0, 0.0]))
-
-    @property
-    def loaded(self) -> Float[Array, "2"]:
-        """The driven gear."""
-        return 1.0 - self.driver
 
     def driven_by(self, member: str | int) -> Self:
         """The pair with this gear driving the other one; the same flanks touch."""
@@ -530,13 +523,6 @@ class InvolutePair(Mesh):
             ]
         )
 
-    @property
-    def other_flanks(self) -> Self:
-        """The same gears on their other flanks, which lie back by the backlash."""
-        first, second = (other_side(own) for own in self.surfaces)
-        surfaces = ((*first, Offset(self.normal_backlash)), second)
-        return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
-
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the line of action, against which both gears turn; teeth follow each other."""
         lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
@@ -611,10 +597,6 @@ class InvolutePair(Mesh):
         """Roll lengths at which the path of contact ends nearest to the root of each gear [m]."""
         start, end = self.limits
         return jnp.stack([start, self.tangent_length - end])
-
-    @property
-    def _side(self) -> Float[Array, ""]:
-        return jnp.where(self.right_flank, -1.0, 1.0)
 
     def _shortened_tips(self) -> Float[Array, "2"]:
         """Tip alterations at which the tips that are to be shortened are as thick as asked."""
@@ -715,9 +697,6 @@ completed.register(InvolutePair, lambda pair: pair.completed())
 def _flanks_in_turn(pair: InvolutePair) -> Float[Array, "2"]:
     """Numbers of teeth."""
     return jnp.abs(pair.teeth)
-
-
-way.register(InvolutePair, lambda _: ACTION)
 
 
 @line_of_action.register

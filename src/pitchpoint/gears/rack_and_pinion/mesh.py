@@ -9,17 +9,21 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
-from pitchpoint.contact.surface import Offset, Spot, Surfaces, other_side
+from pitchpoint.contact.surface import Spot, Surfaces
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.bodies import plain_inertia
-from pitchpoint.gears.contact_lines import PathOfContact, PitchPoint, line_of_action, pitch_point
+from pitchpoint.gears.contact_lines import (
+    InvoluteMesh,
+    PathOfContact,
+    PitchPoint,
+    line_of_action,
+    pitch_point,
+)
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.dimensions import drawing, main_dimensions
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
-from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.pairs import ACTION, way
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.rack_and_pinion.rack import Rack
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
@@ -83,7 +87,7 @@ class LineOfAction(PathOfContact):
         return self.mesh.face_width * jnp.sin(pinion.helix_angle) / (jnp.pi * pinion.module)
 
 
-class RackAndPinion(Mesh):
+class RackAndPinion(InvoluteMesh):
     """A pinion on a fixed axis and a rack that travels at right angles to it.
 
     Coordinates: rotation of the pinion, travel of the rack. Lengths along the line of action are
@@ -99,8 +103,6 @@ class RackAndPinion(Mesh):
         rim_ratio: root radius over bore radius of the pinion.
         moved_mass: of the rack and what it carries [kg]; NaN where it is not known.
         rack_drives: True if the rack drives and the pinion carries the load; the same flanks touch.
-        right_flank: False while the pinion pushes with its left flanks (seen with the tip up), turning
-            counter-clockwise when it drives; True for the other ones.
         helical: False if the helix angle is zero; static.
         lanes: static count of pairs held, at least the contact ratio rounded up.
         slices: static count of slices of each contact line; even, or one.
@@ -124,16 +126,6 @@ class RackAndPinion(Mesh):
     def line(self) -> LineOfAction:
         """Lengths on the line of action, for one question."""
         return LineOfAction(self)
-
-    @property
-    def contact_ratio(self) -> Float[Array, ""]:
-        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
-        return self.line.contact_ratio
-
-    @property
-    def overlap_ratio(self) -> Float[Array, ""]:
-        """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
-        return self.line.overlap_ratio
 
     @property
     def zero_backlash_distance(self) -> Float[Array, ""]:
@@ -166,11 +158,6 @@ class RackAndPinion(Mesh):
     def driver(self) -> Float[Array, "2"]:
         """The pinion, or the rack where that drives."""
         return jnp.where(self.rack_drives, jnp.array([0.0, 1.0]), jnp.array([1.0, 0.0]))
-
-    @property
-    def loaded(self) -> Float[Array, "2"]:
-        """The driven one."""
-        return 1.0 - self.driver
 
     def driven_by(self, member: str | int) -> Self:
         """The same with this member driving the other one; the same flanks touch."""
@@ -255,13 +242,6 @@ class RackAndPinion(Mesh):
             "tangent": everywhere(-cosine, side * sine, jnp.zeros(())),
         }
 
-    @property
-    def other_flanks(self) -> Self:
-        """The same teeth on their other flanks, which lie back by the backlash."""
-        first, second = (other_side(own) for own in self.surfaces)
-        surfaces = ((*first, Offset(self.normal_backlash)), second)
-        return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
-
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """The line of action stands still; the pinion turns on against it, the rack travels past it."""
         lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
@@ -327,10 +307,6 @@ class RackAndPinion(Mesh):
             travel=jnp.array([-1.0, 0.0]),
         )
 
-    @property
-    def _side(self) -> Float[Array, ""]:
-        return jnp.where(self.right_flank, -1.0, 1.0)
-
 
 @main_dimensions.register
 def _main_dimensions(mesh: RackAndPinion) -> dict[str, Float[Array, "..."]]:
@@ -375,9 +351,6 @@ def _drawing(mesh: RackAndPinion) -> dict[str, Float[Array, "..."]]:
         "contact_ratio": line.contact_ratio,
         **{name: value for name, value in named.items() if not name.endswith("_1")},
     }
-
-
-way.register(RackAndPinion, lambda _: ACTION)
 
 
 @line_of_action.register

@@ -1,7 +1,7 @@
 """What test rigs have in common: one contact that stays where it is."""
 
 import abc
-from typing import Self
+from typing import ClassVar, Self
 
 from jaxtyping import Array, Float
 
@@ -11,6 +11,7 @@ from pitchpoint.contact.surface import Spot
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
+from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import flanks_in_turn
 
@@ -23,6 +24,18 @@ class Rig(Mesh):
     The load acts on the approach, which stands still: nothing is transmitted. Phase counts turns of
     body 0.
     """
+
+    body: ClassVar[GearBody] = GearBody()
+
+    @property
+    def onward(self) -> Float[Array, ""]:
+        """Phase counts turns of body 0, which drives."""
+        return jnp.ones(())
+
+    @property
+    def other_flanks(self) -> Self:
+        """Bodies without flanks have no other ones."""
+        return self
 
     @property
     def contact_ratio(self) -> Float[Array, ""]:

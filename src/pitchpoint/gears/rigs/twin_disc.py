@@ -1,9 +1,11 @@
 """Two cylinders that roll and slide on each other."""
 
+from typing import ClassVar
+
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.dimensions import independent
@@ -21,6 +23,8 @@ class TwinDisc(Rig):
         speed_ratio: surface speed of disc 1 over that of disc 0; 1 rolls without sliding.
         surfaces: how the discs differ from cylinders.
     """
+
+    shape: ClassVar[Shape] = "line"
 
     radii: Float[Array, "2"]
     length: Float[Array, ""]

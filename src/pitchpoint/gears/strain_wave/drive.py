@@ -1,14 +1,14 @@
 """Strain wave gear: wave generator, flexspline and circular spline, and the many contacts between them."""
 
 import dataclasses
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Shaped
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.contact.contacts import Contacts, Shape, along
 from pitchpoint.contact.surface import Spot, Surfaces, other_side
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
@@ -160,6 +160,8 @@ class StrainWave(Mesh):
             static.
         surfaces: how the flanks of flexspline and circular spline differ from their design.
     """
+
+    shape: ClassVar[Shape] = "line"
 
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
