@@ -30,13 +30,8 @@ def rigid(built: Ready) -> str | None:
         each = zip(built.numbers, map(rigid, built.stages), strict=True)
         return next((f"stage {number}: {why}" for number, why in each if why), None)
     by_stiffness = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
-    dynamics = built.case.dynamics
-    if (
-        by_stiffness
-        or dynamics is not None
-        or not touching(built.design.mesh)
-        or any(built.deviations)
-    ):
+    dynamics, touches = built.case.dynamics, touching(built.design.mesh)
+    if by_stiffness or dynamics is not None or not touches or any(built.deviations):
         return None
     if not built.transmits:
         return "nothing is transmitted by a test rig, so that nothing winds up"

@@ -2,13 +2,11 @@
 
 import numpy as np
 import xarray as xr
-from jaxtyping import Array
 
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.cases.build import Built
 from pitchpoint.gears.dimensions import drawing
-from pitchpoint.gears.mesh import Mesh
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 
@@ -40,9 +38,7 @@ def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
     return tuple(f"{name}_{axis}" for axis in range(np.ndim(values)))
 
 
-@program
-def _drawing(mesh: Mesh) -> dict[str, Array]:
-    return drawing(mesh)
+_drawing = program(drawing)
 
 
 def _undrawn(built: Built) -> str | None:

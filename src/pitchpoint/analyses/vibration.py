@@ -31,7 +31,6 @@ from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action
-from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import bare
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
@@ -87,9 +86,7 @@ def vibrating_of(built: Built) -> Vibrating:
     )
 
 
-@program
-def _inertia(mesh: Mesh, density: Float[Array, "2"]) -> Array:
-    return plain_inertia(mesh, density)
+_inertia = program(plain_inertia)
 
 
 def separating(built: Built) -> bool:

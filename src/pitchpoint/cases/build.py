@@ -58,7 +58,7 @@ from pitchpoint.gears.families import Gears, built_gears, family_of
 from pitchpoint.gears.family import Family, Followed
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.pairs import touching, way
-from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
@@ -1109,17 +1109,12 @@ def _numbers(mesh: Mesh) -> dict[str, dict[str, Any]]:
     return {"dimensions": main_dimensions(mesh), "nominal": nominal}
 
 
-_modulus = program(reduced_modulus)
+_modulus, _sections = program(reduced_modulus), program(tooth_sections)
 
 
 @program
 def _inertia(mesh: Mesh) -> jax.Array:
     return plain_inertia(mesh, jnp.ones(2))
-
-
-@program
-def _sections(mesh: Mesh) -> tuple[ToothSection, ToothSection]:
-    return tooth_sections(mesh)
 
 
 def _lubricant(oil: Oil, document: Document) -> lubricants.LubricantRecord:

@@ -161,11 +161,10 @@ class Cells(eqx.Module):
 
     def worn(self, mesh: Mesh, depth: Depths) -> Mesh:
         """The same mesh with flanks, beside the surfaces that they have, of which so much is gone."""
-        worn = zip(mesh.surfaces, self.surfaces(depth), strict=True)
-        changes: Any = {
-            "surfaces": tuple((*own, gone) for own, gone in worn)
-        }  # a field of every family
-        return replace(mesh, **changes)
+        first, second = zip(mesh.surfaces, self.surfaces(depth), strict=True)
+        made: Any = mesh  # surfaces are a field of every family, a property of `Mesh`
+        changed: Mesh = replace(made, surfaces=((*first[0], first[1]), (*second[0], second[1])))
+        return changed
 
 
 class WearModel(eqx.Module):

@@ -690,15 +690,6 @@ def _independent(pair: InvolutePair) -> tuple[str, ...]:
     return tuple(name for name in pair.chosen if not follows.get(name))
 
 
-completed.register(InvolutePair, lambda pair: pair.completed())
-
-
-@flanks_in_turn.register
-def _flanks_in_turn(pair: InvolutePair) -> Float[Array, "2"]:
-    """Numbers of teeth."""
-    return jnp.abs(pair.teeth)
-
-
 @line_of_action.register
 def _line_of_action(pair: InvolutePair) -> Float[Array, "2"]:
     """Base radii with the sense in which the gears close along the transverse line of action."""
@@ -738,3 +729,7 @@ def _plain_inertia(pair: InvolutePair, density: Float[Array, "2"]) -> Float[Arra
     ring = jnp.asarray([False, pair.internal])
     bore = jnp.where(ring, root * pair.rim_ratio, root / pair.rim_ratio)
     return jnp.pi / 2.0 * density * pair.face_width * jnp.abs(outer**4 - bore**4)
+
+
+completed.register(InvolutePair, lambda pair: pair.completed())
+flanks_in_turn.register(InvolutePair, lambda pair: jnp.abs(pair.teeth))

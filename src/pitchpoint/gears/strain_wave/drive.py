@@ -783,10 +783,6 @@ def _drawing(drive: StrainWave) -> dict[str, Float[Array, "..."]]:
     }
 
 
-completed.register(StrainWave, StrainWave.completed)
-independent.register(StrainWave, lambda _: ("face_width",))
-
-
 @largest_radius.register
 def _largest_radius(drive: StrainWave) -> Float[Array, ""]:
     """Flatter contacts would be wider under load than the flank is high."""
@@ -824,22 +820,14 @@ def _of_pairs(drive: StrainWave, places: Float[Arrays, "place *#b"]) -> Float[Ar
     return empty.at[pair].add(places, mode="drop")
 
 
-@flanks_in_turn.register
-def _flanks_in_turn(drive: StrainWave) -> Float[Array, "2"]:
-    """Numbers of teeth of both splines."""
-    return drive.teeth
-
-
-way.register(StrainWave, lambda _: WAVE)
-
-
 @tooth_sections.register
 def _tooth_sections(drive: StrainWave) -> tuple[ToothSection, ToothSection]:
     """Teeth of both splines; the bodies under them are rings."""
     return drive._flexspline_section, drive._circular_section
 
 
-@touching.register
-def _touching(drive: StrainWave) -> bool:
-    """Most teeth of a zone have a clearance that load must close."""
-    return False
+completed.register(StrainWave, StrainWave.completed)
+independent.register(StrainWave, lambda _: ("face_width",))
+way.register(StrainWave, lambda _: WAVE)
+touching.register(StrainWave, lambda _: False)  # most teeth of a zone have a clearance
+flanks_in_turn.register(StrainWave, lambda drive: drive.teeth)
