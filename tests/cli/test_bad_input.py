@@ -1606,6 +1606,7 @@ OTHER_CALLS = {
     "run pair.toml --set": '; write --set operation.torque="50 N m"',
     "run pair.toml other.toml": "it takes one case, pitchpoint compare several",
     "show": "a name out of pitchpoint cases",
+    "new 3K": "pitchpoint.three_k_sets has those for a ratio",
     "new pair.toml": "'pair.toml' is a file and no family of gears; write new spur -o FILE",
 }
 

@@ -129,6 +129,11 @@ def no_family(name: str, known: Collection[str]) -> str:
             " in a stage: a set stands alone under [gears]; with other stages write its meshes with their "
             "bodies and a [train] (pitchpoint docs stages)"
         )
+    if letters(name).removesuffix("set") in ("3k", "threek", "wolfrom"):
+        return (
+            " with a table of its own: its meshes and a [train] are (pitchpoint docs stages), and "
+            "pitchpoint.three_k_sets has those for a ratio"
+        )
     plain = letters(name).removesuffix("s").removesuffix("gear").removesuffix("drive")
     if {plain, letters(name)} & _NO_FAMILIES:
         return " of Pitchpoint; pitchpoint docs not_included says what to use instead"
