@@ -15,7 +15,7 @@ from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
 import pitchpoint
-from pitchpoint.gears.dimensions import drawing
+from pitchpoint.gears.bodies import drawing
 
 __all__ = ["setup"]
 

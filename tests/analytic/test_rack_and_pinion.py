@@ -9,9 +9,9 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
+from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
-from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.tooth_section import tooth_sections

@@ -13,7 +13,7 @@ from scipy.optimize import minimize_scalar
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.errors import InputError
-from pitchpoint.gears.dimensions import main_dimensions
+from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.pairs import largest_inclination
 from pitchpoint.gears.torus.table import TorusGears

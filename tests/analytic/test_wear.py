@@ -15,7 +15,7 @@ from pitchpoint.contact.contacts import total
 from pitchpoint.contact.surface import Spot, missing
 from pitchpoint.contact.worn import WIDEST, Worn, WornAt, averaged
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
-from pitchpoint.gears.dimensions import main_dimensions
+from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.conditions import Conditions

@@ -21,9 +21,9 @@ from sound import quick_first
 
 from pitchpoint.cases.build import ALONE
 from pitchpoint.doubts import as_doubt, stored
+from pitchpoint.gears.bodies import drawing
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
-from pitchpoint.gears.dimensions import drawing
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import way

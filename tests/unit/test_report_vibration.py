@@ -14,10 +14,10 @@ from pages import payload
 from records import entries
 
 from pitchpoint._jax import jnp
+from pitchpoint.gears.bodies import drawing
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
-from pitchpoint.gears.dimensions import drawing
 from pitchpoint.gears.pairs import way
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome

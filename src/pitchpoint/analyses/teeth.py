@@ -6,7 +6,7 @@ import xarray as xr
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.cases.build import Built
-from pitchpoint.gears.dimensions import drawing
+from pitchpoint.gears.bodies import drawing
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 

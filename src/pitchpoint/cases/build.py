@@ -50,10 +50,9 @@ from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.efficiency.warm_teeth import balance
 from pitchpoint.errors import Complaints, InputError
-from pitchpoint.gears.bodies import plain_inertia
+from pitchpoint.gears.bodies import main_dimensions, plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action, pitch_point
 from pitchpoint.gears.coordinates import Coordinate
-from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.families import Gears, built_gears, family_of
 from pitchpoint.gears.family import Family, Followed
 from pitchpoint.gears.mesh import Mesh, has

@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import demand_double, jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
 from pitchpoint.errors import ConvergenceError
-from pitchpoint.gears.dimensions import completed
+from pitchpoint.gears.bodies import completed
 from pitchpoint.programs import program
 
 __all__ = [

@@ -17,7 +17,7 @@ from pitchpoint.efficiency.quasi_static import (
     cycle_of,
 )
 from pitchpoint.efficiency.rows import one_engagement
-from pitchpoint.gears.dimensions import main_dimensions
+from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.pairs import largest_inclination
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.applicability import Limited

@@ -34,7 +34,7 @@ from pitchpoint.efficiency.rows import (
     one_engagement,
     stacked,
 )
-from pitchpoint.gears.dimensions import main_dimensions
+from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.balance import Balance

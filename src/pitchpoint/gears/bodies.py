@@ -1,4 +1,7 @@
-"""Masses and moments of inertia of the bodies of a mesh, as discs, rings and tubes."""
+"""Bodies of a mesh: dimensions for tables and a drawing, masses and moments of inertia of discs and rings.
+
+Gears that have dimensions register them here.
+"""
 
 from collections.abc import Iterable
 from functools import singledispatch
@@ -9,7 +12,16 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 
-__all__ = ["MassInertia", "as_one", "disc", "plain_inertia"]
+__all__ = [
+    "MassInertia",
+    "as_one",
+    "completed",
+    "disc",
+    "drawing",
+    "independent",
+    "main_dimensions",
+    "plain_inertia",
+]
 
 MassInertia = tuple[float, float]
 """Mass [kg] and moment of inertia about the axis [kg m2] of a body; not a number where one is not known."""
@@ -54,3 +66,30 @@ def plain_inertia(mesh: Any, density: Float[Array, "2"]) -> Float[Array, " dof"]
         density: of both members [kg/m3].
     """
     return jnp.full(len(mesh.coordinates), jnp.nan)
+
+
+@singledispatch
+def main_dimensions(mesh: Any) -> dict[str, Float[Array, "..."]]:
+    """Main dimensions by name [SI], one value or one for each member; for results and tables."""
+    return {}
+
+
+@singledispatch
+def drawing(mesh: Any) -> dict[str, Float[Array, "..."]]:
+    """What a drawing of the teeth to scale needs [SI], see `Family.drawing`; empty where there is none."""
+    return {}
+
+
+@singledispatch
+def independent(mesh: Any) -> tuple[str, ...]:
+    """Fields of a mesh whose numbers are chosen one by one; what follows from them is `completed`."""
+    return ()
+
+
+@singledispatch
+def completed(mesh: Any) -> Any:
+    """The same mesh with dimensions that follow from others computed from them again.
+
+    Derivatives with respect to one dimension then see what follows from it.
+    """
+    return mesh

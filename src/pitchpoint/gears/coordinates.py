@@ -1,11 +1,14 @@
-"""Coordinates of a drive: the ways in which its bodies move, in the frame of the mesh."""
+"""Coordinates of a drive: the ways in which its bodies move, in the frame of the mesh; bodies by name."""
+
+from collections.abc import Sequence
 
 import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.errors import InputError
 
-__all__ = ["AXIAL", "Coordinate"]
+__all__ = ["AXIAL", "Coordinate", "number_of"]
 
 AXIAL = (0.0, 0.0, 1.0)
 """Direction of the axes of gears on parallel axes: rotations are counter-clockwise about it."""
@@ -41,3 +44,23 @@ class Coordinate(eqx.Module):
         if not self.turns:
             return jnp.broadcast_to(axis, point.shape)
         return jnp.cross(axis, point - place, axis=0)
+
+
+def number_of(member: str | int, names: tuple[str, ...]) -> int:
+    """Number of a body, by itself or by name.
+
+    Args:
+        member: number or name.
+        names: of the bodies of a family, in order.
+
+    Raises:
+        InputError: there is no such body.
+
+    Example:
+        >>> number_of("gear 2", ("gear 1", "gear 2"))
+        1
+    """
+    known: Sequence[str | int] = names if isinstance(member, str) else range(len(names))
+    if member not in known:
+        raise InputError(f"{member!r} is no member of this drive; use one of {', '.join(names)}")
+    return known.index(member)

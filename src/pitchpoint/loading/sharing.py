@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, along
 from pitchpoint.errors import InputError
-from pitchpoint.gears.dimensions import main_dimensions
+from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.pairs import WAVE, touching, way
 from pitchpoint.gears.tooth_section import tooth_sections

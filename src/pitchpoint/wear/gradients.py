@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.gears.dimensions import completed, independent
+from pitchpoint.gears.bodies import completed, independent
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.programs import program
 from pitchpoint.wear.history import Cells, Start, WearModel, reached, travelled, turn_alone

@@ -7,8 +7,8 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Surfaces
+from pitchpoint.gears.bodies import independent
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
-from pitchpoint.gears.dimensions import independent
 from pitchpoint.gears.rigs.rig import Rig
 
 __all__ = ["BallOnDisc"]

@@ -13,7 +13,7 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Spot, Surfaces
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.bodies import plain_inertia
+from pitchpoint.gears.bodies import completed, drawing, independent, main_dimensions, plain_inertia
 from pitchpoint.gears.contact_lines import (
     InvoluteMesh,
     PathOfContact,
@@ -21,9 +21,8 @@ from pitchpoint.gears.contact_lines import (
     line_of_action,
     pitch_point,
 )
-from pitchpoint.gears.coordinates import AXIAL, Coordinate
+from pitchpoint.gears.coordinates import AXIAL, Coordinate, number_of
 from pitchpoint.gears.cylindrical import MEMBERS
-from pitchpoint.gears.dimensions import completed, drawing, independent, main_dimensions
 from pitchpoint.gears.involute import (
     InvoluteGear,
     base_helix,
@@ -32,7 +31,6 @@ from pitchpoint.gears.involute import (
     transverse_angle,
 )
 from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
-from pitchpoint.gears.members import number_of
 from pitchpoint.gears.pairs import flanks_in_turn
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.roots import hypot, root

@@ -11,7 +11,7 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot, Surfaces
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.bodies import plain_inertia
+from pitchpoint.gears.bodies import drawing, main_dimensions, plain_inertia
 from pitchpoint.gears.contact_lines import (
     InvoluteMesh,
     PathOfContact,
@@ -19,11 +19,9 @@ from pitchpoint.gears.contact_lines import (
     line_of_action,
     pitch_point,
 )
-from pitchpoint.gears.coordinates import AXIAL, Coordinate
-from pitchpoint.gears.dimensions import drawing, main_dimensions
+from pitchpoint.gears.coordinates import AXIAL, Coordinate, number_of
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
-from pitchpoint.gears.members import number_of
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.rack_and_pinion.rack import Rack
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections

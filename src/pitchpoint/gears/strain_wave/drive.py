@@ -12,9 +12,8 @@ from pitchpoint.contact.contacts import Contacts, Shape, along
 from pitchpoint.contact.surface import Spot, Surfaces, other_side
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.coordinates import AXIAL, Coordinate
-from pitchpoint.gears.dimensions import completed, drawing, independent, main_dimensions
-from pitchpoint.gears.members import number_of
+from pitchpoint.gears.bodies import completed, drawing, independent, main_dimensions
+from pitchpoint.gears.coordinates import AXIAL, Coordinate, number_of
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import (
     WAVE,

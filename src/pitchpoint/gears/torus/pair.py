@@ -9,9 +9,8 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.factored import Numbers
-from pitchpoint.gears.bodies import plain_inertia
+from pitchpoint.gears.bodies import main_dimensions, plain_inertia
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
-from pitchpoint.gears.dimensions import main_dimensions
 from pitchpoint.gears.pairs import largest_inclination
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.gears.torus.face import TorusFace, least
