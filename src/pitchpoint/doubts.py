@@ -155,8 +155,8 @@ def fails(sentence: str, brief: str = "") -> Doubt:
     return _alike(doubt, f"{_FAILS}{doubt}", f"{_FAILS}{brief or doubt.brief}")
 
 
-def in_stage(number: int, sentence: str) -> Doubt:
-    """Sentence on one stage of a drive.
+def in_stage(number: int | str, sentence: str) -> Doubt:
+    """Sentence on one stage of a drive, or on a mesh in it, "1 (sun and planet)", say.
 
     Example:
         >>> from pitchpoint.doubts import fails
@@ -168,7 +168,7 @@ def in_stage(number: int, sentence: str) -> Doubt:
     return reworded(sentence, partial(_stage_words, number))
 
 
-def _stage_words(number: int, sentence: str) -> str:
+def _stage_words(number: int | str, sentence: str) -> str:
     """Words on a stage."""
     if sentence.startswith(_FAILS):
         return f"{_FAILS}stage {number}: {sentence.removeprefix(_FAILS)}"

@@ -511,8 +511,8 @@ def test_a_train_that_cannot_run_is_refused_in_a_sentence(changes, words):
 
 
 def test_what_else_stands_beside_a_set_is_told():
-    stages = [{"gears": gears([23, 61])}, {"gears": SET}]
-    with pytest.raises(InputError, match=r"planetary. is no family .* in a stage: a set stands"):
+    stages = [{"gears": gears([23, 61])}, {"gears": SET | {"family": "epicyclic"}}]
+    with pytest.raises(InputError, match=r"epicyclic. is no family .* did you mean planetary"):
         load_case({"stages": stages, **TABLES})
     torus = {"family": "torus", "teeth": [20, 40], "module": "1 mm", "face_width": "10 mm"}
     torus |= {"torus_radius": ["60 mm", "70 mm"]}

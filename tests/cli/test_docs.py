@@ -41,7 +41,7 @@ STRENGTH, SHAFT, INSPECTION, LIMITS = blocks("guide/sizing.md", "toml")
 (MOTION,) = blocks("guide/motion.md", "toml")
 FILM, OIL, FINITE, HEIGHTS = blocks("guide/films.md", "toml")
 WEAR, WORN = blocks("guide/wear.md", "toml")
-STAGES, PLANETARY, TRAIN, OF_TRAIN = blocks("guide/stages.md", "toml")
+STAGES, PLANETARY, SETS, TRAIN, OF_TRAIN = blocks("guide/stages.md", "toml")
 (TARGETS,) = blocks("guide/targets.md", "toml")
 (RACK,) = blocks("gears/rack_and_pinion.md", "toml")
 (TORUS,) = blocks("gears/torus.md", "toml")
@@ -76,6 +76,7 @@ CASES = {
     "limits": (WAVE, LIMITS),
     "stages": STAGES,
     "planetary": PLANETARY,
+    "sets in a row": SETS,
     "train": TRAIN,
     "losses of a train": (PLANETARY, OF_TRAIN),
     "ball": BALL,
@@ -125,7 +126,7 @@ def test_every_block_is_known() -> None:
     assert set(kinds) <= {"sh", "toml", "python", *OF_THE_SITE}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 27
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 28
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 
@@ -265,7 +266,7 @@ def test_a_case(name: str) -> None:
     assert ("wear" in made) == (name == "wear")
     assert ("finite_film" in made) == (name == "finite")
     assert ("running" in made) == (
-        name in ("wave", "limits", "targets", "stages", "losses of a train")
+        name in ("wave", "limits", "targets", "stages", "sets in a row", "losses of a train")
     )
     assert ("load_limits" in made) == (name in ("wave", "limits", "targets"))
     assert ("kinematic_error" in made) == (name in ("modified", "wave", "limits", "targets"))

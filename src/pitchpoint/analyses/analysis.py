@@ -18,6 +18,7 @@ from pitchpoint.results.variable import Variable
 
 __all__ = [
     "ALONE",
+    "OF_SETS",
     "Analysis",
     "Piece",
     "Progress",
@@ -35,6 +36,11 @@ Piece = Mapping[str, Any]
 
 ALONE = "it is computed for one mesh; a stage in a file of its own has it"
 """Why a drive of several meshes has no part of a kind."""
+
+OF_SETS = (
+    "it is computed for one mesh; the meshes of a planetary set have it in a file of the set alone"
+)
+"""Why a drive whose stages are all planetary sets has no part of a kind."""
 
 
 class Progress(Protocol):
@@ -128,8 +134,8 @@ class Entry:
         """Why the part does not exist for a case; None where it does."""
         if self.of == "drive" or not isinstance(built, BuiltDrive):
             return self.lacks(built)
-        reasons = [ALONE] if self.of == "one mesh" else [*map(self.lacks, built.meshes)]
-        return None if None in reasons else reasons[0]
+        reasons = [ALONE] if self.of == "one mesh" else [*map(self.lacks, built.single.values())]
+        return None if None in reasons else [*reasons, OF_SETS][0]
 
     def shown(self, parts: Mapping[str, xr.Dataset]) -> Mapping[str, Any]:
         """Entries of `--json`; of a part of the meshes of a drive by stage."""
@@ -190,9 +196,13 @@ def of_stages(analysis: Analysis) -> Analysis:
     """
 
     def meshes(built: BuiltDrive) -> dict[int, Built]:
-        each = built.at_work if analysis.under_load else built.meshes
+        each = built.at_work if analysis.under_load else built.stages
         numbered = zip(built.numbers, each, strict=True)
-        return {number: mesh for number, mesh in numbered if analysis.lacks(mesh) is None}
+        return {
+            number: one
+            for number, one in numbered
+            if isinstance(one, Built) and analysis.lacks(one) is None
+        }
 
     def pieces(built: BuiltDrive) -> Iterator[Piece]:
         for number, mesh in meshes(built).items():

@@ -92,15 +92,21 @@ def without_train(built: Ready) -> str | None:
     """Why there is no period in which all meshes come together again."""
     if built.averaging == TRAIN_PERIOD:
         return None
+    if isinstance(built, BuiltDrive) and built.sets:
+        return (
+            "stages do not come together again; a planetary set in a file of its own has its period"
+        )
     return Unasked("its bodies do not turn together as those of a train do")
 
 
 def no_pins(built: Ready) -> str | None:
     """Why nothing is computed of how planets share a load."""
+    if isinstance(built, BuiltDrive) and any(_out_of_place(one) for one in built.sets.values()):
+        return "pins out of place are those of one set; a file of the set alone has how its planets share"
     if not isinstance(built, BuiltTrain):
         return Unasked("it has no planets")
     train = built.case.train
-    if train is None or not (train.pin_errors or train.pin_tolerance):
+    if train is None or not _out_of_place(built):
         return Unasked("pin_errors or pin_tolerance of a planetary set asks for it")
     on_planets = [one for one in built.design.meshes if one.carrier != HOUSING]
     if built.case.operation.load == 0.0:
@@ -108,6 +114,12 @@ def no_pins(built: Ready) -> str | None:
     if train.planets < 2 or len(on_planets) != 2:
         return "planets that share a load by their pins are several, each in two meshes"
     return None
+
+
+def _out_of_place(built: BuiltTrain) -> bool:
+    """True if pins of a set are said to be out of place."""
+    train = built.case.train
+    return train is not None and bool(train.pin_errors or train.pin_tolerance)
 
 
 def no_joint(built: Built) -> str | None:

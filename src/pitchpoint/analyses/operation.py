@@ -55,7 +55,7 @@ def _rated_below(built: BuiltDrive, data: xr.Dataset) -> list[str]:
     return [
         in_stage(number, doubt)
         for number, stage, torque in stages
-        if stage.case.gears.rated
+        if isinstance(stage, Built) and stage.case.gears.rated
         for doubt in _above(stage, torque)
     ]
 
@@ -80,17 +80,17 @@ def _implausible(built: Ready) -> list[str]:
     """What cannot be in the stages of a drive; of one mesh its cycle tells it."""
     return (
         [
-            in_stage(number, text)
-            for k, (number, one) in enumerate(zip(built.numbers, built.stages, strict=True))
-            for text in _of_stage(one, [acting.stages[k] for acting in built.models])
+            in_stage(label, text)
+            for k, (label, one) in enumerate(zip(built.mesh_labels, built.meshes, strict=True))
+            for text in _of_mesh(one, [acting.of_meshes[k] for acting in built.models])
         ]
         if isinstance(built, BuiltDrive)
         else []
     )
 
 
-def _of_stage(stage: Built, under: Sequence[Models]) -> list[str]:
-    return implausible(AtWork(stage, [models.law for models in under], profiles(stage, under)))
+def _of_mesh(mesh: Built, under: Sequence[Models]) -> list[str]:
+    return implausible(AtWork(mesh, [models.law for models in under], profiles(mesh, under)))
 
 
 def _laws(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
@@ -174,11 +174,13 @@ def _why_outside(built: Ready, under: Sequence[Any]) -> list[list[str]]:
         runs = zip(under, profiles(built, under), strict=True)
         return [why_outside(built, models.law, run) for models, run in runs]
     found: list[list[str]] = [[] for _ in under]
-    for k, (number, one) in enumerate(zip(built.numbers, built.stages, strict=True)):
-        if not built.own_friction[k]:
-            each = _why_outside(one, [acting.stages[k] for acting in under])
+    own_friction = dict(zip(built.numbers, built.own_friction, strict=True))
+    meshes = zip(built.mesh_numbers, built.mesh_labels, built.meshes, strict=True)
+    for k, (number, label, one) in enumerate(meshes):
+        if not own_friction[number]:
+            each = _why_outside(one, [acting.of_meshes[k] for acting in under])
             for reasons, told in zip(found, each, strict=True):
-                reasons += [f"in stage {number} {reason}" for reason in told]
+                reasons += [f"in stage {label} {reason}" for reason in told]
     return found
 
 

@@ -45,9 +45,11 @@ def reflected_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
     Args:
         built: the case.
     """
-    numbered = dict(zip(built.numbers, built.meshes, strict=True))
+    numbers = built.mesh_numbers
     inspected = {
-        n: inspection_part(mesh) for n, mesh in numbered.items() if has_key(mesh, "inspection")
+        place: inspection_part(mesh)
+        for place, mesh in enumerate(built.meshes)
+        if has_key(mesh, "inspection")
     }
     bodies = _bodies(built, inspected)
     ends = {"input": 1.0} | ({} if built.travels else {"output": built.output_rate})
@@ -70,8 +72,10 @@ def reflected_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
         title="reflected",
         warnings=_unknown(bodies),
         carriers=[*_carriers(built)],
-        without_backlash=[n for n in numbered if n not in inspected],
-        without_tolerances=[n for n, data in inspected.items() if data.sizes["case"] == 1],
+        without_backlash=[*{n: 0 for k, n in enumerate(numbers) if k not in inspected}],
+        without_tolerances=[
+            *{numbers[k]: 0 for k, data in inspected.items() if data.sizes["case"] == 1}
+        ],
     )
 
 
@@ -81,10 +85,10 @@ def _bodies(built: BuiltDrive, inspected: Inspections) -> list[_Moving]:
     Of a gear that is as wide as another mesh of it asks, the heavier disc counts.
     """
     heaviest: dict[str, _Moving] = {}
-    meshes = zip(built.numbers, built.meshes, built.member_motions, strict=True)
-    for number, mesh, members in meshes:
-        kind = "disc" if number in inspected else "body"
-        data = inspected[number] if number in inspected else bodies_of(mesh, {}, silent)
+    meshes = zip(built.meshes, built.member_motions, strict=True)
+    for place, (mesh, members) in enumerate(meshes):
+        kind = "disc" if place in inspected else "body"
+        data = inspected[place] if place in inspected else bodies_of(mesh, {}, silent)
         values = (data[f"{kind}_{what}"].values.tolist() for what in ("mass", "inertia"))
         for member, coordinate, mass, inertia in zip(members, mesh.bodies, *values, strict=True):
             body = _moving(member, mass, inertia, turns=coordinate.turns)
@@ -120,8 +124,8 @@ def _backlash(
     if len(inspected) < len(built.meshes):
         return {}
     of_loaded = [
-        inspected[number]["backlash_angle"].values[int(mesh.nominal["loaded"].argmax())]
-        for number, mesh in zip(built.numbers, built.meshes, strict=True)
+        inspected[place]["backlash_angle"].values[int(mesh.nominal["loaded"].argmax())]
+        for place, mesh in enumerate(built.meshes)
     ]
     each = [
         step * np.resize(angles, len(CASES))

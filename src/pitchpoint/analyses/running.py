@@ -153,7 +153,8 @@ def from_rest(
 
 def has_spread(built: Ready) -> bool:
     """True if a place says by how much what holds it at rest may be more or less."""
-    every: tuple[Ready, ...] = built, *built.meshes
+    stages = built.stages if isinstance(built, BuiltDrive) else ()
+    every: tuple[Ready, ...] = built, *stages
     return any(loss.breakaway_spread > 1.0 for one in every for loss in one.case.losses.values())
 
 

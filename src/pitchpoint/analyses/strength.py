@@ -10,7 +10,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import OF_SETS, Analysis, Piece, Progress
 from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
@@ -77,8 +77,10 @@ Numbers = Mapping[str, np.ndarray]
 
 def _unrated(built: Ready) -> str | None:
     """Why there are no teeth to rate."""
-    if any(one.case.gears.rated for one in built.meshes):
+    if _rated(built):
         return None
+    if isinstance(built, BuiltDrive) and built.sets:
+        return OF_SETS
     return "ISO 6336 rates pairs of cylindrical gears, not these"
 
 
@@ -115,9 +117,7 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
 
 def _rated(built: Ready) -> list[tuple[int, Built]]:
     """Meshes that are rated with their numbers, in the order of the power."""
-    stages = (
-        [(1, built)] if isinstance(built, Built) else zip(built.numbers, built.stages, strict=True)
-    )
+    stages = [(1, built)] if isinstance(built, Built) else [*built.single.items()]
     return [one for one in stages if one[1].case.gears.rated]
 
 

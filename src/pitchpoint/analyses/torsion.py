@@ -67,7 +67,8 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
     same ratio. Of the phases the worst meeting counts.
     """
     steps, copies = built.steps, np.array(built.copies)
-    each = _of_meshes(built, torques)
+    each, numbers = _of_meshes(built, torques), np.array(built.mesh_numbers)
+    of_stages = [numbers == number for number in built.numbers]
 
     def at_output(name: str) -> np.ndarray:
         return np.stack([step * found[name] for step, found in zip(steps, each, strict=True)], -1)
@@ -75,10 +76,12 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
     slopes = np.stack([found["tangent_torsional_stiffness"] for found in each], -1)
     slopes *= copies / steps**2
     slope, turned = 1.0 / np.sum(1.0 / slopes, axis=-1), at_output("wind_up")
-    told_parts = (one.design.mesh.body.yielding for one in built.stages)
+    slopes = np.stack([1.0 / np.sum(1.0 / slopes[:, own], axis=-1) for own in of_stages], -1)
+    turned = np.stack([np.sum(turned[:, own], axis=-1) for own in of_stages], -1)
+    told_parts = (one.design.mesh.body.yielding for one in built.meshes)
     yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
     parts = _parts_of_stages(built, steps, each)
-    assumed = proportions_words(built.stages)
+    assumed = proportions_words(built.meshes)
     data = dataset(
         {
             "wind_up": (("torque",), turned.sum(axis=-1)),
@@ -110,7 +113,7 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
             *_on_edges_of_stages(built, torques, each),
         ],
         note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
-        brief=f"{'; '.join(rigid)} are not in it{proportions_counted(built.stages)}",
+        brief=f"{'; '.join(rigid)} are not in it{proportions_counted(built.meshes)}",
         left_out=_SLOPELESS if parts else "",
         solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
     )
@@ -127,7 +130,7 @@ _SLOPELESS = (
 def _of_meshes(built: BuiltDrive, torques: np.ndarray) -> list[dict[str, Any]]:
     """What winds up in one copy of each mesh under torques at the output, without friction."""
     unloaded = np.zeros(len(built.models))
-    each = zip(built.stages, built.steps, built.copies, strict=True)
+    each = zip(built.meshes, built.steps, built.copies, strict=True)
     return [_torsion(one, torques * step / count, unloaded) for one, step, count in each]
 
 
@@ -144,12 +147,12 @@ def _parts_of_stages(
     """Parts of the wind-up at the output by stage and name [rad]; nothing where no body couples teeth."""
     if not any(found["parts"] for found in each):
         return {}
-    stages = zip(built.numbers, steps, each, strict=True)
-    return {
-        f"stage {number}: {name}": step * values
-        for number, step, found in stages
-        for name, values in (found["parts"] or {"teeth": found["wind_up"]}).items()
-    }
+    parts: dict[str, np.ndarray] = {}
+    for number, step, found in zip(built.mesh_numbers, steps, each, strict=True):
+        for name, values in (found["parts"] or {"teeth": found["wind_up"]}).items():
+            part = f"stage {number}: {name}"
+            parts[part] = parts.get(part, 0.0) + step * values
+    return parts
 
 
 def _on_edges_of_stages(
@@ -157,7 +160,7 @@ def _on_edges_of_stages(
 ) -> list[str]:
     return [
         in_stage(number, told)
-        for number, found in zip(built.numbers, each, strict=True)
+        for number, found in zip(built.mesh_numbers, each, strict=True)
         for told in _on_edges(built, torques, _edges(found))
     ]
 

@@ -6,9 +6,9 @@ import xarray as xr
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.cases.built_drive import BuiltTrain
+from pitchpoint.efficiency.drive import NODES_OF_TRAINS
 from pitchpoint.efficiency.quasi_static import power_ratio
 from pitchpoint.efficiency.train_cycle import train_cycle
-from pitchpoint.efficiency.train_summary import NODES
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
@@ -23,7 +23,7 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     """
     train = built.design
     cycles = [
-        jax.device_get(train_cycle(train, built.operation, acting.stages, NODES))
+        jax.device_get(train_cycle(train, built.operation, acting.stages, NODES_OF_TRAINS))
         for acting in built.models
     ]
     first, planets = cycles[0], max(built.copies)

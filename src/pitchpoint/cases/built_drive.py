@@ -19,7 +19,7 @@ from pitchpoint.cases.build import (
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.schema import DriveCase
 from pitchpoint.doubts import in_stage
-from pitchpoint.drive.kinematics import HOUSING, Ends, Link, body_rates
+from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Drive
 from pitchpoint.efficiency.drive_summary import drive_figures
@@ -54,11 +54,22 @@ class Acting:
 
     Attributes:
         law: friction law by which it is named: that of the case, or those of the stages.
-        stages: models of each stage.
+        of_stages: models of each stage, of a planetary set as they act together in it.
     """
 
     law: FrictionLaw
-    stages: tuple[Models, ...]
+    of_stages: "tuple[Models | Acting, ...]"
+
+    @property
+    def stages(self) -> tuple[Any, ...]:
+        """Models of each stage as kernels take them, of a planetary set those of its meshes."""
+        return tuple(one.stages if isinstance(one, Acting) else one for one in self.of_stages)
+
+    @property
+    def of_meshes(self) -> tuple[Models, ...]:
+        """Models of each mesh."""
+        each = (one.of_meshes if isinstance(one, Acting) else (one,) for one in self.of_stages)
+        return tuple(models for several in each for models in several)
 
     def __repr__(self) -> str:
         return brief(self)
@@ -81,14 +92,26 @@ class MemberMotion(NamedTuple):
     orbit: float = 0.0
     carrier: str = HOUSING
 
+    def in_stage(self, number: int, rate: float) -> "MemberMotion":
+        """The member as that of a stage of a drive whose driver turns at this rate [rad/s]."""
+        of_stage = f"stage {number}: "
+        return MemberMotion(
+            of_stage + self.body,
+            self.rate * rate,
+            self.copies,
+            self.orbit * abs(rate),
+            HOUSING if self.carrier == HOUSING else of_stage + self.carrier,
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class BuiltDrive:
-    """A case of several meshes ready to compute.
+    """A case of several stages ready to compute.
 
     Attributes:
         case: as validated.
-        stages: each built as a case of its own, at the load and speed that it has without losses.
+        stages: each built as a case of its own, at the load and speed that it has without losses; a planetary
+            set is a train.
         numbers: of the stages in the file, in the order of the power.
         documents: each stage came from, in the same order.
         design: the drive.
@@ -97,7 +120,7 @@ class BuiltDrive:
     """
 
     case: DriveCase
-    stages: tuple[Built, ...]
+    stages: "tuple[Built | BuiltTrain, ...]"
     numbers: tuple[int, ...]
     documents: tuple[Document, ...]
     design: Drive
@@ -110,19 +133,22 @@ class BuiltDrive:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences about the drive, and about each of its stages."""
-        of_stages = (
-            in_stage(number, text)
-            for number, one in zip(self.numbers, self.stages, strict=True)
-            for text in one.warnings
-            if text not in (TEETH_ALONE, BEARING_FREE)
+        of_meshes = zip(self.mesh_labels, self.meshes, strict=True)
+        told = (
+            *((number, text) for number, one in self.sets.items() for text in one.told),
+            *((label, text) for label, mesh in of_meshes for text in mesh.warnings),
         )
-        return (*self.told, *of_stages)
+        left_out = TEETH_ALONE, BEARING_FREE
+        return (
+            *self.told,
+            *(in_stage(label, text) for label, text in told if text not in left_out),
+        )
 
     @property
     def heated(self) -> list[str]:
         """Sentences on teeth that their own loss warms, by stage."""
-        each = zip(self.numbers, self.stages, strict=True)
-        return [in_stage(number, text) for number, one in each for text in one.heated]
+        each = zip(self.mesh_labels, self.meshes, strict=True)
+        return [in_stage(label, text) for label, one in each for text in one.heated]
 
     @cached_property
     def models(self) -> tuple[Acting, ...]:
@@ -139,7 +165,7 @@ class BuiltDrive:
         ]
         return tuple(self._acting(models) for models in zip(*each, strict=True))
 
-    def _acting(self, models: Sequence[Models]) -> Acting:
+    def _acting(self, models: "Sequence[Models | Acting]") -> Acting:
         own = self.own_friction
         each = sorted(zip(self.numbers, models, own, strict=True), key=lambda one: one[0])
         free = [one.law for _, one, mine in each if all(own) or not mine]
@@ -182,13 +208,39 @@ class BuiltDrive:
 
     @property
     def meshes(self) -> tuple[Built, ...]:
-        """Meshes that the case has: its stages."""
-        return self.stages
+        """Meshes that the case has: its stages, and those of its planetary sets."""
+        return tuple(mesh for one in self.stages for mesh in one.meshes)
+
+    @property
+    def mesh_numbers(self) -> tuple[int, ...]:
+        """Number of the stage that each mesh is in, see `meshes`."""
+        each = zip(self.numbers, self.stages, strict=True)
+        return tuple(number for number, one in each for _ in one.meshes)
+
+    @property
+    def mesh_labels(self) -> list[int | str]:
+        """Number of the stage of each mesh, with its bodies where it is one of several, see `meshes`."""
+        found: list[int | str] = []
+        for number, one in zip(self.numbers, self.stages, strict=True):
+            found += [f"{number} ({bodies})" for bodies in one.stage_bodies] or [number]
+        return found
+
+    @property
+    def single(self) -> dict[int, Built]:
+        """Stages that are one mesh by their number, in the order of the power."""
+        each = zip(self.numbers, self.stages, strict=True)
+        return {number: one for number, one in each if isinstance(one, Built)}
+
+    @property
+    def sets(self) -> "dict[int, BuiltTrain]":
+        """Stages that are planetary sets by their number, in the order of the power."""
+        each = zip(self.numbers, self.stages, strict=True)
+        return {number: one for number, one in each if isinstance(one, BuiltTrain)}
 
     @property
     def travels(self) -> frozenset[End]:
         """Those of driver and loaded shaft that travel in place of turning."""
-        ends: dict[End, Built] = {"driver": self.stages[0], "loaded": self.stages[-1]}
+        ends: dict[End, Built | BuiltTrain] = {"driver": self.stages[0], "loaded": self.stages[-1]}
         return frozenset(end for end, one in ends.items() if end in one.travels)
 
     @property
@@ -278,7 +330,8 @@ class BuiltDrive:
     @property
     def copies(self) -> tuple[int, ...]:
         """How many there are of each mesh."""
-        return (1,) * len(self.stages)
+        each = (one.copies if isinstance(one, BuiltTrain) else (1,) for one in self.stages)
+        return tuple(count for counts in each for count in counts)
 
     @property
     def steps(self) -> np.ndarray:
@@ -286,13 +339,16 @@ class BuiltDrive:
 
         Without losses; the output turns as much for a unit turn of that member alone.
         """
-        return np.asarray(np.abs(self.motion[-1] / np.array(self.motion[1:])))
+        onward = np.abs(self.motion[-1] / np.array(self.motion[1:]))
+        each = zip(onward, self.stages, strict=True)
+        steps = [step * (one.steps if isinstance(one, BuiltTrain) else 1.0) for step, one in each]
+        return np.hstack(steps)
 
     @cached_property
-    def at_work(self) -> tuple[Built, ...]:
-        """Meshes under the mean torques that they carry with all losses, by the first friction law.
+    def at_work(self) -> "tuple[Built | BuiltTrain, ...]":
+        """Stages under the mean torques that they carry with all losses, by the first friction law.
 
-        Where friction locks the drive they are those without losses.
+        Where friction locks the drive they are those without losses, and planetary sets always.
         """
         figures = drive_figures([(self.design, self.operation)], self.models[0].stages)
         carried = self.carried_by_meshes({name: values[0] for name, values in figures.items()})
@@ -300,8 +356,10 @@ class BuiltDrive:
             return self.stages
         pairs = zip(self.stages, carried.tolist(), strict=True)
         return tuple(
-            mesh if mesh.case.operation.load == torque else mesh.carrying(torque)
-            for mesh, torque in pairs
+            one
+            if isinstance(one, BuiltTrain) or one.case.operation.load == torque
+            else one.carrying(torque)
+            for one, torque in pairs
         )
 
     def carried_by_meshes(self, figures: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -316,18 +374,16 @@ class BuiltDrive:
     @cached_property
     def motion(self) -> list[float]:
         """Rates of the shafts for a radian of the input."""
-        shafts = [
-            f"shaft {number + 1}" for first, last in self.design.links for number in (first, last)
-        ]
-        links = [
-            Link(stage.design.mesh, tuple(f"shaft {number + 1}" for number in stage.shafts))
-            for stage in self.design.stages
-        ]
-        held = {body for link in links for body in link.bodies} - {*shafts}
-        rates = body_rates(
-            links, Ends({shafts[0]: ends_of(self.stages[0].design.mesh)[0]}, tuple(held))
-        )
-        return [rates[shaft] for shaft in dict.fromkeys(shafts)]
+        rates, sense = [1.0], 1.0
+        for one in self.stages:
+            if isinstance(one, BuiltTrain):
+                step = 1.0 / float(one.design.ratio)
+            else:
+                first, last = ends_of(one.design.mesh)
+                step = last / first
+                sense = first / rates[-1]  # in which the flanks that touch turn the input
+            rates.append(rates[-1] * step)
+        return [float(np.sign(sense)) * rate for rate in rates]
 
     @property
     def output_rate(self) -> float:
@@ -337,18 +393,23 @@ class BuiltDrive:
     @property
     def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:
         """Motion of the members of each mesh, in the order of its coordinates."""
-        meshes = zip(self.numbers, self.stages, self.motion[:-1], strict=True)
-        return tuple(
-            tuple(
-                MemberMotion(f"stage {number}: {coordinate.body}", rate * entering)
-                for coordinate, rate in zip(
-                    mesh.bodies,
-                    (mesh.nominal["motion"] / ends_of(mesh.design.mesh)[0]).tolist(),
-                    strict=True,
+        found: list[tuple[MemberMotion, ...]] = []
+        for number, one, entering in zip(self.numbers, self.stages, self.motion[:-1], strict=True):
+            if isinstance(one, BuiltTrain):
+                found += [
+                    tuple(member.in_stage(number, entering) for member in members)
+                    for members in one.member_motions
+                ]
+                continue
+            rates = (one.nominal["motion"] / ends_of(one.design.mesh)[0]).tolist()
+            each = zip(one.bodies, rates, strict=True)
+            found.append(
+                tuple(
+                    MemberMotion(coordinate.body, rate).in_stage(number, entering)
+                    for coordinate, rate in each
                 )
             )
-            for number, mesh, entering in meshes
-        )
+        return tuple(found)
 
     @cached_property
     def backwards(self) -> "BuiltDrive":
@@ -359,7 +420,9 @@ class BuiltDrive:
         changed = point.model_copy(update={**load, "speed": point.speed * step})
         turned = self.design.driven_backwards()
         warm = [
-            replace(place, design=replace(place.design, solids=one.design.solids))
+            replace(place, design=one.design)
+            if isinstance(one, BuiltTrain)
+            else replace(place, design=replace(place.alone, solids=one.design.solids))
             for place, one in zip(turned.stages, stages, strict=True)
         ]
         return replace(
@@ -380,6 +443,7 @@ class BuiltTrain(BuiltDrive):
     Each mesh is a stage, built at the load of one of its copies and at the speed against its carrier.
     """
 
+    stages: tuple[Built, ...]
     design: "Train"  # type: ignore[assignment]
 
     @property

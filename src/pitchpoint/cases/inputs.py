@@ -188,13 +188,16 @@ def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
     document = with_meshes(document)
     for number, one, inside in zip(built.numbers, built.stages, built.documents, strict=True):
         own = document.tree[STAGES][str(number)]
-        following = {"gears": one.following, "film": _of_films(one)}
+        following = (
+            {"gears": one.following, "film": _of_films(one)} if isinstance(one, Built) else {}
+        )
         for table in ("gears", *(key for key in _OF_STAGE if key in own)):
             for row in _rows(one.case, inside, table, following.get(table)):
                 holds = not short and _holds(own, table, row["key"])
                 follows = {"status": "derived"} if short and row["status"] == "given" else {}
                 yield _in_stage({**row, **follows}, number, given=holds)
-        yield from (_in_stage(row, number, given=False) for row in _digests(one))
+        if isinstance(one, Built):
+            yield from (_in_stage(row, number, given=False) for row in _digests(one))
         for key in ("bodies", "driver", "place", "turn"):
             if key in own and not short:
                 path, value = f"{number}.{key}", getattr(built.case.stages[str(number)], key)
@@ -245,22 +248,22 @@ def _in_stage(row: Row, number: int, *, given: bool) -> Row:
 
 def following_rows(built: Ready) -> Iterator[Row]:
     """Rows of what follows from gears, materials and oil; of a drive by stage."""
-    several = len(built.meshes) > 1
+    labels = built.mesh_labels if isinstance(built, BuiltDrive) else [""]
     one_oil = all(one.lubricant == built.meshes[0].lubricant for one in built.meshes)
-    for number, one in enumerate(built.meshes, 1):
+    for label, one in zip(labels, built.meshes, strict=True):
         rows = [
             *_dimensions(one),
             *_inertia(one),
             *(row for gear in (1, 2) for row in _of_solid(one, gear)),
         ]
         rows += [] if one_oil else _of_oil(one)
-        yield from (_numbered(row, number) if several else row for row in rows)
+        yield from (_labelled(row, label) if label else row for row in rows)
     if one_oil:
         yield from _of_oil(built.meshes[0])
 
 
-def _numbered(row: Row, number: int) -> Row:
-    return {**row, "key": f"stage {number}.{row['key']}"}
+def _labelled(row: Row, label: int | str) -> Row:
+    return {**row, "key": f"stage {label}.{row['key']}"}
 
 
 def _of_oil(built: Built) -> Iterator[Row]:

@@ -36,7 +36,7 @@ from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import CollectedInputError, Complaints, InputError, shorten
 from pitchpoint.gears.cylindrical.table import CylindricalGears
-from pitchpoint.gears.families import Gears
+from pitchpoint.gears.families import Gears, GearsOfStage
 from pitchpoint.gears.planetary import (
     PLANETARY,
     PLANETS,
@@ -1611,14 +1611,14 @@ MOST_STAGES = 5
 
 
 class StageTable(Table):
-    """One mesh of a drive; what it leaves out is as the tables of the same name say for all stages.
+    """One mesh or planetary set of a drive; what it leaves out is as the tables of the same name say for all.
 
     Its losses are those between two of its own bodies; those of shafts against the housing are the
     drive's.
     """
 
-    gears: Gears
-    """Gears of the stage; their family decides what keys the table has."""
+    gears: GearsOfStage
+    """Gears of the stage, a mesh or a planetary set; their family decides what keys the table has."""
     driver: Text = ""
     """Member that the stage before drives; the first one that is not fixed unless given."""
     bodies: Annotated[tuple[BodyName, ...], Field(max_length=3)] = ()
@@ -1726,7 +1726,7 @@ class DriveCase(Table):
     gears: PlanetaryGears | None = None
     """Gears of a planetary set, in the place of the stages and the train that follow from them."""
     stages: Annotated[dict[str, StageTable], BeforeValidator(_stages), _Numbered()]
-    """Meshes from the input to the output, each a table [[stages]]; at most 5."""
+    """Meshes and planetary sets from the input to the output, each a table [[stages]]; at most 5."""
     train: TrainTable | None = None
     """Bodies of a train whose meshes turn together; stages follow each other unless given."""
     materials: Materials = Materials()
@@ -1766,7 +1766,7 @@ class DriveCase(Table):
         return tuple(f"shaft {number}" for number in range(1, len(self.stages) + 2))
 
     @property
-    def last(self) -> GearsTable:
+    def last(self) -> GearsTable | PlanetaryGears:
         """Gears of the stage that carries the load."""
         return self.stages[str(len(self.stages))].gears
 
@@ -1774,6 +1774,7 @@ class DriveCase(Table):
     def _whole(self) -> "DriveCase":
         wrong = Complaints()
         wrong.tried(_check_passing, self.stages)
+        wrong.tried(_check_sets, self.stages)
         wrong.tried(_check_train, self)
         if not wrong:  # what the drive carries, and what turns, follows from its stages
             travels = self.last.load == "force"
@@ -1917,6 +1918,37 @@ def _check_passing(stages: Mapping[str, StageTable]) -> None:
                 )
 
 
+OF_SET_ALONE = (
+    "was given; strength of a planetary set is rated in a file of this set alone, with the torque and speed "
+    "that it has here: leave this table out"
+)
+_OF_NO_SET = {
+    "strength": OF_SET_ALONE,
+    "driver": "is that of a mesh; what drives a planetary set is input, a key of its gears",
+    **dict.fromkeys(
+        ("place", "turn"),
+        "counts for bearings that teeth of one mesh press; a planetary set stands around the axis of its "
+        "shafts: leave it out",
+    ),
+    **dict.fromkeys(
+        ("film", "wear"),
+        "is computed of one mesh; a file of this set alone, with the torque and speed that it has here, has "
+        "it: write its meshes as [[stages]] with a [train], each with this table (pitchpoint docs stages)",
+    ),
+}
+
+
+def _check_sets(stages: Mapping[str, StageTable]) -> None:
+    """InputError for what a stage that is a planetary set does not take."""
+    wrong = Complaints()
+    for number, stage in stages.items():
+        if isinstance(stage.gears, PlanetaryGears):
+            for key, told in _OF_NO_SET.items():
+                if key in stage.model_fields_set:
+                    wrong.add(InputError(told, key=f"stages.{number}.{key}"))
+    wrong.demand_none()
+
+
 def bearings_of(losses: Mapping[str, Loss], body: str) -> dict[str, Loss]:
     """Bearings between a body and the housing, by name of their loss."""
     return {
@@ -1973,7 +2005,7 @@ def _given(table: Table, key: str) -> bool:
     return key in table.model_fields_set
 
 
-def _check_load(case: Case | DriveCase, gears: GearsTable) -> None:
+def _check_load(case: Case | DriveCase, gears: GearsTable | PlanetaryGears) -> None:
     """InputError unless the load is given that the driven member takes, and no table asks for the other."""
     point, wanted = case.operation, gears.load
     other = "force" if wanted == "torque" else "torque"

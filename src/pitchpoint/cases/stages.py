@@ -1,11 +1,13 @@
-"""From a validated case of several meshes to one built case a stage, and the drive that they make."""
+"""From a validated case of several stages to one built case a stage, and the drive that they make."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from itertools import pairwise
-from math import gcd, pi
-from typing import Any, TypeVar
+from math import pi
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -22,22 +24,28 @@ from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready, ends_of
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import (
+    OF_SET_ALONE,
+    SPEED,
     TEMPERATURE,
     UNRATED,
     Case,
     DriveCase,
     Operating,
     StageTable,
-    validated,
+    is_planetary,
+    planetary_of,
+    validate,
+    with_meshes,
 )
 from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.planetary import in_words_of_set
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.lubrication.registry import ChosenLaws
 
-__all__ = ["ready"]
+__all__ = ["as_spelt", "ready"]
 
 T = TypeVar("T")
 
@@ -49,6 +57,9 @@ _OF_STAGE = ("lubricant", "roughness", "housing")
 SEVERAL_MEETINGS = 10
 """Meshes of one gear of a shaft, over the common divisor, from which on nearly all phases meet."""
 
+MOST_TEETH = 10_000
+"""Teeth that mesh in a turn, up to which the ratio of two such numbers is taken as that of whole ones."""
+
 
 def ready(case: Case | DriveCase, document: Document, own: ChosenLaws = ()) -> Ready:
     """A case of one mesh or of several, ready to compute.
@@ -58,10 +69,8 @@ def ready(case: Case | DriveCase, document: Document, own: ChosenLaws = ()) -> R
     """
     if isinstance(case, Case):
         return _warm(case, document, own)
-    try:
+    with _spelt(document):
         return _built(case, document, own)
-    except InputError as error:
-        raise error.at(file=document.name) from None
 
 
 def _warm(case: Case, document: Document, own: ChosenLaws) -> Built:
@@ -73,50 +82,116 @@ def _warm(case: Case, document: Document, own: ChosenLaws) -> Built:
         raise error.at(file=document.name) from None
 
 
-def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
-    numbers = range(1, len(case.stages) + 1)
-    documents = [_of_stage(case, document, number) for number in numbers]
+@contextmanager
+def _spelt(document: Document) -> Iterator[None]:
+    """What is wrong inside is told with the file and the keys that it has."""
+    try:
+        yield
+    except InputError as error:
+        raise as_spelt(error, document).at(file=document.name) from None
+
+
+def as_spelt(error: InputError, document: Document) -> InputError:
+    """An error with the keys that the file has, where a planetary set stands for its meshes."""
+    if not is_planetary(document.tree):
+        return error
+    try:
+        gears = planetary_of(document)
+    except InputError:  # which is the error itself
+        return error
     wrong = Complaints()
-    alone: list[Case] = []
-    for number, inside in zip(numbers, documents, strict=True):
-        read = partial(validated, Case, inside)
-        alone += filter(None, [wrong.tried(_in_stage, document, number, read)])
+    for one in error.every:
+        if isinstance(one, InputError):
+            wrong.add(in_words_of_set(one, gears))
+    return wrong.error if wrong else error
+
+
+class _Stage(NamedTuple):
+    """A stage of a drive as a case of its own.
+
+    Attributes:
+        number: in the file.
+        case: of one mesh, or of a planetary set with the meshes for which it stands.
+        document: that it came from.
+    """
+
+    number: int
+    case: Case | DriveCase
+    document: Document
+
+
+def _alone(case: DriveCase, document: Document) -> list[_Stage]:
+    """Each stage as a case of its own, at the load and speed of the drive."""
+    wrong = Complaints()
+    found: list[_Stage] = []
+    for number in range(1, len(case.stages) + 1):
+        inside = _of_stage(case, document, number)
+
+        def read(inside: Document = inside, number: int = number) -> _Stage:
+            spelt_out = with_meshes(inside)
+            with _spelt(inside):
+                return _Stage(number, validate(spelt_out), spelt_out)
+
+        found += filter(None, [wrong.tried(_in_stage, document, number, read)])
     wrong.demand_none()
-    for number, one in zip(numbers, alone, strict=True):
-        wrong.tried(_mesh, one, number, document)
+    for one in found:
+        wrong.tried(_turns, one, document)
     wrong.demand_none()
+    return found
+
+
+def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
+    alone = _alone(case, document)
     _check_laws(alone)
     _check_rated(case, alone)
-    meshes = [_mesh(one, number, document) for number, one in zip(numbers, alone, strict=True)]
     if case.train is None:
         alone = _following(alone, document)
         points = _points(case.operation, alone, document)
+        cases: Sequence[Case | DriveCase] = [one.case for one in alone]
     else:
         # Only now: a pair or a chain does not load what trains take.
         from pitchpoint.cases.trains import turning_together
 
-        alone, points = turning_together(case, alone, meshes)
-    built: list[Built] = []
-    for number, one, point in zip(numbers, alone, points, strict=True):
-        loaded = one.model_copy(update={"operation": point})
-        warmed = partial(_warm, loaded, documents[number - 1], own)
-        built += filter(None, [wrong.tried(_in_stage, document, number, warmed)])
+        cases, points = turning_together(case, *_of_train(alone, document))
+    wrong = Complaints()
+    built: list[Any] = []  # each a mesh or a set
+    for one, each, point in zip(alone, cases, points, strict=True):
+        loaded = each.model_copy(update={"operation": point})
+        warmed = partial(ready, loaded, one.document, own)
+        built += filter(None, [wrong.tried(_in_stage, document, one.number, warmed)])
     wrong.demand_none()
-    made = _together(case, built, documents)
+    made = _together(case, built, [one.document for one in alone])
     _check_map(made)
     return replace(made, told=(*made.told, *without_bearing(made)))
 
 
-def _together(case: DriveCase, built: Sequence[Built], documents: Sequence[Document]) -> BuiltDrive:
-    """The meshes of a case as one drive."""
+def _of_train(alone: Sequence[_Stage], document: Document) -> tuple[list[Case], list[Mesh]]:
+    """Cases and meshes of the stages of a train."""
+    cases = [one.case for one in alone if isinstance(one.case, Case)]
+    return cases, [_mesh(one, number, document) for number, one in enumerate(cases, 1)]
+
+
+def _together(
+    case: DriveCase, built: Sequence[Built | BuiltTrain], documents: Sequence[Document]
+) -> BuiltDrive:
+    """The stages of a case as one drive."""
     numbers, point = tuple(range(1, len(built) + 1)), operation_at(case.operation)
-    parts = case, tuple(built), numbers, tuple(documents)
     if case.train is not None:
         from pitchpoint.cases.trains import about_trains, train_of
 
-        return BuiltTrain(*parts, train_of(case, built), point, about_trains(case, built))
-    told = (*_few_meetings(built), *_adding_thrusts(built), *_on_one_place(case, built))
-    return BuiltDrive(*parts, _drive(case, built), point, told)
+        meshes = tuple(one for one in built if isinstance(one, Built))
+        told = about_trains(case, meshes)
+        return BuiltTrain(
+            case, meshes, numbers, tuple(documents), train_of(case, meshes), point, told
+        )
+    told = (
+        *_few_meetings(built),
+        *_adding_thrusts(built),
+        *_on_one_place(case, built),
+        *_on_sets(built),
+    )
+    drive = _drive(case, built)
+    return BuiltDrive(case, tuple(built), numbers, tuple(documents), drive, point, told)
 
 
 def _check_map(made: BuiltDrive) -> None:
@@ -190,11 +265,11 @@ def _key(number: int, key: str) -> str:
     return f"{STAGES}.{number}.{key}"
 
 
-def _check_laws(alone: Sequence[Case]) -> None:
+def _check_laws(alone: Sequence[_Stage]) -> None:
     """InputError if stages have several friction laws, but not as many as the others."""
-    counts = [len(one.models.friction) for one in alone]
+    counts = [len(one.case.models.friction) for one in alone]
     for number, count in enumerate(counts, 1):
-        for choice in alone[number - 1].models.friction:
+        for choice in alone[number - 1].case.models.friction:
             if FRICTION[choice.name].films is not None:
                 raise InputError(
                     f"'{choice.name}' solves films in turns with the forces of one mesh; stages take "
@@ -209,41 +284,58 @@ def _check_laws(alone: Sequence[Case]) -> None:
             )
 
 
-def _check_rated(case: DriveCase, alone: Sequence[Case]) -> None:
+def _check_rated(case: DriveCase, alone: Sequence[_Stage]) -> None:
     """InputError for a table on strength that no stage has a use for."""
-    if case.strength is not None and not any(one.gears.rated for one in alone):
-        raise InputError(UNRATED, key="strength")
+    if case.strength is None:
+        return
+    meshes = [one.case.gears for one in alone if isinstance(one.case, Case)]
+    if not any(gears.rated for gears in meshes):
+        raise InputError(UNRATED if len(meshes) == len(alone) else OF_SET_ALONE, key="strength")
 
 
-def _following(alone: Sequence[Case], document: Document) -> list[Case]:
+def _following(alone: Sequence[_Stage], document: Document) -> list[_Stage]:
     """Stages with the flanks by which each turns its first shaft as the one before it does.
+
+    A planetary set turns either way alike.
 
     Raises:
         InputError: no choice of those that were left open does so.
     """
-    found: list[Case] = []
-    for number, one in enumerate(alone, 1):
-        first, _ = ends_of(_mesh(one, number, document))
-        last = ends_of(_mesh(found[-1], number - 1, document))[1] if found else first
+    found: list[_Stage] = []
+    last = 0.0
+    for one in alone:
+        first, loaded = _turns(one, document)
+        mesh = one.case
+        if not isinstance(mesh, Case):
+            last *= np.sign(first * loaded)
+            found.append(one)
+            continue
         if first * last < 0.0:
             if _open(one):
-                one = _turned(one)
-            elif all(map(_open, alone[: number - 1])):
+                one, loaded = _turned(one), -loaded
+            elif all(
+                not isinstance(before.case, Case) or _open(before) for before in alone[: len(found)]
+            ):
                 found = [*map(_turned, found)]
             else:
-                raise _against(one, number)
+                raise _against(mesh, one.number)
+        last = loaded
         found.append(one)
     return found
 
 
-def _open(one: Case) -> bool:
-    """True if the flanks are left to the reader."""
-    return one.gears.opposed is not None and "flank" not in one.gears.model_fields_set
+def _open(stage: _Stage) -> bool:
+    """True if the flanks of a mesh are left to the reader."""
+    assert isinstance(stage.case, Case)
+    gears = stage.case.gears
+    return gears.opposed is not None and "flank" not in gears.model_fields_set
 
 
-def _turned(one: Case) -> Case:
+def _turned(stage: _Stage) -> _Stage:
     """The stage with its other flanks in contact, so that all turns the other way."""
-    return one.model_copy(update={"gears": one.gears.opposed})
+    if not isinstance(stage.case, Case):
+        return stage
+    return stage._replace(case=stage.case.model_copy(update={"gears": stage.case.gears.opposed}))
 
 
 def _against(one: Case, number: int) -> InputError:
@@ -271,24 +363,52 @@ def _mesh_alone(one: Case) -> Mesh:
     return gears[0]
 
 
-def _points(point: Operating, alone: Sequence[Case], document: Document) -> list[Operating]:
+def _turns(stage: _Stage, document: Document) -> tuple[float, float]:
+    """Rates of the driver and of the loaded end of a stage; of a set of bodies for one of its input."""
+    if isinstance(stage.case, Case):
+        return ends_of(_mesh(stage.case, stage.number, document))
+    return 1.0, _in_stage(
+        document, stage.number, partial(_rate_of_output, stage.case, stage.document)
+    )
+
+
+def _rate_of_output(case: DriveCase, document: Document) -> float:
+    """Rate of the output of a set for one of its input."""
+    from pitchpoint.cases.trains import rates_of
+
+    assert case.train is not None
+    with _spelt(document):
+        _, meshes = _of_train(_alone(case, document), document)
+        rates = rates_of(case, meshes)
+    return rates[case.train.output] / rates[case.train.input]
+
+
+def _points(point: Operating, alone: Sequence[_Stage], document: Document) -> list[Operating]:
     """Operating point of each stage where nothing is lost."""
-    ends = [ends_of(_mesh(one, number, document)) for number, one in enumerate(alone, 1)]
+    ends = [_turns(one, document) for one in alone]
     steps = np.array([abs(last / first) for first, last in ends])
     speeds = point.speed * np.cumprod([1.0, *steps[:-1]])
     loads = point.load * np.cumprod([1.0, *steps[:0:-1]])[::-1]
     return [
-        one.operation.model_copy(update={one.gears.load: float(load), "speed": float(speed)})
+        one.case.operation.model_copy(update={_load_of(one): float(load), "speed": float(speed)})
         for one, load, speed in zip(alone, loads, speeds, strict=True)
     ]
 
 
-def _drive(case: DriveCase, built: Sequence[Built]) -> Drive:
+def _load_of(stage: _Stage) -> str:
+    """What the loaded member of a stage takes, torque or force."""
+    return stage.case.gears.load if isinstance(stage.case, Case) else "torque"
+
+
+def _drive(case: DriveCase, built: Sequence[Built | BuiltTrain]) -> Drive:
     """The stages on their shafts, with what brakes these."""
     count = len(built) + 1
     held = 0
     stages, inner = [], set()
     for first, (one, table) in enumerate(zip(built, case.stages.values(), strict=True)):
+        if isinstance(one, BuiltTrain):
+            stages.append(Stage(one.design, (first, first + 1)))
+            continue
         names = _on_shafts(one, first, count + held)
         held += len(names) - 2
         stages.append(_stage(one, table, tuple(names.values())))
@@ -297,11 +417,18 @@ def _drive(case: DriveCase, built: Sequence[Built]) -> Drive:
     still = [f"held {number}" for number in range(held)]
     bodies = (*case.bodies, *still)
     placed = drags(case.losses, bodies, inner - {frozenset()})
-    for name, drag in zip(case.losses, placed, strict=True):
+    for (name, loss), drag in zip(case.losses.items(), placed, strict=True):
         try:
-            owner(drag, stages)
+            overcome_by = stages[owner(drag, stages)]
         except InputError as error:
             raise error.at(key=f"losses.{name}.between") from None
+        placed_along = {"position", "locating"} & loss.model_fields_set
+        if placed_along and overcome_by.train is not None:
+            raise InputError(
+                "was given; a planetary set presses the bearings of its shafts by what does not cancel "
+                "around them: one bearing stands for all of such a shaft, without a place",
+                key=f"losses.{name}.{min(placed_along)}",
+            )
     return chained(stages, placed)
 
 
@@ -319,35 +446,62 @@ def _stage(one: Built, table: StageTable, shafts: tuple[int, ...]) -> Stage:
     return Stage(one.design, shafts, array(table.turn), array(table.place))
 
 
-def _few_meetings(built: Sequence[Built]) -> Iterator[str]:
-    """Shafts on which few phases of two meshes meet, where all are assumed to."""
+def _few_meetings(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
+    """Shafts on which few phases of two stages meet, where all are assumed to."""
     for shaft, (before, behind) in enumerate(pairwise(built), 2):
         meshes = [_per_turn(before, "loaded"), _per_turn(behind, "driver")]
-        first, second = (round(count) for count in meshes)
-        common = gcd(first, second)
-        if min(first, second) // common < SEVERAL_MEETINGS:
+        # Meshes of a set go by in fractions of a tooth for a turn against the housing.
+        often = Fraction(meshes[0] / meshes[1]).limit_denominator(MOST_TEETH)
+        if min(often.numerator, often.denominator) < SEVERAL_MEETINGS:
+            first, second = (f"{count:.6g}" for count in meshes)
+            sets = isinstance(before, BuiltTrain) or isinstance(behind, BuiltTrain)
+            ratio = (
+                f"as {often.numerator} to {often.denominator}"
+                if sets
+                else f"with the common divisor {meshes[0] / often.numerator:.0f}"
+            )
             yield Doubt(
-                f"On shaft {shaft} {first} and {second} teeth mesh in a turn, with the common divisor "
-                f"{common}: few of their phases meet. The ripple shown is that of the worst meeting of "
-                "phases, and means are those over all of them.",
+                f"On shaft {shaft} {first} and {second} teeth mesh in a turn, {ratio}: few of their phases "
+                "meet. The ripple shown is that of the worst meeting of phases, and means are those over all "
+                "of them.",
                 moves=REMARKED,
                 about=("torque_ripple",),
                 brief=f"Shaft {shaft}: the ripple is that of the worst meeting of phases.",
             )
 
 
-def _per_turn(one: Built, end: str) -> float:
+def _on_sets(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
+    """Planetary sets of which not all is computed that a file of them alone has."""
+    for number, one in enumerate(built, 1):
+        if isinstance(one, BuiltTrain):
+            point = one.case.operation
+            yield Doubt(
+                f"Stage {number} is a planetary set: strength, inspection, load limits and kinematic error "
+                "of its meshes, sharing of its planets and its state over a period are not computed here. "
+                f"A file of this set alone has them, with torque {one.carried.show(point.load)} and speed "
+                f"{SPEED.show(point.speed)}, which is the set without losses behind it.",
+                moves=REMARKED,
+                brief=f"Stage {number}: strength and the like in a file of this set alone.",
+            )
+
+
+def _per_turn(one: Built | BuiltTrain, end: str) -> float:
     """Mesh periods in a turn of the driver or of the loaded member of a stage."""
+    if isinstance(one, BuiltTrain):
+        turns = 1.0 if end == "driver" else one.output_rate
+        return 2.0 * pi * one.design.meshes[0].periods / (float(one.design.period) * turns)
     rate = abs(float(one.nominal[end] @ one.nominal["motion"]))
     return 2.0 * pi / (float(one.nominal["period"]) * rate)
 
 
-def _adding_thrusts(built: Sequence[Built]) -> Iterator[str]:
-    """Shafts on which two helical gears press the same way along the axis.
+def _adding_thrusts(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
+    """Shafts on which helical gears of two meshes press the same way along the axis.
 
     The frame of a mesh gives its two members opposite hands, and other flanks turn both over.
     """
     for shaft, (before, behind) in enumerate(pairwise(built), 2):
+        if isinstance(before, BuiltTrain) or isinstance(behind, BuiltTrain):
+            continue
         helical = [
             float(one.dimensions.get("overlap_ratio", 0.0)) > 0.0 for one in (before, behind)
         ]
@@ -360,12 +514,14 @@ def _adding_thrusts(built: Sequence[Built]) -> Iterator[str]:
             )
 
 
-def _on_one_place(case: DriveCase, built: Sequence[Built]) -> Iterator[str]:
+def _on_one_place(case: DriveCase, built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
     """Shafts on which faces of two gears lie over each other along the axis, where a case says any places."""
     tables = [*case.stages.values()]
     if not any("place" in table.model_fields_set for table in tables):
         return
     for shaft, (first, second) in enumerate(pairwise(zip(tables, built, strict=True)), 2):
+        if isinstance(first[1], BuiltTrain) or isinstance(second[1], BuiltTrain):
+            continue
         apart = abs(second[0].place - first[0].place)
         widths = (getattr(one.case.gears, "face_width", 0.0) for _, one in (first, second))
         half = [float(np.max(width)) / 2.0 for width in widths]

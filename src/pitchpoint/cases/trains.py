@@ -13,14 +13,14 @@ from pitchpoint.cases.schema import Case, DriveCase, Operating, StrengthTable, T
 from pitchpoint.cases.strength import MESH_LOAD, of_planets
 from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.assembly import check_neighbours, equal_angles, planet_phases
-from pitchpoint.drive.kinematics import HOUSING, Ends, Link
+from pitchpoint.drive.kinematics import HOUSING, Ends, Link, body_rates
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.train import Train, gear_train, presses_other_flanks
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.mesh import Mesh
 
-__all__ = ["about_trains", "train_of", "turning_together"]
+__all__ = ["about_trains", "rates_of", "train_of", "turning_together"]
 
 
 def _links(case: DriveCase, train: TrainTable, meshes: Sequence[Mesh]) -> list[Link]:
@@ -34,6 +34,23 @@ def _links(case: DriveCase, train: TrainTable, meshes: Sequence[Mesh]) -> list[L
 
 def _ends(case: DriveCase, train: TrainTable) -> Ends:
     return Ends({train.input: case.operation.speed or 1.0}, train.held, train.output)
+
+
+def rates_of(case: DriveCase, meshes: Sequence[Mesh]) -> dict[str, float]:
+    """Rates of the bodies of a train for its speed, or for one where that is zero.
+
+    Args:
+        case: of the train.
+        meshes: of it.
+
+    Raises:
+        InputError: see `body_rates`.
+    """
+    assert case.train is not None
+    try:
+        return body_rates(_links(case, case.train, meshes), _ends(case, case.train))
+    except InputError as error:
+        raise error.at(key=error.key or "train") from None
 
 
 def turning_together(

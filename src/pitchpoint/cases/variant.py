@@ -12,16 +12,13 @@ from pitchpoint.cases.document import Document, resolve
 from pitchpoint.cases.schema import (
     Case,
     DriveCase,
-    is_planetary,
-    planetary_of,
     usual_at,
     validate,
     with_meshes,
 )
-from pitchpoint.cases.stages import ready
+from pitchpoint.cases.stages import as_spelt, ready
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.families import build_together
-from pitchpoint.gears.planetary import in_words_of_set
 from pitchpoint.lubrication.registry import ChosenLaws
 
 __all__ = [
@@ -104,31 +101,13 @@ class Variant:
             return validate(spelt_out), spelt_out
         except InputError as error:
             wrong = Complaints(document.name)
-            wrong.add(_as_spelt(error, document))
+            wrong.add(as_spelt(error, document))
             if not changes:
                 check_alone(document, wrong)
             raise wrong.error from None
 
     def _ready(self, case: Case | DriveCase, document: Document) -> Ready:
-        try:
-            return ready(case, document, self.own)
-        except InputError as error:
-            raise _as_spelt(error, document) from None
-
-
-def _as_spelt(error: InputError, document: Document) -> InputError:
-    """An error with the keys that the file has, where a planetary set stands for its meshes."""
-    if not is_planetary(document.tree):
-        return error
-    try:
-        gears = planetary_of(document)
-    except InputError:  # which is the error itself
-        return error
-    wrong = Complaints()
-    for one in error.every:
-        if isinstance(one, InputError):
-            wrong.add(in_words_of_set(one, gears))
-    return wrong.error if wrong else error
+        return ready(case, document, self.own)
 
 
 def _or_error(make: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | InputError:

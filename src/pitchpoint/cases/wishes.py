@@ -124,11 +124,8 @@ _RA_OF_GRADES = (0.025, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.3, 12.5, 25, 50)
 
 def no_family(name: str, known: Collection[str]) -> str:
     """End of a sentence on a family of gears that is not there: the one that is meant, or where to read."""
-    if letters(name) in ("planetary", "epicyclic") and "planetary" not in known:
-        return (
-            " in a stage: a set stands alone under [gears]; with other stages write its meshes with their "
-            "bodies and a [train] (pitchpoint docs stages)"
-        )
+    if letters(name).startswith("epicyclic"):
+        return nearest(PLANETARY, known)
     if letters(name).removesuffix("set") in ("3k", "threek", "wolfrom"):
         return (
             " with a table of its own: its meshes and a [train] are (pitchpoint docs stages), and "

@@ -1,16 +1,17 @@
-"""Drives of several meshes on common shafts, from the input to the output: the quasi-static state."""
+"""Drives of stages on common shafts, from the input to the output: the quasi-static state."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import demand_double, jnp
+from pitchpoint._jax import demand_double, jax, jnp
 from pitchpoint.brief import brief
+from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.efficiency.drag import Drag, bearing_loads
 from pitchpoint.efficiency.meetings import FEW, Meetings, meetings, unmet
 from pitchpoint.efficiency.quasi_static import (
@@ -25,18 +26,26 @@ from pitchpoint.efficiency.quasi_static import (
     state,
 )
 from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.programs import program
 from pitchpoint.status import Status
 
+if TYPE_CHECKING:
+    from pitchpoint.efficiency.train import Train
+    from pitchpoint.efficiency.train_state import TrainState
+
 __all__ = [
     "MET",
+    "NODES_OF_TRAINS",
     "Drive",
     "DriveCycle",
     "NextStage",
     "Stage",
+    "StageModels",
     "braked",
+    "braked_train",
     "chained",
     "drive_cycle",
     "felt",
@@ -47,29 +56,81 @@ Each = Float[Array, "*#b"]
 Met = Float[Array, "*#b load behind node"]
 Values = Float[Array, "..."]
 
+StageModels = Models | tuple[Models, ...]
+"""Laws of a stage, of a train those of each mesh."""
+
 MET = (-3, -2, -1)
 """Axes of the states of a stage along which loads and phases meet."""
 
+NODES_OF_TRAINS = 6
+"""Nodes in each segment between events of a train, of which planets out of phase make many."""
+
 
 class Stage(eqx.Module):
-    """One mesh at its place in a drive.
+    """One mesh at its place in a drive, or meshes that turn together, as a planetary set.
 
     Attributes:
-        design: mesh, materials, oil, surfaces, and what brakes its bodies against each other; what brakes
-            the shafts is the drive's.
-        shafts: of the drive, one for each coordinate of the mesh; static.
+        design: mesh, materials, oil, surfaces, and what brakes its bodies against each other, or a train;
+            what brakes the shafts is the drive's.
+        shafts: of the drive, one for each coordinate of the mesh, of a train those that drive it and that it
+            loads; static.
         turn: angle about the shafts of the frame of the mesh against that of the drive [rad].
         place: of the middle of the face along the shafts [m].
     """
 
-    design: Design
+    design: "Design | Train"
     shafts: tuple[int, ...] = eqx.field(static=True)
     turn: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.zeros(()))
     place: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.zeros(()))
 
+    @property
+    def train(self) -> "Train | None":
+        """The meshes that turn together; None of one mesh."""
+        return None if isinstance(self.design, Design) else self.design
+
+    @property
+    def alone(self) -> Design:
+        """The design of the only mesh; there is none where several turn together."""
+        assert isinstance(self.design, Design)
+        return self.design
+
+    @property
+    def mesh(self) -> Mesh:
+        """The only mesh."""
+        return self.alone.mesh
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """Shaft that drives the stage, and the one that it loads."""
+        if self.train is not None:
+            return self.shafts[0], self.shafts[1]
+        first, last = (
+            self.shafts[int(np.argmax(on))] for on in (self.mesh.driver, self.mesh.loaded)
+        )
+        return first, last
+
+    @property
+    def step(self) -> Float[Array, ""]:
+        """Speed of the shaft that the stage loads for a unit speed of its driver, not negative."""
+        if self.train is not None:
+            return jnp.abs(1.0 / self.train.ratio)
+        return jnp.abs(self.mesh.loaded @ self.mesh.motion)
+
+    @property
+    def touching(self) -> bool:
+        """True if what the stage does is smooth between events, since its rigid flanks all touch."""
+        return self.train is not None or touching(self.mesh)
+
+    def driven_backwards(self) -> "Stage":
+        """The same stage with its output driving; the same flanks touch."""
+        if self.train is not None:
+            return replace(self, design=self.train.driven_backwards(), shafts=self.shafts[::-1])
+        mesh = self.mesh.driven_by(self.shafts.index(self.ends[1]))
+        return replace(self, design=replace(self.alone, mesh=mesh))
+
 
 class Drive(eqx.Module):
-    """Meshes one after the other, each driven by the shaft that the one before it loads.
+    """Stages one after the other, each driven by the shaft that the one before it loads.
 
     Attributes:
         stages: from the input to the output.
@@ -78,13 +139,16 @@ class Drive(eqx.Module):
             drive.
         links: for each stage the shaft that drives it and the one that it loads; static.
         owners: for each place the stage that overcomes it: the one that loads the shaft, the first one for
-            the input; static.
+            the input; of a shaft between a train and one mesh that mesh, whose teeth press its bearings;
+            static.
+        braked: for each place the shafts that it brakes; static.
     """
 
     stages: tuple[Stage, ...]
     drag: tuple[Drag, ...]
     links: tuple[tuple[int, int], ...] = eqx.field(static=True)
     owners: tuple[int, ...] = eqx.field(static=True)
+    braked: tuple[tuple[int, ...], ...] = eqx.field(static=True)
 
     def __repr__(self) -> str:
         return brief(self)
@@ -95,21 +159,11 @@ class Drive(eqx.Module):
 
         From kinematics: the ratios of stages one behind the other multiply.
         """
-        steps = [
-            jnp.abs(stage.design.mesh.loaded @ stage.design.mesh.motion) for stage in self.stages
-        ]
-        return jnp.cumprod(jnp.stack([jnp.ones(()), *steps]))
+        return jnp.cumprod(jnp.stack([jnp.ones(()), *(stage.step for stage in self.stages)]))
 
     def driven_backwards(self) -> "Drive":
         """The same drive with its output driving; the same flanks touch."""
-        every = zip(self.stages, self.links, strict=True)
-        stages = [_driven_by(stage, output) for stage, (_, output) in every]
-        return chained(stages[::-1], self.drag)
-
-
-def _driven_by(stage: Stage, shaft: int) -> Stage:
-    mesh = stage.design.mesh.driven_by(stage.shafts.index(shaft))
-    return replace(stage, design=replace(stage.design, mesh=mesh))
+        return chained([stage.driven_backwards() for stage in self.stages[::-1]], self.drag)
 
 
 def chained(stages: Sequence[Stage], drag: Sequence[Drag] = ()) -> Drive:
@@ -126,34 +180,43 @@ def chained(stages: Sequence[Stage], drag: Sequence[Drag] = ()) -> Drive:
     if not stages:
         raise InputError("a drive needs at least one stage")
     for number, stage in enumerate(stages, 1):
-        count = len(stage.design.mesh.coordinates)
+        count = 2 if stage.train is not None else len(stage.mesh.coordinates)
         if len(set(stage.shafts)) != count:
             raise InputError(
                 f"stage {number} has {count} bodies that move, and shafts = {stage.shafts} names "
                 f"{len(set(stage.shafts))} of the drive"
             )
-    links = [_ends(stage) for stage in stages]
-    for number, (before, behind) in enumerate(pairwise(range(len(stages))), 2):
-        if links[behind][0] != links[before][1]:
+    links = [stage.ends for stage in stages]
+    for number, (before, behind) in enumerate(pairwise(links), 2):
+        if behind[0] != before[1]:
             raise InputError(
-                f"stage {number} is driven by shaft {links[behind][0] + 1}, and the stage before it loads "
-                f"shaft {links[before][1] + 1}"
+                f"stage {number} is driven by shaft {behind[0] + 1}, and the stage before it loads shaft "
+                f"{before[1] + 1}"
             )
-        first, second = (stages[k].design.mesh for k in (before, behind))
-        if float((first.motion @ first.loaded) * (second.motion @ second.driver)) < 0.0:
+    _check_senses(stages)
+    owners = tuple(owner(one, stages) for one in drag)
+    braked = tuple(_braked_shafts(one) for one in drag)
+    return Drive(tuple(stages), tuple(drag), tuple(links), owners, braked)
+
+
+def _check_senses(stages: Sequence[Stage]) -> None:
+    """InputError if a mesh turns its first shaft the other way; a train may turn either way."""
+    sense = 0.0
+    for number, stage in enumerate(stages, 1):
+        if stage.train is not None:
+            sense *= float(jnp.sign(stage.train.ratio))
+            continue
+        mesh = stage.mesh
+        if sense * float(mesh.motion @ mesh.driver) < 0.0:
             raise InputError(
                 f"stage {number} turns its first shaft against the stage before it; the other flanks of its "
                 'gears do not, gears.flank = "right"'
             )
-    owners = tuple(owner(one, stages) for one in drag)
-    return Drive(tuple(stages), tuple(drag), tuple(links), owners)
+        sense = float(jnp.sign(mesh.motion @ mesh.loaded))
 
 
-def _ends(stage: Stage) -> tuple[int, int]:
-    """Shaft that drives a stage, and the one that it loads."""
-    mesh = stage.design.mesh
-    first, last = (stage.shafts[int(np.argmax(on))] for on in (mesh.driver, mesh.loaded))
-    return first, last
+def _braked_shafts(drag: Drag) -> tuple[int, ...]:
+    return tuple(int(shaft) for shaft in np.flatnonzero(np.asarray(drag.between)))
 
 
 def owner(drag: Drag, stages: Sequence[Stage]) -> int:
@@ -168,11 +231,12 @@ def owner(drag: Drag, stages: Sequence[Stage]) -> int:
 
     From the order of the balances, which goes from the output to the input.
     """
-    shafts = {int(shaft) for shaft in np.flatnonzero(np.asarray(drag.between))}
+    shafts = {*_braked_shafts(drag)}
     having = [number for number, stage in enumerate(stages) if shafts <= {*stage.shafts}]
     if not having:
         raise InputError("is between shafts that no stage of the drive has in common")
-    loading = [number for number in having if _ends(stages[number])[1] in shafts]
+    having = [number for number in having if stages[number].train is None] or having
+    loading = [number for number in having if stages[number].ends[1] in shafts]
     return (loading or having)[0]
 
 
@@ -191,16 +255,16 @@ class DriveCycle(eqx.Module):
         weights: of the nodes of each stage; they sum to one.
         meetings: loads of each stage, and how often they are.
         speed: of the input [rad/s].
-        nodes: static, nodes in each segment between events.
+        nodes: static, for each stage nodes in each segment between events.
         smooth: static, for each stage True if its states are smooth between events.
     """
 
-    states: tuple[State, ...]
+    states: "tuple[State | TrainState, ...]"
     pressed: tuple[tuple[Values, ...], ...]
     weights: tuple[Float[Array, " _"], ...]
     meetings: tuple[Meetings, ...]
     speed: Each
-    nodes: int = eqx.field(static=True)
+    nodes: tuple[int, ...] = eqx.field(static=True)
     smooth: tuple[bool, ...] = eqx.field(static=True)
 
     def mean(self, values: Values, stage: int = 0) -> Each:
@@ -237,8 +301,8 @@ class DriveCycle(eqx.Module):
         From the extremes over the phase of one stage after the other, see `quasi_static.extremes`: a stage
         takes most where the one behind it does, since more load is not carried by less torque.
         """
-        smooth = self.smooth[: 2 if self.meetings[0].kept else 1]
-        return _extremes(values, self.nodes, smooth)
+        phases = slice(2 if self.meetings[0].kept else 1)
+        return _extremes(values, self.nodes[phases], self.smooth[phases])
 
     @property
     def ripple(self) -> Each:
@@ -306,7 +370,7 @@ class DriveCycle(eqx.Module):
     @property
     def status(self) -> Status:
         """What became of the balances: the worst code, the largest residual and the most iterations."""
-        every = [one.balance.status for one in self.states]
+        every = [one.status for one in self.states]
         worst = [jnp.max(one.code) for one in every]
         return Status(
             code=jnp.max(jnp.stack(worst)),
@@ -317,18 +381,18 @@ class DriveCycle(eqx.Module):
     @property
     def locked(self) -> Bool[Array, "*#b"]:
         """True where friction locks a mesh at some meeting of phases."""
-        each = [jnp.any(one.balance.locked, axis=MET) for one in self.states]
+        each = [jnp.any(one.locked, axis=MET) for one in self.states]
         return jnp.any(jnp.stack(each), axis=0)
 
 
 def _extremes(
-    values: Values, nodes: int, smooth: Sequence[bool], axes: int = 3
+    values: Values, nodes: Sequence[int], smooth: Sequence[bool], axes: int = 3
 ) -> tuple[Values, Values]:
     """Smallest and largest value over so many last axes, of which the last ones are phases."""
     low = high = values
-    for one in smooth:
-        low = extremes(low, nodes, smooth=one)[0]
-        high = extremes(high, nodes, smooth=one)[1]
+    for count, one in zip(nodes, smooth, strict=True):
+        low = extremes(low, count, smooth=one)[0]
+        high = extremes(high, count, smooth=one)[1]
     others = tuple(range(len(smooth) - axes, 0))
     return jnp.min(low, axis=others), jnp.max(high, axis=others)
 
@@ -337,7 +401,7 @@ def _extremes(
 def drive_cycle(
     drive: Drive,
     operation: Operation,
-    models: Sequence[Models],
+    models: Sequence[StageModels],
     nodes: int = 12,
     engaged: Engagement | None = None,
     few: int | None = FEW,
@@ -349,8 +413,8 @@ def drive_cycle(
     Args:
         drive: see `chained`.
         operation: load at the output, speed of the input, temperature of the oil [*b].
-        models: laws of each stage.
-        nodes: Gauss-Lobatto nodes in each segment of each period.
+        models: laws of each stage, of a train those of each mesh.
+        nodes: Gauss-Lobatto nodes in each segment of each period; a train has `NODES_OF_TRAINS`.
         engaged: contacts and shares of the last stage at so many nodes, where all loads at the output are
             one and they are known already.
         few: odd number of loads of a stage that stand for all meetings of phases behind it; None for each
@@ -361,53 +425,94 @@ def drive_cycle(
     demand_double()
     if len(models) != len(drive.stages):
         raise InputError(f"{len(models)} models were given for {len(drive.stages)} stages")
-    states: list[State] = []
+    states: "list[State | TrainState]" = []
     pressed: list[tuple[Values, ...]] = []
     weights: list[Float[Array, " node"]] = []
     every = [unmet(operation.load)]
-    ratios, smooth = drive.ratios, tuple(touching(stage.design.mesh) for stage in drive.stages)
+    ratios, smooth = drive.ratios, tuple(stage.touching for stage in drive.stages)
+    counts = tuple(nodes if stage.train is None else NODES_OF_TRAINS for stage in drive.stages)
     for number in reversed(range(len(drive.stages))):
-        stage, laws = drive.stages[number], models[number]
         known, engaged = engaged, None
-        if known is None:
-            phase, weight = cycle_nodes(stage.design.mesh, laws.sharing, nodes)
-        else:
-            phase, weight = known.phase, known.weight
+        laws: Any = models[number]
         point = Operation(
             load=every[0].load[..., None],
             speed=(operation.speed * ratios[number])[..., None, None, None],
             temperature=operation.temperature[..., None, None, None],
         )
         behind = NextStage(states[0], every[0]) if every[0].kept else None
-        drag = braked(drive, number, behind)
-        found = state(replace(stage.design, drag=drag), point, phase, laws, engaged=known)
-        loads = bearing_loads(drag, stage.design.mesh, found.contacts, found.balance.load)
-        states.insert(0, found)
-        pressed.insert(0, tuple(loads))
-        weights.insert(0, weight)
-        load = found.input_torque
+        if drive.stages[number].train is None:
+            found = _mesh_under_load(drive, number, point, laws, nodes, behind, known)
+        else:
+            found = _train_under_load(drive, number, point, laws)
+        states.insert(0, found.state)
+        pressed.insert(0, found.pressed)
+        weights.insert(0, found.weight)
+        load = found.state.input_torque
         if number > 0:
-            often = every[0].weight[..., None] * weight
-            kept, phases = felt(drive, number - 1), smooth[number : number + 1 + every[0].kept]
+            often = every[0].weight[..., None] * found.weight
+            kept, phases = felt(drive, number - 1), slice(number, number + 1 + every[0].kept)
+            of_phases = counts[phases], smooth[phases]
             if kept:
-                ends = _extremes(jnp.moveaxis(load, -1, -3), nodes, phases[1:], axes=2)
+                of_phases = of_phases[0][1:], of_phases[1][1:]
+                ends = _extremes(jnp.moveaxis(load, -1, -3), *of_phases, axes=2)
             else:
-                ends = _extremes(load[..., None, :, :, :], nodes, phases)
+                ends = _extremes(load[..., None, :, :, :], *of_phases)
             every.insert(0, meetings(load, often, ends, kept=kept, few=few))
     return DriveCycle(
-        tuple(states), tuple(pressed), tuple(weights), tuple(every), operation.speed, nodes, smooth
+        tuple(states), tuple(pressed), tuple(weights), tuple(every), operation.speed, counts, smooth
     )
+
+
+class _UnderLoad(NamedTuple):
+    """A stage under its loads: see `DriveCycle`."""
+
+    state: "State | TrainState"
+    pressed: tuple[Values, ...]
+    weight: Float[Array, " node"]
+
+
+def _mesh_under_load(
+    drive: Drive,
+    number: int,
+    point: Operation,
+    laws: Models,
+    nodes: int,
+    behind: "NextStage | None",
+    known: Engagement | None,
+) -> _UnderLoad:
+    """A stage of one mesh under its loads [*b load behind 1]."""
+    design = drive.stages[number].alone
+    if known is None:
+        phase, weight = cycle_nodes(design.mesh, laws.sharing, nodes)
+    else:
+        phase, weight = known.phase, known.weight
+    drag = braked(drive, number, behind)
+    found = state(replace(design, drag=drag), point, phase, laws, engaged=known)
+    loads = bearing_loads(drag, design.mesh, found.contacts, found.balance.load)
+    return _UnderLoad(found, tuple(loads), weight)
+
+
+def _train_under_load(
+    drive: Drive, number: int, point: Operation, laws: tuple[Models, ...]
+) -> _UnderLoad:
+    """A stage of meshes that turn together under its loads [*b load behind 1]."""
+    # Only now: a pair or a chain of pairs does not load what trains take.
+    from pitchpoint.efficiency.train_state import train_state
+
+    at_loads = jax.tree.map(lambda leaf: leaf[..., 0], point)
+    found, weight = train_state(braked_train(drive, number), at_loads, laws, NODES_OF_TRAINS)
+    return _UnderLoad(found, found.pressed, weight)
 
 
 class NextStage(NamedTuple):
     """The stage behind another one, whose teeth load the bearings of the same shaft.
 
     Attributes:
-        state: of it.
+        state: of it, which is one mesh: a `State`.
         meetings: loads of the stage before it, which go with its phase.
     """
 
-    state: State
+    state: Any
     meetings: Meetings
 
 
@@ -432,7 +537,35 @@ def braked(drive: Drive, number: int, behind: NextStage | None = None) -> tuple[
             seat = replace(_seated(seat, stage), beside=beside)
         between = jnp.stack([drag.between[one] for one in stage.shafts])
         found.append(replace(drag, between=between, seat=seat))
-    return (*found, *stage.design.drag)
+    return (*found, *stage.alone.drag)
+
+
+def braked_train(drive: Drive, number: int) -> "Train":
+    """The train of a stage with the losses of the drive that it overcomes before its own.
+
+    Args:
+        drive: of which.
+        number: of the stage.
+
+    From `Drive.owners`; the shafts are the bodies at its ends.
+    """
+    stage = drive.stages[number]
+    assert stage.train is not None
+    names = dict(zip(stage.shafts, (stage.train.turned, stage.train.loaded), strict=True))
+    drags, pairs = [], []
+    for place, drag in enumerate(drive.drag):
+        if drive.owners[place] != number:
+            continue
+        shafts = drive.braked[place]
+        first, second = *(names[shaft] for shaft in shafts), *[HOUSING] * (2 - len(shafts))
+        sides = drag.between[shafts[0]] * jnp.array([1.0, -1.0])
+        drags.append(replace(drag, between=sides, seat=None))
+        pairs.append((first, second))
+    return replace(
+        stage.train,
+        drag=(*drags, *stage.train.drag),
+        braked=(*pairs, *stage.train.braked),
+    )
 
 
 def _overcome(drive: Drive, number: int) -> list[Drag]:
@@ -443,11 +576,17 @@ def _overcome(drive: Drive, number: int) -> list[Drag]:
 
 def _common(drive: Drive, number: int, seat: Bearing) -> bool:
     """True if a bearing sits on the shaft that a stage has in common with the one behind it."""
-    return number + 1 < len(drive.stages) and seat.coordinate == drive.links[number][1]
+    return (
+        number + 1 < len(drive.stages)
+        and drive.stages[number + 1].train is None
+        and seat.coordinate == drive.links[number][1]
+    )
 
 
 def felt(drive: Drive, number: int) -> bool:
-    """True if bearings that a stage overcomes feel the teeth of the stage behind it."""
+    """True if bearings that a stage overcomes feel the teeth of the stage behind it; none do of trains."""
+    if drive.stages[number].train is not None:
+        return False
     seats = [drag.seat for drag in _overcome(drive, number)]
     return any(isinstance(seat, Bearing) and _common(drive, number, seat) for seat in seats)
 
@@ -462,7 +601,7 @@ def _seated(seat: Bearing, stage: Stage) -> Bearing:
 def _beside(seat: Bearing, stage: Stage, after: Stage, behind: NextStage) -> Float[Array, "3 *#b"]:
     """Load on a bearing by the stage behind, in the frame of a stage [N]."""
     state = behind.state
-    borne = _seated(seat, after).borne(after.design.mesh, state.contacts, state.balance.load)
+    borne = _seated(seat, after).borne(after.mesh, state.contacts, state.balance.load)
     x, y, z = behind.meetings.following(borne)
     angle = after.turn - stage.turn
     cosine, sine = jnp.cos(angle), jnp.sin(angle)

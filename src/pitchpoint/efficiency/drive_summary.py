@@ -1,4 +1,4 @@
-"""Figures of drives of several meshes over all meetings of their phases, by one program for many points."""
+"""Figures of drives of several stages over all meetings of their phases, by one program for many points."""
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
@@ -9,12 +9,10 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.contact.contacts import total
-from pitchpoint.efficiency.drive import MET, Drive, DriveCycle, drive_cycle, felt
+from pitchpoint.efficiency.drive import MET, Drive, DriveCycle, StageModels, drive_cycle, felt
 from pitchpoint.efficiency.meetings import FEW, Meetings, among_few, few_between
 from pitchpoint.efficiency.quasi_static import (
     Engagement,
-    Models,
     Operation,
     State,
     cycle_nodes,
@@ -26,9 +24,11 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.programs import program
+from pitchpoint.status import Code
 
 if TYPE_CHECKING:
     from pitchpoint.efficiency.train import Train
+    from pitchpoint.efficiency.train_state import TrainState
 
 __all__ = ["drive_figures", "drive_nodes", "mean_friction_of_drive", "together"]
 
@@ -54,7 +54,7 @@ def drive_nodes(stages: int) -> int:
     return NODES if stages == 1 else NODES // 2
 
 
-def together(drive: Drive, models: Sequence[Models]) -> int:
+def together(drive: Drive, models: Sequence[StageModels]) -> int:
     """Points that are computed together, so that memory suffices.
 
     Args:
@@ -75,12 +75,20 @@ def together(drive: Drive, models: Sequence[Models]) -> int:
     return min(CHUNK, int(MOST_BYTES // needed))
 
 
-def _memory(drive: Drive, models: Sequence[Models], nodes: int) -> float:
+def _memory(drive: Drive, models: Sequence[StageModels], nodes: int) -> float:
     """Memory for the states of a drive at one operating point [B], from that of compiled programs."""
     loads, needed = 1, 0.0
     for number in reversed(range(len(drive.stages))):
-        mesh = drive.stages[number].design.mesh
-        lanes, phases = eqx.filter_eval_shape(_sizes, mesh, models[number].sharing, nodes)
+        laws: Any = models[number]
+        train = drive.stages[number].train
+        if train is not None:
+            from pitchpoint.efficiency.train_summary import train_memory
+
+            needed += loads * train_memory(train, laws)
+            loads = FEW  # which no bearing feels
+            continue
+        mesh = drive.stages[number].mesh
+        lanes, phases = eqx.filter_eval_shape(_sizes, mesh, laws.sharing, nodes)
         needed += loads * phases.size * max(OF_A_MEETING, OF_A_LANE[touching(mesh)] * lanes.size)
         loads = FEW if not felt(drive, number - 1) else phases.size * min(loads, FEW)
     return needed
@@ -93,7 +101,7 @@ def _sizes(mesh: Mesh, sharing: LoadSharing, nodes: int) -> tuple[Array, Array]:
 
 def drive_figures(
     points: "Sequence[tuple[Drive | Train, Operation]]",
-    models: Sequence[Models],
+    models: Sequence[StageModels],
     progress: Callable[[int], None] | None = None,
 ) -> dict[str, np.ndarray]:
     """Figures of many points, each quantity [point], [point, place] or [point, stage].
@@ -111,7 +119,8 @@ def drive_figures(
         from pitchpoint.efficiency.train_summary import train_figures
 
         trains: Any = points
-        return train_figures(trains, models, progress)
+        of_meshes: Any = models
+        return train_figures(trains, of_meshes, progress)
     parts: list[dict[str, np.ndarray]] = []
     done = 0
     size = together(chains[0][0], models)
@@ -126,14 +135,14 @@ def drive_figures(
 
 
 def _of_one_drive(
-    points: Sequence[Point], models: Sequence[Models]
+    points: Sequence[Point], models: Sequence[StageModels]
 ) -> Iterator[tuple[Drive, list[Operation]]]:
     """Neighbours that differ by their operating point alone: one program computes them together."""
     before: list[np.ndarray] = []
     group, number = [], 0
     for drive, operation in points:
         fixed = [*map(np.asarray, jax.tree.leaves(drive))]
-        if not touching(drive.stages[-1].design.mesh):
+        if not drive.stages[-1].touching:
             fixed.append(np.asarray(operation.load))  # its shares are those of one load
         number += not (before and all(map(np.array_equal, before, fixed)))
         before = fixed
@@ -144,32 +153,69 @@ def _of_one_drive(
 
 
 def _chunk(
-    drive: Drive, operations: Sequence[Operation], models: Sequence[Models], size: int
+    drive: Drive, operations: Sequence[Operation], models: Sequence[StageModels], size: int
 ) -> dict[str, np.ndarray]:
     """Figures of a few operating points of one drive, filled up by repetition."""
     filled = [*operations, *([operations[-1]] * (size - len(operations)))]
     stacked: Operation = jax.tree.map(lambda *v: array(np.stack(v)), *filled)
-    last, nodes = drive.stages[-1].design, drive_nodes(len(drive.stages))
-    known = engaged(last, operations[0], models[-1], nodes)
-    found = jax.device_get(_figures(drive, stacked, tuple(models), nodes, known))
+    last, nodes, known = drive.stages[-1], drive_nodes(len(drive.stages)), None
+    if last.train is None:
+        laws: Any = models[-1]
+        known = engaged(last.alone, operations[0], laws, nodes)
+    found, trains = jax.device_get(_figures(drive, stacked, tuple(models), nodes, known))
+    for train in trains:
+        found |= _with_train(found, *train)
     return {name: np.asarray(values)[: len(operations)] for name, values in found.items()}
+
+
+def _with_train(
+    found: dict[str, np.ndarray], levers: np.ndarray, friction: np.ndarray, lost: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Figures with what locks one of the trains, see `nearest_to_jamming`; all along [point node]."""
+    from pitchpoint.efficiency.train_summary import nearest_to_jamming
+
+    near = nearest_to_jamming(np.moveaxis(levers, 2, 1), friction, lost)
+    nearer = near.friction / near.limit > (
+        found["nearest_friction"] / found["nearest_jamming_coefficient"]
+    )
+    return {
+        "locked": found["locked"] | near.held,
+        "jamming_coefficient": np.minimum(found["jamming_coefficient"], near.limit),
+        "nearest_friction": np.where(nearer, near.friction, found["nearest_friction"]),
+        "nearest_jamming_coefficient": np.where(
+            nearer, near.limit, found["nearest_jamming_coefficient"]
+        ),
+    }
 
 
 @program
 def _figures(
     drive: Drive,
     operation: Operation,
-    models: tuple[Models, ...],
+    models: tuple[StageModels, ...],
     nodes: int,
     known: Engagement | None,
-) -> dict[str, Array]:
+) -> tuple[dict[str, Array], list[tuple[Array, Array, Array]]]:
     found = drive_cycle.function(drive, operation, models, nodes, known)
     points = operation.load.shape
     every = {**_of_drive(found), **_of_stages(drive, found), **_of_places(drive, found)}
-    return {
+    figures = {
         name: jnp.broadcast_to(values, (*points, *values.shape[len(points) :]))
         for name, values in every.items()
     }
+    trains = zip(drive.stages, found.states, strict=True)
+    return figures, [_locking(one) for stage, one in trains if stage.train is not None]
+
+
+def _locking(one: Any) -> tuple[Array, Array, Array]:
+    """Levers of a train, its largest friction, and where no forces were found [point node]."""
+    lost = one.status.code == int(Code.NOT_CONVERGED)
+    count = len(one.input_torque.shape) - len(MET)
+    levers, friction, lost = (
+        values.reshape(*values.shape[:count], -1, *values.shape[count + len(MET) :])
+        for values in (one.levers, one.largest_friction, lost)
+    )
+    return levers, friction, lost
 
 
 def _of_drive(found: DriveCycle) -> dict[str, Array]:
@@ -190,10 +236,10 @@ def _of_drive(found: DriveCycle) -> dict[str, Array]:
         "min_input_torque": torque_low,
         "max_input_torque": torque_high,
         "mean_friction": mean_friction_of_drive(found),
-        "residual": _worst(found, jnp.max, lambda one: one.balance.residual),
-        "iterations": jnp.max(jnp.stack([jnp.max(s.balance.iterations) for s in found.states])),
+        "residual": _worst(found, jnp.max, lambda one: one.status.residual),
+        "iterations": jnp.max(jnp.stack([jnp.max(s.status.iterations) for s in found.states])),
         "locked": found.locked,
-        "jamming_coefficient": _worst(found, jnp.min, lambda one: one.balance.jamming),
+        "jamming_coefficient": _worst(found, jnp.min, lambda one: one.jamming),
         "nearest_friction": acting,
         "nearest_jamming_coefficient": limit,
         "largest_contact_force_ratio": _worst(found, jnp.max, lambda one: one.contact_force_ratio),
@@ -231,17 +277,16 @@ class _Forces(NamedTuple):
     rubbing: Array
 
     @classmethod
-    def none(cls, last: State) -> "_Forces":
+    def none(cls, last: "State | TrainState") -> "_Forces":
         """Without any stage."""
         zero = jnp.zeros((1, *last.input_torque.shape[:-1]))
         return cls(zero, zero + 1.0, zero)
 
-    def with_stage(self, one: State, weight: Array) -> "_Forces":
+    def with_stage(self, one: "State | TrainState", weight: Array) -> "_Forces":
         """With those of a stage at every node of it, along a last axis."""
         normal, often, rubbing = (values[..., None] for values in self)
-        load, friction = one.balance.load, one.balance.friction
-        rubbing = (rubbing + often * total(load * friction)) * weight
-        return _Forces(normal + total(load), often * weight, rubbing)
+        rubbing = (rubbing + often * one.friction_force) * weight
+        return _Forces(normal + one.normal_force, often * weight, rubbing)
 
     def met(self, loads: Meetings) -> "_Forces":
         """The same by the loads of the next stage, and few sums of normal forces."""
@@ -256,14 +301,14 @@ class _Forces(NamedTuple):
 
 
 def _worst(
-    found: DriveCycle, reduce: Callable[..., Array], values: Callable[[State], Array]
+    found: DriveCycle, reduce: Callable[..., Array], values: Callable[[Any], Array]
 ) -> Array:
     """Worst value of all stages and meetings [point]."""
     each = [reduce(_met(one, values(one)), axis=MET) for one in found.states]
     return reduce(jnp.stack(each), axis=0)
 
 
-def _met(state: State, values: Array) -> Array:
+def _met(state: "State | TrainState", values: Array) -> Array:
     """Values of a stage at every meeting of phases."""
     return jnp.broadcast_to(values, state.input_torque.shape)
 
@@ -274,7 +319,7 @@ def _nearest_to_jamming(found: DriveCycle) -> tuple[Array, Array]:
     for one in found.states:
         acting, limit = (
             _met(one, values).reshape(*one.input_torque.shape[: -len(MET)], -1)
-            for values in (one.balance.largest_friction, one.balance.jamming)
+            for values in (one.largest_friction, one.jamming)
         )
         ends.append((acting, limit))
     acting, limit = (jnp.concatenate(each, axis=-1) for each in zip(*ends, strict=True))

@@ -35,6 +35,7 @@ from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.materials.solids import Solid, reduced_modulus
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import program
+from pitchpoint.status import Status
 
 __all__ = [
     "Cycle",
@@ -440,6 +441,36 @@ class State(eqx.Module):
         Source: Tian et al. (2024), eq. 3.
         """
         return power_ratio(self.output_power, self.input_power)
+
+    @property
+    def normal_force(self) -> Each:
+        """Sum of the normal forces of all contacts [N]."""
+        return total(self.balance.load)
+
+    @property
+    def friction_force(self) -> Each:
+        """Sum of the friction forces of all contacts in size [N]."""
+        return total(self.balance.load * self.balance.friction)
+
+    @property
+    def status(self) -> Status:
+        """What became of the search for the contact force."""
+        return self.balance.status
+
+    @property
+    def locked(self) -> Bool[Array, "*b"]:
+        """True where friction holds the load."""
+        return self.balance.locked
+
+    @property
+    def jamming(self) -> Each:
+        """Coefficient of friction from which on the mesh is locked, see `Balance`."""
+        return self.balance.jamming
+
+    @property
+    def largest_friction(self) -> Each:
+        """Largest friction coefficient of the contacts."""
+        return self.balance.largest_friction
 
     @property
     def contact_force_ratio(self) -> Each:

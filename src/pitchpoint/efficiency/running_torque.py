@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jnp
 from pitchpoint.efficiency.drag import at_rest
-from pitchpoint.efficiency.drive import Drive, braked
+from pitchpoint.efficiency.drive import Drive, StageModels, braked, braked_train
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
 from pitchpoint.programs import program
 
@@ -74,7 +76,7 @@ def torques_at_rest(
 
 
 def torques_at_rest_of_drive(
-    drive: Drive, operation: Operation, models: Sequence[Models]
+    drive: Drive, operation: Operation, models: Sequence[StageModels]
 ) -> tuple[Each, Each]:
     """The same of a drive of several meshes, at its input [N m].
 
@@ -94,11 +96,22 @@ def torques_at_rest_of_drive(
     """
     mean, largest, ratios = operation.load, operation.load, drive.ratios
     for number in reversed(range(len(drive.stages))):
-        design = replace(drive.stages[number].design, drag=braked(drive, number))
         point = replace(operation, speed=operation.speed * ratios[number])
-        mean = torques_at_rest(design, replace(point, load=mean), models[number])[0]
-        largest = torques_at_rest(design, replace(point, load=largest), models[number])[1]
+        of_stage = partial(_at_rest_of_stage, drive, number, models[number])
+        mean = of_stage(replace(point, load=mean))[0]
+        largest = of_stage(replace(point, load=largest))[1]
     return mean, largest
+
+
+def _at_rest_of_stage(drive: Drive, number: int, laws: Any, point: Operation) -> tuple[Each, Each]:
+    """What starts a stage, with the losses of the drive that it overcomes."""
+    stage = drive.stages[number]
+    if stage.train is None:
+        return torques_at_rest(replace(stage.alone, drag=braked(drive, number)), point, laws)
+    from pitchpoint.efficiency.train_summary import torques_at_rest_of_train
+
+    each = torques_at_rest_of_train(braked_train(drive, number), point, laws)
+    return array(each[0]), array(each[1])
 
 
 def starting_torque(
@@ -108,6 +121,8 @@ def starting_torque(
     return torques_at_rest(design, operation, models, engaged)[1]
 
 
-def starting_torque_of_drive(drive: Drive, operation: Operation, models: Sequence[Models]) -> Each:
+def starting_torque_of_drive(
+    drive: Drive, operation: Operation, models: Sequence[StageModels]
+) -> Each:
     """The same of a drive, see `torques_at_rest_of_drive` [N m]."""
     return torques_at_rest_of_drive(drive, operation, models)[1]

@@ -3,7 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import equinox as eqx
 import numpy as np
@@ -43,6 +43,9 @@ from pitchpoint.loading.sharing import equal
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.registry import LAWS, FilmThickness
 from pitchpoint.programs import program
+
+if TYPE_CHECKING:
+    from pitchpoint.efficiency.train_state import TrainState
 
 __all__ = [
     "at_points",
@@ -444,10 +447,8 @@ def _chunks(points: Sequence[Any], size: int) -> Iterator[tuple[Any, int]]:
         yield stacked(padded), len(part)
 
 
-def mean_friction(state: State) -> Array:
+def mean_friction(state: "State | TrainState") -> Array:
     """Friction coefficient weighted with the load of the contacts, at phases `*b`."""
-    balance = state.balance
-    normal = total(balance.load)
-    weighted = total(balance.load * balance.friction)
+    normal = state.normal_force
     loaded = normal > 0.0
-    return jnp.where(loaded, weighted / jnp.where(loaded, normal, 1.0), 0.0)
+    return jnp.where(loaded, state.friction_force / jnp.where(loaded, normal, 1.0), 0.0)

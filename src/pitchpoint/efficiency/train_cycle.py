@@ -70,6 +70,22 @@ class MeshState(eqx.Module):
         """Power lost in all copies [W]."""
         return jnp.sum(total(self.sliding_loss + self.rolling_loss), axis=0)
 
+    @property
+    def normal_force(self) -> Nodes:
+        """Sum of the normal forces of all contacts of all copies [N]."""
+        return jnp.sum(total(self.conditions.load), axis=0)
+
+    @property
+    def friction_force(self) -> Nodes:
+        """Sum of their friction forces in size [N]."""
+        return jnp.sum(total(self.conditions.load * self.friction), axis=0)
+
+    @property
+    def contact_force_ratio(self) -> Nodes:
+        """Largest normal force of a copy over that without friction; one where it carries nothing."""
+        ratios = jnp.where(self.nominal > 0.0, jnp.abs(self.force) / self.nominal, 1.0)
+        return jnp.max(ratios, axis=0)
+
 
 class TrainCycle(eqx.Module):
     """One period of a train with the weights that integrate over it.
@@ -116,6 +132,17 @@ class TrainCycle(eqx.Module):
     def loss(self) -> Nodes:
         """Power lost in all meshes and beside their teeth [W]."""
         return sum((one.loss for one in self.meshes), self.drag_loss)
+
+    @property
+    def contact_force_ratio(self) -> Nodes:
+        """Largest one of all meshes, see `MeshState`."""
+        return jnp.max(jnp.stack([one.contact_force_ratio for one in self.meshes]), axis=0)
+
+    @property
+    def largest_friction(self) -> Nodes:
+        """Largest friction coefficient of all contacts."""
+        each = [jnp.max(one.friction, axis=(0, 1, 2)) for one in self.meshes]
+        return jnp.max(jnp.stack(each), axis=0)
 
     @property
     def mean_efficiency(self) -> Float[Array, ""]:

@@ -2,14 +2,15 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.contact.contacts import total
 from pitchpoint.efficiency.drag import at_rest
+from pitchpoint.efficiency.drive import NODES_OF_TRAINS
 from pitchpoint.efficiency.quasi_static import Models, Operation, events_of, power_ratio
 from pitchpoint.efficiency.rows import CHUNK
 from pitchpoint.efficiency.summary import in_chunks
@@ -21,16 +22,19 @@ from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
-__all__ = ["torques_at_rest_of_train", "train_figures"]
+__all__ = [
+    "NearestToJamming",
+    "nearest_to_jamming",
+    "torques_at_rest_of_train",
+    "train_figures",
+    "train_memory",
+]
 
 MOST_BYTES = 1e9
 """Memory that the states of one chunk of points may take [B]."""
 
 OF_A_LANE = 300.0
 """Memory for each contact at a phase [B], as the compiler tells."""
-
-NODES = 6
-"""Nodes in each segment between events, of which planets out of phase make many."""
 
 
 def train_figures(
@@ -48,7 +52,7 @@ def train_figures(
     From the states of `train_cycle` over the period of the train.
     """
     laws = tuple(models)
-    size = min(CHUNK, int(MOST_BYTES // _memory(points[0][0], laws)))
+    size = min(CHUNK, int(MOST_BYTES // train_memory(points[0][0], laws)))
     if size == 0:
         raise InputError(
             "the phases at which the meshes of this train come together would take more than "
@@ -58,19 +62,46 @@ def train_figures(
     found = in_chunks(
         lambda chunk: _figures(chunk[0], chunk[1], laws), points, size=size, progress=progress
     )
-    limit, acting = jamming_coefficients(found.pop("levers")), found.pop("largest_friction")
-    # Forces run away where friction is beyond what locks the train, whatever they are.
-    held = found.pop("lost") & (acting >= limit)
-    found["locked"] = found["locked"] | held.any(axis=-1)
-    at = np.argmin(limit, axis=-1)[:, None]
-    nearest = np.take_along_axis(limit, at, -1)[:, 0]
-    friction = np.take_along_axis(acting, at, -1)[:, 0]
+    near = nearest_to_jamming(*(found.pop(name) for name in ("levers", "largest_friction", "lost")))
     return {
         **found,
-        "jamming_coefficient": nearest,
-        "nearest_jamming_coefficient": nearest,
-        "nearest_friction": friction,
+        "locked": found["locked"] | near.held,
+        "jamming_coefficient": near.limit,
+        "nearest_jamming_coefficient": near.limit,
+        "nearest_friction": near.friction,
     }
+
+
+class NearestToJamming(NamedTuple):
+    """Where trains are nearest to being locked [point].
+
+    Attributes:
+        friction: largest coefficient there.
+        limit: from which on friction locks the train.
+        held: True where no forces were found at a phase for friction beyond that limit: they run away there.
+    """
+
+    friction: Float[np.ndarray, " point"]
+    limit: Float[np.ndarray, " point"]
+    held: Bool[np.ndarray, " point"]
+
+
+def nearest_to_jamming(
+    levers: Float[np.ndarray, "point 2 node body mesh"],
+    friction: Float[np.ndarray, "point node"],
+    lost: Bool[np.ndarray, "point node"],
+) -> NearestToJamming:
+    """Where trains are nearest to being locked.
+
+    Args:
+        levers: of the forces, see `TrainCycle.levers`.
+        friction: largest coefficient.
+        lost: True where no forces were found.
+    """
+    limit = jamming_coefficients(levers)
+    at = np.argmin(limit, axis=-1)[:, None]
+    acting, nearest = (np.take_along_axis(one, at, -1)[:, 0] for one in (friction, limit))
+    return NearestToJamming(acting, nearest, np.any(lost & (friction >= limit), axis=-1))
 
 
 def torques_at_rest_of_train(
@@ -95,12 +126,12 @@ def torques_at_rest_of_train(
     return found["mean_input_torque"], found["max_input_torque"]
 
 
-def _memory(train: Train, models: tuple[Models, ...]) -> float:
+def train_memory(train: Train, models: Sequence[Models]) -> float:
     """Memory for the states of a train at one operating point [B], from that of compiled programs."""
     nodes, lanes = 0, 0
     for one, laws in zip(train.meshes, models, strict=True):
         contacts, phases = eqx.filter_eval_shape(_sizes, one.design.mesh, laws.sharing)
-        nodes += one.periods * one.copies * NODES * phases.size
+        nodes += one.periods * one.copies * NODES_OF_TRAINS * phases.size
         lanes += one.copies * contacts.size
     return nodes * lanes * OF_A_LANE
 
@@ -133,7 +164,7 @@ def jamming_coefficients(
 @program
 def _figures(trains: Train, operations: Operation, models: tuple[Models, ...]) -> dict[str, Array]:
     def figures(train: Train, operation: Operation) -> dict[str, Array]:
-        found = train_cycle.function(train, operation, models, NODES)
+        found = train_cycle.function(train, operation, models, NODES_OF_TRAINS)
         return {**_of_train(found), **_of_meshes(found), **_of_places(found)}
 
     result: dict[str, Array] = eqx.filter_vmap(figures)(trains, operations)
@@ -144,11 +175,6 @@ def _of_train(found: TrainCycle) -> dict[str, Array]:
     efficiency = power_ratio(found.output_power, found.input_power)
     low, high = found.extremes(efficiency)
     torque_low, torque_high = found.extremes(found.input_torque)
-    friction = jnp.stack([jnp.max(one.friction, axis=(0, 1, 2)) for one in found.meshes])
-    ratios = [
-        jnp.max(jnp.where(one.nominal > 0.0, jnp.abs(one.force) / one.nominal, 1.0))
-        for one in found.meshes
-    ]
     return {
         "mean_loss": found.mean(found.loss),
         "mean_drag_loss": found.mean(found.drag_loss),
@@ -163,8 +189,8 @@ def _of_train(found: TrainCycle) -> dict[str, Array]:
         "residual": jnp.max(found.status.residual),
         "iterations": found.status.iterations,
         "locked": found.locked,
-        "largest_contact_force_ratio": jnp.max(jnp.stack(ratios)),
-        "largest_friction": jnp.max(friction, axis=0),
+        "largest_contact_force_ratio": jnp.max(found.contact_force_ratio),
+        "largest_friction": found.largest_friction,
         "lost": found.status.code == int(Code.NOT_CONVERGED),
         "levers": found.levers,
     }
@@ -172,8 +198,8 @@ def _of_train(found: TrainCycle) -> dict[str, Array]:
 
 def _mean_friction(meshes: Sequence[MeshState]) -> Float[Array, " node"]:
     """Coefficient weighted with the load of all contacts."""
-    loads = [jnp.sum(total(one.conditions.load), axis=0) for one in meshes]
-    rubbing = [jnp.sum(total(one.conditions.load * one.friction), axis=0) for one in meshes]
+    loads = [one.normal_force for one in meshes]
+    rubbing = [one.friction_force for one in meshes]
     whole = sum(loads[1:], loads[0])
     return sum(rubbing[1:], rubbing[0]) / jnp.where(whole > 0.0, whole, 1.0)
 

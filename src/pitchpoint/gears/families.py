@@ -12,16 +12,25 @@ from pydantic import Field, Tag
 from pitchpoint.errors import InputError
 from pitchpoint.gears.ball_on_disc.table import BallOnDiscRig
 from pitchpoint.gears.cylindrical.table import CylindricalGears
+from pitchpoint.gears.planetary import PlanetaryGears
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.gears.table import GearsTable
 from pitchpoint.gears.torus.table import TorusGears
-from pitchpoint.input.tables import by, tag
+from pitchpoint.input.tables import Table, by, tag
 
 if TYPE_CHECKING:
     from pitchpoint.gears.family import Family, Made
 
-__all__ = ["TABLES", "Gears", "build_together", "built_gears", "family_of", "sample_of"]
+__all__ = [
+    "TABLES",
+    "Gears",
+    "GearsOfStage",
+    "build_together",
+    "built_gears",
+    "family_of",
+    "sample_of",
+]
 
 TABLES: tuple[type[GearsTable], ...] = (
     CylindricalGears,
@@ -32,11 +41,19 @@ TABLES: tuple[type[GearsTable], ...] = (
 )
 """Tables of all families, the usual one first. `family.py` and `sample.toml` stand beside each."""
 
+
+def _by_family(*tables: type[Table]) -> Any:
+    """Annotation of a table [gears] that is one of these, by its family."""
+    tagged = (Annotated[table, Tag(tag(table))] for table in tables)
+    return Annotated[reduce(or_, tagged), Field(discriminator=by("family", *tables))]
+
+
 if TYPE_CHECKING:
     Gears = GearsTable
+    GearsOfStage = GearsTable | PlanetaryGears
 else:
-    _TAGGED = (Annotated[table, Tag(tag(table))] for table in TABLES)
-    Gears = Annotated[reduce(or_, _TAGGED), Field(discriminator=by("family", *TABLES))]
+    Gears = _by_family(*TABLES)
+    GearsOfStage = _by_family(*TABLES, PlanetaryGears)
 
 
 def family_of(table: type[GearsTable]) -> "Family":

@@ -32,6 +32,7 @@ from pitchpoint.gears.table import (
     SHIFT,
     STIFFNESS,
     WIDTH,
+    Load,
 )
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.input.tables import Table
@@ -125,6 +126,11 @@ class PlanetaryGears(Table):
     """
 
     explored: ClassVar[tuple[str, float]] = ("profile_shift.2", 0.2)
+    members: ClassVar[tuple[str, ...]] = BODIES
+    load: ClassVar[Load] = "torque"
+    carries: ClassVar[str] = "gears carry a torque"
+    transmits: ClassVar[bool] = True
+    rated: ClassVar[bool] = False  # as one of several stages; alone its meshes are
 
     family: Literal["planetary"] = "planetary"
     """Family of these gears: a planetary set."""

@@ -31,6 +31,7 @@ __all__ = [
     "WIDTH",
     "Deviation",
     "GearsTable",
+    "Load",
     "Module",
     "PairDeviations",
     "SmallerOfTwo",

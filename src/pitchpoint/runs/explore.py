@@ -14,6 +14,7 @@ from pitchpoint.analyses.analysis import Analysis
 from pitchpoint.analyses.figures import main_figures
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import sweep_values
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.cases.schema import Sweep, quantity_at
 from pitchpoint.cases.variant import Variant
@@ -225,9 +226,11 @@ def _computed(
 
 
 def _of_stages(variant: Variant, drive: BuiltDrive) -> dict[int, Outcome]:
-    """Teeth of each stage by its number, in the order of the power."""
+    """Teeth of each stage that is one mesh by its number, in the order of the power."""
     found = {}
     for number, stage, inside in zip(drive.numbers, drive.stages, drive.documents, strict=True):
+        if not isinstance(stage, Built):
+            continue
         alone = Variant(inside.tree, inside.name, variant.variant, folder=variant.folder)
         work = [Job(teeth, stage) for teeth in _there(stage, TEETH)]
         found[number] = run_variant(

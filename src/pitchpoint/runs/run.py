@@ -23,7 +23,7 @@ from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import Ready
+from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.handed_over import FILES, hand_over
 from pitchpoint.cases.library import names
@@ -748,31 +748,35 @@ def _rows(built: Ready, variant: Variant, parts: Mapping[str, xr.Dataset]) -> li
 
 
 def _stages(built: Ready) -> list[dict[str, Any]]:
-    """What is known of the meshes of a drive; nothing of one mesh alone."""
-    if len(built.meshes) < 2:
+    """What is known of the stages of a drive; nothing of one mesh alone."""
+    if not isinstance(built, BuiltDrive) or len(built.meshes) < 2:
         return []
-    bodies = built.stage_bodies or [""] * len(built.meshes)
-    found = []
-    for number, mesh, named in zip(built.numbers, built.meshes, bodies, strict=True):
-        found.append(
-            {
-                "number": number,
-                "bodies": named,
-                "members": list(mesh.case.bodies),
-                "driver": mesh.driver,
-                "loaded": mesh.loaded,
-                "motion": mesh.motion,
-                "speed": mesh.case.operation.speed,
-                "load": mesh.case.operation.load,
-                "travels": sorted(mesh.travels),
-                **_period(mesh),
-            }
-        )
-    return found
+    bodies = built.stage_bodies or [""] * len(built.stages)
+    return [
+        {
+            "number": number,
+            "bodies": SET if isinstance(one, BuiltTrain) else named,
+            "members": list(one.case.bodies),
+            "driver": one.driver,
+            "loaded": one.loaded,
+            "motion": one.motion,
+            "speed": one.case.operation.speed,
+            "load": one.case.operation.load,
+            "travels": sorted(one.travels),
+            **_period(one),
+        }
+        for number, one, named in zip(built.numbers, built.stages, bodies, strict=True)
+    ]
 
 
-def _period(mesh: Built) -> dict[str, Any]:
-    """Period of a mesh, what it is called, and why time runs against its phase, if it does."""
+SET = "planetary set"
+"""What a stage is whose meshes turn together."""
+
+
+def _period(mesh: Built | BuiltTrain) -> dict[str, Any]:
+    """Period of a stage, what it is called, and why time runs against its phase, if it does."""
+    if isinstance(mesh, BuiltTrain):
+        return {"period": float(mesh.design.period), "pitch": TRAIN_PERIOD, "against": ""}
     words, backwards = way(mesh.design.mesh), mesh.nominal["onward"] < 0.0
     return {
         "period": float(mesh.nominal["period"]),
@@ -857,9 +861,9 @@ def _models(built: Ready) -> dict[str, Any]:
     each = [_of_mesh(mesh) for mesh in built.meshes]
     bearings = _bearings(built.case.losses)
     found = {effect: law for effect, law in each[0].items() if _everywhere(effect, law, each)}
-    for number, models in enumerate(each, 1):
+    for label, models in zip(built.mesh_labels, each, strict=True):
         apart = {effect: law for effect, law in models.items() if effect not in found}
-        found |= {f"{effect}, stage {number}": law for effect, law in apart.items()}
+        found |= {f"{effect}, stage {label}": law for effect, law in apart.items()}
     return {**found, **bearings}
 
 

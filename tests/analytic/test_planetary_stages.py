@@ -1,0 +1,268 @@
+"""Planetary sets as stages of a drive, beside each set and pair from a file of its own."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.running import from_rest
+from pitchpoint.doubts import doubts_of
+from pitchpoint.efficiency.drive_summary import drive_figures
+from pitchpoint.efficiency.running_torque import torques_at_rest
+from pitchpoint.efficiency.summary import summarise
+from pitchpoint.errors import CollectedInputError, InputError
+from pitchpoint.runs.run import load_case
+
+SPEED, LOAD = 3000.0 * np.pi / 30.0, 40.0
+TABLES = {
+    "lubricant": {"name": "pao-vg-150"},
+    "roughness": {"ra": "0.4 um"},
+    "models": {"friction": {"name": "constant", "coefficient": 0.05}},
+}
+WIDTH = {"module": "1 mm", "face_width": "12 mm"}
+SETS = [
+    {"family": "planetary", "teeth": [24, 30, 84], "planets": 3, **WIDTH},
+    {"family": "planetary", "teeth": [25, 29, 83], "planets": 4, **WIDTH},
+]
+PAIR = {"teeth": [23, 61], "module": "1 mm", "face_width": "12 mm"}
+RATIOS = 1 + 84 / 24, 1 + 83 / 25  # by Willis, sun to carrier
+RATIO_OF_PAIR = 61 / 23
+NEEDLES = {
+    "between": ["planet", "carrier"],
+    "bearing": "palmgren_1959",
+    "mean_diameter": "8 mm",
+    "f0": 5.0,
+    "f1": 0.0005,
+}
+SHAFT_2 = {
+    "between": ["shaft 2", "housing"],
+    "bearing": "palmgren_1959",
+    "mean_diameter": "30 mm",
+    "f0": 2.0,
+    "f1": 0.0003,
+}
+
+
+def operation(torque=LOAD, speed=SPEED):
+    return {"torque": f"{torque!r} N m", "speed": f"{speed!r} rad/s", "temperature": "60 degC"}
+
+
+def drive(*stages, **more):
+    """A drive of tables [gears], or of whole stages."""
+    tables = [one if "gears" in one else {"gears": one} for one in stages]
+    return load_case({"stages": tables, "operation": operation(), **TABLES, **more})
+
+
+@cache
+def two_sets():
+    return drive(*SETS)
+
+
+@cache
+def pair_before_set():
+    return drive(PAIR, SETS[0], losses={"left": SHAFT_2})
+
+
+@cache
+def set_before_pair():
+    return drive({"gears": SETS[0], "losses": {"needles": NEEDLES}}, PAIR, losses={"left": SHAFT_2})
+
+
+def figures(built, law=0):
+    """Figures of a drive, or of a set or pair alone, at its operating point."""
+    point, models = (built.design, built.operation), built.models[law]
+    several = hasattr(built, "stages")
+    found = drive_figures([point], models.stages) if several else summarise([point], models)
+    return {name: values[0] for name, values in found.items()}
+
+
+def alone(gears, torque, speed, **more):
+    """A stage from a file of its own."""
+    return load_case({"gears": gears, "operation": operation(torque, speed), **TABLES, **more})
+
+
+def by_themselves(built, gears, found):
+    """Figures of each stage from a file of its own, at the mean load and the speed that it has in a drive."""
+    loads = built.carried_by_meshes(found)
+    each = zip(gears, loads.tolist(), found["stage_speed"].tolist(), strict=True)
+    return [figures(alone(table, load, speed)) for table, load, speed in each]
+
+
+def of(built, analysis):
+    return ANALYSES[analysis].compute(built, {}, lambda *_: None)
+
+
+def test_two_sets_in_a_row_are_as_good_as_their_product():
+    """Efficiency, torques and speeds are those of each set alone where it stands, and by tooth numbers."""
+    built = two_sets()
+    found = figures(built)
+    apart = by_themselves(built, SETS, found)
+    product = np.prod([one["mean_efficiency"] for one in apart])
+    assert found["mean_efficiency"] == pytest.approx(product, rel=1e-12)
+    assert found["stage_efficiency"] == pytest.approx(
+        [one["mean_efficiency"] for one in apart], rel=1e-12
+    )
+    assert found["mean_loss"] == pytest.approx(sum(one["mean_loss"] for one in apart), rel=1e-11)
+    torque = LOAD / np.prod(RATIOS) / product
+    assert found["mean_input_torque"] == pytest.approx(torque, rel=1e-12)
+    assert found["stage_speed"] == pytest.approx([SPEED, SPEED / RATIOS[0]], rel=1e-12)
+    assert built.motion == pytest.approx([1.0, 1 / RATIOS[0], 1 / np.prod(RATIOS)], rel=1e-12)
+
+
+@pytest.mark.whole
+def test_ripple_is_that_of_both_sets_at_their_worst():
+    """Without losses that hang on the load the worst meeting is that of the worst of each."""
+    found = figures(two_sets())
+    apart = by_themselves(two_sets(), SETS, found)
+    for end in ("min", "max"):
+        both = np.prod([one[f"{end}_input_torque"] / one["mean_input_torque"] for one in apart])
+        least = found["mean_input_torque"] * both
+        assert found[f"{end}_input_torque"] == pytest.approx(least, rel=1e-9)
+
+
+@pytest.mark.whole
+def test_two_sets_driven_backwards():
+    """The carrier of the second set drives: each set alone at its new torque, driven backwards likewise."""
+    built = two_sets().backwards
+    found = figures(built)
+    assert [one.driver for one in built.stages] == ["carrier", "carrier"]
+    turned = [{**SETS[k], "input": "carrier", "output": "sun"} for k in (1, 0)]
+    apart = by_themselves(built, turned, found)
+    product = np.prod([one["mean_efficiency"] for one in apart])
+    assert found["mean_efficiency"] == pytest.approx(product, rel=1e-12)
+    assert found["stage_speed"] == pytest.approx(
+        [SPEED / np.prod(RATIOS), SPEED / RATIOS[0]], rel=1e-12
+    )
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize(
+    ("built", "gears", "of_pair", "ratios"),
+    [
+        (pair_before_set, [PAIR, SETS[0]], 0, (RATIO_OF_PAIR, RATIOS[0])),
+        (set_before_pair, [SETS[0], PAIR], 1, (RATIOS[0], RATIO_OF_PAIR)),
+    ],
+)
+def test_a_pair_before_and_behind_a_set(built, gears, of_pair, ratios):
+    """The bearing of the shaft between them is pressed by the pair, whose loss it adds to."""
+    made = built()
+    found = figures(made)
+    loads, speeds = made.carried_by_meshes(found), found["stage_speed"]
+    assert speeds[1] == pytest.approx(SPEED / ratios[0], rel=1e-12)
+    gear = ("gear 2", "gear 1")[of_pair]
+    bearing = {"left": {**SHAFT_2, "between": [gear, "housing"]}}
+    losses = [{"needles": NEEDLES}, {"needles": NEEDLES}]
+    losses[of_pair] = bearing
+    if built is pair_before_set:
+        losses[1] = {}
+    apart = [
+        figures(alone(table, load, speed, losses=own))
+        for table, load, speed, own in zip(
+            gears, loads.tolist(), speeds.tolist(), losses, strict=True
+        )
+    ]
+    product = np.prod([one["mean_efficiency"] for one in apart])
+    # The bearing's torque goes with a power of its load other than one: means over phases differ a little.
+    assert found["mean_efficiency"] == pytest.approx(product, rel=1e-9)
+    assert found["bearing_load"][0] == pytest.approx(apart[of_pair]["bearing_load"][0], rel=1e-6)
+    assert found["mean_loss"] == pytest.approx(sum(one["mean_loss"] for one in apart), rel=1e-6)
+    assert made.motion[-1] == pytest.approx(np.sign(made.motion[0]) * -1 / np.prod(ratios))
+
+
+@pytest.mark.whole
+def test_from_rest_what_starts_a_set_is_the_load_of_the_stage_before():
+    """Seals at the ends and in the sets, from the output to the input."""
+    seal = {"seal_torque": "0.1 N m"}
+    made = drive(
+        {"gears": PAIR, "losses": {}},
+        {"gears": SETS[0], "losses": {"pins": {"between": ["planet", "carrier"], **seal}}},
+        losses={"seal": {"between": ["shaft 3", "housing"], **seal}},
+    )
+    degrees = np.array([330.0])
+    mean, largest = from_rest(made, 0.0, 1e-3, degrees)
+    sealed = {
+        "seal": {"between": ["carrier", "housing"], **seal},
+        "pins": {"between": ["planet", "carrier"], **seal},
+    }
+    of_set = alone(SETS[0], 1.0, SPEED, losses=sealed)
+    inner = from_rest(of_set, 0.0, 1e-3 / RATIO_OF_PAIR, degrees)
+    pair = alone(PAIR, 1.0, SPEED)
+    for got, own in ((mean, inner[0][0]), (largest, inner[1][0])):
+        point = pair.operation.__class__(own, np.array([1e-3]), degrees)
+        both = torques_at_rest(pair.design, point, pair.models[0])
+        assert got[0] == pytest.approx(np.asarray(both[0 if got is mean else 1]), rel=1e-12)
+
+
+@pytest.mark.whole
+def test_wind_up_and_inertia_are_those_of_each_set_through_the_ratios():
+    """Springs one behind the other at the output, kinetic energy at the input."""
+    models = {"models": {**TABLES["models"], "load_sharing": "from_stiffness"}}
+    made = drive(*SETS, **models)
+    sets = [alone(SETS[0], LOAD / RATIOS[1], SPEED, **models)]
+    sets += [alone(SETS[1], LOAD, SPEED / RATIOS[0], **models)]
+    twist = of(made, "torsion")
+    first, second = (of(one, "torsion") for one in sets)
+    at_output = [first["wind_up"] / RATIOS[1], second["wind_up"]]
+    assert pytest.approx(np.array(at_output), rel=1e-12) == twist["stage_wind_up"].values.T
+    assert twist["wind_up"].values == pytest.approx(np.sum(at_output, axis=0), rel=1e-12)
+    compliance = 1 / first["tangent_torsional_stiffness"].values / RATIOS[1] ** 2
+    compliance += 1 / second["tangent_torsional_stiffness"].values
+    assert twist["tangent_torsional_stiffness"].values == pytest.approx(1 / compliance, rel=1e-9)
+    whole, (front, back) = of(made, "reflected"), (of(one, "reflected") for one in sets)
+    assert whole["reflected_inertia"].values[0] == pytest.approx(
+        front["reflected_inertia"].values[0] + back["reflected_inertia"].values[0] / RATIOS[0] ** 2,
+        rel=1e-12,
+    )
+    assert whole["drive_mass"] == pytest.approx(
+        float(front["drive_mass"] + back["drive_mass"]), rel=1e-12
+    )
+
+
+def test_what_a_set_in_a_row_does_not_have_is_told_with_its_operating_point():
+    """Strength of a set is in a file of its own, at the torque and speed that stand in the sentence."""
+    built = two_sets()
+    told = [text for text in built.warnings if "planetary set" in text]
+    assert len(told) == 2
+    assert "torque 9.25926 N m and speed 3000 rpm" in told[0]
+    assert "torque 40 N m and speed 666.667 rpm" in told[1]
+    for name in ("strength", "inspection", "load_limits", "film"):
+        assert "file of the set alone" in ANALYSES[name].why_not(built)
+    assert "file of its own" in ANALYSES["train_period"].why_not(built)
+    data = of(pair_before_set(), "strength")
+    assert data["stage"].values.tolist() == [1]
+    assert not [text for text in doubts_of(data.attrs) if text.startswith("Stage 2")]
+
+
+@pytest.mark.parametrize(
+    ("stage", "more", "key", "told"),
+    [
+        ({"driver": "sun"}, {}, "stages.1.driver", "what drives a planetary set is input"),
+        ({"turn": "90 deg"}, {}, "stages.1.turn", "leave it out"),
+        ({"film": {"solver": "line"}}, {}, "stages.1.film", "a file of this set alone"),
+        ({"wear": {"law": "archard_1953", "cycles": 1e6, "coefficient": 1e-6}}, {},
+         "stages.1.wear", "a file of this set alone"),
+        ({"strength": {"life": "1000 h"}}, {}, "stages.1.strength", "rated in a file of this set"),
+        ({}, {"strength": {"life": "1000 h"}}, "strength", "rated in a file of this set alone"),
+        ({"bodies": ["sun", "planet"]}, {}, "stages.1.bodies", "without a table [train]"),
+        ({"gears": {**SETS[0], "teeth": [24, 30, 80]}}, {}, "stages.1.gears", ""),
+        ({"gears": {**SETS[0], "planets": 5}}, {}, "stages.1.gears.planets", "fit"),
+        ({"gears": {**SETS[0], "held": "sun"}}, {}, "stages.1.gears.held", "three different ones"),
+        ({"losses": {"pin": {**NEEDLES, "between": ["carrier", "gear 1"]}}}, {},
+         "stages.1.losses.pin.between", "no body"),
+        ({}, {"losses": {"left": {**SHAFT_2, "position": "5 mm"},
+                         "right": {**SHAFT_2, "position": "25 mm"}}}, "losses.left.position",
+         "without a place"),
+        ({}, {"train": {"input": "sun", "output": "carrier"}}, "stages.1.gears.family",
+         "pairs of cylindrical gears"),
+        ({}, {"losses": {"left": {**SHAFT_2, "between": ["carrier", "housing"]}}},
+         "losses.left.between", "no body"),
+    ],
+)  # fmt: skip
+def test_a_wrong_set_in_a_row_is_told_with_its_key(stage, more, key, told):
+    """One sentence with the key that the file has."""
+    with pytest.raises(InputError) as caught:
+        drive({"gears": SETS[0], **stage}, SETS[1], **more)
+    first = caught.value.every[0] if isinstance(caught.value, CollectedInputError) else caught.value
+    assert first.key.startswith(key)
+    assert told in str(caught.value)
