@@ -18,7 +18,7 @@ from pitchpoint.lubrication.ehl.doubts import flooded_inlet, of_grid
 from pitchpoint.lubrication.ehl.grid import grid
 from pitchpoint.lubrication.ehl.line import LineContact, problem_of
 from pitchpoint.lubrication.ehl.newton import dry, step
-from pitchpoint.lubrication.ehl.solve import OF_HALF, line_films, solve_lines
+from pitchpoint.lubrication.ehl.solve import LEAST_FALL, OF_HALF, THINNEST, line_films, solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials import lubricants
@@ -554,31 +554,85 @@ def test_a_film_that_is_too_thin_for_the_grid_is_told():
     assert "the grid is coarse for the films of 1 of 1 contacts" in thin.warnings[-1]
 
 
+def of_grids(coarsest, coarse, fine):
+    """Errors that films on three grids foretell of the last, of those in the middle and of smallest ones."""
+    films = np.array(
+        [
+            [one.film.central_film, one.film.minimum_film, one.film.mean_film]
+            for one in (coarsest, coarse, fine)
+        ]
+    )
+    earlier, last = np.abs(np.diff(films, axis=0))
+    change = np.max([last[:2], last[[2, 2]], LEAST_FALL * earlier[:2]], axis=0)
+    return OF_HALF[:, None] * change / np.abs(films[2, :2])
+
+
+def assert_estimates(usual, fine):
+    """Nine in ten films are off by less than is estimated, half by more than a third of it."""
+    both = usual.solved & fine.solved
+    assert both.mean() > 0.9
+    for name, error in ("central_film", "grid"), ("minimum_film", "grid_minimum"):
+        off = np.abs(getattr(fine.film, name) / getattr(usual.film, name) - 1.0)[both]
+        estimated = getattr(usual.ended, error)[both]
+        assert (off < estimated).mean() >= 0.9 and (off > estimated / 3.0).mean() >= 0.5
+
+
 def test_errors_by_the_grid_are_told_from_grids_with_half_as_many_nodes():
     case = contact(np.array([0.3, 0.9, 1.0]) * 1e9, np.array([0.1, 0.3, 3.0]))
-    coarse, fine = (solve_lines(case, nodes=n) for n in (65, 129))
-    central, minimum = OF_HALF[:, None] * np.abs(
-        np.stack(
-            [
-                getattr(coarse.film, name) / getattr(fine.film, name) - 1.0
-                for name in ("central_film", "minimum_film")
-            ]
-        )
-    )
+    coarsest, coarse, fine = (solve_lines(case, nodes=n) for n in (33, 65, 129))
+    central, minimum = of_grids(coarsest, coarse, fine)
     np.testing.assert_allclose(fine.ended.grid, central, rtol=1e-5)
     np.testing.assert_allclose(fine.ended.grid_minimum, minimum, rtol=1e-5)
-    for films in (coarse, fine):
-        (told,) = (one for one in films.warnings if one.kind == "grid")
-        off = films.ended.grid_minimum
-        assert f"films of {np.sum(off > 0.03)} of 3 contacts" in told
-        assert off.max() > 0.03 and f"smallest ones by {100.0 * off.max():.2g} %" in told
-    gentle = solve_lines(contact(0.3e9, 0.1))
-    assert not any(one.kind == "grid" for one in gentle.warnings)
-    assert gentle.ended.grid_minimum < 0.03
-    coarsest = solve_lines(case, nodes=33)
+    (told,) = (one for one in coarse.warnings if one.kind == "grid")
+    off = coarse.ended.grid_minimum
+    assert f"films of {np.sum(off > 0.03)} of 3 contacts" in told
+    assert off.max() > 0.03 and f"smallest ones by {100.0 * off.max():.2g} %" in told
+    assert not any(one.kind == "grid" for one in fine.warnings)
+    assert fine.ended.grid_minimum.max() < 0.03
     assert np.isnan(coarsest.ended.grid_minimum).all()
     (told,) = (one for one in coarsest.warnings if one.kind == "unknown grid")
     assert "films of 3 of 3 contacts is not known" in told
+
+
+def drawn(count, seed):
+    """Random contacts, and their films by a regression."""
+    low, high = (0.1e9, 0.01, 1e-3, 5e-3, 1e-8), (1.8e9, 20.0, 1.0, 0.5, 3e-8)
+    unit = np.random.default_rng(seed).uniform(np.log(low), np.log(high), (count, len(low)))
+    pressure, speed, radius, viscosity, alpha = np.exp(unit).T
+    oil = Fluid(**OIL | {"viscosity": viscosity, "pressure_viscosity": alpha})
+    case = contact(pressure, speed, radius, fluid=oil)
+    film = moes_1992(
+        line_load=case.line_load,
+        entrainment=speed,
+        viscosity=viscosity,
+        pressure_viscosity=alpha,
+        radius=radius,
+        modulus=np.full(count, MODULUS),
+    )
+    return case, np.asarray(film)
+
+
+@pytest.mark.whole
+def test_random_films_are_off_by_less_than_is_told_and_half_by_more_than_a_third_of_it():
+    case, _ = drawn(60, 31)
+    assert_estimates(*(solve_lines(case, nodes=n, profiles=False) for n in (129, 257)))
+
+
+@pytest.mark.whole
+def test_errors_of_rough_films_are_those_of_mean_planes():
+    """The oil has more room than mean planes leave it, and less of it comes and goes with them."""
+    case, film = drawn(60, 32)
+    ratio = np.exp(np.random.default_rng(33).uniform(np.log(0.3), np.log(6.0), 60))
+    case = dataclasses.replace(case, texture=Rough(rq=film / ratio, modulus=MODULUS))
+    coarsest, coarse, usual, fine = (
+        solve_lines(case, nodes=n, profiles=False) for n in (33, 65, 129, 257)
+    )
+    both = coarsest.solved & coarse.solved & (usual.film.film_ratio > THINNEST)
+    assert both.mean() > 0.8 and (usual.film.film_ratio < 1.0).mean() > 0.1
+    estimated = np.array([usual.ended.grid, usual.ended.grid_minimum])
+    foretold = of_grids(coarsest, coarse, usual)
+    np.testing.assert_allclose(estimated[:, both], foretold[:, both], rtol=1e-5)
+    assert_estimates(usual, fine)
 
 
 def test_nodes_that_are_named_bring_films_within_what_is_borne():
@@ -660,7 +714,7 @@ def test_a_solution_is_a_start_for_its_neighbours():
     afresh = solve_lines(contact([0.62e9, 0.83e9]))
     np.testing.assert_allclose(onward.film.central_film, afresh.film.central_film, rtol=1e-8)
     np.testing.assert_allclose(onward.ended.grid, afresh.ended.grid, rtol=1e-6)
-    assert (onward.ended.iterations < 0.7 * afresh.ended.iterations).all()
+    assert (onward.ended.iterations < afresh.ended.iterations).all()
     with pytest.raises(InputError, match="films of 2 contacts on 129 nodes are no start for 1"):
         solve_lines(contact(0.6e9), start=first)
 
@@ -672,7 +726,7 @@ def test_films_on_other_grids_and_running_the_other_way_are_a_start(given, wante
     case = contact([0.62e9, 0.83e9], [1.0, -1.0])
     onward, afresh = solve_lines(case, nodes=wanted, start=first), solve_lines(case, nodes=wanted)
     np.testing.assert_allclose(onward.film.central_film, afresh.film.central_film, rtol=1e-8)
-    assert (onward.ended.iterations < 0.8 * afresh.ended.iterations).all()
+    assert (onward.ended.iterations < afresh.ended.iterations).all()
 
 
 @pytest.mark.whole
@@ -770,16 +824,15 @@ def test_bad_input_is_one_sentence(given, sentence):
 
 
 @pytest.mark.whole
-def test_the_grid_is_judged_by_the_film_also_where_mean_planes_meet():
+def test_the_grid_is_judged_by_a_part_of_the_roughness_where_mean_planes_meet():
     soft = Rough(rq=0.4e-6, modulus=MODULUS)
     thin, exact = (
         solve_lines(contact(0.9e9, np.array([0.02, 0.05]), texture=soft), nodes=n)
         for n in (129, 257)
     )
     assert (np.abs(thin.film.gap).min(axis=-1) < 0.1e-6).all()
-    middle = grid(129).middle, grid(257).middle
-    room = thin.film.film[:, middle[0]], exact.film.film[:, middle[1]]
-    assert (np.abs(room[0] / room[1] - 1.0) < 0.02).all() and (thin.ended.grid < 0.05).all()
+    off = np.abs(thin.film.central_film - exact.film.central_film) / (THINNEST * soft.rq)
+    assert (off < thin.ended.grid).all() and (thin.ended.grid < 0.1).all()
 
 
 @pytest.mark.parametrize("nodes", [2, 17, 128, 130])

@@ -25,7 +25,6 @@ from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.lubrication.ehl.grid import fewer
-from pitchpoint.lubrication.ehl.solve import OF_HALF
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
@@ -46,6 +45,9 @@ SLICED = 0.06
 
 SAFETY = 1.25
 """Factor on what half the grid changes, for the error of cells: Roache's, for an order that is known."""
+
+OF_HALF_NODES = 0.55
+"""Error of rates by the grid of solved films, over what half as many nodes change of them."""
 
 HOLDS = 0.2
 """Depth over the module up to which flanks wear along normals that stay where they are."""
@@ -322,15 +324,15 @@ def _of_grid(built: Built) -> float:
 def _of_films(built: Built, depth: np.ndarray) -> float:
     """What the grid of solved films leaves of the largest depths, over them; zero where none are solved.
 
-    Asperities bear all over a contact, whose film is that of its middle: rates are off by as much of their
-    change from half as many nodes as that is; on the fewest, by all of their change to twice as many. That
-    of the member where it is more, with flanks as new or, where their profile follows, as they end up.
+    Rates are off by a part of their change from half as many nodes; on the fewest, by all of their change to
+    twice as many. That of the member where it is more, with flanks as new or, where their profile follows, as
+    they end up.
     """
     course, design, operation = _course(built), built.design, built.operation
     if course.model.films is None:
         return 0.0
     half = fewer(course.model.films.nodes)
-    other, part = (half, OF_HALF[0]) if half else (2 * course.model.films.nodes - 1, 1.0)
+    other, part = (half, OF_HALF_NODES) if half else (2 * course.model.films.nodes - 1, 1.0)
     models = course.model, replace(course.model, films=replace(course.model.films, nodes=other))
     ends = [np.zeros_like(depth[-1])] + [depth[-1]] * (asked(built).profile == "updated")
     rates = np.array(

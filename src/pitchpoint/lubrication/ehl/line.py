@@ -139,12 +139,12 @@ class Problem(eqx.Module):
             lowered = restricted(lowered)
         return level + 0.5 * at.x**2 - lowered + self.yielding * (at.kernel @ pressure)
 
-    def two_films(self, pressure: Array, level: Array, at: Grid) -> Array:
-        """Gap that is open to the oil at the middle node, and the smallest one, shape (2,)."""
-        room = self.flow.room(self.gap(pressure, level, at))
+    def films(self, pressure: Array, level: Array, at: Grid) -> Array:
+        """Gap of the mean planes at the middle node, the smallest and the mean one, shape (3,)."""
+        gap = self.gap(pressure, level, at)
         near = jnp.abs(at.x) < NEAR / self.yielding
-        _, least = lowest(at.x, room, jnp.argmin(jnp.where(near, room, jnp.inf)))
-        return jnp.stack([room[at.middle], least])
+        _, least = lowest(at.x, gap, jnp.argmin(jnp.where(near, gap, jnp.inf)))
+        return jnp.stack([gap[at.middle], least, self.mean_film(pressure, level, at)])
 
     def mean_film(self, pressure: Array, level: Array, at: Grid) -> Array:
         """Mean gap of the mean planes over the dry contact, of the lines between the nodes."""

@@ -15,7 +15,16 @@ from pitchpoint.lubrication.ehl.grid import Grid, prolongation
 from pitchpoint.lubrication.ehl.line import Problem
 from pitchpoint.lubrication.ehl.reynolds import REACH, banded
 
-__all__ = ["ENOUGH", "TOLERANCE", "State", "from_coarse", "polished", "residual", "step"]
+__all__ = [
+    "ENOUGH",
+    "TOLERANCE",
+    "State",
+    "from_coarse",
+    "polished",
+    "residual",
+    "solved_films",
+    "step",
+]
 
 TOLERANCE: Final = 1e-10
 """Residual at which an iteration ends, in units of Hertz's pressure; one more step follows."""
@@ -47,8 +56,8 @@ class State(NamedTuple):
         steps: since the last start.
         total: all steps.
         residual: largest one.
-        coarse: film in the middle and smallest film that were found on the grid before, shape (2,); NaN on
-            the first one.
+        coarse: films of `Problem.films` on the grid before and on the one before that, shape (2, 3); NaN
+            where there is no such grid, or no solution on it.
     """
 
     pressure: Float[Array, " node"]
@@ -57,7 +66,7 @@ class State(NamedTuple):
     steps: Int[Array, ""]
     total: Int[Array, ""]
     residual: Float[Array, ""]
-    coarse: Float[Array, "2"]
+    coarse: Float[Array, "2 3"]
 
 
 def residual(problem: Problem, pressure: Array, level: Array, at: Grid) -> Array:
@@ -183,7 +192,9 @@ def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State
         )
 
     zero = jnp.asarray(0)
-    begin = State(pressure, level, zero, zero, zero, jnp.asarray(jnp.inf), jnp.full(2, jnp.nan))
+    begin = State(
+        pressure, level, zero, zero, zero, jnp.asarray(jnp.inf), jnp.full((2, 3), jnp.nan)
+    )
     found: State = jax.lax.while_loop(unfinished, onward, begin)
     return found
 
@@ -200,10 +211,16 @@ def from_coarse(problem: Problem, grids: Sequence[Grid]) -> State:
     for before, at in pairwise(grids):
         finer = prolongation(before.x.shape[0], at.x.shape[0])
         pressure = jnp.maximum(finer @ state.pressure, 0.0).at[jnp.array([0, -1])].set(0.0)
-        coarse = problem.two_films(state.pressure, state.level, before)
+        coarse = jnp.stack((solved_films(problem, state, before), state.coarse[0]))
         state = iterated(problem, pressure, state.level, at)._replace(coarse=coarse)
         total = total + state.total
     return state._replace(total=total)
+
+
+def solved_films(problem: Problem, state: State, at: Grid) -> Array:
+    """Films of `Problem.films`, shape (3,); NaN where the iteration found no solution."""
+    films = problem.films(state.pressure, state.level, at)
+    return jnp.where(state.residual < ENOUGH, films, jnp.nan)
 
 
 def polished(
