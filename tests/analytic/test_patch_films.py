@@ -21,7 +21,7 @@ from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, film_near, solve_patch
-from pitchpoint.lubrication.ehl.patch.grid_error import LOST, REMAINS
+from pitchpoint.lubrication.ehl.patch.grid_error import REMAINS
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import linear, product
@@ -137,9 +137,8 @@ def test_errors_by_the_grid_are_estimated_from_half_as_many_cells():
         [getattr(one.film, name) for name in ("central_film", "mean_film", "minimum_film")]
         for one in (fine, half)
     ]
-    central, mean, least = np.max(films, axis=0) / np.min(films, axis=0) - 1.0
-    assert least < LOST
-    errors = REMAINS * max(central, mean), REMAINS * least
+    central, mean, least = np.abs(np.diff(np.log(films), axis=0)[0])
+    errors = np.expm1(REMAINS * [max(central, mean), least])
     assert (fine.ended.grid, fine.ended.grid_minimum) == pytest.approx(errors, rel=1e-3)
     assert fine.ended.grid_minimum > COARSE
     (told,) = (one for one in fine.warnings if one.kind == "grid")
