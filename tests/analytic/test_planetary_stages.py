@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from pitchpoint.analyses.plausibility import unlikely
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.running import from_rest
 from pitchpoint.doubts import doubts_of
@@ -232,6 +233,7 @@ def test_what_a_set_in_a_row_does_not_have_is_told_with_its_operating_point():
     data = of(pair_before_set(), "strength")
     assert data["stage"].values.tolist() == [1]
     assert not [text for text in doubts_of(data.attrs) if text.startswith("Stage 2")]
+    assert unlikely(pair_before_set(), {"strength": data}) == []
 
 
 @pytest.mark.parametrize(

@@ -361,7 +361,9 @@ def root_stress(result: Result) -> str | None:
     strength = result.parts.get("strength")
     if strength is None:
         return None
-    rated = [used for one in result.built.meshes if one.case.gears.rated for used in one.solids]
+    built = result.built
+    meshes = (built,) if isinstance(built, Built) else built.single.values()
+    rated = [used for one in meshes if one.case.gears.rated for used in one.solids]
     stresses = np.ravel(strength["root_stress"].values)
     over = [
         (float(stress) / limit, float(stress), limit, why, place % 2 + 1)
