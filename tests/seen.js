@@ -74,6 +74,13 @@
     });
   }
 
+  // Lines of legends, which have the colours of those in figures.
+  for (const one of document.querySelectorAll(".legend line, .keys line")) {
+    if (!shown(one) || height || ground > 0.5) continue;
+    const [a, b] = [light(getComputedStyle(one).stroke), ground];
+    if (Math.max(a, b) / Math.min(a, b) < 3) faults.push(`line ${one.getAttribute("stroke")} cannot be told from its ground: ${name(one.closest("label, span"))}`);
+  }
+
   // Pages of paper as columns that are as high, which the browser parts by the same rules.
   if (height) {
     const main = document.querySelector("main");

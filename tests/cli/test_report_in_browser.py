@@ -14,6 +14,7 @@ from sound import SMOOTH, quick_first
 
 from pitchpoint import views
 from pitchpoint.runs.run import run
+from pitchpoint.views.figures import INK, PALETTE
 from pitchpoint.views.report import write_report
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine")
@@ -124,6 +125,31 @@ def test_what_is_cut_empty_or_overlapping_is_found(wide: Browser, fault: str) ->
     wide.run(f"({_SPOILED[fault]}, null)")
     assert any(fault in words for words in faults_shown(wide, 1280))
     wide.window = None
+
+
+def test_lines_stand_out_from_dark_paper_and_have_their_colours_back_on_white(
+    chromium: Browser, tmp_path: Path
+) -> None:
+    """Reddish purple and the palest of shades would not with their lightness turned over alone."""
+    templates = Path(views.__file__).parent / "templates"
+    style, script = ((templates / one).read_text("utf-8") for one in ("style.css", "figures.js"))
+    colours = [*PALETTE, "#a6cee3", "#9aa5ad", INK]
+    lines = "".join(f'<svg><line stroke="{one}"/></svg>' for one in colours)
+    given = "window.turned = { dressed, unlit };"
+    page = f"""<style>{style}</style><section><div class=keys><span>{lines}</span></div></section>
+        <script>(() => {{ {script} {given} }})()</script>"""
+    (tmp_path / "lines.html").write_text(f"<html data-drawn=all>{page}</html>", "utf-8")
+    chromium.open(tmp_path / "lines.html", 1280, prefers_color_scheme="dark")
+    assert faults_shown(chromium, 1280) == []
+    strokes = chromium.run(
+        "[...document.querySelectorAll('line')].map(one => one.getAttribute('stroke'))"
+    )
+    assert strokes == chromium.run(f"{colours}.map(one => turned.dressed('color', one))")
+    assert len({*strokes}) == len(colours)
+    assert chromium.run(f"{strokes}.map(turned.unlit)") == colours
+    chromium.run("document.querySelector('line').setAttribute('stroke', '#984874')")
+    assert any("line #984874 cannot be told" in one for one in faults_shown(chromium, 1280))
+    chromium.window = None
 
 
 def test_figures_stay_whole_and_with_what_is_above_them_wherever_a_page_ends(

@@ -2,21 +2,38 @@
   const config = { displayModeBar: false, responsive: true, showTips: false };
   const touch = window.matchMedia("(pointer: coarse)").matches;
 
-  // Colours are given for white paper; on dark paper light and dark change places, hues stay.
-  function lit(colour) {
+  // Colours are given for white paper; on dark paper light and dark change places, hues stay. Lines and marks,
+  // whose key is `color`, are lightened until they stand out 3 to 1, as WCAG 2.2 asks of graphics.
+  const onWhite = new Map();
+  function lit(colour, least = 0) {
     const full = colour.length === 4 ? colour.replace(/[0-9a-f]/gi, "$&$&") : colour;
     const [r, g, b] = [1, 3, 5].map((at) => parseInt(full.slice(at, at + 2), 16) / 255);
     const [low, high] = [Math.min(r, g, b), Math.max(r, g, b)];
     const [light, span] = [(low + high) / 2, high - low];
     const share = span ? span / (1 - Math.abs(2 * light - 1)) : 0;
     const [first, second] = high === r ? [g - b, 0] : high === g ? [b - r, 2] : [r - g, 4];
-    const hue = span ? 60 * (first / span + second) : 0;
-    return `hsl(${hue.toFixed(0)}, ${(80 * share).toFixed(0)}%, ${(100 - 88 * light).toFixed(0)}%)`;
+    const hue = span ? (60 * (first / span + second) + 360) % 360 : 0;
+    let lightness = Math.round(100 - 88 * light);
+    while (light < NEARLY_WHITE && contrast(hue, 0.8 * share, lightness / 100) < least) lightness++;
+    const turned = `hsl(${hue.toFixed(0)}, ${(80 * share).toFixed(0)}%, ${lightness}%)`;
+    onWhite.set(turned, colour);
+    return turned;
   }
 
+  // Of a colour by hue, saturation and lightness with the dark paper, whose luminance is 0.0139.
+  function contrast(hue, saturation, lightness) {
+    const part = (n) => {
+      const at = (n + hue / 30) % 12;
+      const value = lightness - saturation * Math.min(lightness, 1 - lightness) * Math.max(-1, Math.min(at - 3, 9 - at, 1));
+      return value > 0.03928 ? ((value + 0.055) / 1.055) ** 2.4 : value / 12.92;
+    };
+    return (0.2126 * part(0) + 0.7152 * part(8) + 0.0722 * part(4) + 0.05) / 0.0639;
+  }
+  const LEAST = 3.05;  // what is rounded is no less than 3
+  const NEARLY_WHITE = 0.85;  // from here on a colour is a ground or a rim, no line
+
   // What `lit` did, taken back for white paper.
-  const unlit = (words) =>
-    words.replace(/hsl\((\d+), (\d+)%, (\d+)%\)/g, (_, h, s, l) => `hsl(${h}, ${s / 0.8}%, ${(100 - l) / 0.88}%)`);
+  const unlit = (words) => words.replace(/hsl\(\d+, \d+%, \d+%\)/g, (turned) => onWhite.get(turned) ?? turned);
   const whiter = (key, value) => (key.endsWith("bgcolor") ? "#fff" : typeof value === "string" ? unlit(value) : value);
 
   // Drawings of the page in the colours of white paper; what puts them back.
@@ -33,14 +50,14 @@
   function dressed(key, value) {
     if (dark.matches && key.endsWith("bgcolor")) return getComputedStyle(document.body).getPropertyValue("--paper").trim();
     const colour = dark.matches && typeof value === "string" && /^#([0-9a-f]{3}){1,2}$/i.test(value);
-    return colour && key !== "name" && key !== "text" ? lit(value) : value;
+    return colour && key !== "name" && key !== "text" ? lit(value, key === "color" ? LEAST : 0) : value;
   }
 
   if (dark.matches) {
     for (const one of document.querySelectorAll('[stroke^="#"], [fill^="#"], [style*="#"]')) {
       for (const name of ["stroke", "fill", "style"]) {
         const value = one.getAttribute(name);
-        if (value) one.setAttribute(name, value.replace(/#[0-9a-f]{6}\b/gi, lit));
+        if (value) one.setAttribute(name, value.replace(/#[0-9a-f]{6}\b/gi, (colour) => lit(colour, LEAST)));
       }
     }
   }
