@@ -2,7 +2,7 @@
 
 import itertools
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -307,12 +307,22 @@ def _figure(name: str, one: Curves, point: _Where, beside: Beside) -> Figure:
     keys = [Key(column, PALETTE[k]) for k, column in enumerate(columns)]
     first, unit = _at(one, *point), show.unit_of(one.names[0])
     traces = [
-        plain(key, x, y, unit, opacity=0.75)
-        for key, x, y in zip(keys, first["x"], first["y"], strict=True)
+        plain(key, x, y, unit) for key, x, y in zip(keys, first["x"], first["y"], strict=True)
     ]
-    for trace in traces:
-        trace["line"]["width"] = 1  # of vibrations that lie close
+    if any(_turns(y) > _MANY_TURNS for y in first["y"]):
+        for trace in traces:
+            trace["line"]["width"], trace["opacity"] = 1, 0.75
     return _drawn(name, one, traces, keys)
+
+
+_MANY_TURNS = 20
+"""Turns of a course from which on lines are thin, as those of vibrations that lie close."""
+
+
+def _turns(course: Sequence[float]) -> int:
+    """How often a course rises after it fell, or falls after it rose."""
+    steps = np.diff(np.asarray(course, dtype=float))
+    return int(np.count_nonzero(steps[1:] * steps[:-1] < 0.0))
 
 
 def _maps(name: str, studies: list[_Study], beside: Beside) -> Panel:
