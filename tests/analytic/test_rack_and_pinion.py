@@ -21,6 +21,8 @@ from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import program
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views.point import way_in_a_turn
 
 MODULE, ANGLE = 3e-3, np.deg2rad(20.0)
 STEEL = solids.find("steel").build()
@@ -39,6 +41,14 @@ def built(**values):
 
 def rack(**values):
     return built(**values)[0]
+
+
+def test_a_rack_goes_by_the_pitch_circle_in_a_turn():
+    """20 teeth of module 3 mm: 60 pi mm, whatever the sign; where nothing travels there is no way."""
+    manifest = {"members": ["pinion", "rack"], "driver": "pinion", "loaded": "rack"}
+    manifest |= {"motion": [1.0, -0.03], "travels": ["loaded"]}
+    assert way_in_a_turn(Outcome(manifest)) == "188.5 mm"
+    assert way_in_a_turn(Outcome({**manifest, "travels": []})) == ""
 
 
 @program

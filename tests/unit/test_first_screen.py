@@ -28,7 +28,7 @@ from pitchpoint.views.first_screen import (
 )
 from pitchpoint.views.point import member_names
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import KeyFigure, key_figures
+from pitchpoint.views.section import KeyFigure, Page, key_figures
 from pitchpoint.views.sections.strength import strength_rows
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -85,6 +85,16 @@ def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:
     assert "no safety: materials.gear_1 has no limits" in by_name["Stress of flanks"]
     assert figures[-1].startswith(f"Report: {REPORT}")
     assert figures[-1].endswith("; tables by --full: answer, strength")  # it has no other tables
+
+
+def test_a_report_without_a_title_is_headed_by_its_gears(pair: dict[str, Outcome]) -> None:
+    assert Page(pair, {}).title == "Spur pair 23/61"
+    titled = {"default": doubting(pair["default"], title="A title")}  # type: ignore[arg-type]
+    assert Page(titled, {}).title == "A title"
+    assert (
+        Page({"one": pair["default"], "two": pair["default"]}, {}, designs=True).title
+        == "one · two"
+    )
 
 
 def test_films_that_are_solved_stand_before_what_follows_from_the_speeds_of_a_rig() -> None:

@@ -19,10 +19,14 @@ from pitchpoint.cases.schema import Case, quantity_at, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.surface import Waves
 from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.pairs import largest_radius
+from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.strain_wave.design import check_strain_wave
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
+from pitchpoint.gears.strain_wave.table import StrainWaveGears
+from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.reactions import InnerBearing
 from pitchpoint.lubrication.applicability import applies
@@ -495,3 +499,20 @@ def test_sweeps_of_a_drive_are_looked_at_before_they_run() -> None:
         list(jobs(drive(), {"s": alone}))
     named = drive(gears__tooth__set="liu")
     assert "study_s" in [job.name for job in jobs(named, {"s": alone})]
+
+
+@pytest.mark.parametrize(
+    ("table", "gears", "designation"),
+    [
+        (CylindricalGears, {}, "Spur pair 23/61"),
+        (CylindricalGears, {"helix_angle": "20 deg"}, "Helical pair 23/61"),
+        (CylindricalGears, {"teeth": [20, -70]}, "Spur gear in a ring 20/70"),
+        (RackAndPinionGears, {"teeth": 20}, "Rack and pinion, 20 teeth"),
+        (StrainWaveGears, DRIVE["gears"], "Strain wave gear 200/202"),
+    ],
+)
+def test_gears_are_named_by_their_kind_and_their_teeth(
+    table: type[GearsTable], gears: dict[str, Any], designation: str
+) -> None:
+    family = {"family": table.model_fields["family"].default}
+    assert table.model_validate({**PAIR["gears"], **family, **gears}).designation == designation

@@ -37,6 +37,7 @@ GOOD: dict[str, Any] = {
     "briefs": ["dry: no film"],
     "laws": [LAW],
     "models": [{**LAW, "effect": "load sharing"}],
+    "designation": "Spur pair 17/29",
     "family": "cylindrical",
     "driver": "gear 1",
     "loaded": "gear 2",

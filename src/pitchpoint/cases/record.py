@@ -277,6 +277,7 @@ class Manifest(_Kept):
     briefs: list[str] = []
     laws: list[Law]
     models: list[Model]
+    designation: str = ""
     family: str
     driver: str
     loaded: str

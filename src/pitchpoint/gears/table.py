@@ -133,6 +133,11 @@ class GearsTable(Table):
     family: str
 
     @property
+    def designation(self) -> str:
+        """What the gears are, with their numbers of teeth: heads the report of a case without a title."""
+        return self.family.replace("_", " ").capitalize()
+
+    @property
     def tooth_numbers(self) -> tuple[float, ...]:
         """Numbers of teeth of both members in magnitude; empty where that says nothing."""
         return ()

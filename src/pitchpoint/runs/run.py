@@ -820,6 +820,7 @@ def _manifest(variant: Variant, built: Ready, rows: Sequence[inputs.Row]) -> dic
             {"effect": effect, "name": law.name, "title": law.title, "note": law.note}
             for effect, law in others.items()
         ],
+        "designation": " + ".join(dict.fromkeys(mesh.case.gears.designation for mesh in meshes)),
         "family": " + ".join(mesh.case.gears.family for mesh in meshes),
         "driver": built.driver,
         "loaded": built.loaded,

@@ -5,13 +5,14 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from pitchpoint.analyses.figures import of_contact
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.designs import input_tables, named_inputs
 from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
-from pitchpoint.views.point import ratio_words
+from pitchpoint.views.point import ratio_words, way_in_a_turn
 from pitchpoint.views.section import Page, Paragraph, Table, key_figures, made_of
 from pitchpoint.views.sections.answer import operation_words, sharing_words
 
@@ -146,6 +147,10 @@ def _facts(outcome: Outcome) -> list[tuple[str, str]]:
     facts = [
         ("Operating point", operation_words(outcome)),
         ("Ratio", ratio_words(outcome)),
+        (
+            "Travel",
+            "" if of_contact(outcome.parts.get("operation", ())) else way_in_a_turn(outcome),
+        ),
         ("Materials", ", ".join(materials)),
         ("Rating", ", ".join(rated)),
         ("Oil", str(manifest["oil"])),

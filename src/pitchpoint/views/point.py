@@ -19,6 +19,7 @@ __all__ = [
     "period_of",
     "ratio_words",
     "speed_ratio",
+    "way_in_a_turn",
 ]
 
 _WAY, _TURN = length("", ""), angle("", "")
@@ -109,6 +110,16 @@ def ratio_words(outcome: Outcome) -> str:
     """That ratio as a number; empty where one of them travels."""
     ratio = speed_ratio(outcome)
     return show.number(ratio, 6) if isfinite(ratio) else ""
+
+
+def way_in_a_turn(outcome: Outcome) -> str:
+    """How far a loaded member that travels goes in a turn of the driver, in words; empty where it turns."""
+    manifest = outcome.manifest
+    if manifest.get("travels") != ["loaded"]:
+        return ""
+    motion = dict(zip(manifest["members"], manifest["motion"], strict=True))
+    ratio = abs(float(motion[manifest["loaded"]]) / float(motion[manifest["driver"]]))
+    return f"{show.number(float(_WAY.displayed(2.0 * np.pi * ratio)))} {show.unit(_WAY.display)}"
 
 
 def period_of(outcome: Outcome) -> Period:

@@ -229,8 +229,11 @@ class Page:
 
     @property
     def title(self) -> str:
-        """What the page is called."""
-        return " · ".join(self.outcomes) if self.designs else str(self.first["title"])
+        """What the page is called: designs, the title of the case, or without one what its gears are."""
+        if self.designs:
+            return " · ".join(self.outcomes)
+        titled = self.first["title"] != self.first["case"]
+        return str((not titled and self.first.get("designation")) or self.first["title"])
 
     @property
     def cases(self) -> str:

@@ -338,6 +338,13 @@ class CylindricalGears(GearsTable):
         return self.model_copy(update={"flank": "right" if self.flank == "left" else "left"})
 
     @property
+    def designation(self) -> str:
+        """Spur or helical, of gears or with a ring."""
+        first, second = self.tooth_numbers
+        kind = "Helical" if self.helix_angle else "Spur"
+        return f"{kind} {'pair' if self.teeth[1] > 0 else 'gear in a ring'} {first:g}/{second:g}"
+
+    @property
     def tooth_numbers(self) -> tuple[float, float]:
         """Of both members, in magnitude."""
         first, second = self.teeth

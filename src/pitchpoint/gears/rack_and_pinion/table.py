@@ -68,6 +68,11 @@ class RackAndPinionGears(GearsTable):
     """Flanks that touch, as seen with the tooth's tip up."""
 
     @property
+    def designation(self) -> str:
+        """With the number of teeth of the pinion."""
+        return f"{super().designation}, {self.teeth:g} teeth"
+
+    @property
     def opposed(self) -> "RackAndPinionGears":
         """The same gears pressing their other flanks."""
         return self.model_copy(update={"flank": "right" if self.flank == "left" else "left"})

@@ -408,6 +408,12 @@ class StrainWaveGears(GearsTable):
     """What flexspline and bearing bear, for load limits."""
 
     @property
+    def designation(self) -> str:
+        """With the teeth of flexspline and circular spline."""
+        first, second = self.tooth_numbers
+        return f"Strain wave gear {first:g}/{second:g}"
+
+    @property
     def tooth_numbers(self) -> tuple[float, float]:
         """Of both members, in magnitude."""
         first, second = self.teeth

@@ -89,6 +89,12 @@ class TorusGears(GearsTable):
         return self.model_copy(update={"flank": other, "inclination": -self.inclination})
 
     @property
+    def designation(self) -> str:
+        """With the numbers of teeth of both gears."""
+        first, second = self.teeth
+        return f"Torus-involute pair {first:g}/{second:g}"
+
+    @property
     def tooth_numbers(self) -> tuple[float, float]:
         """Of both members."""
         return self.teeth

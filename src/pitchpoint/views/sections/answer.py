@@ -26,7 +26,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
-from pitchpoint.views.point import operating_point, speed_ratio
+from pitchpoint.views.point import operating_point, speed_ratio, way_in_a_turn
 from pitchpoint.views.screen import cell, efficiency_of, head, shown
 from pitchpoint.views.section import (
     Block,
@@ -119,6 +119,13 @@ def _ratio(outcome: Outcome) -> str:
     )
 
 
+def _travel(outcome: Outcome) -> str:
+    """Way of a loaded member that travels in a turn of the driver, in words; empty where it turns."""
+    way = way_in_a_turn(outcome)
+    driver, loaded = (show.the(outcome.manifest[end]) for end in ("driver", "loaded"))
+    return f"{way} of {loaded} in a turn of {driver}" if way else ""
+
+
 def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
     """What the top of the page says about one variant."""
     manifest, parts = outcome.manifest, outcome.parts
@@ -136,6 +143,7 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         "averaging": "" if single else _averaging(outcome),
         "operation": operation_words(outcome),
         "ratio": "" if single else _ratio(outcome),
+        "travel": "" if single else _travel(outcome),
         "laws": manifest["laws"],
         "finished": manifest["finished"],
         "settings": set_for_run(manifest),
