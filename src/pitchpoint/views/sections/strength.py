@@ -209,11 +209,14 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
             most = data[stress].isel(largest)
             value = show.quantity(stress, float(most), of=data)
             key = f"materials.gear_{int(largest['gear']) + 1}"
-            lacks = (
-                f"no safety: {key} has no limits; largest at {_place(most, outcome)}; name one that has "
-                f"them, or give strength.sigma_{limit}"
-            )
-            detail = "; ".join([*_doubted(outcome, most, stress), lacks])
+            place = f"at {_place(most, outcome)}"
+            lacks = f"no safety: {key} has no limits"
+            if "stage" in most.coords:  # others may not be rated
+                lacks = f"{place}; {lacks}"
+            else:
+                lacks = f"{lacks}; largest {place}"
+            more = f"name one that has them, or give strength.sigma_{limit}"
+            detail = "; ".join([*_doubted(outcome, most, stress), lacks, more])
             yield KeyFigure(order, f"Stress of {where}", value, detail)
 
 
