@@ -210,13 +210,11 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
             value = show.quantity(stress, float(most), of=data)
             key = f"materials.gear_{int(largest['gear']) + 1}"
             place = f"at {_place(most, outcome)}"
-            lacks = f"no safety: {key} has no limits"
-            if "stage" in most.coords:  # others may not be rated
-                lacks = f"{place}; {lacks}"
-            else:
-                lacks = f"{lacks}; largest {place}"
+            lacks = [f"no safety: {key} has no limits", f"largest {place}"]
+            if "stage" in most.coords:
+                lacks = [place, lacks[0]]  # other stages may not be rated
             more = f"name one that has them, or give strength.sigma_{limit}"
-            detail = "; ".join([*_doubted(outcome, most, stress), lacks, more])
+            detail = "; ".join([*_doubted(outcome, most, stress), *lacks, more])
             yield KeyFigure(order, f"Stress of {where}", value, detail)
 
 
