@@ -269,7 +269,7 @@ def test_every_family_names_a_key_to_explore(table: type[GearsTable]) -> None:
         ),
         (["--over", "loss_map.count=2:3:2"], "cannot be swept"),
         (["-o", "pair.toml"], "ends in .html"),
-        (["--variant", "none"], "is not a variant of this case"),
+        (["--variant", "none"], "this case has no variants"),
         (["--set", "gears.teeth=3"], "teeth"),
     ],
 )

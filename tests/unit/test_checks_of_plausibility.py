@@ -19,6 +19,7 @@ from pitchpoint.analyses.plausibility import (
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.solids import BY_VALUE, SolidInUse
 from pitchpoint.citations import cite
+from pitchpoint.gears.pairs import largest_radius
 from pitchpoint.lubrication.registry import BOUNDARY
 from pitchpoint.materials import solids
 from pitchpoint.materials.data import Datum
@@ -48,6 +49,13 @@ def cycle(**changes: Any) -> dict[str, np.ndarray]:
     return {**run, "weight": np.array([0.25, 0.75]), **changes}
 
 
+class Cut(SimpleNamespace):
+    """Gears whose conformal contacts are cut."""
+
+
+largest_radius.register(Cut)(lambda mesh: mesh.largest_radius)
+
+
 def at_work(*gears: SolidInUse, law: Any = CONSTANT, **changes: Any) -> AtWork:
     shape, rolling = changes.pop("shape", "line"), changes.pop("rolling", "none")
     largest, pitch = changes.pop("largest_radius", np.inf), changes.pop("pitch", 0.1)
@@ -56,7 +64,7 @@ def at_work(*gears: SolidInUse, law: Any = CONSTANT, **changes: Any) -> AtWork:
     built: Any = SimpleNamespace(
         solids=gears or (STEEL, STEEL),
         design=SimpleNamespace(
-            mesh=SimpleNamespace(shape=shape, largest_radius=largest),
+            mesh=Cut(shape=shape, largest_radius=largest),
             roughness=SimpleNamespace(**flanks),
         ),
         modulus=226e9,
@@ -144,7 +152,7 @@ def test_roots_that_break_at_once(gear: SolidInUse, stress: float, words: str) -
         solids=(STEEL, gear), case=SimpleNamespace(gears=SimpleNamespace(rated=True))
     )
     strength = xr.Dataset({"root_stress": (("gear",), [1e8, stress])})
-    told = unlikely(SimpleNamespace(meshes=[mesh]), {"strength": strength})  # type: ignore[arg-type]
+    told = unlikely(SimpleNamespace(single={1: mesh}), {"strength": strength})  # type: ignore[arg-type]
     assert len(told) == bool(words)
     assert words in "".join(told)
 

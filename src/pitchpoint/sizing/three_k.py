@@ -202,6 +202,7 @@ def three_k_tables(chosen: xr.Dataset, module: str, face_width: str) -> dict[str
         InputError: several sets; text that is no length.
 
     Example:
+        >>> from pitchpoint.sizing.three_k import three_k_sets
         >>> sets = three_k_sets((90.0, 110.0), sun=(12, 13), planet=(45, 60), count=1)
         >>> tables = three_k_tables(sets.isel(set=0), "0.5 mm", "8 mm")
         >>> [stage["gears"]["teeth"] for stage in tables["stages"]]
