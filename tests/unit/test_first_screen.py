@@ -211,7 +211,7 @@ def test_a_drive_of_stages_tells_ratio_output_speed_and_what_is_doubtful_of_a_st
     (outcome,) = outcomes.values()
     by_name = {one.name: one.detail for one in key_figures(in_order(), outcome)}
     assert re.match(
-        r"later losses add 1\.1 % at roots, 0\.\d+ % at flanks; no ",
+        r"later losses add 1\.1 % at roots, 0\.\d+ % at flanks; at gear 2 of stage 1; no ",
         by_name["Stress of roots"],
     )
     rows = {row[""]: row["default"] for row in beside_each_other(outcomes)}
