@@ -2,6 +2,7 @@
 
 from math import radians
 
+import jax
 import numpy as np
 import pytest
 
@@ -48,6 +49,12 @@ def test_the_other_sense_of_turning_and_locking():
         _, back = three_k.three_k_efficiencies(teeth[1], etas)
         assert (back > 0.0) == (more > 0.0)
         assert back < 1e-3
+
+
+def test_a_program_in_single_precision_has_the_same(sets):
+    with jax.enable_x64(False):
+        alike = three_k.three_k_sets((90.0, 110.0), **FEW)
+    assert alike.equals(sets)
 
 
 def test_what_is_found_is_what_was_asked_for(sets):

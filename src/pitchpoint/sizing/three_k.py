@@ -15,6 +15,7 @@ import xarray as xr
 from jaxtyping import Float, Int
 
 from pitchpoint import units
+from pitchpoint._jax import double_precision
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pairs
 from pitchpoint.gears.table import SHIFT
@@ -112,6 +113,7 @@ def three_k_efficiencies(
     return np.asarray(there), np.asarray(np.maximum(back, 0.0))
 
 
+@double_precision()
 def three_k_sets(
     ratio: tuple[float, float],
     *,
