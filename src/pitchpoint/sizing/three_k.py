@@ -28,6 +28,14 @@ MESHES = ("sun and planet", "planet and held ring", "planet and output ring")
 _ALPHA = radians(20.0)
 _INVOLUTE = tan(_ALPHA) - _ALPHA
 _DEDENDUM, _SUN_FILLET, _FILLET = 1.25, 0.38, 0.2
+
+_PAIRS = (
+    (("sun", "planet"), (0, 1), 1, (_SUN_FILLET, _FILLET)),
+    (("planet", "ring"), (1, 2), -1, (_FILLET, _FILLET)),
+    (("planet", "output ring"), (3, 4), -1, (_FILLET, _FILLET)),
+)
+"""Of each mesh the bodies, its gears, the sign of the second number of teeth, and fillets [modules]."""
+
 _THIN_TIP = 0.2
 _BETWEEN_PLANETS = 0.5
 """Least distance of neighbouring planets [modules]."""
@@ -47,6 +55,7 @@ _SPARE = 8
 """Sets that are refined and checked for each one that is asked for: some teeth cannot be made."""
 
 Values = Float[np.ndarray, "*#b"]
+Numbers = np.ndarray | np.number[Any] | int
 
 
 def mesh_efficiency(
@@ -98,7 +107,8 @@ def three_k_efficiencies(
         >>> round(float(there), 10), round(float(back), 10)
         (0.7699379528, 0.7056033545)
     """
-    (sun, held, output), (i1, i2) = np.moveaxis(meshes, -1, 0), _basic_ratios(teeth)
+    sun, held, output = np.moveaxis(meshes, -1, 0)
+    i1, i2 = _basic_ratios(*np.moveaxis(teeth, -1, 0))
     with np.errstate(invalid="ignore", divide="ignore"):
         there = np.where(
             i2 < 1.0,
@@ -217,26 +227,21 @@ def three_k_tables(chosen: xr.Dataset, module: str, face_width: str) -> dict[str
     shortened = round(float(chosen["tip_alteration"]), 6)
     distance = 1e3 * units.parse(module, "length") * float(chosen["centre_distance"])
     units.parse(face_width, "length")
-    meshes: list[tuple[list[str], list[int], list[int], list[float], list[float]]] = [
-        (["sun", "planet"], [0, 1], [1, 1], [shortened, shortened], [_SUN_FILLET, _FILLET]),
-        (["planet", "ring"], [1, 2], [1, -1], [shortened, 0.0], [_FILLET, _FILLET]),
-        (["planet", "output ring"], [3, 4], [1, -1], [0.0, 0.0], [_FILLET, _FILLET]),
-    ]
     stages = [
         {
-            "bodies": bodies,
+            "bodies": [*bodies],
             "gears": {
-                "teeth": [sign * z[gear] for gear, sign in zip(gears, signs, strict=True)],
+                "teeth": [z[first], sign * z[second]],
                 "module": module,
                 "face_width": face_width,
-                "profile_shift": [x[gear] for gear in gears],
-                "tip_alteration": tips,
-                "fillet_radius": fillets,
+                "profile_shift": [x[first], x[second]],
+                "tip_alteration": [shortened if gear < 2 else 0.0 for gear in (first, second)],
+                "fillet_radius": [*fillets],
                 "dedendum": _DEDENDUM,
                 "centre_distance": f"{distance:.10g} mm",
             },
         }
-        for bodies, gears, signs, tips, fillets in meshes
+        for bodies, (first, second), sign, fillets in _PAIRS
     ]
     ends = {"input": "sun", "output": "output ring", "held": "ring"}
     return {"stages": stages, "train": {**ends, "planets": int(chosen.attrs["planets"])}}
@@ -278,13 +283,11 @@ def _teeth(task: _Task) -> Iterator[Int[np.ndarray, "set 5"]]:
     """Numbers of teeth of such a ratio that assemble at equal angles, with rings about as large as needed."""
     second = np.arange(task.planet[0], task.planet[1] + 1)
     off = np.arange(-_OFF_NOMINAL, _OFF_NOMINAL + 1)
-    planet, held_off, output, output_off = np.meshgrid(
-        second, off, second, off, indexing="ij", sparse=True
-    )
+    planet, held_off, output, output_off = np.ix_(second, off, second, off)
     for sun in range(task.sun[0], task.sun[1] + 1):
         held_ring = sun + 2 * planet + held_off
         output_ring = held_ring - planet + output + output_off
-        i1, i2 = held_ring / sun, held_ring * output / (planet * output_ring)
+        i1, i2 = _basic_ratios(sun, planet, held_ring, output, output_ring)
         with np.errstate(divide="ignore"):
             size = np.abs((1.0 + i1) / (1.0 - i2))
         step = task.planets * np.gcd(planet, output)
@@ -292,20 +295,14 @@ def _teeth(task: _Task) -> Iterator[Int[np.ndarray, "set 5"]]:
         fits &= (sun + held_ring) % task.planets == 0
         fits &= (output_ring * planet - held_ring * output) % step == 0
         fits &= np.maximum(held_ring, output_ring) <= task.largest_ring
-        one, _, two, _ = (
-            axis.ravel()[index]
-            for axis, index in zip(
-                (planet, held_off, output, output_off), np.nonzero(fits), strict=True
-            )
-        )
-        of_held = np.broadcast_to(held_ring, fits.shape)[fits]
-        of_output = np.broadcast_to(output_ring, fits.shape)[fits]
-        yield np.stack([np.full_like(one, sun), one, of_held, two, of_output], axis=1)
+        gears = (np.array(sun), planet, held_ring, output, output_ring)
+        yield np.stack([np.broadcast_to(z, fits.shape)[fits] for z in gears], axis=1)
 
 
-def _basic_ratios(teeth: Float[np.ndarray, "*#b 5"]) -> tuple[Values, Values]:
+def _basic_ratios(
+    sun: Numbers, planet: Numbers, held: Numbers, second: Numbers, output: Numbers
+) -> tuple[Values, Values]:
     """Ratio of sun to held ring, and of output to held ring, as the carrier sees them; both positive."""
-    sun, planet, held, second, output = np.moveaxis(teeth, -1, 0)
     return np.asarray(held / sun), np.asarray(held * second / (planet * output))
 
 
@@ -336,7 +333,11 @@ class _Points:
     @property
     def worse(self) -> np.ndarray:
         """The smaller of both efficiencies; below zero where teeth cannot be made so."""
-        return np.asarray(np.nan_to_num(np.minimum(self.there, self.back), nan=-1.0))
+        return _worse(self.there, self.back)
+
+
+def _worse(there: np.ndarray, back: np.ndarray) -> np.ndarray:
+    return np.asarray(np.nan_to_num(np.minimum(there, back), nan=-1.0))
 
 
 def _best(teeth: np.ndarray, grid: Sequence[np.ndarray], task: _Task) -> _Points:
@@ -350,8 +351,7 @@ def _best(teeth: np.ndarray, grid: Sequence[np.ndarray], task: _Task) -> _Points
     for angle in angles.T[:, :, None]:
         nominal = (z[0] + z[1]) / 2.0
         distance = nominal * cos(_ALPHA) / np.cos(angle)
-        outer = _Mesh(z[1], z[0], first, distance)
-        outer = _Mesh(z[1], z[0], first, distance, outer.clearance_keeping)
+        outer = _Mesh(z[1], z[0], first, distance, tip=None)
         held = _Mesh(z[1], -z[2], first, distance, outer.tip)
         last = _Mesh(z[3], -z[4], second, distance)
         room = (
@@ -374,7 +374,7 @@ def _best(teeth: np.ndarray, grid: Sequence[np.ndarray], task: _Task) -> _Points
             axis=-1,
         )
         there, back = three_k_efficiencies(teeth[:, None], meshes)
-        worse = np.where(fine, np.nan_to_num(np.minimum(there, back), nan=-1.0), -1.0)
+        worse = np.where(fine, _worse(there, back), -1.0)
         of_first = np.argmax(worse, axis=1)
         at, beside = (row, of_first), (row, of_second)
         shifts = [
@@ -386,10 +386,10 @@ def _best(teeth: np.ndarray, grid: Sequence[np.ndarray], task: _Task) -> _Points
         ]
         unfit = np.where(worse[at] < 0.0, np.nan, 0.0)
         point = _Points(
-            np.broadcast_to(angle, (len(teeth), 1))[:, 0],
+            angle[:, 0],
             distance[:, 0],
             np.stack(shifts, axis=1),
-            outer.tip[:, 0] if outer.tip.shape[1] == 1 else outer.tip[at],
+            outer.tip[:, 0],
             np.stack([outer.ratio[at], held.ratio[at], last.ratio[beside]], axis=1),
             there[at] + unfit,
             back[at] + unfit,
@@ -418,7 +418,7 @@ class _Mesh:
         planet, mate: teeth, of a ring negative.
         shift: of the planet gear.
         distance: centre distance, positive.
-        tip: tip alteration of the planet gear and of a sun.
+        tip: tip alteration of the planet gear and of a sun; None for the one that keeps their clearance.
     """
 
     def __init__(
@@ -427,16 +427,17 @@ class _Mesh:
         mate: Values,
         shift: Values,
         distance: Values,
-        tip: Values | float = 0.0,
+        tip: Values | float | None = 0.0,
     ) -> None:
-        self.teeth, self.shift, self.tip = (planet, mate), shift, np.asarray(tip)
+        self.teeth, self.shift = (planet, mate), shift
         total = planet + mate
         cosine = np.abs(total) * cos(_ALPHA) / (2.0 * distance)
         self._angle = np.arccos(np.where(cosine < 1.0, cosine, np.nan))
         shift_sum = total * (np.tan(self._angle) - self._angle - _INVOLUTE) / (2.0 * tan(_ALPHA))
         self._line = distance * np.sin(self._angle)
         self.mate_shift = shift_sum - shift
-        self.clearance_keeping = np.sign(total) * distance - total / 2.0 - shift_sum
+        keeping = np.sign(total) * distance - total / 2.0 - shift_sum
+        self.tip = np.asarray(keeping if tip is None else tip)
         mate_tip = self.tip * (mate > 0.0)
         self.tips = tuple(
             np.abs(teeth / 2.0 + 1.0 + own + altered)
@@ -511,28 +512,23 @@ def _tooth_is_sound(teeth: Values, shift: Values, tip: Values, fillet: float) ->
 def _can_be_made(teeth: np.ndarray, points: _Points) -> np.ndarray:
     """True for sets of which every mesh passes the checks of a pair."""
     made = np.ones(len(teeth), bool)
-    for planet, mate, sign, fillet in (
-        (1, 0, 1, _SUN_FILLET),
-        (1, 2, -1, _FILLET),
-        (3, 4, -1, _FILLET),
-    ):
-        shortened = np.stack([points.tip * (planet == 1), points.tip * (mate == 0)], axis=1)
+    for _, (first, second), sign, fillets in _PAIRS:
         made &= build_cylindrical_pairs(
-            teeth=np.stack([teeth[:, planet], sign * teeth[:, mate]], axis=1),
+            teeth=np.stack([teeth[:, first], sign * teeth[:, second]], axis=1),
             module=1.0,
             pressure_angle=_ALPHA,
             face_width=1.0,
-            profile_shift=points.shifts[:, [planet, mate]],
+            profile_shift=points.shifts[:, [first, second]],
             dedendum=(_DEDENDUM, _DEDENDUM),
-            fillet_radius=(_FILLET, fillet),
-            tip_alteration=shortened,
+            fillet_radius=fillets,
+            tip_alteration=np.stack([points.tip * (gear < 2) for gear in (first, second)], axis=1),
             centre_distance=points.distance,
         ).good
     return made
 
 
 def _dataset(teeth: np.ndarray, points: _Points, compared: int, task: _Task) -> xr.Dataset:
-    i1, i2 = _basic_ratios(teeth)
+    i1, i2 = _basic_ratios(*teeth.T)
     each, of_gear, of_mesh = ("set",), ("set", "gear"), ("set", "mesh")
     columns: dict[str, tuple[tuple[str, ...], Any, str]] = {
         "ratio": (each, (1.0 + i1) / (1.0 - i2), "ratio of sun to output ring"),
