@@ -5,14 +5,15 @@ from functools import cache
 import numpy as np
 import pytest
 
+from pitchpoint.analyses.analysis import Subject
 from pitchpoint.analyses.plausibility import unlikely
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.running import from_rest
-from pitchpoint.doubts import doubts_of
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.running_torque import torques_at_rest
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import CollectedInputError, InputError
+from pitchpoint.results.by_stage import of_stage, stages_of
 from pitchpoint.runs.run import load_case
 
 SPEED, LOAD = 3000.0 * np.pi / 30.0, 40.0
@@ -220,19 +221,51 @@ def test_wind_up_and_inertia_are_those_of_each_set_through_the_ratios():
     )
 
 
+def test_meshes_of_sets_in_a_row_are_those_of_each_set_by_itself():
+    """Strength and inspection at the load and speed without losses; the loads at work with them."""
+    built = two_sets()
+    labels = [
+        f"{number} ({pair})" for number in (1, 2) for pair in ("sun and planet", "planet and ring")
+    ]
+    sets = [
+        alone(SETS[0], LOAD / RATIOS[1], SPEED),
+        alone(SETS[1], LOAD, SPEED / RATIOS[0]),
+    ]
+    whole, apart = of(built, "strength"), [of(one, "strength") for one in sets]
+    assert whole["stage"].values.tolist() == labels
+    for name in ("tangential_force", "contact_stress", "root_stress", "mesh_load_factor"):
+        each = np.concatenate([one[name].values for one in apart])
+        assert whole[name].values == pytest.approx(each, rel=1e-12), name
+    (inspection,) = ANALYSES["inspection"].parts(Subject(None, built))
+    spans = inspection.joined(built, [of_piece(inspection, built, n) for n in range(4)])
+    assert stages_of(spans) == (*labels,)
+    (by_itself,) = ANALYSES["inspection"].parts(Subject(None, sets[1]))
+    ring = by_itself.joined(sets[1], [of_piece(by_itself, sets[1], n) for n in range(2)])
+    for variable in ("span_measurement", "over_balls"):
+        got, want = of_stage(spans, labels[3])[variable], of_stage(ring, 2)[variable]
+        assert got.values == pytest.approx(want.values, rel=1e-12, nan_ok=True)
+    carried = built.carried_by_meshes(figures(built))
+    again = [one.carrying(load) for one, load in zip(sets, carried.tolist(), strict=True)]
+    loads = [mesh.case.operation.load for one in again for mesh in one.at_work]
+    assert [mesh.case.operation.load for mesh in built.at_work] == pytest.approx(loads, rel=1e-12)
+    assert not built.locked
+
+
+def of_piece(analysis, built, number):
+    """A piece of an analysis by its number."""
+    return analysis.compute(built, [*analysis.pieces(built)][number], lambda *_: None)
+
+
 def test_what_a_set_in_a_row_does_not_have_is_told_with_its_operating_point():
-    """Strength of a set is in a file of its own, at the torque and speed that stand in the sentence."""
+    """Sharing of planets is in a file of its own, at the torque and speed that stand in the sentence."""
     built = two_sets()
     told = [text for text in built.warnings if "planetary set" in text]
     assert len(told) == 2
     assert "torque 9.25926 N m and speed 3000 rpm" in told[0]
     assert "torque 40 N m and speed 666.667 rpm" in told[1]
-    for name in ("strength", "inspection", "load_limits", "film"):
-        assert "file of the set alone" in ANALYSES[name].why_not(built)
     assert "file of its own" in ANALYSES["train_period"].why_not(built)
     data = of(pair_before_set(), "strength")
-    assert data["stage"].values.tolist() == [1]
-    assert not [text for text in doubts_of(data.attrs) if text.startswith("Stage 2")]
+    assert data["stage"].values.tolist() == ["1", "2 (sun and planet)", "2 (planet and ring)"]
     assert unlikely(pair_before_set(), {"strength": data}) == []
 
 
@@ -244,8 +277,6 @@ def test_what_a_set_in_a_row_does_not_have_is_told_with_its_operating_point():
         ({"film": {"solver": "line"}}, {}, "stages.1.film", "a file of this set alone"),
         ({"wear": {"law": "archard_1953", "cycles": 1e6, "coefficient": 1e-6}}, {},
          "stages.1.wear", "a file of this set alone"),
-        ({"strength": {"life": "1000 h"}}, {}, "stages.1.strength", "rated in a file of this set"),
-        ({}, {"strength": {"life": "1000 h"}}, "strength", "rated in a file of this set alone"),
         ({"bodies": ["sun", "planet"]}, {}, "stages.1.bodies", "without a table [train]"),
         ({"gears": {**SETS[0], "teeth": [24, 30, 80]}}, {}, "stages.1.gears", ""),
         ({"gears": {**SETS[0], "planets": 5}}, {}, "stages.1.gears.planets", "fit"),

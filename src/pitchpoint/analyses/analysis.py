@@ -13,12 +13,11 @@ from pitchpoint.cases.schema import Study
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import Doubt, doubts_of, stored
 from pitchpoint.registry import Deferred
-from pitchpoint.results.by_stage import by_stage, of_stage, stages_of
+from pitchpoint.results.by_stage import Label, as_label, by_stage, of_stage, stages_of
 from pitchpoint.results.variable import Variable
 
 __all__ = [
     "ALONE",
-    "OF_SETS",
     "Analysis",
     "Piece",
     "Progress",
@@ -36,11 +35,6 @@ Piece = Mapping[str, Any]
 
 ALONE = "it is computed for one mesh; a stage in a file of its own has it"
 """Why a drive of several meshes has no part of a kind."""
-
-OF_SETS = (
-    "it is computed for one mesh; the meshes of a planetary set have it in a file of the set alone"
-)
-"""Why a drive whose stages are all planetary sets has no part of a kind."""
 
 
 class Progress(Protocol):
@@ -134,8 +128,8 @@ class Entry:
         """Why the part does not exist for a case; None where it does."""
         if self.of == "drive" or not isinstance(built, BuiltDrive):
             return self.lacks(built)
-        reasons = [ALONE] if self.of == "one mesh" else [*map(self.lacks, built.single.values())]
-        return None if None in reasons else [*reasons, OF_SETS][0]
+        reasons = [ALONE] if self.of == "one mesh" else [*map(self.lacks, built.meshes)]
+        return None if None in reasons else reasons[0]
 
     def shown(self, parts: Mapping[str, xr.Dataset]) -> Mapping[str, Any]:
         """Entries of `--json`; of a part of the meshes of a drive by stage."""
@@ -195,43 +189,39 @@ def of_stages(analysis: Analysis) -> Analysis:
         analysis: of a mesh.
     """
 
-    def meshes(built: BuiltDrive) -> dict[int, Built]:
-        each = built.at_work if analysis.under_load else built.stages
-        numbered = zip(built.numbers, each, strict=True)
-        return {
-            number: one
-            for number, one in numbered
-            if isinstance(one, Built) and analysis.lacks(one) is None
-        }
+    def meshes(built: BuiltDrive) -> dict[Label, Built]:
+        each = built.at_work if analysis.under_load else built.meshes
+        labelled = zip(built.mesh_labels, each, strict=True)
+        return {label: one for label, one in labelled if analysis.lacks(one) is None}
 
     def pieces(built: BuiltDrive) -> Iterator[Piece]:
-        for number, mesh in meshes(built).items():
-            yield from ({"stage": number, **piece} for piece in analysis.pieces(mesh))
+        for label, mesh in meshes(built).items():
+            yield from ({"stage": label, **piece} for piece in analysis.pieces(mesh))
             if analysis.onward is not None:
                 return
 
     def compute(built: BuiltDrive, piece: Piece, progress: Progress) -> xr.Dataset:
-        number = piece["stage"]
-        return _numbered(analysis.compute(meshes(built)[number], piece, progress), number)
+        label = piece["stage"]
+        return _labelled(analysis.compute(meshes(built)[label], piece, progress), label)
 
     def onward(built: BuiltDrive, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
-        there, number = meshes(built), int(last.attrs[_OF_STAGE])
+        there, label = meshes(built), as_label(last.attrs[_OF_STAGE])
         march = analysis.onward
-        further = None if march is None else march(there[number], last, progress)
+        further = None if march is None else march(there[label], last, progress)
         if further is not None:
-            return _numbered(further, number)
-        behind = [*there][[*there].index(number) + 1 :]
+            return _labelled(further, label)
+        behind = [*there][[*there].index(label) + 1 :]
         begun = ((n, piece) for n in behind for piece in analysis.pieces(there[n]))
         return next((compute(built, {"stage": n, **piece}, progress) for n, piece in begun), None)
 
     def joined(built: BuiltDrive, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         there = meshes(built)
-        groups = groupby(parts, key=lambda part: int(part.attrs[_OF_STAGE]))
-        each = {number: analysis.joined(there[number], [*own]) for number, own in groups}
+        groups = groupby(parts, key=lambda part: as_label(part.attrs[_OF_STAGE]))
+        each = {label: analysis.joined(there[label], [*own]) for label, own in groups}
         for data in each.values():
             data.attrs.pop(_OF_STAGE, None)
         whole = by_stage(each)
-        if analysis.under_load and built.at_work is built.stages:
+        if analysis.under_load and built.locked:
             whole.attrs.update(stored([*doubts_of(whole.attrs), _UNDER_NO_LOSSES]))
         return whole
 
@@ -246,11 +236,11 @@ _UNDER_NO_LOSSES = Doubt(
     brief="Friction locks the drive: loads of stages are without losses.",
 )
 _OF_STAGE = "of_stage"
-"""Attribute of a piece that is of one stage: its number."""
+"""Attribute of a piece that is of one stage: its label."""
 
 
-def _numbered(piece: xr.Dataset, number: int) -> xr.Dataset:
-    return piece.assign_attrs({_OF_STAGE: number})
+def _labelled(piece: xr.Dataset, label: Label) -> xr.Dataset:
+    return piece.assign_attrs({_OF_STAGE: str(label)})
 
 
 @dataclass(frozen=True, kw_only=True)

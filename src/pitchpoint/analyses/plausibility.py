@@ -362,8 +362,7 @@ def root_stress(result: Result) -> str | None:
     if strength is None:
         return None
     built = result.built
-    meshes = (built,) if isinstance(built, Built) else built.single.values()
-    rated = [used for one in meshes if one.case.gears.rated for used in one.solids]
+    rated = [used for one in built.meshes if one.case.gears.rated for used in one.solids]
     stresses = np.ravel(strength["root_stress"].values)
     over = [
         (float(stress) / limit, float(stress), limit, why, place % 2 + 1)

@@ -10,7 +10,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax
-from pitchpoint.analyses.analysis import OF_SETS, Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
@@ -19,6 +19,7 @@ from pitchpoint.efficiency.summary import in_chunks, in_groups
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import bare, ends_at_tips, rated_pair
 from pitchpoint.programs import program
+from pitchpoint.results.by_stage import Label, alike_labels
 from pitchpoint.results.store import dataset
 from pitchpoint.strength.limits import STRESS_CORRECTION
 from pitchpoint.strength.load_factors import MOST_RESONANCE
@@ -77,11 +78,7 @@ Numbers = Mapping[str, np.ndarray]
 
 def _unrated(built: Ready) -> str | None:
     """Why there are no teeth to rate."""
-    if _rated(built):
-        return None
-    if isinstance(built, BuiltDrive) and built.sets:
-        return OF_SETS
-    return "ISO 6336 rates pairs of cylindrical gears, not these"
+    return None if _rated(built) else "ISO 6336 rates pairs of cylindrical gears, not these"
 
 
 def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
@@ -93,14 +90,14 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     labels: dict[str, list[Any]] = {"gear": ["gear 1", "gear 2"]}
     if several:
         values = {name: np.stack([found[name] for found in each]) for name in each[0]}
-        labels = {"stage": [number for number, _ in stages], **labels}
+        labels = {"stage": alike_labels([label for label, _ in stages]), **labels}
     dims = {name: tuple(labels)[: np.ndim(found)] for name, found in values.items()}
     extremes = _extremes(each)
 
     def told(of: Callable[[Built, Numbers], Iterable[str]]) -> list[str]:
         pairs = zip(stages, each, strict=True)
-        every = [(number, text) for (number, one), found in pairs for text in of(one, found)]
-        return [in_stage(number, text) if several else text for number, text in every]
+        every = [(label, text) for (label, one), found in pairs for text in of(one, found)]
+        return [in_stage(label, text) if several else text for label, text in every]
 
     return dataset(
         {name: (dims[name], found) for name, found in values.items()}
@@ -115,10 +112,10 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     )
 
 
-def _rated(built: Ready) -> list[tuple[int, Built]]:
-    """Meshes that are rated with their numbers, in the order of the power."""
-    stages = [(1, built)] if isinstance(built, Built) else [*built.single.items()]
-    return [one for one in stages if one[1].case.gears.rated]
+def _rated(built: Ready) -> list[tuple[Label, Built]]:
+    """Meshes that are rated with their labels, in the order of the power."""
+    meshes = zip(built.mesh_labels, built.meshes, strict=True)
+    return [(label, one) for label, one in meshes if one.case.gears.rated]
 
 
 def _ratings(pairs: Sequence[Built]) -> list[Numbers]:

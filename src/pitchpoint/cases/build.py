@@ -283,9 +283,29 @@ class Built:
         return (1,)
 
     @property
+    def mesh_labels(self) -> "list[int | str]":
+        """Of its only mesh, which needs none."""
+        return [""]
+
+    @property
     def stage_bodies(self) -> list[str]:
         """Bodies of each stage in words; none of one mesh."""
         return []
+
+    @property
+    def copies(self) -> tuple[int, ...]:
+        """How many there are of its mesh."""
+        return (1,)
+
+    @property
+    def steps(self) -> np.ndarray:
+        """Torque on the loaded member of its mesh for a unit at the output."""
+        return np.ones(1)
+
+    @property
+    def at_work(self) -> "tuple[Built, ...]":
+        """Meshes under the torques that they carry with all losses: itself."""
+        return (self,)
 
     @property
     def on_strength(self) -> tuple[str, ...]:
@@ -458,6 +478,8 @@ class Built:
         Args:
             load: torque or force that the loaded member carries [N m or N].
         """
+        if load == self.case.operation.load:
+            return self
         point = self.case.operation.model_copy(update={self.case.gears.load: load})
         case = self.case.model_copy(update={"operation": point})
         return replace(self, case=case, operation=operation_at(point)).warmed

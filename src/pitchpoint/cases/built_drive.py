@@ -226,12 +226,6 @@ class BuiltDrive:
         return found
 
     @property
-    def single(self) -> dict[int, Built]:
-        """Stages that are one mesh by their number, in the order of the power."""
-        each = zip(self.numbers, self.stages, strict=True)
-        return {number: one for number, one in each if isinstance(one, Built)}
-
-    @property
     def sets(self) -> "dict[int, BuiltTrain]":
         """Stages that are planetary sets by their number, in the order of the power."""
         each = zip(self.numbers, self.stages, strict=True)
@@ -330,8 +324,7 @@ class BuiltDrive:
     @property
     def copies(self) -> tuple[int, ...]:
         """How many there are of each mesh."""
-        each = (one.copies if isinstance(one, BuiltTrain) else (1,) for one in self.stages)
-        return tuple(count for counts in each for count in counts)
+        return tuple(count for one in self.stages for count in one.copies)
 
     @property
     def steps(self) -> np.ndarray:
@@ -340,27 +333,30 @@ class BuiltDrive:
         Without losses; the output turns as much for a unit turn of that member alone.
         """
         onward = np.abs(self.motion[-1] / np.array(self.motion[1:]))
-        each = zip(onward, self.stages, strict=True)
-        steps = [step * (one.steps if isinstance(one, BuiltTrain) else 1.0) for step, one in each]
-        return np.hstack(steps)
+        return np.hstack([step * one.steps for step, one in zip(onward, self.stages, strict=True)])
 
     @cached_property
-    def at_work(self) -> "tuple[Built | BuiltTrain, ...]":
-        """Stages under the mean torques that they carry with all losses, by the first friction law.
-
-        Where friction locks the drive they are those without losses, and planetary sets always.
-        """
+    def _carried(self) -> list[float]:
+        """Mean torque that each stage carries with all losses, by the first law; none if it locks."""
         figures = drive_figures([(self.design, self.operation)], self.models[0].stages)
         carried = self.carried_by_meshes({name: values[0] for name, values in figures.items()})
-        if np.isnan(carried).any():
-            return self.stages
-        pairs = zip(self.stages, carried.tolist(), strict=True)
-        return tuple(
-            one
-            if isinstance(one, BuiltTrain) or one.case.operation.load == torque
-            else one.carrying(torque)
-            for one, torque in pairs
-        )
+        return [] if np.isnan(carried).any() else carried.tolist()
+
+    @property
+    def locked(self) -> bool:
+        """True if friction locks the drive under the first law."""
+        return not self._carried
+
+    @cached_property
+    def at_work(self) -> tuple[Built, ...]:
+        """Meshes under the mean torques that they carry with all losses, by the first friction law.
+
+        Where friction locks the drive they are those without losses.
+        """
+        if self.locked:
+            return self.meshes
+        each = zip(self.stages, self._carried, strict=True)
+        return tuple(mesh for one, torque in each for mesh in one.carrying(torque).at_work)
 
     def carried_by_meshes(self, figures: Mapping[str, np.ndarray]) -> np.ndarray:
         """Torque on the loaded member of each mesh with all losses: what drives the stage behind it.
@@ -509,6 +505,28 @@ class BuiltTrain(BuiltDrive):
     def steps(self) -> np.ndarray:
         """Torque on the driven member of each mesh, all its copies together, for a unit at the output."""
         return np.array([float(one.carried) for one in self.design.meshes])
+
+    def carrying(self, load: float) -> "BuiltTrain":
+        """The same train under another load, see `Built.carrying`.
+
+        Args:
+            load: torque at the output [N m].
+        """
+        point = self.case.operation
+        if load == point.load:
+            return self
+        point = point.model_copy(update={"torque": load})
+        loads = load * self.steps / np.array(self.copies)
+        stages = tuple(one.carrying(own) for one, own in zip(self.stages, loads, strict=True))
+        each = zip(self.design.meshes, stages, strict=True)
+        meshes = tuple(replace(place, design=one.design) for place, one in each)
+        return replace(
+            self,
+            case=self.case.model_copy(update={"operation": point}),
+            stages=stages,
+            design=replace(self.design, meshes=meshes),
+            operation=operation_at(point),
+        )
 
     def carried_by_meshes(self, figures: Mapping[str, np.ndarray]) -> np.ndarray:
         """Torque on the driven member of one copy of each mesh with all losses, see `BuiltDrive`."""

@@ -248,9 +248,8 @@ def _in_stage(row: Row, number: int, *, given: bool) -> Row:
 
 def following_rows(built: Ready) -> Iterator[Row]:
     """Rows of what follows from gears, materials and oil; of a drive by stage."""
-    labels = built.mesh_labels if isinstance(built, BuiltDrive) else [""]
     one_oil = all(one.lubricant == built.meshes[0].lubricant for one in built.meshes)
-    for label, one in zip(labels, built.meshes, strict=True):
+    for label, one in zip(built.mesh_labels, built.meshes, strict=True):
         rows = [
             *_dimensions(one),
             *_inertia(one),

@@ -225,13 +225,13 @@ class StageRecord(_Kept):
     """What is known of a mesh of a drive.
 
     Attributes:
-        number: of the stage in the file.
+        number: of the stage in the file; of a mesh of a planetary set, which come behind, its label.
         bodies: in words, where stages are meshes of a train; else empty.
         speed: of its driver [rad/s or m/s].
         load: that its loaded member carries without losses, of one copy [N m or N].
     """
 
-    number: int
+    number: int | str
     bodies: str
     members: list[str]
     driver: str

@@ -1918,12 +1918,7 @@ def _check_passing(stages: Mapping[str, StageTable]) -> None:
                 )
 
 
-OF_SET_ALONE = (
-    "was given; strength of a planetary set is rated in a file of this set alone, with the torque and speed "
-    "that it has here: leave this table out"
-)
 _OF_NO_SET = {
-    "strength": OF_SET_ALONE,
     "driver": "is that of a mesh; what drives a planetary set is input, a key of its gears",
     **dict.fromkeys(
         ("place", "turn"),

@@ -24,7 +24,6 @@ from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready, ends_of
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import (
-    OF_SET_ALONE,
     SPEED,
     TEMPERATURE,
     UNRATED,
@@ -143,7 +142,7 @@ def _alone(case: DriveCase, document: Document) -> list[_Stage]:
 def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
     alone = _alone(case, document)
     _check_laws(alone)
-    _check_rated(case, alone)
+    _check_rated(case)
     if case.train is None:
         alone = _following(alone, document)
         points = _points(case.operation, alone, document)
@@ -284,13 +283,10 @@ def _check_laws(alone: Sequence[_Stage]) -> None:
             )
 
 
-def _check_rated(case: DriveCase, alone: Sequence[_Stage]) -> None:
+def _check_rated(case: DriveCase) -> None:
     """InputError for a table on strength that no stage has a use for."""
-    if case.strength is None:
-        return
-    meshes = [one.case.gears for one in alone if isinstance(one.case, Case)]
-    if not any(gears.rated for gears in meshes):
-        raise InputError(UNRATED if len(meshes) == len(alone) else OF_SET_ALONE, key="strength")
+    if case.strength is not None and not any(one.gears.rated for one in case.stages.values()):
+        raise InputError(UNRATED, key="strength")
 
 
 def _following(alone: Sequence[_Stage], document: Document) -> list[_Stage]:
@@ -476,12 +472,12 @@ def _on_sets(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
         if isinstance(one, BuiltTrain):
             point = one.case.operation
             yield Doubt(
-                f"Stage {number} is a planetary set: strength, inspection, load limits and kinematic error "
-                "of its meshes, sharing of its planets and its state over a period are not computed here. "
-                f"A file of this set alone has them, with torque {one.carried.show(point.load)} and speed "
-                f"{SPEED.show(point.speed)}, which is the set without losses behind it.",
+                f"Stage {number} is a planetary set: sharing of its planets and its state over a period are "
+                f"not computed here. A file of this set alone has them, with torque "
+                f"{one.carried.show(point.load)} and speed {SPEED.show(point.speed)}, which is the set "
+                "without losses behind it.",
                 moves=REMARKED,
-                brief=f"Stage {number}: strength and the like in a file of this set alone.",
+                brief=f"Stage {number}: sharing of planets in a file of this set alone.",
             )
 
 

@@ -130,7 +130,7 @@ class PlanetaryGears(Table):
     load: ClassVar[Load] = "torque"
     carries: ClassVar[str] = "gears carry a torque"
     transmits: ClassVar[bool] = True
-    rated: ClassVar[bool] = False  # as one of several stages; alone its meshes are
+    rated: ClassVar[bool] = True
 
     family: Literal["planetary"] = "planetary"
     """Family of these gears: a planetary set."""

@@ -10,7 +10,7 @@ import xarray as xr
 from pitchpoint.doubts import doubts_of, in_stage, stored
 from pitchpoint.status import Code
 
-__all__ = ["OF_STAGES", "by_stage", "of_stage", "stages_of"]
+__all__ = ["OF_STAGES", "Label", "alike_labels", "as_label", "by_stage", "of_stage", "stages_of"]
 
 STAGE = "stage"
 """Dimension of the meshes of a drive."""
@@ -26,12 +26,25 @@ _EMPTY = {"b": False, "U": "", "O": ""}
 
 Labels = Mapping[Hashable, Sequence[str]]
 
+Label = int | str
+"""Number of a stage; of a mesh that is one of several in it with its bodies, "1 (sun and planet)"."""
 
-def by_stage(each: Mapping[int, xr.Dataset]) -> xr.Dataset:
+
+def as_label(text: str) -> Label:
+    """The label of a stage from its text."""
+    return int(text) if text.isdecimal() else text
+
+
+def alike_labels(labels: Sequence[Label]) -> list[Any]:
+    """Labels of stages as a coordinate: numbers, or texts where one of them is."""
+    return [*labels] if all(isinstance(one, int) for one in labels) else [*map(str, labels)]
+
+
+def by_stage(each: Mapping[Label, xr.Dataset]) -> xr.Dataset:
     """Datasets of stages as one.
 
     Args:
-        each: by number of the stage, of the same kind.
+        each: by label of the stage, of the same kind; labels are texts where one of them is.
 
     Texts along a dimension are those of all stages in the order in which they come up. Numbers along a
     dimension, such as phases, are a coordinate of each stage along a dimension `NAME_number` unless all
@@ -54,15 +67,15 @@ def by_stage(each: Mapping[int, xr.Dataset]) -> xr.Dataset:
             for name, (dims, values, attributes) in stacked.items()
         },
         {
-            STAGE: [*each],
+            STAGE: alike_labels([*each]),
             **{dim: [*texts] for dim, texts in labels.items()},
             **{name: _longest(name, stages) for name in indices},
         },
     ).set_coords([name for name in stacked if any(name in data.coords for data in stages)])
     sentences = [
-        in_stage(number, text) for number, data in each.items() for text in doubts_of(data.attrs)
+        in_stage(label, text) for label, data in each.items() for text in doubts_of(data.attrs)
     ]
-    own = {str(number): _of_its_own(data) for number, data in each.items()}
+    own = {str(label): _of_its_own(data) for label, data in each.items()}
     return whole.assign_attrs(
         title=stages[0].attrs["title"],
         version=stages[0].attrs["version"],
@@ -72,20 +85,20 @@ def by_stage(each: Mapping[int, xr.Dataset]) -> xr.Dataset:
     )
 
 
-def stages_of(data: xr.Dataset) -> tuple[int, ...]:
-    """Numbers of the stages that a dataset is made of; none where it is of a mesh or of a drive."""
-    return tuple(int(number) for number in json.loads(data.attrs.get(OF_STAGES, "{}")))
+def stages_of(data: xr.Dataset) -> tuple[Label, ...]:
+    """Labels of the stages that a dataset is made of; none where it is of a mesh or of a drive."""
+    return tuple(map(as_label, json.loads(data.attrs.get(OF_STAGES, "{}"))))
 
 
-def of_stage(data: xr.Dataset, number: int) -> xr.Dataset:
+def of_stage(data: xr.Dataset, label: Label) -> xr.Dataset:
     """Dataset of one stage as it was.
 
     Args:
         data: as `by_stage` made it.
-        number: of the stage.
+        label: of the stage.
     """
-    own = json.loads(data.attrs[OF_STAGES])[str(number)]
-    row = data[STAGE].values.tolist().index(number)
+    every = json.loads(data.attrs[OF_STAGES])
+    own, row = every[str(label)], [*every].index(str(label))
     labels = {dim: data[dim].values.tolist() for dim in own["texts"]}
     variables = {}
     for name, (dims, kind, attributes) in own["variables"].items():

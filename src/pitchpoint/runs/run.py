@@ -53,6 +53,7 @@ from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.programs import bound_programs, surroundings
 from pitchpoint.published.registry import publication_of
 from pitchpoint.registry import letters, nearest
+from pitchpoint.results.by_stage import Label
 from pitchpoint.results.store import (
     fingerprint,
     load,
@@ -752,21 +753,33 @@ def _stages(built: Ready) -> list[dict[str, Any]]:
     if not isinstance(built, BuiltDrive) or len(built.meshes) < 2:
         return []
     bodies = built.stage_bodies or [""] * len(built.stages)
-    return [
-        {
-            "number": number,
-            "bodies": SET if isinstance(one, BuiltTrain) else named,
-            "members": list(one.case.bodies),
-            "driver": one.driver,
-            "loaded": one.loaded,
-            "motion": one.motion,
-            "speed": one.case.operation.speed,
-            "load": one.case.operation.load,
-            "travels": sorted(one.travels),
-            **_period(one),
-        }
+    stages = [
+        _stage(number, SET if isinstance(one, BuiltTrain) else named, one)
         for number, one, named in zip(built.numbers, built.stages, bodies, strict=True)
     ]
+    of_sets = [named for one in built.stages for named in one.stage_bodies]
+    meshes = zip(built.mesh_labels, built.meshes, strict=True)
+    labelled = [(label, mesh) for label, mesh in meshes if label not in built.numbers]
+    return stages + [
+        _stage(label, named, mesh) for (label, mesh), named in zip(labelled, of_sets, strict=True)
+    ]
+
+
+def _stage(label: Label, bodies: str, built: Built | BuiltTrain) -> dict[str, Any]:
+    """Record of a stage, or of a mesh that is one of several in it."""
+    point = built.case.operation
+    return {
+        "number": label,
+        "bodies": bodies,
+        "members": list(built.case.bodies),
+        "driver": built.driver,
+        "loaded": built.loaded,
+        "motion": built.motion,
+        "speed": point.speed,
+        "load": point.load,
+        "travels": sorted(built.travels),
+        **_period(built),
+    }
 
 
 SET = "planetary set"

@@ -5,6 +5,7 @@ from math import isfinite
 
 import numpy as np
 
+from pitchpoint.results.by_stage import Label
 from pitchpoint.results.variable import angle, length
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -88,7 +89,7 @@ def operating_point(outcome: Outcome) -> OperatingPoint:
     )
 
 
-def member_names(outcome: Outcome, stage: int) -> dict[str, str]:
+def member_names(outcome: Outcome, stage: Label) -> dict[str, str]:
     """Members of a stage, "gear 1" say, and the bodies of a train that they are; else themselves."""
     known = next(one for one in outcome.manifest["stages"] if one["number"] == stage)
     bodies = str(known["bodies"]).split(" and ")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from pitchpoint.programs import surroundings
 from pitchpoint.registry import Deferred, code_at
-from pitchpoint.results.by_stage import of_stage, stages_of
+from pitchpoint.results.by_stage import Label, of_stage, stages_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import Curves, Panel
@@ -269,7 +269,9 @@ class Page:
 
 def _with_bodies(stage: str, outcome: Outcome) -> str:
     """Title of a stage with its bodies, where it is a mesh of a train."""
-    known = {f"stage {one['number']}": one["bodies"] for one in outcome.manifest.get("stages", ())}
+    stages = outcome.manifest.get("stages", ())
+    numbered = (one for one in stages if isinstance(one["number"], int))  # labels have their bodies
+    known = {f"stage {one['number']}": one["bodies"] for one in numbered}
     return ": ".join(filter(None, (stage, known.get(stage, ""))))
 
 
@@ -290,7 +292,7 @@ def of_meshes(outcome: Outcome, *parts: str) -> list[tuple[str, Outcome]]:
     ] or [("", outcome)]
 
 
-def _of_stage(parts: Mapping[str, "xr.Dataset"], number: int) -> dict[str, "xr.Dataset"]:
+def _of_stage(parts: Mapping[str, "xr.Dataset"], number: Label) -> dict[str, "xr.Dataset"]:
     return {name: of_stage(d, number) for name, d in parts.items() if number in stages_of(d)}
 
 
@@ -319,7 +321,7 @@ def by_mesh(outcomes: Mapping[str, Outcome], part: str) -> dict[str, Outcome]:
     return found
 
 
-def _manifest_of(manifest: Mapping[str, Any], number: int) -> dict[str, Any]:
+def _manifest_of(manifest: Mapping[str, Any], number: Label) -> dict[str, Any]:
     """Record of a drive as that of one of its meshes: its motion and operating point, its own inputs."""
     known = next(one for one in manifest["stages"] if one["number"] == number)
     load = "force" if "loaded" in known["travels"] else "torque"

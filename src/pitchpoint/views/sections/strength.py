@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.doubts import apart, doubts_of, without_repeats
+from pitchpoint.results.by_stage import as_label
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.point import member_names
@@ -101,7 +102,7 @@ def _pairs(outcome: Outcome) -> Iterator[tuple[str, xr.Dataset]]:
         yield "", data
         return
     for at, stage in enumerate(data["stage"].values):
-        names = member_names(outcome, int(stage))
+        names = member_names(outcome, as_label(str(stage)))
         gears = [names[str(gear)] for gear in data["gear"].values]
         yield f"stage {stage}", data.isel(stage=at).assign_coords(gear=gears)
 
@@ -262,7 +263,7 @@ def _place(value: xr.DataArray, outcome: Outcome) -> str:
     """Gear of a value, and its stage where there are several; the body that it is where these have names."""
     if "stage" not in value.coords:
         return str(value["gear"].values)
-    stage = int(value["stage"].values)
+    stage = as_label(str(value["stage"].values))
     return f"{member_names(outcome, stage)[str(value['gear'].values)]} of stage {stage}"
 
 
