@@ -388,8 +388,38 @@ def test_what_is_of_each_mesh_is_there_where_one_of_them_has_it():
     lacks = {name: analysis.why_not(two()) for name, analysis in ANALYSES.items()}
     assert lacks["inspection"] is None
     assert lacks["load_limits"] == "a flexspline is that of a strain wave gear"
-    assert lacks["vibration"] == "it is computed for one mesh; a stage in a file of its own has it"
+    assert lacks["vibration"] == "the case has no [dynamics]"
     assert ANALYSES["reflected"].why_not(alone(FIRST)) is not None
+
+
+DYNAMICS = "[stages.dynamics]\nspeeds = { start = '2000 rpm', stop = '3000 rpm', count = 2 }\n"
+
+
+def test_the_cycle_of_each_mesh_is_that_under_the_torque_that_it_carries():
+    """What drives a stage, in the mean over its cycle, is what the stage before it carries."""
+    case = two()
+    whole = of_every_stage(ANALYSES["cycle"], case)
+    for k, number in enumerate((1, 2)):
+        data, mesh = of_stage(whole, number), case.at_work[k]
+        assert data["pressure"].values == pytest.approx(
+            part(ANALYSES["cycle"], mesh)["pressure"].values, rel=1e-12
+        )
+        mean = np.average(data["input_torque"].values[0], weights=data["weight"].values)
+        assert mean == pytest.approx(operation()["stage_input_torque"].values[0, 0, k], rel=1e-9)
+
+
+def test_each_stage_vibrates_as_in_a_file_of_its_own():
+    text = (
+        f"[[stages]]\n[stages.gears]\n{FIRST}{DYNAMICS}[[stages]]\n[stages.gears]\n{SECOND}{COMMON}"
+    )
+    case = built(text)
+    (told,) = [text for text in case.warnings if "vibrates by itself" in text]
+    assert told.startswith("Each stage")
+    whole = of_every_stage(ANALYSES["resonance"], case)
+    assert stages_of(whole) == (1,)
+    apart = part(ANALYSES["resonance"], case.at_work[0])
+    for name in ("transmission_error_range", "largest_dynamic_factor"):
+        assert of_stage(whole, 1)[name].values == pytest.approx(apart[name].values, rel=1e-12)
 
 
 def test_a_mesh_at_work_carries_what_drives_the_stage_behind_it():

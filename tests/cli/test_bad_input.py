@@ -944,7 +944,7 @@ def bad_stages() -> Iterator[Bad]:
             "stages.2.models.averaging",
         ),
         ("gears too", ("gears",), BASE["gears"], ("was given with [[stages]]",), "gears: "),
-        ("dynamics", ("dynamics",), {}, ("computed for one mesh",), "dynamics: "),
+        ("dynamics", ("dynamics",), {}, ("that of a mesh; give a stage the table",), "dynamics: "),
         (
             "film",
             ("film",),

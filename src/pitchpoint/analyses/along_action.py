@@ -149,23 +149,43 @@ def _start_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     return {"start_up": {name: numbers(data[name].values) for name in OF_START} | ends}
 
 
+TOGETHER = "the meshes of a set vibrate together, which is not computed"
+"""Why a train has no vibration."""
+
 STIFFNESS = Analysis(
-    name="stiffness", title="mesh stiffness", lacks=_no_stiffness, compute=_stiffness
+    name="stiffness",
+    title="mesh stiffness",
+    of="mesh",
+    under_load=True,
+    lacks=_no_stiffness,
+    compute=_stiffness,
 )
 VIBRATIONS = Analysis(
     name="vibration",
     title="vibration",
+    of="mesh",
+    under_load=True,
+    of_no_train=TOGETHER,
     lacks=_still,
     compute=_vibration,
     main=VIBRATION,
     figures=_figures,
 )
 RESONANCE = Analysis(
-    name="resonance", title="vibration against speed", lacks=_one_speed, compute=_resonance
+    name="resonance",
+    title="vibration against speed",
+    of="mesh",
+    under_load=True,
+    of_no_train=TOGETHER,
+    lacks=_one_speed,
+    compute=_resonance,
 )
 MOTION = Analysis(
     name="motion",
     title="motion with friction",
+    of="mesh",
+    under_load=True,
+    of_no_train=TOGETHER,
     lacks=_unmoved,
     compute=_motion,
     main=OF_MOTION,
@@ -174,6 +194,9 @@ MOTION = Analysis(
 MOTIONS = Analysis(
     name="motion_against_speed",
     title="motion with friction against speed",
+    of="mesh",
+    under_load=True,
+    of_no_train=TOGETHER,
     lacks=_one_motion,
     compute=_motions,
     onward=_further,
@@ -184,6 +207,9 @@ MOTIONS = Analysis(
 START_UP = Analysis(
     name="start_up",
     title="start",
+    of="mesh",
+    under_load=True,
+    of_no_train=TOGETHER,
     lacks=_no_start,
     compute=_start_up,
     main=OF_START,

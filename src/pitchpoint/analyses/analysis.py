@@ -8,7 +8,7 @@ from typing import Any, Literal, Protocol
 import xarray as xr
 
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, Ready
 from pitchpoint.cases.schema import Study
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import Doubt, doubts_of, stored
@@ -17,7 +17,6 @@ from pitchpoint.results.by_stage import Label, as_label, by_stage, of_stage, sta
 from pitchpoint.results.variable import Variable
 
 __all__ = [
-    "ALONE",
     "Analysis",
     "Piece",
     "Progress",
@@ -32,9 +31,6 @@ __all__ = [
 
 Piece = Mapping[str, Any]
 """Where a piece lies, as plain data of less than 1 kB: a torque, a range of points; empty for the whole."""
-
-ALONE = "it is computed for one mesh; a stage in a file of its own has it"
-"""Why a drive of several meshes has no part of a kind."""
 
 
 class Progress(Protocol):
@@ -104,9 +100,10 @@ class Entry:
         title: for progress and figures.
         lacks: None, or why the part does not exist for a case: what its gears do not have, or its file
             does not ask for (`Unasked`).
-        of: what it is of: "mesh", and a drive of several has it of each along a dimension `stage`; "drive",
-            of one mesh or several; or "one mesh", which a drive of several has not.
+        of: what it is of: "mesh", and a drive of several has it of each along a dimension `stage`; or
+            "drive", of one mesh or several.
         under_load: True where it hangs on the load: in a drive on that which a mesh carries with all losses.
+        of_no_train: why the meshes of a train do not have it each by itself; empty where they do.
         main: variables that are shown first.
         figures: entries of `--json` from all parts that exist; by default the main variables under the
             name of the part.
@@ -116,8 +113,9 @@ class Entry:
     name: str
     title: str
     lacks: Callable[[Any], str | None] = lambda built: None
-    of: Literal["mesh", "drive", "one mesh"] = "one mesh"
+    of: Literal["mesh", "drive"] = "mesh"
     under_load: bool = False
+    of_no_train: str = ""
     main: tuple[str, ...] = ()
     figures: Deferred[Callable[[Mapping[str, xr.Dataset]], Mapping[str, Any]] | None] = Deferred(
         None
@@ -126,9 +124,11 @@ class Entry:
 
     def why_not(self, built: Ready) -> str | None:
         """Why the part does not exist for a case; None where it does."""
+        if self.of_no_train and built.averaging == TRAIN_PERIOD:
+            return self.of_no_train
         if self.of == "drive" or not isinstance(built, BuiltDrive):
             return self.lacks(built)
-        reasons = [ALONE] if self.of == "one mesh" else [*map(self.lacks, built.meshes)]
+        reasons = [*map(self.lacks, built.meshes)]
         return None if None in reasons else reasons[0]
 
     def shown(self, parts: Mapping[str, xr.Dataset]) -> Mapping[str, Any]:

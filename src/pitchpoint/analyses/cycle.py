@@ -117,4 +117,4 @@ def _jammed(
     return np.stack([run["locked"].any(keepdims=True) for run in runs]), acting, limit
 
 
-CYCLE = Analysis(name="cycle", title="mesh cycle", compute=_cycle)
+CYCLE = Analysis(name="cycle", title="mesh cycle", of="mesh", under_load=True, compute=_cycle)

@@ -228,7 +228,16 @@ def _models(built: BuiltDrive, document: Document) -> Iterator[Row]:
             yield _in_stage(row, number, given=given)
 
 
-_OF_STAGE = ("materials", "lubricant", "roughness", "losses", "strength", "film", "wear")
+_OF_STAGE = (
+    "materials",
+    "lubricant",
+    "roughness",
+    "losses",
+    "strength",
+    "film",
+    "wear",
+    "dynamics",
+)
 """Tables that a stage may have of its own, beside gears and models."""
 
 

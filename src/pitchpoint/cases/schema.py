@@ -1639,6 +1639,8 @@ class StageTable(Table):
     """Asks for films solved over the mesh cycle of the stage; none unless given."""
     wear: WearTable | None = None
     """Asks for wear of the stage, over turns of the shaft that drives it; none unless given."""
+    dynamics: Dynamics | None = None
+    """Asks for vibration of the stage by itself; none unless given."""
     place: Annotated[float, PLACE] = 0.0
     """Place of the middle of its face along the shafts."""
     turn: Annotated[float, TURN] = 0.0
@@ -1845,6 +1847,8 @@ def _check_train(case: DriveCase) -> None:
             if key in stage.model_fields_set:
                 told = "follows from the train; leave it out"
                 wrong.add(InputError(told, key=f"stages.{number}.{key}"))
+        if stage.dynamics is not None:
+            wrong.add(InputError(_OF_SETS["dynamics"], key=f"stages.{number}.dynamics"))
         for name in stage.losses:
             told = "losses of a train stand between its bodies; give this one under [losses]"
             wrong.add(InputError(told, key=f"stages.{number}.losses.{name}"))
@@ -1926,7 +1930,7 @@ _OF_NO_SET = {
         "shafts: leave it out",
     ),
     **dict.fromkeys(
-        ("film", "wear"),
+        ("film", "wear", "dynamics"),
         "is computed of one mesh; a file of this set alone, with the torque and speed that it has here, has "
         "it: write its meshes as [[stages]] with a [train], each with this table (pitchpoint docs stages)",
     ),
@@ -2191,7 +2195,7 @@ def form_of(tree: Mapping[str, Any]) -> "type[Case] | type[DriveCase]":
 
 _OF_ONE_MESH = {
     "gears": "was given with [[stages]]; gears belong to a stage, or are all that the file has",
-    "dynamics": "vibration is computed for one mesh; give the stage a file of its own",
+    "dynamics": "vibration is that of a mesh; give a stage the table, [stages.dynamics] under its [[stages]]",
     "film": "films are those of a mesh; give a stage the table, film = { ... } under its [[stages]]",
     "wear": "wear is that of a mesh; give a stage the table, wear = { ... } under its [[stages]]",
     "worn": "worn flanks belong to one mesh; give the stage a file of its own",

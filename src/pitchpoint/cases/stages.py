@@ -188,6 +188,7 @@ def _together(
         *_adding_thrusts(built),
         *_on_one_place(case, built),
         *_on_sets(built),
+        *_on_vibration(case),
     )
     drive = _drive(case, built)
     return BuiltDrive(case, tuple(built), numbers, tuple(documents), drive, point, told)
@@ -213,7 +214,9 @@ def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
     shared = {key: whole.get(key, {}) for key in _SHARED if gears.rated or key != "strength"}
     both = {key: {**shared.get(key, {}), **stage.get(key, {})} for key in _SHARED}
     tree |= {key: table for key, table in both.items() if table}
-    tree |= {key: stage[key] for key in ("gears", "losses", "film", "wear") if key in stage}
+    tree |= {
+        key: stage[key] for key in ("gears", "losses", "film", "wear", "dynamics") if key in stage
+    }
     kept = {key: whole["operation"][key] for key in ("speed", "temperature")}
     tree["operation"] = {**kept, gears.load: SIValue(case.operation.load)}
     if "driver" in stage:
@@ -479,6 +482,18 @@ def _on_sets(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
                 moves=REMARKED,
                 brief=f"Stage {number}: sharing of planets in a file of this set alone.",
             )
+
+
+def _on_vibration(case: DriveCase) -> Iterator[str]:
+    """Stages that vibrate, of which each is computed by itself."""
+    if any(table.dynamics is not None for table in case.stages.values()):
+        yield Doubt(
+            "Each stage vibrates by itself, under the torque that it carries with all losses: shafts between "
+            "stages, and what turns on them beside its own gears, are not in it.",
+            moves=LEFT_OUT,
+            about=("transmission_error", "natural_frequency"),
+            brief="Each stage vibrates by itself: shafts between stages are not in it.",
+        )
 
 
 def _per_turn(one: Built | BuiltTrain, end: str) -> float:

@@ -58,7 +58,7 @@ def matrix() -> list[dict[str, str]]:
 def _drive(sample: Path, settings: Mapping[str, Any] = MappingProxyType({})) -> Ready:
     """Two stages of which the second one has the gears of a sample, and tables by these settings."""
     tree, gears = (tomllib.loads(path.read_text("utf-8")) for path in (_SEVERAL, sample))
-    tree["stages"][1] |= {"gears": gears["gears"]}
+    tree["stages"][1] |= {key: gears[key] for key in ("gears", "dynamics") if key in gears}
     inside = {f"stages.2.{key}": value for key, value in settings.items()}
     return load_case(tree, settings=_OF_OUTPUT | inside)
 

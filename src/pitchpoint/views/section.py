@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from math import isfinite, nan
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from pitchpoint.programs import surroundings
@@ -11,7 +12,7 @@ from pitchpoint.registry import Deferred, code_at
 from pitchpoint.results.by_stage import Label, of_stage, stages_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views.figures import Curves, Panel
+from pitchpoint.views.figures import Curves, Panel, curves
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -167,6 +168,7 @@ class KeyFigure:
         detail: what goes with it, the most telling clause first; a narrow screen shows the first ones.
         beside: the value where that of other variants stands in the next column, with what it cannot do
             without; the value alone where it is empty.
+        rank: of several stages only that with the least one is shown; all of them where it is not finite.
     """
 
     order: float
@@ -174,6 +176,7 @@ class KeyFigure:
     value: str
     detail: str = ""
     beside: str = ""
+    rank: float = nan
 
     @property
     def words(self) -> str:
@@ -255,6 +258,23 @@ class Page:
             if all(_has(one, part) for part in parts)
         }
 
+    def by_mesh(self, *parts: str) -> "Page":
+        """The page of what has some parts, of drives each mesh by itself under its name, with its curves."""
+        meshes = by_mesh(self.having(*parts), *parts)
+        known = all(self.outcomes.get(name) is one for name, one in meshes.items())
+        return replace(self, outcomes=meshes, curves=self.curves if known else curves(meshes))
+
+    def meshes(self, *parts: str) -> "dict[str, Page]":
+        """By name of a mesh the page of those variants that have some parts of it; no name of a lone mesh."""
+        found: dict[str, dict[str, Outcome]] = {}
+        for variant, outcome in self.having(*parts).items():
+            for label, mesh in _meshes(outcome, *parts).items():
+                found.setdefault(label, {})[variant] = mesh
+        return {
+            label: replace(self, outcomes=each, curves=curves(each) if label else self.curves)
+            for label, each in found.items()
+        }
+
     def each(self, part: str) -> Iterator[tuple[int, str, Outcome]]:
         """Position, title and outcome of every variant that has a part; no title where there is one.
 
@@ -282,13 +302,13 @@ def of_meshes(outcome: Outcome, *parts: str) -> list[tuple[str, Outcome]]:
         outcome: of a mesh or a drive.
         parts: see `Page.having`.
     """
-    names = (part.partition(".")[0] for part in parts)
-    there = {name: outcome.parts[name] for name in names if name in outcome.parts}
-    whole = {name: data for name, data in there.items() if stages_of(data)}
-    numbers = dict.fromkeys(number for data in whole.values() for number in stages_of(data))
+    names = {part.partition(".")[0] for part in parts} & {*outcome.parts}
+    labels = dict.fromkeys(label for name in names for label in stages_of(outcome.parts[name]))
+    whole = {name: data for name, data in outcome.parts.items() if stages_of(data)}
+    of_all = {name: data for name, data in outcome.parts.items() if name not in whole}
     return [
-        (f"stage {number}", replace(outcome, parts=outcome.parts | _of_stage(whole, number)))
-        for number in numbers
+        (f"stage {label}", replace(outcome, parts=of_all | _of_stage(whole, label)))
+        for label in labels
     ] or [("", outcome)]
 
 
@@ -296,29 +316,35 @@ def _of_stage(parts: Mapping[str, "xr.Dataset"], number: Label) -> dict[str, "xr
     return {name: of_stage(d, number) for name, d in parts.items() if number in stages_of(d)}
 
 
-def by_mesh(outcomes: Mapping[str, Outcome], part: str) -> dict[str, Outcome]:
+def by_mesh(outcomes: Mapping[str, Outcome], *parts: str) -> dict[str, Outcome]:
     """Outcomes as they are, and for that of a drive one of each mesh by itself, under its name.
 
     Args:
-        outcomes: by variant, that have the part.
-        part: see `Page.having`; of the meshes of a drive those that have it.
+        outcomes: by variant, that have the parts.
+        parts: see `Page.having`; of the meshes of a drive those that have them.
     """
     found = {}
     for variant, outcome in outcomes.items():
-        name = part.partition(".")[0]
-        numbers = stages_of(outcome.parts[name])
-        if not numbers:
-            found[variant] = outcome
-        for number in numbers:
-            alone = replace(
-                outcome,
-                parts={name: of_stage(outcome.parts[name], number)},
-                manifest=_manifest_of(outcome.manifest, number),
-            )
-            if _has(alone, part):
-                told = variant if len(outcomes) > 1 else ""
-                found[", ".join(filter(None, [told, f"stage {number}"]))] = alone
+        for label, mesh in _meshes(outcome, *parts).items():
+            told = variant if len(outcomes) > 1 or not label else ""
+            found[", ".join(filter(None, [told, label]))] = mesh
     return found
+
+
+def _meshes(outcome: Outcome, *parts: str) -> dict[str, Outcome]:
+    """The meshes of a drive that have some parts, each by itself under its name; without one of one mesh."""
+    names = {part.partition(".")[0] for part in parts}
+    labels = dict.fromkeys(label for name in names for label in stages_of(outcome.parts[name]))
+    whole = {name: data for name, data in outcome.parts.items() if stages_of(data)}
+    each = {
+        f"stage {label}": replace(
+            outcome,
+            parts=_of_stage(whole, label),
+            manifest=_manifest_of(outcome.manifest, label),
+        )
+        for label in labels
+    } or {"": outcome}
+    return {label: one for label, one in each.items() if all(_has(one, part) for part in parts)}
 
 
 def _manifest_of(manifest: Mapping[str, Any], number: Label) -> dict[str, Any]:
@@ -355,6 +381,22 @@ def tabbed(groups: Iterable[tuple[str, Iterable[Block]]]) -> Iterator[Block]:
     for title, blocks in each.items():
         yield from [Heading(title)] if title else []
         yield from blocks
+
+
+def _told_apart(blocks: Iterable[Block], ending: str) -> Iterator[Block]:
+    """Blocks whose figures have names with an ending, so that a page may have the like of them."""
+    for block in blocks:
+        if not isinstance(block, Panel):
+            yield block
+            continue
+        choices = [
+            replace(
+                one, changes={f"{name}{ending}": change for name, change in one.changes.items()}
+            )
+            for one in block.choices
+        ]
+        figures = [replace(one, name=f"{one.name}{ending}") for one in block.figures]
+        yield replace(block, figures=figures, choices=choices)
 
 
 def naming(variant: str, blocks: "Iterable[Any]") -> Iterator[Any]:
@@ -406,6 +448,7 @@ class Section:
         screen: what the command line prints of one variant.
         sums_up: tables of the gears and sentences on what is assumed, for the page that sums up one outcome.
         main_figure: name of the figure that may stand on that page; empty without one.
+        of_a_mesh: True if it looks at one mesh of each outcome: of a drive there is one for each, in turn.
         folded: True for one that a reader opens.
         picture: identity of its drawing that stands beside the answer; empty without one.
         moving: that drawing of one outcome which has its parts, by the name that it gets in a page.
@@ -424,6 +467,7 @@ class Section:
     screen: Callable[[Outcome], Iterable[Printed]] = lambda outcome: ()
     sums_up: Callable[[Outcome], Iterable[Table | Paragraph]] = lambda outcome: ()
     main_figure: str = ""
+    of_a_mesh: bool = False
     folded: bool = False
     picture: str = ""
     moving: Callable[[Outcome, str], Moving] | None = None
@@ -439,15 +483,31 @@ class Section:
         """What stands in it, or what results of another build lack for it."""
         return made_of(
             page.outcomes.values(),
-            lambda: map(_settled, self.blocks(page)),
+            lambda: map(_settled, self._blocks(page)),
             lambda told: [Paragraph(told, "warning")],
         )
 
+    def _blocks(self, page: Page) -> Iterable[Block]:
+        """What stands in it; of a section of a mesh that of each mesh, whose figures have names apart."""
+        if not self.of_a_mesh:
+            return self.blocks(page)
+        pages = (page.meshes(*self.parts) or {"": page}).items()
+        return tabbed(
+            (label, _told_apart(self.blocks(one), f"_mesh{k}" if k else ""))
+            for k, (label, one) in enumerate(pages)
+        )
+
     def answers(self, outcome: Outcome) -> Iterator[KeyFigure]:
-        """Main figures of one variant, those of each stage by its name."""
+        """Main figures of one variant, those of each stage by its name; of some that of one stage alone."""
+        worst: dict[str, tuple[str, KeyFigure]] = {}
         for stage, mesh in of_meshes(outcome, *self.parts):
             for figure in made_of([outcome], partial(self.answer, mesh)):
-                yield figure.of(stage) if stage else figure
+                if not (stage and isfinite(figure.rank)):
+                    yield figure.of(stage) if stage else figure
+                elif figure.name not in worst or figure.rank < worst[figure.name][1].rank:
+                    worst[figure.name] = stage, figure
+        for stage, figure in worst.values():
+            yield replace(figure, detail=f"at {stage}; {figure.detail}")
 
     def prints(self, outcome: Outcome) -> Iterator[Printed]:
         """What the command line prints of one variant, that of each stage under its name."""

@@ -21,6 +21,7 @@ from pitchpoint.analyses.figures import (
 )
 from pitchpoint.cases.built_drive import MEETINGS, TRAIN_PERIOD
 from pitchpoint.cases.inputs import OIL
+from pitchpoint.results.by_stage import of_stage, stages_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -35,6 +36,7 @@ from pitchpoint.views.section import (
     Page,
     Printed,
     Section,
+    key_figure,
     key_figures,
     made_of,
 )
@@ -435,8 +437,10 @@ def _borne(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
     """Largest Hertz pressure over the mesh cycle, and the part of the load on edges where there are any."""
     cycle, torsion = (outcome.parts.get(name) for name in ("cycle", "torsion"))
     if cycle is not None:
-        largest = float(cycle["pressure"].values[law].max())
-        yield VARIABLES["pressure"].long_name, show.quantity("pressure", largest)
+        pressures = _pressures(cycle, law)
+        most = max(pressures, key=lambda stage: pressures[stage])
+        told = show.quantity("pressure", pressures[most])
+        yield VARIABLES["pressure"].long_name, f"{told} at {most}" if most else told
         yield from _ellipse(cycle, law)
     if torsion is not None and "edge_share" in torsion:
         at = operating_point(outcome).torque
@@ -444,9 +448,18 @@ def _borne(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
         yield VARIABLES["edge_share"].long_name, show.quantity("edge_share", share)
 
 
+def _pressures(cycle: xr.Dataset, law: int) -> dict[str, float]:
+    """Largest pressure of each stage by its name under the law in a place, or its last one [Pa]."""
+    each = {f"stage {label}": of_stage(cycle, label) for label in stages_of(cycle)} or {"": cycle}
+    return {
+        stage: float(data["pressure"].values[min(law, data.sizes["law"] - 1)].max())
+        for stage, data in each.items()
+    }
+
+
 def _ellipse(cycle: xr.Dataset, law: int) -> Iterator[tuple[str, str]]:
     """The largest ellipse of contact, and how far it is from leaving the face; none for lines."""
-    if "contact_room" not in cycle:
+    if "contact_room" not in cycle or stages_of(cycle):
         return
     axes = (float(cycle[f"semi_axis_{way}"].values[law].max()) for way in ("across", "along"))
     told = [show.quantity("semi_axis_across", axis) for axis in axes]
@@ -501,7 +514,8 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     if law in laws(outcome.parts["operation"]):
         position = laws(outcome.parts["operation"]).index(law)
         for place, (name, value) in enumerate(_borne(outcome, position)):
-            yield KeyFigure(78.0 + 0.1 * place, _BRIEFLY.get(name, name).capitalize(), value)
+            named = _BRIEFLY.get(name, name).capitalize()
+            yield key_figure(78.0 + 0.1 * place, named, value, " at stage")
         if "back_driving" in outcome.parts:
             yield back_driving_figure(outcome, law)
 

@@ -51,11 +51,10 @@ _WIDE = 30.0
 
 def _ways(page: Page) -> dict[str, Outcome]:
     """Outcomes whose pairs go a way that is told, and that has no letters."""
-    there, lettered = page.having("teeth", "cycle"), page.having("teeth.points", "cycle")
     return {
         name: one
-        for name, one in there.items()
-        if name not in lettered and one.parts["cycle"]["path"].attrs["title"]
+        for name, one in page.by_mesh("teeth", "cycle").outcomes.items()
+        if "points" not in one.parts["teeth"] and one.parts["cycle"]["path"].attrs["title"]
     }
 
 
@@ -70,14 +69,14 @@ def _lacks(page: Page) -> str | None:
 
 def _blocks(page: Page) -> Iterator[Block]:
     yield Paragraph(_told(page, "told"))
-    yield arc_panel(_ways(page), page.curves)
+    yield arc_panel(_ways(page), page.by_mesh("teeth", "cycle").curves)
 
 
 def _closing(page: Page) -> Iterator[Block]:
     def words(outcome: Outcome, law: int) -> str:
         return wave_sentence(wave_losses(outcome, law), _told(page, "origin"))
 
-    return where_lost(page, _ways(page), words)
+    return where_lost(page.by_mesh("teeth", "cycle"), _ways(page), words)
 
 
 def arc_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:

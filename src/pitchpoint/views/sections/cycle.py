@@ -275,12 +275,13 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         value = show.number(least) if least >= _NO_FILM else f"below {_NO_FILM:g}"
         law = show.pretty(input_words(outcome, "models", "film_thickness"))
         detail = f"thinnest film by {law} over composite Rq"
-        yield KeyFigure(76.5, "Film ratio", value, detail)
+        yield KeyFigure(76.5, "Film ratio", value, detail, rank=least)
     if "asperity_load_ratio" in data:
         share = data["asperity_load_ratio"].values[0]
         value = show.quantity("asperity_load_ratio", float(np.max(share)))
         law = show.pretty(input_words(outcome, "models", "asperity_load"))
-        yield KeyFigure(38.0, "Load on asperities", value, f"largest part over the cycle, by {law}")
+        told = f"largest part over the cycle, by {law}"
+        yield KeyFigure(38.0, "Load on asperities", value, told, rank=-float(np.max(share)))
 
 
 CYCLE = Section(
@@ -294,4 +295,5 @@ CYCLE = Section(
     card=_turns,
     screen=_screen,
     main_figure="cycle_efficiency",
+    of_a_mesh=True,
 )

@@ -61,7 +61,8 @@ def _blocks(page: Page) -> Iterator[Block]:
 
 
 def _closing(page: Page) -> Iterator[Block]:
-    return where_lost(page, page.having(*_PARTS), _loss_words)
+    meshes = page.by_mesh(*_PARTS)
+    return where_lost(meshes, meshes.outcomes, _loss_words)
 
 
 def _loss_words(outcome: Outcome, law: int) -> str:
@@ -258,4 +259,5 @@ PATH = Section(
     parts=_PARTS,
     blocks=_blocks,
     closing=_closing,
+    of_a_mesh=True,
 )

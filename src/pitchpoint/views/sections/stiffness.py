@@ -54,7 +54,7 @@ def stiffness_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
 
 def _table(page: Page) -> Table:
     """Means and variations, a column for each variant."""
-    parts = {name: one.parts["stiffness"] for name, one in page.having("stiffness").items()}
+    parts = {name: one.parts["stiffness"] for name, one in page.outcomes.items()}
     rows = [
         (_title(name), *(_cell(data, name) for data in parts.values()))
         for name in _ROWS
@@ -167,8 +167,9 @@ def stiffness_blocks(page: Page) -> Iterator[Block]:
     )
     if told := _of_publication(page.first.get("source", "")):
         yield Paragraph(told, "note")
+    page = page.by_mesh("stiffness")
     yield _table(page)
-    having = page.having("stiffness")
+    having = page.outcomes
     if page.designs and len(having) > 1:
         parts = {name: one.parts["stiffness"] for name, one in having.items()}
         title = "Mesh stiffness over the mesh cycle"

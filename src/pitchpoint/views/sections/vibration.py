@@ -414,9 +414,11 @@ VIBRATION = Section(
     title="Vibration",
     short="Vibration",
     order=410.0,
+    parts=("vibration",),
     lacks=_lacks,
     blocks=_blocks,
     answer=_answer,
     screen=_screen,
+    of_a_mesh=True,
     main_figure="vibration0_factor",
 )
