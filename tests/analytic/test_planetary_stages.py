@@ -251,6 +251,79 @@ def test_meshes_of_sets_in_a_row_are_those_of_each_set_by_itself():
     assert not built.locked
 
 
+def three_k(**more):
+    """Gears of a 3K set in the short form: second gears on the planets, and their ring."""
+    second = {"teeth": [34, 88], "face_width": "10 mm", **more}
+    one = {"teeth": [18, 36, 90], "module": "1 mm", "face_width": "10 mm"}
+    return {"family": "planetary", **one, "second": second}
+
+
+@pytest.mark.whole
+def test_second_gears_of_the_planets_make_a_3k_set():
+    """The short form is the same as three meshes with a train."""
+    short = alone(three_k(), 60.0, SPEED)
+    teeth = {
+        ("sun", "planet"): [18, 36],
+        ("planet", "ring"): [36, -90],
+        ("planet", "out"): [34, -88],
+    }
+    width = {"module": "1 mm", "face_width": "10 mm"}
+    meshes = [
+        {
+            "bodies": [*bodies],
+            "gears": {"teeth": z, "fillet_radius": [0.38, 0.2] if z[1] > 0 else 0.2, **width},
+        }
+        for bodies, z in teeth.items()
+    ]
+    train = {"input": "sun", "output": "out", "held": "ring", "planets": 3}
+    point = {"operation": operation(60.0, SPEED)}
+    long = load_case({"stages": meshes, "train": train, **point, **TABLES})
+    assert short.case.gears.output == "second ring"
+    assert 1.0 / short.motion[short.case.bodies.index("second ring")] == pytest.approx(176.0)
+    got, want = figures(short), figures(long)
+    for name in ("mean_efficiency", "mean_input_torque", "stage_loss"):
+        assert got[name] == pytest.approx(want[name], rel=1e-9), name
+
+
+@pytest.mark.whole
+def test_a_3k_set_is_a_stage():
+    """A pair before it: the product of both, each from a file of its own."""
+    made = drive(PAIR, three_k())
+    found = figures(made)
+    apart = by_themselves(made, [PAIR, three_k()], found)
+    product = np.prod([one["mean_efficiency"] for one in apart])
+    assert found["mean_efficiency"] == pytest.approx(product, rel=1e-9)
+    assert made.motion[-1] == pytest.approx(-1.0 / RATIO_OF_PAIR / 176.0)
+    labels = of(made, "strength")["stage"].values.tolist()
+    assert labels == [
+        "1",
+        "2 (sun and planet)",
+        "2 (planet and ring)",
+        "2 (planet and second ring)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("more", "ends", "key", "told"),
+    [
+        ({"teeth": [34, 30]}, {}, "second.teeth", "not around a gear of 34 teeth"),
+        ({"teeth": [34, -88]}, {}, "second.teeth", "numbers below zero"),
+        ({"teeth": [34, 88, 3]}, {}, "second.teeth", "the second gear of the planets and of its ring"),
+        ({"teeth": [34, 120]}, {}, "second.teeth", "it has some 88"),
+        ({"module": "1.2 mm"}, {}, "second.teeth", "it has some 79"),
+        ({"tip_alteration": [0, 3]}, {}, "second.tip_alteration", "out of range"),
+        ({}, {"output": "carrier"}, "output", "the carrier bears planets alone"),
+        ({}, {"held": "second ring"}, "output", "the ring is none of them"),
+    ],
+)  # fmt: skip
+def test_wrong_second_gears_are_told_with_their_key(more, ends, key, told):
+    """One sentence with the key that the table has."""
+    with pytest.raises(InputError) as caught:
+        alone({**three_k(**more), **ends}, 60.0, SPEED)
+    assert told in str(caught.value)
+    assert f"gears.{key}" in str(caught.value)
+
+
 def of_piece(analysis, built, number):
     """A piece of an analysis by its number."""
     return analysis.compute(built, [*analysis.pieces(built)][number], lambda *_: None)

@@ -128,8 +128,8 @@ def no_family(name: str, known: Collection[str]) -> str:
         return nearest(PLANETARY, known)
     if letters(name).removesuffix("set") in ("3k", "threek", "wolfrom"):
         return (
-            " with a table of its own: its meshes and a [train] are (pitchpoint docs stages), and "
-            "pitchpoint.three_k_sets has those for a ratio"
+            ": it is planetary with second gears, second = { teeth = [planet, ring], face_width = ... } "
+            "under [gears], and pitchpoint.three_k_sets has those for a ratio"
         )
     plain = letters(name).removesuffix("s").removesuffix("gear").removesuffix("drive")
     if {plain, letters(name)} & _NO_FAMILIES:
@@ -378,7 +378,10 @@ def _at_output(tree: Tree) -> tuple[float, bool]:
     if "train" in tree and "gears" not in tree:
         raise LookupError  # by what turns and is held, not by a chain of stages
     if "train" in tree:
-        train, teeth = tree["train"], PlanetaryGears.model_validate(tree["gears"]).teeth
+        planetary = PlanetaryGears.model_validate(tree["gears"])
+        if planetary.second is not None:
+            raise LookupError  # by both rings
+        train, teeth = tree["train"], planetary.teeth
         loads = {"sun": teeth[0], "ring": teeth[2], "carrier": teeth[0] + teeth[2]}
         return loads[train["output"]] / loads[train["input"]], False
     for gears, driver in _chain(tree):

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite, pi
+from math import cos, isfinite, pi
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, GetJsonSchemaHandler, model_validator
@@ -52,6 +52,11 @@ PLANETARY = "planetary"
 
 BODIES = ("sun", "carrier", "ring")
 """Bodies that may be turned, loaded or held."""
+
+SECOND = "second ring"
+"""Body of a set whose planets have two gears, beside the others."""
+
+Body = Literal["sun", "carrier", "ring", "second ring"]
 
 MOST_PLANETS = 24
 
@@ -118,11 +123,57 @@ _USUAL_SHIFTS: Any = 0.0, 0.0, FROM_CENTRE_DISTANCE
 """None of sun and planet; that of the ring follows."""
 
 
+@dataclass(frozen=True)
+class OfPlanetAndRing(Pair):
+    """A value for the second gear of the planets and one for its ring, or one for both."""
+
+    def read(self, value: Any) -> Any:
+        """SI values of both; the text where that of the ring is to follow."""
+        every = list(value) if isinstance(value, list | tuple) else [value] * 2
+        if len(every) != 2:
+            raise InputError(
+                f"{shown(value)} has {len(every)} values; give those of the second gear of the planets and "
+                f"of its ring, or one for both; {self.each.allowed}"
+            )
+        if self.each is TEETH and any(isinstance(one, int | float) and one < 0 for one in every):
+            raise InputError(
+                f"{shown(value)} has numbers below zero; teeth of a set are positive, those of the ring too",
+                value=value,
+            )
+        return tuple(
+            one if self.each is SHIFT and one == FROM_CENTRE_DISTANCE else self.each.read(one)
+            for one in every
+        )
+
+
+class SecondGears(Table):
+    """A second gear on every planet, and the ring that it meshes with: a 3K set, after Wolfrom.
+
+    Pressure angle, helix and racks are those of planet and ring; the centre distance is that of the set.
+    """
+
+    teeth: Annotated[tuple[float, float], OfPlanetAndRing(TEETH), Field(examples=[[34, 88]])]
+    """Numbers of teeth of the second gear of the planets and of its ring, both positive."""
+    module: Annotated[float, MODULE] | None = None
+    """Normal module of both; that of the set unless given."""
+    face_width: Annotated[tuple[float, float], OfPlanetAndRing(WIDTH)]
+    """Face widths of both, of which the smaller one counts."""
+    profile_shift: Annotated[tuple[float, float], OfPlanetAndRing(SHIFT)] = (
+        0.0,
+        FROM_CENTRE_DISTANCE,  # type: ignore[assignment]
+    )
+    """Profile shift coefficients of both; that of the ring as follows unless given."""
+    tip_alteration: Annotated[tuple[float, float], OfPlanetAndRing(TIP)] | None = None
+    """Tip alteration coefficients; those that keep the tip clearance unless given."""
+
+
 class PlanetaryGears(Table):
     """A planetary gear set: a sun, planets on a carrier, and a ring around them, of one module.
 
     One of sun, carrier and ring is turned, one takes the load, one is held. All planets are alike and stand
-    at equal angles. Meshes of sun and planet, and of planet and ring, have the same centre distance.
+    at equal angles. Meshes of sun and planet, and of planet and ring, have the same centre distance. With a
+    `second` gear on the planets and a second ring it is a 3K set: sun and both rings are turned, loaded and
+    held, and the carrier bears the planets alone.
     """
 
     explored: ClassVar[tuple[str, float]] = ("profile_shift.2", 0.2)
@@ -160,13 +211,15 @@ class PlanetaryGears(Table):
     """Tip thickness that shortening keeps, in modules; helical 0.25, spur 0, unless given."""
     centre_distance: Annotated[float, DISTANCE] | None = None
     """Centre distance of both meshes; that of sun and planet without backlash unless given."""
-    input: Literal["sun", "carrier", "ring"] = "sun"
+    second: SecondGears | None = None
+    """Second gears of the planets and their ring, for a 3K set; none unless given."""
+    input: Body = "sun"
     """Body that drives."""
-    output: Literal["sun", "carrier", "ring"] = "carrier"
-    """Body that takes the load."""
-    held: Literal["sun", "carrier", "ring"] = "ring"
+    output: Body = "carrier"
+    """Body that takes the load; the second ring where there is one, unless given."""
+    held: Body = "ring"
     """Body that stands still."""
-    floating: Literal["sun", "carrier", "ring"] | None = None
+    floating: Body | None = None
     """Body that is free to move sideways, so that planets share alike; none unless given."""
     pin_errors: PinErrors = ()
     """How far each pin is ahead along its circle, to where its planet pushes it, so that it bears less."""
@@ -177,14 +230,24 @@ class PlanetaryGears(Table):
 
     @model_validator(mode="after")
     def _whole(self) -> "PlanetaryGears":
+        if self.second is not None and "output" not in self.model_fields_set:
+            # A copy, which keeps what was given as given.
+            return self.model_copy(update={"output": SECOND})._checked()
+        return self._checked()
+
+    def _checked(self) -> "PlanetaryGears":
+        """The set; InputError unless its bodies have three different parts, and rings are around planets."""
         roles = {"input": self.input, "output": self.output, "held": self.held}
-        missing = [body for body in BODIES if body not in roles.values()]
+        ends = BODIES if self.second is None else ("sun", "ring", SECOND)
+        missing = [body for body in ends if body not in roles.values()]
         if missing:
             wrong = [name for name in roles if name in self.model_fields_set]
+            told = ", ".join(f"{name} = {body}" for name, body in roles.items())
+            of_two = "" if self.second is None else "; of a 3K set the carrier bears planets alone"
             raise InputError(
-                f"{', '.join(f'{name} = {body}' for name, body in roles.items())}: input, output and held "
-                f"are three different ones of {', '.join(BODIES)}, and the {missing[0]} is none of them",
-                key=wrong[-1],
+                f"{told}: input, output and held are three different ones of {', '.join(ends)}, and the "
+                f"{missing[0]} is none of them{of_two}",
+                key=[*wrong, "output"][0] if self.second else wrong[-1],
             )
         sun, planet, ring = self.teeth
         if ring <= planet:
@@ -192,6 +255,12 @@ class PlanetaryGears(Table):
                 f"a ring of {ring:.0f} teeth is not around a planet of {planet:.0f}; with a sun of {sun:.0f} "
                 f"teeth it has some {sun + 2.0 * planet:.0f}",
                 key="teeth",
+            )
+        if self.second is not None and self.second.teeth[1] <= self.second.teeth[0]:
+            planet, ring = self.second.teeth
+            raise InputError(
+                f"a ring of {ring:.0f} teeth is not around a gear of {planet:.0f} teeth",
+                key="second.teeth",
             )
         return self
 
@@ -206,25 +275,52 @@ class PlanetaryGears(Table):
                 "centre distance",
                 key="profile_shift",
             )
-        if ring != FROM_CENTRE_DISTANCE:
-            return self
+        changes: Tree = {}
+        if ring == FROM_CENTRE_DISTANCE:
+            ring = self._follows(self.teeth[1:], self.module, planet)
+            changes["profile_shift"] = sun, planet, ring
+            if not SHIFT.low <= ring <= SHIFT.high:
+                first, second, last = self.teeth
+                raise InputError(
+                    f"a ring of {last:.0f} teeth at the centre distance {1e3 * self.distance:.6g} mm of sun "
+                    f"and planet asks for a profile shift of {ring:.3g}; with {first:.0f} and {second:.0f} "
+                    f"teeth it has some {first + 2.0 * second:.0f}",
+                    key="teeth",
+                )
+        if self.second is not None:
+            changes["second"] = self._second_with_shift(self.second)
+        return self.model_copy(update=changes) if changes else self
+
+    def _second_with_shift(self, second: SecondGears) -> SecondGears:
+        """The second gears with their module, and the shift of the ring that leaves no backlash."""
+        module = second.module or self.module
+        shifts: Any = second.profile_shift
+        planet, ring = second.teeth
+        if shifts[1] == FROM_CENTRE_DISTANCE:
+            try:
+                shifts = shifts[0], self._follows(second.teeth, module, shifts[0])
+            except InputError:  # no shift makes such a ring
+                shifts = shifts[0], SHIFT.high + 1.0
+        if not SHIFT.low <= shifts[1] <= SHIFT.high:
+            some = planet + 2.0 * self.distance / module * cos(self.helix_angle)
+            raise InputError(
+                f"no profile shift from {SHIFT.low:g} to {SHIFT.high:g} makes a ring of {ring:.0f} teeth fit "
+                f"around gears of {planet:.0f} with the module {1e3 * module:.6g} mm at the centre distance "
+                f"{1e3 * self.distance:.6g} mm of sun and planet; it has some {some:.0f}",
+                key="second.teeth",
+            )
+        return second.model_copy(update={"profile_shift": shifts, "module": module})
+
+    def _follows(self, teeth: Sequence[float], module: float, shift: float) -> float:
+        """Shift of a ring without backlash around a gear of the planets that has this one."""
         both = profile_shift_sum(
-            teeth=(self.teeth[1], -self.teeth[2]),
-            module=self.module,
+            teeth=(teeth[0], -teeth[1]),
+            module=module,
             pressure_angle=self.pressure_angle,
             helix_angle=self.helix_angle,
             centre_distance=self.distance,
         )
-        shifts = sun, planet, round(both - planet, 12) + 0.0
-        if not SHIFT.low <= shifts[2] <= SHIFT.high:
-            first, second, last = self.teeth
-            raise InputError(
-                f"a ring of {last:.0f} teeth at the centre distance {1e3 * self.distance:.6g} mm of sun and "
-                f"planet asks for a profile shift of {shifts[2]:.3g}; with {first:.0f} and {second:.0f} "
-                f"teeth it has some {first + 2.0 * second:.0f}",
-                key="teeth",
-            )
-        return self.model_copy(update={"profile_shift": shifts})
+        return float(round(both - shift, 12) + 0.0)
 
     @property
     def distance(self) -> float:
@@ -252,12 +348,28 @@ class PlanetaryGears(Table):
         }
 
     def meshes(self) -> list[Tree]:
-        """Tables [[stages]] of sun and planet, and of planet and ring."""
+        """Tables [[stages]] of sun and planet, of planet and ring, and of a second ring."""
         sun, planet, ring = self.teeth
-        return [
+        found: list[Tree] = [
             {"bodies": ["sun", "planet"], "gears": self._pair(0, [sun, planet])},
             {"bodies": ["planet", "ring"], "gears": self._pair(1, [planet, -ring])},
         ]
+        if self.second is not None:
+            found.append({"bodies": ["planet", SECOND], "gears": self._second_pair(self.second)})
+        return found
+
+    def _second_pair(self, second: SecondGears) -> Tree:
+        """Table [gears] of the second gears and their ring, racks as those of planet and ring."""
+        planet, ring = second.teeth
+        pair = self._pair(1, [planet, -ring])
+        pair.pop("tip_alteration", None)
+        own = {"profile_shift": second.profile_shift, "tip_alteration": second.tip_alteration}
+        return {
+            **pair,
+            "module": SIValue(second.module or self.module),
+            "face_width": SIValue(min(second.face_width)),
+            **{key: [*map(SIValue, values)] for key, values in own.items() if values is not None},
+        }
 
     def _pair(self, first: int, teeth: Sequence[float]) -> Tree:
         """Table [gears] of two neighbours among sun, planet and ring."""
@@ -297,6 +409,13 @@ def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:
     if table == "train":
         return error.at(key=f"gears.{inside}")
     number, _, key = inside.partition(".")
+    if table == "stages" and number == "3":
+        words = "in the mesh of the second gear of the planets (gear 1) and its ring (gear 2)"
+        table, _, inside = key.partition(".")
+        own = table == "gears" and inside.partition(".")[0] in SecondGears.model_fields
+        key = f"gears.second.{inside}" if own else key
+        told = f"{words}: {error.message}"
+        return InputError(told, file=error.file, key=key or None, value=error.value)
     if table != "stages" or number not in ("1", "2"):
         return error
     first = int(number) - 1
