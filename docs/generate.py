@@ -60,7 +60,8 @@ def _keys_by_table() -> dict[str, list[str]]:
     pages["file"] += _of_table("A file of several stages", DriveCase)
     pages["file"] += _of_table("`[[stages]]`", StageTable)
     pages["file"] += _of_table("`[train]`", TrainTable)
-    first, *others = _of_table("`[gears (planetary)]`", PlanetaryGears)
+    tables = _tables("gears (planetary)", PlanetaryGears)
+    first, *others = (part for path, model in tables for part in _of_table(f"`[{path}]`", model))
     pages["gears_planetary"] = [first[1:], *others]
     return {**pages, "marks": _marks()}
 

@@ -54,6 +54,7 @@ PARTS = [
     "laws",
     "strength",
     "torsion",
+    "stiffness",
     "study_sweep_operation_speed",
 ]
 PARTS += ["study_sweep_stages_1_gears_profile_shift_1", "running", "loss_map", "back_driving"]
