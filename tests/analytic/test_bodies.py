@@ -135,9 +135,9 @@ def test_which_gears_have_bodies():
 def test_a_rim_is_judged_by_what_its_material_bears():
     """Of steel by usual cups; of plastic by the strain of its wave, silent with the rim that is told."""
 
-    def told(young, thickness):
+    def told(young, thickness, **cup):
         tree = drive(teeth=[68, 70], module="0.9 mm", face_width="12 mm")
-        tree["gears"]["flexspline"] = {"rim_thickness": thickness}
+        tree["gears"]["flexspline"] = cup or {"rim_thickness": thickness}
         tree["materials"] = {"gear_1": {"young": young, "poisson": 0.36}}
         return [text for text in built(tree).warnings if "rim" in text]
 
@@ -149,4 +149,14 @@ def test_a_rim_is_judged_by_what_its_material_bears():
     assert float(within[1]) == pytest.approx(0.57, abs=0.06)
     assert told("3.3 GPa", f"{0.95 * float(within[2])} mm") == []
     (thin,) = told("3.3 GPa", "0.26 mm")
-    assert "usual for cups of plastic of its size and its wave are 1.22 mm, to be set as" in thin
+    assert "usual for cups of plastic of its size and its wave are 1.22 mm" in thin
+    # Left open it is that of steel cups, which is told of one of plastic; by 6 w0 t/d^2, with w0 of a module.
+    (left_open,) = told("3.3 GPa", None, walls="bending strain")
+    assert f"is {3.75e-4 * 68.0**2 * 0.9 / 6.0:.3g} mm thick" in left_open
+    assert f'are {0.02 * 68.0 * 0.9:.3g} mm, which walls = "bending strain of plastic"' in left_open
+    assert told("3.3 GPa", None, walls="bending strain of plastic") == []
+    assert told("206 GPa", None, walls="bending strain") == []
+    (foreign,) = told("206 GPa", None, walls="bending strain of plastic")
+    assert 'which walls = "bending strain" takes' in foreign
+    *_, light = told("71 GPa", "1.6 mm")
+    assert "metals are taken to bear 0.2 % in alternating bending, as steel does" in light

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from inspect import signature
 from itertools import groupby
-from math import ceil, floor, inf, pi, radians
+from math import ceil, floor, inf, isclose, pi, radians
 from typing import Any, NoReturn
 
 import equinox as eqx
@@ -129,7 +129,7 @@ def build_strain_wave(
         force_angle: between the long axis and the forces of the shape `four_forces` [rad].
         rim_thickness: of the flexspline under its teeth [m]; by `walls` if it is left out.
         wall_thickness: of the cup [m]; half the rim by default.
-        walls: "two modules" or "bending strain", see `rim_by_strain`.
+        walls: "two modules", "bending strain" or "bending strain of plastic", see `rim_by_strain`.
         cup_length: from the teeth to the flange [m]; half the pitch diameter by default.
         support_stiffness: of the wave generator's bearing, see `FlexibleRing` [N/m2].
         bearing: balls of the wave generator, which take the place of that support.
@@ -450,7 +450,9 @@ def _planned(
 
 def _rim(walls: str, module: float, teeth: int, deflection: float) -> float:
     """Thickness of a rim by a rule [m]."""
-    return 2.0 * module if walls == "two modules" else rim_by_strain(module * teeth, deflection)
+    if walls == "two modules":
+        return 2.0 * module
+    return rim_by_strain(module * teeth, deflection, plastic=walls == "bending strain of plastic")
 
 
 def _built(plan: _Plan, programs: _Programs) -> _Built:
@@ -561,9 +563,13 @@ def check_rim(mesh: StrainWave, young: float, tensile: float | None = None) -> t
         weights=np.asarray(line.weights),
     )
     per_thickness = np.abs(bent).max() / 2.0
-    usual = rim_by_strain(mesh.pitch_diameter, float(line.deflection), plastic=plastic)
+    usual, of_steel = (
+        rim_by_strain(mesh.pitch_diameter, float(line.deflection), plastic=soft)
+        for soft in (plastic, False)
+    )
     told = []
-    if not 1.0 / FAR_FROM_USUAL < thickness / usual < FAR_FROM_USUAL:
+    as_of_steel = plastic and isclose(thickness, of_steel)  # what a table that leaves it open has
+    if as_of_steel or not 1.0 / FAR_FROM_USUAL < thickness / usual < FAR_FROM_USUAL:
         told.append(_unusual_rim(thickness, usual, plastic))
     if per_thickness * thickness > (borne := _borne(young, tensile)[0]):
         told.append(_strained_rim(per_thickness * thickness, borne / per_thickness, young, tensile))
@@ -572,14 +578,12 @@ def check_rim(mesh: StrainWave, young: float, tensile: float | None = None) -> t
 
 def _unusual_rim(thickness: float, usual: float, plastic: bool) -> Doubt:
     """Sentence on a rim that is far from usual."""
-    cup, cure = (
-        ("plastic", "to be set as flexspline.rim_thickness")
-        if plastic
-        else ("steel", 'which walls = "bending strain" takes')
+    cup, walls = (
+        ("plastic", "bending strain of plastic") if plastic else ("steel", "bending strain")
     )
     return Doubt(
         f"The rim of the flexspline is {1e3 * thickness:.3g} mm thick; usual for cups of {cup} of its size "
-        f"and its wave are {1e3 * usual:.3g} mm, {cure}.",
+        f'and its wave are {1e3 * usual:.3g} mm, which walls = "{walls}" takes.',
         brief=f"The flexspline's rim is {1e3 * thickness:.3g} mm, usual are {1e3 * usual:.3g} mm.",
     )
 
@@ -587,7 +591,10 @@ def _unusual_rim(thickness: float, usual: float, plastic: bool) -> Doubt:
 def _borne(young: float, tensile: float | None) -> tuple[float, str]:
     """Strain that the material of a flexspline bears, and that in words."""
     if young >= SOFT:
-        return STEEL_BEARS, "steel is taken to bear {:.2g} % in alternating bending"
+        return (
+            STEEL_BEARS,
+            "metals are taken to bear {:.2g} % in alternating bending, as steel does",
+        )
     if tensile is None:
         return BORNE, "plastics are taken to bear {:.2g} % for short lives"
     quarter = f"a quarter of its tensile strength of {tensile / 1e6:.3g} MPa"

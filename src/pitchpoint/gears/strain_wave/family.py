@@ -128,11 +128,13 @@ _RIMS = {
         "two modules",
         "rim and wall follow from the module, so that another ratio of the same size has other walls",
     ),
-    "bending strain": (
+} | dict.fromkeys(
+    ("bending strain", "bending strain of plastic"),
+    (
         "by the strain of its wave, at most in proportion to the size",
         "rim and wall follow from the wave, so that a lower ratio of the same size has thinner walls",
     ),
-}
+)
 """Rule of the rim's thickness, and how it changes with the ratio."""
 
 

@@ -183,12 +183,13 @@ class WaveGenerator(Table):
 class Flexspline(Table):
     """Rim and cup of the flexspline, and the bearing that holds it round.
 
-    By default the rim is as thick as its bending into the wave allows cups of steel, see
-    `proportions.rim_by_strain`, the wall of the cup half of that, the cup half a pitch diameter long, and the
-    bearing rigid. A rim of two modules, as in a published drive of ratio 100, is too stiff for low ratios.
+    By default the rim is as thick as its bending into the wave allows cups of steel, of whatever material
+    this one is, see `proportions.rim_by_strain`; the wall of the cup is half of that, the cup half a pitch
+    diameter long, and the bearing rigid. A rim of two modules, as in a published drive of ratio 100, is too
+    stiff for low ratios.
     """
 
-    walls: Literal["two modules", "bending strain"] = "bending strain"
+    walls: Literal["two modules", "bending strain", "bending strain of plastic"] = "bending strain"
     """What a rim thickness that is not given follows from."""
     rim_thickness: Annotated[float, THICKNESS] | None = None
     """Thickness of the rim under the teeth; by walls unless given, assumed."""
