@@ -236,6 +236,22 @@ def test_a_ball_on_a_disc_has_an_ellipse_once_for_all_phases() -> None:
     assert 'id="finite_film"' in render({"default": outcome})
 
 
+@pytest.mark.parametrize(
+    ("law", "density"),
+    [
+        ("dowson_higginson_1966", lambda p: 1.0 + 0.6 * p / (1.0 + 1.7 * p) - 7e-4 * 35.0),
+        ("incompressible", lambda p: np.ones_like(p)),
+    ],
+)
+def test_compressed_and_warm_oil_refracts_by_its_density(law: str, density: Any) -> None:
+    """The index as the root of Lorentz and Lorenz, at pressures and an index that no example has."""
+    built = load_case(BALL, settings={"film.refractive_index": 1.415, "film.density_law": law})
+    pressed = np.array([0.12, 0.48, 0.93])  # GPa
+    of_law = finite_film._read_over_true(built, 1e9 * pressed, np.full(3, 35.0)) * 1.415
+    refraction = (of_law**2 - 1.0) / (of_law**2 + 2.0) / ((1.415**2 - 1.0) / (1.415**2 + 2.0))
+    np.testing.assert_allclose(refraction, density(pressed), rtol=1e-12)
+
+
 @pytest.mark.whole
 def test_a_barrel_has_both_its_radii() -> None:
     built = load_case(BALL, settings={"gears.transverse_radius": "30 mm"})

@@ -212,26 +212,31 @@ def _values(
         if line or name not in _ROWS
     }
     if asked(built).refractive_index is not None:
-        pressures = [
+        middle = [
             _in_the_middle(one.film) if isinstance(one, PatchFilms) else np.nan for one in films
         ]
-        found["read_film"] = found["central_film"] * _read_over_true(built, lane(pressures))
+        pressure, rise = np.moveaxis(lane(middle, (2,)), -1, 0)
+        found["read_film"] = found["central_film"] * _read_over_true(built, pressure, rise)
     status = np.array([*codes, int(Code.UNLOADED)])[lanes]
     found["minimum_lambda"] = over_rough(built, found["minimum_film"])
     return found | {"film_status": status, "film_defect": lane(defects)}
 
 
-def _in_the_middle(film: PatchFilm) -> float:
-    """Pressure in the middle of an ellipse [Pa]."""
-    rows = [np.interp(0.0, film.x, row) for row in np.asarray(film.pressure)]
-    return float(np.interp(0.0, film.y, rows))
+def _in_the_middle(film: PatchFilm) -> np.ndarray:
+    """Pressure [Pa] and rise of the temperature [K] in the middle of an ellipse."""
+
+    def middle(field: Any) -> float:
+        rows = [np.interp(0.0, film.x, row) for row in np.asarray(field)]
+        return float(np.interp(0.0, film.y, rows))
+
+    return np.array([middle(film.pressure), 0.0 if film.heat is None else middle(film.heat.film)])
 
 
-def _read_over_true(built: Built, pressure: np.ndarray) -> np.ndarray:
-    """Film that interferometry reads with the index at ambient pressure, over the true one."""
+def _read_over_true(built: Built, pressure: np.ndarray, rise: np.ndarray) -> np.ndarray:
+    """Film that interferometry reads with the index at ambient pressure and the inlet, over the true one."""
     index = np.asarray(asked(built).refractive_index)
     oil = film_model_of(built).fluid(built.design.lubricant, float(built.operation.temperature))
-    denser = oil.density_ratio(array(pressure))
+    denser = oil.density_ratio(array(pressure), array(rise))
     compressed = lorentz_lorenz_1880(refractive_index=array(index), density_ratio=denser)
     read: np.ndarray = np.asarray(compressed) / index
     return read
@@ -525,8 +530,12 @@ def _interferometry(built: Built, values: Mapping[str, np.ndarray]) -> str:
     )
     if "read_film" not in values:
         return f"{words}: give the `refractive_index` to have them as they are read."
-    read = np.nanmax(values["read_film"] / values["central_film"]) - 1.0
-    index = asked(built).refractive_index
+    read, index = (
+        np.nanmax(values["read_film"] / values["central_film"]) - 1.0,
+        asked(built).refractive_index,
+    )
+    if read == 0.0:
+        return f"{words}; the oil of this case is incompressible, and is read as it is."
     return f"{words}: by {100.0 * read:.2g} % in the middle with an index of {index:g} there."
 
 
