@@ -17,6 +17,7 @@ from pitchpoint.gears.cylindrical.inspection import (
     profile_shift_sum,
 )
 from pitchpoint.gears.cylindrical.table import (
+    CUTTER_TEETH,
     FROM_CENTRE_DISTANCE,
     LEAST_TIP,
     TIP,
@@ -68,6 +69,9 @@ PinErrors = Annotated[tuple[Annotated[float, PIN_ERROR], ...], Field(max_length=
 
 _LISTS = ("teeth", "profile_shift", "addendum", "dedendum", "fillet_radius", "tip_alteration")
 """Keys that hold a value for each of sun, planet and ring."""
+
+_OF_ALL = ("module", "pressure_angle", "helix_angle", "least_tip_thickness")
+"""Keys whose value all gears have."""
 
 Three = tuple[float, float, float]
 Tree = dict[str, Any]
@@ -205,6 +209,10 @@ class PlanetaryGears(Table):
     """Dedendum of the basic racks, in modules; addendum of the mate + 0.25 unless given."""
     fillet_radius: Annotated[Three, OfThree(FILLET)] = (0.38, 0.2, 0.2)
     """Fillet radius ρ_fP of the racks in modules; 0.38 of the sun, 0.2 where a ring meshes, unless given."""
+    cutter_teeth: Annotated[float, CUTTER_TEETH] | None = None
+    """Teeth z_0 of the pinion cutter of the ring; unless given the ring has arcs as fillets."""
+    cutter_profile_shift: Annotated[float, SHIFT] | None = None
+    """Profile shift x_0 of that cutter, as it is ground; 0 unless given."""
     tip_alteration: Annotated[Three, OfThree(TIP)] | None = None
     """Tip alteration coefficients; those that keep the tip clearance of each mesh unless given."""
     least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
@@ -387,7 +395,8 @@ class PlanetaryGears(Table):
                 if values is not None
             },
         }
-        for name in ("module", "pressure_angle", "helix_angle", "least_tip_thickness"):
+        of_ring = ("cutter_teeth", "cutter_profile_shift") if first else ()
+        for name in (*_OF_ALL, *of_ring):
             if (value := getattr(self, name)) is not None:
                 found[name] = SIValue(value)
         if self.centre_distance is not None or first:
