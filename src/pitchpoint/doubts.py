@@ -162,8 +162,8 @@ def in_stage(number: int | str, sentence: str) -> Doubt:
         >>> from pitchpoint.doubts import fails
         >>> in_stage(2, fails("the teeth of gear 2 melt."))
         'Fails: stage 2: the teeth of gear 2 melt.'
-        >>> in_stage(1, "Tips are pointed.")
-        'Stage 1: tips are pointed.'
+        >>> in_stage(1, "Tips are pointed."), in_stage(1, "K_v ends here.")
+        ('Stage 1: tips are pointed.', 'Stage 1: K_v ends here.')
     """
     return reworded(sentence, partial(_stage_words, number))
 
@@ -172,7 +172,8 @@ def _stage_words(number: int | str, sentence: str) -> str:
     """Words on a stage."""
     if sentence.startswith(_FAILS):
         return f"{_FAILS}stage {number}: {sentence.removeprefix(_FAILS)}"
-    return f"Stage {number}: {sentence[:1].lower()}{sentence[1:]}"
+    symbol = sentence[1:2] == "_" or sentence[1:2].isupper()  # K_v, ISO
+    return f"Stage {number}: {sentence if symbol else sentence[:1].lower() + sentence[1:]}"
 
 
 def of_designs(sentence: str, names: str) -> Doubt:

@@ -44,6 +44,11 @@ __all__ = [
     "ends_of",
 ]
 
+_BY_METHOD_B = (
+    "K_v by method B takes each mesh by itself, with one planet and a ring that swings: more planets on a "
+    "sun make the mass that vibrates smaller, a ring that is held fast makes it larger."
+)
+
 MEETINGS, TRAIN_PERIOD = "all meetings of phases", "period of the train"
 """What averages run over where there are several meshes: stages in a row, or a train."""
 
@@ -473,8 +478,10 @@ class BuiltTrain(BuiltDrive):
             if count in MESH_LOAD
             else "K_γ = 1"
         )
+        by_method_b = any(one.rated.table.dynamic_method == "B" for one in self.single.values())
         return (
             *super().on_strength,
+            *[_BY_METHOD_B] * by_method_b,
             f"Where [strength] says nothing else, {share}, teeth that two mates load both ways have "
             f"Y_M = 0.7, and a gear that meets all planets has {count} load cycles in a turn against the "
             "carrier.",
