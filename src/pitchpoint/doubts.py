@@ -20,6 +20,7 @@ __all__ = [
     "concerns",
     "doubts_of",
     "fails",
+    "in_percent",
     "in_stage",
     "moves",
     "of_designs",
@@ -153,6 +154,16 @@ def fails(sentence: str, brief: str = "") -> Doubt:
     """
     doubt = as_doubt(sentence)
     return _alike(doubt, f"{_FAILS}{doubt}", f"{_FAILS}{brief or doubt.brief}")
+
+
+def in_percent(part: float) -> str:
+    """A part as a percentage of two digits, without a power of ten.
+
+    Example:
+        >>> in_percent(0.0321), in_percent(0.9996), in_percent(1.26)
+        ('3.2 %', '100 %', '130 %')
+    """
+    return f"{float(f'{100.0 * part:.2g}'):g} %"
 
 
 def in_stage(number: int | str, sentence: str) -> Doubt:

@@ -10,7 +10,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import SPEED, TEMPERATURE
-from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, fails, reworded
+from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, fails, in_percent, reworded
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import largest_radius, touching
@@ -204,10 +204,10 @@ def face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
     idle = 1.0 - mean / slices
     return [
         Doubt(
-            f"Of the contact lines that carry, {100.0 * idle:.2g} % get no load at {load}; flanks do not "
+            f"Of the contact lines that carry, {in_percent(idle)} get no load at {load}; flanks do not "
             "touch there.",
             moves=idle,
-            brief=f"{100.0 * idle:.2g} % of the contact lines carry nothing at {load}.",
+            brief=f"{in_percent(idle)} of the contact lines carry nothing at {load}.",
         )
     ]
 
@@ -243,9 +243,9 @@ def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndar
         told.append(
             Doubt(
                 f"At {partly.sum()} of {len(points)} points a part of the contact lines that carry, up to "
-                f"{100.0 * most:.2g} %, gets no load; flanks do not touch there.",
+                f"{in_percent(most)}, gets no load; flanks do not touch there.",
                 moves=most,
-                brief=f"Up to {100.0 * most:.2g} % of the contact lines carry nothing at some points.",
+                brief=f"Up to {in_percent(most)} of the contact lines carry nothing at some points.",
             )
         )
     return told
@@ -515,7 +515,7 @@ def _how_long(outside: np.ndarray, weight: np.ndarray) -> str:
 
 def _part_of(outside: np.ndarray, weight: np.ndarray) -> str:
     share = float(np.sum(outside * weight))
-    return "throughout" if share > 1.0 - 1e-9 else f"{100.0 * share:.2g} % of a cycle"
+    return "throughout" if share > 1.0 - 1e-9 else f"{in_percent(share)} of a cycle"
 
 
 def rolling_share(run: Mapping[str, np.ndarray]) -> float:

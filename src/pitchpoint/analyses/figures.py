@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.summaries import AT_CONTACT
+from pitchpoint.doubts import in_percent
 from pitchpoint.results.store import without_nan
 
 __all__ = [
@@ -279,7 +280,7 @@ def error_words(data: xr.Dataset, law: int, words: Callable[[str, float], str]) 
         words: a load or speed of the map by its name, value [SI] to text.
     """
     names = (*ERRORS, "mean_interpolation_error")
-    most, light, creeping, mean = (f"{100.0 * float(data[name][law]):.2g} %" for name in names)
+    most, light, creeping, mean = (f"{in_percent(float(data[name][law]))}" for name in names)
     torque, speed = (
         words(name, float(values[values > 0.0].min()))
         for name in ("output_torque", "output_speed")

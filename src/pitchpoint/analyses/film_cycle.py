@@ -12,7 +12,7 @@ from pitchpoint.analyses.film_series import series_figures
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import SUMMIT_CONSTANTS
 from pitchpoint.contact.registry import SUMMITS
-from pitchpoint.doubts import REMARKED, WITHHELD, Doubt, doubts_of, reworded
+from pitchpoint.doubts import REMARKED, WITHHELD, Doubt, doubts_of, in_percent, reworded
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -364,7 +364,7 @@ def _of_summits(spread: Mapping[str, np.ndarray]) -> Iterator[Doubt]:
     if not (np.max(shares) > COUNTS and np.max(shares) > APART * np.min(shares)):
         return
     each = (
-        f"{100.0 * share:.2g} % of the load and friction is {friction:.2g} with the {one.title}"
+        f"{in_percent(share)} of the load and friction is {friction:.2g} with the {one.title}"
         for one, share, friction in zip(SUMMITS.values(), shares, frictions, strict=True)
     )
     yield Doubt(

@@ -21,7 +21,7 @@ from pitchpoint.analyses.film_contacts import alike, asked, film_model_of, patch
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
 from pitchpoint.cases.build import Built, tooth_size
-from pitchpoint.doubts import WITHHELD, Doubt
+from pitchpoint.doubts import WITHHELD, Doubt, in_percent
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import GRID, UNKNOWN_GRID
 from pitchpoint.lubrication.ehl.line import FLOODED
@@ -536,7 +536,7 @@ def _interferometry(built: Built, values: Mapping[str, np.ndarray]) -> str:
     )
     if read == 0.0:
         return f"{words}; the oil of this case is incompressible, and is read as it is."
-    return f"{words}: by {100.0 * read:.2g} % in the middle with an index of {index:g} there."
+    return f"{words}: by {in_percent(read)} in the middle with an index of {index:g} there."
 
 
 def _leaning(values: Mapping[str, np.ndarray]) -> str:

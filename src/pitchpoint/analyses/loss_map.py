@@ -13,7 +13,7 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.lacking import untransmitted, without_films
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
-from pitchpoint.doubts import Doubt, doubts_of
+from pitchpoint.doubts import Doubt, doubts_of, in_percent
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.film_map import FilmMap, film_map
 from pitchpoint.efficiency.in_turns import in_turns
@@ -211,8 +211,8 @@ def _solved_films(built: Built, law: FrictionLaw) -> tuple[FilmMap | None, str]:
     return films, Doubt(
         f"{law.title}: films were solved at {solved} operating points for the {points} of the map, and "
         f"their friction follows a polynomial in between; at {len(errors)} points half way between these the "
-        f"mean loss in the teeth is off by up to {100.0 * max(errors):.2g} % of that of films solved there.",
-        brief=f"Loss map between solved films is off by up to {100.0 * max(errors):.2g} %.",
+        f"mean loss in the teeth is off by up to {in_percent(max(errors))} of that of films solved there.",
+        brief=f"Loss map between solved films is off by up to {in_percent(max(errors))}.",
     )
 
 

@@ -24,7 +24,7 @@ from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
-from pitchpoint.doubts import FELT, GUESSED, Doubt, doubts_of, in_stage, stored
+from pitchpoint.doubts import FELT, GUESSED, Doubt, doubts_of, in_percent, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.results.store import without_nan
 
@@ -65,7 +65,7 @@ def _above(stage: Built, torque: float) -> Iterator[Doubt]:
     rated = stage.case.operation.load
     more = torque / rated - 1.0 if rated > 0.0 else 0.0
     if more > FELT:
-        roots, flanks = (f"{100.0 * part:.2g} %" for part in (more, sqrt(1.0 + more) - 1.0))
+        roots, flanks = (f"{in_percent(part)}" for part in (more, sqrt(1.0 + more) - 1.0))
         under, over = (stage.carried.show(float(f"{load:.4g}")) for load in (rated, torque))
         yield Doubt(
             f"stresses and safeties are those for {under}, without the losses behind it; it carries {over}, "

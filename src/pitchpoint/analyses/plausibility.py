@@ -19,7 +19,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.contact.contacts import Shape
-from pitchpoint.doubts import Doubt, fails, reworded
+from pitchpoint.doubts import Doubt, fails, in_percent, reworded
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.registry import BOUNDARY, ROLLING_RESISTANCE, FrictionLaw
 from pitchpoint.materials import solids
@@ -171,10 +171,10 @@ def contact_strain(at: AtWork) -> str | None:
     if largest <= SMALL_STRAIN * modulus or hertz_pressure(at):
         return None
     return Doubt(
-        f"the Hertz pressure reaches {_pressure(largest)}, {100.0 * largest / modulus:.2g} % of "
+        f"the Hertz pressure reaches {_pressure(largest)}, {in_percent(largest / modulus)} of "
         "the reduced modulus; elastic contacts with strains as small as the formulas ask for end at "
         f"{100.0 * SMALL_STRAIN:g} %",
-        brief=f"Hertz pressure {100.0 * largest / modulus:.2g} % of the modulus: strains are large",
+        brief=f"Hertz pressure {in_percent(largest / modulus)} of the modulus: strains are large",
     )
 
 
@@ -220,9 +220,9 @@ def thick_film(at: AtWork) -> str | None:
         return None
     thickest = max(float(np.nanmax(run["film_thickness"])) for run in at.runs)
     return Doubt(
-        f"the film reaches {_shown(LENGTH, thickest)}, {100.0 * ratio:.2g} % of the relative radius of the "
+        f"the film reaches {_shown(LENGTH, thickest)}, {in_percent(ratio)} of the relative radius of the "
         f"flanks; laws of thin films end before {100.0 * THICKEST:g} %",
-        brief=f"film of {_shown(LENGTH, thickest)}, {100.0 * ratio:.2g} % of the radius: not thin",
+        brief=f"film of {_shown(LENGTH, thickest)}, {in_percent(ratio)} of the radius: not thin",
     )
 
 

@@ -16,7 +16,7 @@ from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.contact.contacts import Contacts, along
-from pitchpoint.doubts import Doubt, in_stage
+from pitchpoint.doubts import Doubt, in_percent, in_stage
 from pitchpoint.efficiency.drag import at_rest, bearing_loads
 from pitchpoint.efficiency.quasi_static import Design, Engagement, coupling, engagement
 from pitchpoint.efficiency.summary import summarise
@@ -263,10 +263,10 @@ def _on_edges(built: Ready, torques: np.ndarray, share: np.ndarray) -> list[str]
     return [
         Doubt(
             f"Edges of the teeth (ends of flanks and roundings of tips) carry up to "
-            f"{100.0 * share[most]:.2g} % of the load, that part at {built.carried.show(torques[most])}: "
+            f"{in_percent(share[most])} of the load, that part at {built.carried.show(torques[most])}: "
             f"more than {100.0 * MUCH:g} % from {built.carried.show(torques[much][0])} on. Loss, stiffness "
             "and pressure then hang on how those edges are made.",
-            brief=f"Edges of the teeth carry up to {100.0 * share[most]:.2g} % of the load.",
+            brief=f"Edges of the teeth carry up to {in_percent(share[most])} of the load.",
         )
     ]
 

@@ -17,7 +17,7 @@ from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.worn import BRIDGED, WIDEST
-from pitchpoint.doubts import Doubt
+from pitchpoint.doubts import Doubt, in_percent
 from pitchpoint.efficiency.quasi_static import contacts_at, shares_at
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import line_of_action
@@ -505,7 +505,7 @@ def _warnings(
     if error > TOLD:
         told.append(
             Doubt(
-                f"Wear: the largest depth may be {100.0 * error:.2g} % off by the grid on the flanks"
+                f"Wear: the largest depth may be {in_percent(error)} off by the grid on the flanks"
                 f"{'' if films is None else ', that of the films'} and the "
                 f"steps of the march; more wear.cells (of {int(asked(built).cells)}) and wear.phases (of "
                 f"{int(asked(built).phases)}), {more}and a smaller wear.tolerance, tell.",
@@ -513,7 +513,7 @@ def _warnings(
                 error,
                 moves=error,
                 about=("deepest_wear", "final_depth", "final_cycles", "life_hours"),
-                brief=f"Wear: the depth may be {100.0 * error:.2g} % off by grid and steps.",
+                brief=f"Wear: the depth may be {in_percent(error)} off by grid and steps.",
             )
         )
     if end == "lost":

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.doubts import GUESSED, Doubt
+from pitchpoint.doubts import GUESSED, Doubt, in_percent
 from pitchpoint.gears.tooth_section import ToothSection
 
 __all__ = [
@@ -131,9 +131,9 @@ def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
     return tuple(
         Doubt(
             f"the {name} is {value:.3g}{unit}, beyond the {low:g} to {high:g} of the formula for the "
-            f"compliance under the tooth, which differs by {100.0 * beyond:.2g} % from that at the limit",
+            f"compliance under the tooth, which differs by {in_percent(beyond)} from that at the limit",
             moves=beyond,
-            brief=f"stiffness under the tooth beyond its fit, {100.0 * beyond:.2g} %",
+            brief=f"stiffness under the tooth beyond its fit, {in_percent(beyond)}",
         )
         for name, unit, value, (low, high) in outside
     )

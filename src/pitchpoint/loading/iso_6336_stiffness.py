@@ -8,7 +8,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.doubts import REMARKED, Doubt
+from pitchpoint.doubts import REMARKED, Doubt, in_percent
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import StandardPair, standard_pair
 from pitchpoint.materials.solids import Solid
@@ -246,7 +246,7 @@ def range_warnings(
             Doubt(
                 f"{min(virtual_teeth):.3g} virtual teeth are fewer than the {_FEWEST_TEETH} down to which "
                 "the estimate of ISO 6336-1 was compared with published results; its compliance differs by "
-                f"{100.0 * abs(few / fewest - 1.0):.2g} % from that at the limit",
+                f"{in_percent(abs(few / fewest - 1.0))} from that at the limit",
                 moves=min(abs(few / fewest - 1.0), REMARKED),  # of what stands beside the answer
                 brief=f"{min(virtual_teeth):.3g} virtual teeth: ISO 6336-1 ends at {_FEWEST_TEETH}",
             )

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.films import film_notes
+from pitchpoint.doubts import in_percent
 from pitchpoint.lubrication.ehl.registry import COARSE, ISOTHERMAL
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -146,7 +147,7 @@ def _in_series(data: xr.Dataset) -> str:
         return "; what films take from the torsional stiffness is withheld"
     return (
         f"; in series at this speed films take the torsional stiffness from {without} to {films} "
-        f"({100.0 * part:.2g} % less)"
+        f"({in_percent(part)} less)"
     )
 
 

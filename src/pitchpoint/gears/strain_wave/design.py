@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.doubts import Doubt, fails
+from pitchpoint.doubts import Doubt, fails, in_percent
 from pitchpoint.errors import InputError
 from pitchpoint.gears.designs import Designs, Faults, Group, Number, check_counts
 from pitchpoint.gears.strain_wave import MEMBERS
@@ -605,11 +605,11 @@ def _strained_rim(strain: float, within: float, young: float, tensile: float | N
     """Sentence on a rim whose wave strains it further than its material bears."""
     borne, words = _borne(young, tensile)
     told = (
-        f"he wave strains the rim of the flexspline by {100.0 * strain:.2g} %, in Hooke's law "
+        f"he wave strains the rim of the flexspline by {in_percent(strain)}, in Hooke's law "
         f"{strain * young / 1e6:.3g} MPa; {words.format(100.0 * borne)}: {1e3 * within:.3g} mm of rim have "
         "that."
     )
-    brief = f"he rim is strained by {100.0 * strain:.2g} %, {100.0 * borne:.2g} % is borne."
+    brief = f"he rim is strained by {in_percent(strain)}, {in_percent(borne)} is borne."
     if tensile is not None and strain * young > tensile:
         return fails(f"t{told}", f"t{brief}")
     return Doubt(f"T{told}", brief=f"T{brief}")

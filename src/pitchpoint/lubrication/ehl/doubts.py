@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jax
-from pitchpoint.doubts import GUESSED, WITHHELD, Doubt
+from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, in_percent
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.fields import LineFilm
@@ -392,12 +392,12 @@ def of_grid(
         remedy, brief = _finer(off, grid, most, falls)
         yield Doubt(
             f"the grid is coarse for the films of {coarse.sum()} of {coarse.size} contacts: in the middle "
-            f"they may be off by {100.0 * np.fmax.reduce(central, initial=0.0):.2g} %, smallest ones by "
-            f"{100.0 * np.fmax.reduce(minimum, initial=0.0):.2g} %; {remedy}",
+            f"they may be off by {in_percent(np.fmax.reduce(central, initial=0.0))}, smallest ones by "
+            f"{in_percent(np.fmax.reduce(minimum, initial=0.0))}; {remedy}",
             GRID,
             off,
             moves=off,
-            brief=f"coarse grid: films off by up to {100.0 * off:.2g} %, {brief}",
+            brief=f"coarse grid: films off by up to {in_percent(off)}, {brief}",
         )
     if unknown.any():
         yield Doubt(
@@ -423,7 +423,7 @@ def _finer(off: float, grid: tuple[int, ...], most: int, falls: float) -> tuple[
     left = off * falls**doubled
     if left <= COARSE:
         return f"{whole} bring that below {100.0 * COARSE:g} %", f"take {enough}"
-    return f"{whole}, the most, leave {100.0 * left:.2g} % at worst", f"take {enough}"
+    return f"{whole}, the most, leave {in_percent(left)} at worst", f"take {enough}"
 
 
 def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[Doubt]:
