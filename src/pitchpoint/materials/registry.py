@@ -123,6 +123,10 @@ _SHEARED: Final[dict[str, Any]] = {
 }
 
 _NO_CURVE: Final = "No measured traction curve was found in numbers to hold it against."
+_OF_SQUALANE: Final = (
+    f"{_NO_CURVE} By traction of squalane on four test rigs Neupert and Bartel (2023) found Ree-Eyring "
+    "nearer, which Bair (2023) contests."
+)
 
 
 VISCOSITY = Registry(
@@ -238,11 +242,11 @@ SHEAR_STRESS = Registry(
         "carreau_1972",
         "Carreau, cut at the limiting shear stress",
         "pitchpoint.materials.rheology:carreau_1972",
-        ("carreau_1972", "bair_2019", "habchi_2018"),
+        ("carreau_1972", "bair_2019", "habchi_2018", "neupert_bartel_2023", "bair_2023"),
         (_SHEARED, 23132370.485288832),
         "Oils from their first thinning up to the limiting shear stress; its parameters belong to one oil "
         "and are assumed unless given.",
-        note=_NO_CURVE,
+        note=_OF_SQUALANE,
     ),
 )
 """Laws f(*, viscosity, shear_rate, pressure, temperature_rise) with own parameters; stress with the sign of
