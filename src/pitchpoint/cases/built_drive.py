@@ -302,8 +302,10 @@ class BuiltDrive:
     @property
     def on_strength(self) -> tuple[str, ...]:
         """Sentences on what a rating takes where there are several meshes."""
+        of_sets = ((number, one.on_strength[1:]) for number, one in self.sets.items())
         return (
             "Forces and stresses are those without friction and losses, for the load at the output.",
+            *(in_stage(number, text) for number, told in of_sets for text in told),
         )
 
     @property
@@ -478,7 +480,7 @@ class BuiltTrain(BuiltDrive):
             if count in MESH_LOAD
             else "K_γ = 1"
         )
-        by_method_b = any(one.rated.table.dynamic_method == "B" for one in self.single.values())
+        by_method_b = any(one.rated.table.dynamic_method == "B" for one in self.stages)
         return (
             *super().on_strength,
             *[_BY_METHOD_B] * by_method_b,

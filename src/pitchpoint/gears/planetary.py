@@ -210,7 +210,7 @@ class PlanetaryGears(Table):
     fillet_radius: Annotated[Three, OfThree(FILLET)] = (0.38, 0.2, 0.2)
     """Fillet radius ρ_fP of the racks in modules; 0.38 of the sun, 0.2 where a ring meshes, unless given."""
     cutter_teeth: Annotated[float, CUTTER_TEETH] | None = None
-    """Teeth z_0 of the pinion cutter of the ring; unless given the ring has arcs as fillets."""
+    """Teeth z_0 of the pinion cutter of the (first) ring; unless given the ring has arcs as fillets."""
     cutter_profile_shift: Annotated[float, SHIFT] | None = None
     """Profile shift x_0 of that cutter, as it is ground; 0 unless given."""
     tip_alteration: Annotated[Three, OfThree(TIP)] | None = None
@@ -369,8 +369,9 @@ class PlanetaryGears(Table):
     def _second_pair(self, second: SecondGears) -> Tree:
         """Table [gears] of the second gears and their ring, racks as those of planet and ring."""
         planet, ring = second.teeth
-        pair = self._pair(1, [planet, -ring])
-        pair.pop("tip_alteration", None)
+        of_set = self._pair(1, [planet, -ring])
+        own_keys = ("tip_alteration", "cutter_teeth", "cutter_profile_shift")
+        pair = {key: value for key, value in of_set.items() if key not in own_keys}
         own = {"profile_shift": second.profile_shift, "tip_alteration": second.tip_alteration}
         return {
             **pair,
