@@ -142,9 +142,18 @@ class Problem(eqx.Module):
     def films(self, pressure: Array, level: Array, at: Grid) -> Array:
         """Gap of the mean planes at the middle node, the smallest and the mean one, shape (3,)."""
         gap = self.gap(pressure, level, at)
-        near = jnp.abs(at.x) < NEAR / self.yielding
-        _, least = lowest(at.x, gap, jnp.argmin(jnp.where(near, gap, jnp.inf)))
+        _, least = lowest(at.x, gap, self._narrowest(gap, at))
         return jnp.stack([gap[at.middle], least, self.mean_film(pressure, level, at)])
+
+    def opening(self, gap: Array, at: Grid) -> Array:
+        """Half of what a gap opens from its narrowest node to both neighbours."""
+        node = jnp.clip(self._narrowest(gap, at), 1, gap.shape[0] - 2)
+        return 0.5 * (gap[node - 1] + gap[node + 1]) - gap[node]
+
+    def _narrowest(self, gap: Array, at: Grid) -> Array:
+        """Node of the smallest gap near the contact."""
+        near = jnp.abs(at.x) < NEAR / self.yielding
+        return jnp.argmin(jnp.where(near, gap, jnp.inf))
 
     def mean_film(self, pressure: Array, level: Array, at: Grid) -> Array:
         """Mean gap of the mean planes over the dry contact, of the lines between the nodes."""
