@@ -21,7 +21,7 @@ from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, film_near, solve_patch
-from pitchpoint.lubrication.ehl.patch.grid_error import REMAINS
+from pitchpoint.lubrication.ehl.patch.grid_error import OPENS, REMAINS
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import linear, product
@@ -138,7 +138,14 @@ def test_errors_by_the_grid_are_estimated_from_half_as_many_cells():
         for one in (fine, half)
     ]
     central, mean, least = np.abs(np.diff(np.log(films), axis=0)[0])
-    errors = np.expm1(REMAINS * [max(central, mean), least])
+    ridges = [[np.interp(0.0, one.film.x, row) for row in one.film.gap] for one in (fine, half)]
+    of_rows = np.log(np.interp(half.film.y, fine.film.y, ridges[0]) / ridges[1])
+    central = max(central, mean, np.sqrt(np.mean(of_rows[8:24] ** 2)))
+    errors = np.expm1(REMAINS * [central, least])
+    gap, row, node = fine.film.gap, *np.argwhere(fine.film.gap == fine.film.minimum_film)[0]
+    along, across = gap[row, [node - 1, node + 1]], gap[[row - 1, row + 1], node]
+    opening = max(along.mean(), across.mean()) / gap[row, node] - 1.0
+    errors[1] = max(errors[1], OPENS * opening)
     assert (fine.ended.grid, fine.ended.grid_minimum) == pytest.approx(errors, rel=1e-3)
     assert fine.ended.grid_minimum > COARSE
     (told,) = (one for one in fine.warnings if one.kind == "grid")
@@ -149,6 +156,18 @@ def test_errors_by_the_grid_are_estimated_from_half_as_many_cells():
     assert named.solved and not any(one.kind == "grid" for one in named.warnings)
     assert np.isnan([half.ended.grid, half.ended.grid_minimum]).all()
     assert any(one.kind == "unknown grid" for one in half.warnings)
+
+
+@pytest.mark.whole
+def test_a_constriction_between_cells_tells_an_error_that_half_as_many_cells_do_not():
+    """Film to the sides of an ellipse, M 65: half as many cells change it 3-fold, twice as many 2.7-fold."""
+    oil = Fluid(viscosity=0.0149, pressure_viscosity=2e-8)
+    wide = ball((0.311, 0.0), 0.272, 11.2, load=21.2e3, fluid=oil)
+    found, fine = coarse(wide), solve_patch(wide, nodes=129, cells=128)
+    for name, error in ("central_film", "grid"), ("minimum_film", "grid_minimum"):
+        off = abs(getattr(fine.film, name) / getattr(found.film, name) - 1.0)
+        assert getattr(found.ended, error) / 3.0 < off < getattr(found.ended, error)
+    assert fine.film.minimum_film > 2.0 * found.film.minimum_film
 
 
 @pytest.mark.whole

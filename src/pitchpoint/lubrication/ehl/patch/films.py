@@ -99,7 +99,7 @@ class PatchEnded:
         turns: between pressure and temperature, on all grids; None of isothermal films.
         grid: estimate of the error of the film in the middle that the grid makes, over that film, from the
             film on a grid with half as many cells either way; NaN where there is none.
-        grid_minimum: the same of the smallest film.
+        grid_minimum: the same of the smallest film, from how the gap opens beside it too.
     """
 
     code: Code
