@@ -10,7 +10,16 @@ import xarray as xr
 from pitchpoint.doubts import doubts_of, in_stage, stored
 from pitchpoint.status import Code
 
-__all__ = ["OF_STAGES", "Label", "alike_labels", "as_label", "by_stage", "of_stage", "stages_of"]
+__all__ = [
+    "OF_STAGES",
+    "STAGE",
+    "Label",
+    "alike_labels",
+    "as_label",
+    "by_stage",
+    "of_stage",
+    "stages_of",
+]
 
 STAGE = "stage"
 """Dimension of the meshes of a drive."""

@@ -16,6 +16,7 @@ from pitchpoint.cases.record import MANIFEST, is_record, is_result
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.input.quantities import shown
 from pitchpoint.registry import nearest
+from pitchpoint.results.by_stage import STAGE
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome, Progress, open_result, run
@@ -239,7 +240,7 @@ _MORE = {
 _FEW = 4
 """Most values of a figure along one axis that are shown one by one."""
 
-_LABELLED = ("stage", "case")
+_LABELLED = (STAGE, "case")
 """Axes whose label is told of a single value too: of a rated stage, of the backlash without tolerances."""
 
 Keys = tuple[str, str, str, str, Variable]
@@ -333,7 +334,7 @@ def _places(array: xr.DataArray) -> Iterator[tuple[str, float]]:
     """Values by place; none where there are too many to be told one by one."""
     single = [dim for dim, size in array.sizes.items() if size == 1 and dim not in _LABELLED]
     left = array.squeeze(single, drop=True)
-    if left.dims == ("stage", "gear"):
+    if left.dims == (STAGE, "gear"):
         yield from _of_stages(left)
     elif left.dims[1:] == ("cause",):
         yield from _along(left.sel(cause="both"))
@@ -363,7 +364,7 @@ def _along(array: xr.DataArray) -> Iterator[tuple[str, float]]:
     dim = str(array.dims[0])
     for place, value in zip(array[dim].values, array.values, strict=True):
         told = str(place).replace("_", " ")
-        yield f"{dim} {told}" if told.isdigit() else told, float(value)
+        yield f"{dim} {told}" if told.isdigit() or dim == STAGE else told, float(value)
 
 
 def differing_inputs(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
