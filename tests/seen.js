@@ -24,7 +24,7 @@
 
   // Words of heads and names that are broken where they have no hyphen and no point.
   const word = document.createRange();
-  for (const one of document.querySelectorAll("thead th, dt, h1, h2, h3, h4, figcaption, caption, .keys span, strong")) {
+  for (const one of document.querySelectorAll("thead th, dt, h1, h2, h3, h4, figcaption, caption, .keys span, strong, .tiles dd, .facts dd, .inputs :is(td, th)")) {
     if (!shown(one) || one.closest(".spoken, .plot")) continue;
     const texts = document.createTreeWalker(one, NodeFilter.SHOW_TEXT);
     while (texts.nextNode()) for (const { 0: letters, index } of texts.currentNode.data.matchAll(/[\p{L}\p{N}]+/gu)) {
@@ -61,6 +61,7 @@
     const level = (one) => Math.min(Math.abs(one.getScreenCTM().a), Math.abs(one.getScreenCTM().b)) < 0.01;
     const texts = [...plot.querySelectorAll("text")].filter((one) => shown(one) && one.textContent.trim() && level(one));
     const [outer, boxes] = [box(plot), texts.map(box)];
+    if (height && box(plot.closest("figure")).width > 1.3 * box(plot.querySelector(".main-svg")).width) say("blank beside it");
     texts.forEach((one, k) => {
       const at = boxes[k];
       if (at.left < outer.left - 2 || at.right > outer.right + 2 || at.top < outer.top - 2 || at.bottom > outer.bottom + 2) say(`cut: "${one.textContent}"`);

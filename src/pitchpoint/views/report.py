@@ -3,6 +3,7 @@
 import base64
 import gzip
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
@@ -189,6 +190,9 @@ def packed_plotly() -> str:
         if path is not None:
             write(path, text.encode())
         return text
+_IN_UNIT = re.compile(r"(?<=[Ng]) (?=[cm]?m\b)")
+"""A space within the unit of a torque, a stiffness against rotation or an inertia."""
+
     return packed.decode()
 
 
@@ -217,6 +221,7 @@ def environment() -> "jinja2.Environment":
     kept = _kept_pages()
     made = jinja2.Environment(
         bytecode_cache=None if kept is None else jinja2.FileSystemBytecodeCache(str(kept)),
+    made.filters["breakable"] = _breakable
         loader=jinja2.PackageLoader("pitchpoint.views"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
@@ -227,6 +232,14 @@ def environment() -> "jinja2.Environment":
     made.filters["typeset"] = _typeset
     made.globals["drawn"] = _drawn
     return made
+
+def _breakable(words: str) -> "markupsafe.Markup":
+    """Words, escaped, that break after an underscore of a name rather than within it, and within no unit."""
+    from markupsafe import Markup, escape
+
+    whole = _IN_UNIT.sub("\u00a0", str(escape(words)))
+    return Markup(whole.replace("_", "_<wbr>"))
+
 
 
 def _typeset(words: str) -> "markupsafe.Markup":

@@ -325,10 +325,11 @@
     fits(small);
   }
 
-  // A figure in the colours of white paper, half as wide as a page where its place is not.
+  // A figure in the colours of white paper, half as wide as a page; one that has a row to itself as wide as a page.
   function print(place, resized) {
     const { data, layout } = place;
-    const size = resized ? { width: place.closest(".glance") ? 270 : 338, height: 230 } : {};
+    const width = place.closest(".glance") ? 270 : place.closest(".figures > :last-child:nth-child(odd)") ? 688 : 338;
+    const size = resized ? { width, height: 210 } : {};
     const paper = dark.matches ? JSON.parse(JSON.stringify({ data, layout }), whiter) : { data, layout };
     restore.push(() => Plotly.react(place, data, layout).then(() => Plotly.Plots.resize(place)));
     return Plotly.react(place, paper.data, { ...paper.layout, autosize: !resized, font: { ...paper.layout.font, size: 9 }, ...size });
