@@ -26,6 +26,7 @@ from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
+from pitchpoint.views.film_courses import courses
 from pitchpoint.views.registry import FINITE_FILM as SECTION
 from pitchpoint.views.report import render
 from pitchpoint.views.screen import head, shown
@@ -233,7 +234,9 @@ def test_a_ball_on_a_disc_has_an_ellipse_once_for_all_phases() -> None:
     )
     laws = dict(zip(data["film_law"].values, data["film_deviation"].values, strict=True))
     assert abs(laws["hamrock_dowson_1977_central"]) < 0.2
-    assert 'id="finite_film"' in render({"default": outcome})
+    # A circle is drawn as one; without courses the first maps stand on the page that sums up.
+    assert payload(page)["figures"]["patch0_0_pressure"]["layout"]["yaxis"]["scaleanchor"] == "x"
+    assert 'id="one-page-patch0_0_pressure"' in page
 
 
 @pytest.mark.parametrize(
@@ -386,6 +389,16 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
     ):
         assert words in page
     assert '"type": "heatmap"' in page or '"type":"heatmap"' in page
+    # So coarse a grid has no estimate of its error, and no bars.
+    data = outcome.parts["finite_film"]
+    assert "Bars: estimated error" not in page
+    told = courses("f", outcome, data.assign(minimum_film_error=0.1 * (1.0 + data["load"] * 0.0)))
+    solved = told.figures[0]
+    smallest, middle, *_ = solved.data
+    height, bar = (np.array(one, float) for one in (smallest["y"], smallest["error_y"]["array"]))
+    assert np.isfinite(height).sum() > 3
+    np.testing.assert_allclose(bar, 0.1 * height, rtol=5e-3)
+    assert "error_y" not in middle and "Bars: estimated error" in solved.remarks
     (first, second) = SECTION.screen(outcome)
     assert first.title == "Films of finite contacts"
     assert head("largest_end_pressure") in first.rows[0]

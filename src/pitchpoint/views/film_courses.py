@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator, Sequence
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -26,6 +27,7 @@ from pitchpoint.views.figures import (
     layout,
     pair_key,
     plain,
+    rounded,
     short_axis,
 )
 from pitchpoint.views.lines import REGRESSED, folded, gapped, regimes, titled
@@ -275,11 +277,10 @@ _SOLVED = (Key("solved, smallest", INK), Key("solved, in the middle", INK, "dash
 
 
 def _films(name: str, data: xr.Dataset, axis: str) -> Figure:
-    """Films solved beside those of every regression."""
-    solved = [of_most(data, data[one].values) for one in ("minimum_film", "central_film")]
+    """Films solved, with what the grid may change of them, beside those of every regression."""
     lines = [
-        (key, course(data, "minimum_film", key, values))
-        for key, values in zip(_SOLVED, solved, strict=True)
+        (key, course(data, film, key, of_most(data, data[film].values)) | _error_bars(data, film))
+        for key, film in zip(_SOLVED, ("minimum_film", "central_film"), strict=True)
     ]
     lines += [
         (key, course(data, one, key, of_most(data, data[one].values)))
@@ -291,8 +292,23 @@ def _films(name: str, data: xr.Dataset, axis: str) -> Figure:
         (key, course(data, "film_by_law", key, values))
         for key, values in zip(_film_keys(data), by_law, strict=True)
     ]
-    note = f"{MOST} Regressions of the film in the middle are broken lines; all are those of smooth surfaces."
+    barred = any("error_y" in line for _, line in lines)
+    bars = "Bars: estimated error by the grid. " if barred else ""
+    note = (
+        f"{MOST} {bars}Regressions of the film in the middle are broken lines; all are those of smooth "
+        "surfaces."
+    )
     return course_figure(name, "Film over the mesh cycle", "minimum_film", lines, axis, note)
+
+
+def _error_bars(data: xr.Dataset, film: str) -> dict[str, Any]:
+    """Bars over the course of a film that reach as far as its estimated error by the grid."""
+    if f"{film}_error" not in data or data[f"{film}_error"].isnull().all():
+        return {}
+    error = of_most(data, np.abs(data[film].values) * data[f"{film}_error"].values)
+    _, reach = gapped(*folded(data["phase"].values, error))
+    bars = {"array": rounded(display(film, reach, data)), "thickness": 1, "width": 2}
+    return {"error_y": {"type": "data", **bars}}
 
 
 def _film_keys(data: xr.Dataset) -> list[Key]:

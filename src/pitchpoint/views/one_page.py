@@ -209,10 +209,10 @@ def _detail(words: str) -> str:
 
 
 def _main_figures(page: Page, shown: Iterable[Panel]) -> Iterator[Figure]:
-    """The main figures of two sections, each with the legend of its panel."""
+    """The main figures of two sections, else the first ones, each with the legend of its panel."""
     drawn = {f.name: (f, panel) for panel in shown for f in panel.figures if f.drawn}
     wanted = [section.main_figure for section in page.sections]
-    for name in [name for name in wanted if name in drawn][:2]:
+    for name in ([name for name in wanted if name in drawn] or [*drawn])[:2]:
         figure, panel = drawn[name]
         curves = panel.curves if len(panel.curves) > 1 else []
         keys = tuple(Key(curve.label, curve.colour, curve.dash) for curve in curves)

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -110,9 +111,8 @@ def is_rough(data: xr.Dataset) -> bool:
 
 def _roughness(name: str, data: xr.Dataset, kept: int) -> Figure:
     """Heights of both surfaces as the cells of the grid see them."""
-    unit = show.unit_of("kept_x")
     heat = {**_heat(data, kept, "field_heights"), "colorscale": "Greys"}
-    look = layout(f"x [{unit}]", f"y [{unit}]", xaxis={"range": _reach(data, kept)})
+    look = _patch_axes(data, kept)
     note = "Every cell sees the mean of the map over its area; what stands out is above zero."
     keys = (Key("edge of the dry contact", INK, "dot"),)
     return Figure(
@@ -162,12 +162,21 @@ def _map(name: str, data: xr.Dataset, kept: int, variable: str, colours: str) ->
         "colorscale": colours,
         "reversescale": variable == "field_pressure",
     }
-    unit = show.unit_of("kept_x")
-    look = layout(f"x [{unit}]", f"y [{unit}]", xaxis={"range": _reach(data, kept)})
+    look = _patch_axes(data, kept)
     note = _CUT_COLOURS.get(variable, "") if high < float(np.nanmax(values)) else ""
     keys = (Key("edge of the dry contact", INK, "dot"),)
     traces = [heat, _outline(data, kept, heat)]
     return Figure(name, titled(variable), traces, look, note, keys, NONE)
+
+
+def _patch_axes(data: xr.Dataset, kept: int) -> dict[str, Any]:
+    """Axes of a map over the patch, at equal scales where it is about as wide as it is long."""
+    unit, reach = show.unit_of("kept_x"), _reach(data, kept)
+    across = display("kept_y", _places(data, kept)[1])
+    alike = 0.5 < np.ptp(across) / np.ptp(reach) < 2.0
+    equal = {"scaleanchor": "x", "scaleratio": 1, "constrain": "domain"} if alike else {}
+    xaxis = {"range": reach, "constrain": "domain", "nticks": 5}
+    return layout(f"x [{unit}]", f"y [{unit}]", xaxis=xaxis, yaxis=equal)
 
 
 def _heat(data: xr.Dataset, kept: int, variable: str) -> Trace:
