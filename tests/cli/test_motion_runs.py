@@ -139,6 +139,8 @@ def test_a_start_gathers_speed_by_what_its_torques_leave(outcome: Outcome) -> No
 @pytest.mark.whole
 def test_report_screen_and_figures_tell_it(outcome: Outcome) -> None:
     page = render({"default": outcome})
+    assert page.count("Speed rising and falling give the same.") > 3
+    assert "speed falling" not in page
     for words in ("Motion with friction", "Campbell", "Against speed", "bearings that yield"):
         assert words in page
     printed, ended = SECTION.screen(outcome)

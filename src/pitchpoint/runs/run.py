@@ -887,7 +887,10 @@ def _everywhere(effect: str, law: Any, each: Sequence[Mapping[str, Any]]) -> boo
 
 def _bearings(losses: Mapping[str, Loss]) -> dict[str, Any]:
     """Models of bearings and of what holds them at rest, by name of their place."""
-    moving = {f"bearing {name}": BEARING_LOSS[loss.bearing] for name, loss in losses.items()}
+    moving = {
+        name if name.endswith("bearing") else f"bearing {name}": BEARING_LOSS[loss.bearing]
+        for name, loss in losses.items()
+    }
     held = {f"breakaway {name}": BREAKAWAY[loss.breakaway] for name, loss in losses.items()}
     every: dict[str, Any] = {**moving, **held}
     return {effect.replace("_", " "): one for effect, one in every.items() if one.name != "none"}

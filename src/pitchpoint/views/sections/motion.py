@@ -289,16 +289,19 @@ def speeds_panel(name: str, outcome: Outcome) -> Panel:
     return Panel("", [*figures, _waterfall(f"{name}_waterfall", data), _campbell(name, outcome)])
 
 
-def _branches(data: xr.Dataset, variable: str, colour: str) -> tuple[list[Trace], list[Key]]:
+def _branches(data: xr.Dataset, variable: str, colour: str) -> tuple[list[Trace], list[Key], str]:
+    """Curves for rising and falling speed with their legend; where both are the same, one and a sentence."""
     speed, unit = display("speed", data["speed"].values, data), show.unit_of(variable, data)
     traces, keys = [], []
+    courses = display(variable, _steady(data, variable))
+    same = len(courses) > 1 and np.allclose(courses[0], courses[1], rtol=1e-6, equal_nan=True)
     looks = zip(data["direction"].values, ("solid", "dash"), strict=False)
-    for (way, dash), values in zip(looks, display(variable, _steady(data, variable)), strict=True):
+    for (way, dash), values in zip(looks, courses[:1] if same else courses, strict=False):
         key = Key(f"speed {way}", colour, dash)
         dots = {"mode": "lines+markers", "marker": {"size": 4, "color": colour}}
         traces.append(plain(key, speed, values, unit, **dots))
         keys.append(key)
-    return traces, keys
+    return traces, keys, "Speed rising and falling give the same." if same else ""
 
 
 def _steady(data: xr.Dataset, variable: str) -> np.ndarray:
@@ -307,17 +310,19 @@ def _steady(data: xr.Dataset, variable: str) -> np.ndarray:
 
 
 def _against(name: str, data: xr.Dataset, variable: str) -> Figure:
-    traces, keys = _branches(data, variable, PALETTE[0])
+    traces, keys, note = _branches(data, variable, PALETTE[0])
     axes = layout(
         show.axis_title("speed", data), short_axis(variable, data), yaxis={"rangemode": "tozero"}
     )
     several = tuple(keys) if len(keys) > 1 else ()
-    return Figure(name, f"{titled(variable, data)} against speed", traces, axes, "", several, NONE)
+    return Figure(
+        name, f"{titled(variable, data)} against speed", traces, axes, note, several, NONE
+    )
 
 
 def _efficiencies(name: str, data: xr.Dataset) -> Figure:
     """Mean efficiency in motion beside that without vibration."""
-    traces, keys = _branches(data, "mean_efficiency", PALETTE[0])
+    traces, keys, same = _branches(data, "mean_efficiency", PALETTE[0])
     still = Key("without vibration", GREY, "dot")
     speed = display("speed", data["speed"].values, data)
     values = display("quasi_static_efficiency", data["quasi_static_efficiency"].values)
@@ -325,7 +330,7 @@ def _efficiencies(name: str, data: xr.Dataset) -> Figure:
     if len(keys) == 1:
         keys = [Key("in motion", PALETTE[0])]
     axes = layout(show.axis_title("speed", data), short_axis("mean_efficiency"))
-    note = "Of the teeth, pairs sharing the load as they yield."
+    note = f"Of the teeth, pairs sharing the load as they yield. {same}".rstrip()
     title = "Mean efficiency against speed"
     return Figure(name, title, traces, axes, note, (*keys, still), NONE)
 

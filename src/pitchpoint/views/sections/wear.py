@@ -267,7 +267,7 @@ def _tooth(name: str, data: xr.Dataset, member: int) -> Figure:
         f"from the axis of the tooth [{show.unit_of('flank_half_thickness')}]",
         short_axis("flank_height", data),
         yaxis={"scaleanchor": "x", "scaleratio": 1, "constrain": "domain"},
-        xaxis={"constrain": "domain"},
+        xaxis={"constrain": "domain", "nticks": 3},
     )
     title = f"Flank as new and worn, {_members(data)[member]}"
     keys = _before_and_after(data)
