@@ -312,13 +312,14 @@ def run(
     json_: AsJson = False,
 ) -> None:
     """Compute a case: the answer here, report.html in a folder."""
-    from pitchpoint.cases.record import default_folder
+    from pitchpoint.cases.record import default_folder, owner
     from pitchpoint.runs.run import run as compute
 
     settings, studies = _settings(set_ or []), _studies(sweep or [])
     if units:
         settings["output.units"] = _units(units)
     folder = output or default_folder(case, Path("results"), settings)
+    before = None if overwrite else owner(folder)
     with _progress(folder) as progress:
         outcomes = compute(
             case,
@@ -331,6 +332,8 @@ def run(
         )
         progress.part("", "report", False)
         _write_report(outcomes, folder)
+    if before and (words := before.replaced_by(owner(folder))):
+        typer.echo(visible(f"{folder} held a run {words}; this one has replaced it"), err=True)
     if json_:
         _emit({name: _figures(outcome) for name, outcome in outcomes.items()})
         return
@@ -599,18 +602,19 @@ def cite(
     bibtex: Annotated[bool, typer.Option("--bibtex", help="BibTeX entries.")] = False,
     json_: AsJson = False,
 ) -> None:
-    """List the sources behind a result or a case, and the program."""
+    """List the sources behind a result or a case, with what rests on each, and the program."""
     from pitchpoint import __version__, citations
+    from pitchpoint.cases.record import sources_of
     from pitchpoint.runs.run import manifests
 
-    sources = {
-        source["key"]: source["text"] for one in manifests(result) for source in one["sources"]
-    }
+    sources = sources_of(manifests(result))
     if json_:
-        _emit([{"key": key, "text": text} for key, text in sources.items()])
+        _emit(sources)
         return
-    for key, text in sources.items():
-        typer.echo(citations.bibtex(key) if bibtex else visible(f"{key}: {text}"))
+    for source in sources:
+        of = f" [{source['of']}]" if source["of"] else ""
+        line = visible(f"{source['key']}: {source['text']}{of}")
+        typer.echo(citations.bibtex(source["key"]) if bibtex else line)
     typer.echo(citations.of_program(__version__, bibtex=bibtex))
 
 

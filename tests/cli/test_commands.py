@@ -367,6 +367,18 @@ def test_another_case_is_not_written_over(
     assert times(tmp_path / "results" / "tiny")["operation"] != made["operation"]
 
 
+def test_a_run_that_is_set_otherwise_says_what_it_replaces(
+    pitchpoint: Callable[..., Told], tiny: Path, finished: Path, tmp_path: Path
+) -> None:
+    folder = shutil.copytree(finished, tmp_path / "out")
+    assert "has replaced it" not in pitchpoint("run", tiny, "-o", folder).err
+    hotter = ("run", tiny, "-o", folder, "--set", "operation.temperature=70 degC")
+    assert f"{folder} held a run without --set; this one" in pitchpoint(*hotter).err
+    assert "has replaced it" not in pitchpoint(*hotter).err
+    replaced = "held a run with --set operation.temperature=70 degC; this one has replaced it"
+    assert replaced in pitchpoint("run", tiny, "-o", folder).err
+
+
 def test_damaged_parts_are_computed_again(
     pitchpoint: Callable[..., Told], tiny: Path, finished: Path, tmp_path: Path
 ) -> None:
@@ -397,7 +409,9 @@ def test_damaged_parts_are_computed_again(
 def test_cite(pitchpoint: Callable[..., Told], finished: Path, tiny: Path) -> None:
     sources = pitchpoint("cite", finished, "--json").json
     assert "xu_2007" in [source["key"] for source in sources]
-    assert "xu_2007: " in pitchpoint("cite", finished).out
+    told = pitchpoint("cite", finished).out
+    assert re.search(r"^xu_2007: Xu.* \[friction xu_2007\]$", told, re.M)
+    assert all(" [" in line for line in told.splitlines()[:-1])
     assert "{xu_2007," in pitchpoint("cite", finished, "--bibtex").out
     assert "@misc{pitchpoint," in pitchpoint("cite", finished, "--bibtex").out
     assert pitchpoint("cite", tiny, "--json").json == sources

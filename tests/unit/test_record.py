@@ -52,7 +52,7 @@ GOOD: dict[str, Any] = {
     "averaging": "path",
     "plastic": False,
     "oil": "an oil",
-    "sources": [{"key": "xu_2007", "text": "Xu"}],
+    "sources": [{"key": "xu_2007", "text": "Xu", "of": "friction xu_2007"}],
     "issues": [{"where": "eq. 3", "issue": "sign", "verdict": "misprint"}],
     "rows": [ROW],
     "parts": ["teeth"],

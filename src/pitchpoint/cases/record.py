@@ -7,7 +7,7 @@ alone. Folders travel between people: what these files hold is checked before it
 import hashlib
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -44,6 +44,7 @@ __all__ = [
     "is_record",
     "is_result",
     "owner",
+    "sources_of",
 ]
 
 MANIFEST = "manifest.json"
@@ -128,6 +129,15 @@ class Record(_Kept):
         """Mark the folder as that of this case."""
         write_text(folder / RUN, self.model_dump_json())
 
+    def replaced_by(self, later: "Record | None") -> str:
+        """How this run was set, in words, if a later one of its variants was set otherwise; else empty."""
+        if later is None or later.settings == self.settings:
+            return ""
+        if not {*self.variants} & {*later.variants}:
+            return ""
+        told = " ".join(f"--set {key}={value}" for key, value in self.settings.items())
+        return f"with {told}" if told else "without --set"
+
     def demand_own(self, folder: Path) -> None:
         """InputError if the folder holds results of another case."""
         theirs = owner(folder)
@@ -207,10 +217,11 @@ class Model(Law):
 
 
 class Source(_Kept):
-    """A reference behind the result."""
+    """A reference behind the result; `of` is what rests on it, empty in a record of an older build."""
 
     key: str
     text: str
+    of: str = ""
 
 
 class PrintedIssue(_Kept):
@@ -363,6 +374,15 @@ def is_record(case: str) -> bool:
 def is_result(case: str) -> bool:
     """True if a case is given by the folder of a result of it."""
     return case not in names() and os.path.isfile(os.path.join(case, RUN))
+
+
+def sources_of(manifests: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
+    """Sources of several manifests, each once, with all that rests on it."""
+    uses: dict[tuple[str, str], dict[str, None]] = {}
+    for source in (source for manifest in manifests for source in manifest["sources"]):
+        named = uses.setdefault((source["key"], source["text"]), {})
+        named.update(dict.fromkeys(filter(None, source.get("of", "").split(", "))))
+    return [{"key": key, "text": text, "of": ", ".join(of)} for (key, text), of in uses.items()]
 
 
 def owner(folder: Path) -> Record | None:

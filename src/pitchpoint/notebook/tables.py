@@ -9,6 +9,7 @@ import numpy as np
 from pitchpoint import citations, units
 from pitchpoint.analyses.figures import main_figures
 from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.cases.record import sources_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.case import Case
 from pitchpoint.runs.catalogue import entries
@@ -52,11 +53,7 @@ def cite(
     """
     import pandas as pd
 
-    found = {
-        str(source["key"]): str(source["text"])
-        for one in _manifests(what)
-        for source in one["sources"]
-    }
+    found = {one["key"]: one["text"] for one in sources_of(_manifests(what))}
     entries_of = {key: citations.bibtex(key) for key in found} if bibtex else found
     return pd.Series(entries_of, name="source", dtype=object)
 

@@ -803,15 +803,6 @@ def _manifest(variant: Variant, built: Ready, rows: Sequence[inputs.Row]) -> dic
     """Record of a variant before its parts; `rows` are those of `inputs.input_rows`."""
     case, document = built.case, variant.document()
     laws, others, meshes = built.laws, _models(built), built.meshes
-    solids = [used for mesh in meshes for used in mesh.solids]
-    keys = [key for law in [*laws, *others.values()] for key in law.sources]
-    keys += [key for mesh in meshes for key in mesh.case.gears.sources]
-    keys += [key for mesh in meshes if mesh.case.gears.rated for key in mesh.rated.sources]
-    keys += [key for table in _loss_tables(document) for key in set_sources(table)]
-    data = [mesh.lubricant.data() for mesh in meshes] + [used.record.data() for used in solids]
-    keys += [one.source for values in data for one in values.values() if one.source]
-    if case.source:
-        keys.insert(0, case.source)
     return {
         "case": variant.label,
         "variant": variant.variant,
@@ -844,16 +835,38 @@ def _manifest(variant: Variant, built: Ready, rows: Sequence[inputs.Row]) -> dic
         "travels": sorted(built.travels),
         "lacks": {},
         "averaging": built.averaging,
-        "plastic": any(used.plastic for used in solids),
+        "plastic": any(used.plastic for mesh in meshes for used in mesh.solids),
         "oil": ", ".join(
             dict.fromkeys(mesh.lubricant.title or mesh.lubricant.name for mesh in meshes)
         ),
-        "sources": [{"key": key, "text": cite(key)} for key in dict.fromkeys(keys)],
+        "sources": _sources(built, others, document),
         "issues": [issue.model_dump() for issue in case.issues],
         "rows": [],
         "parts": [],
         "finished": False,
     }
+
+
+def _sources(built: Ready, models: Mapping[str, Any], document: Document) -> list[dict[str, str]]:
+    """References behind a case, each once, with what of the case rests on it."""
+    meshes = built.meshes
+    cited = [(built.case.source, "the case")] if built.case.source else []
+    cited += [(key, f"friction {law.name}") for law in built.laws for key in law.sources]
+    cited += [
+        (key, f"{effect} {law.name}") for effect, law in models.items() for key in law.sources
+    ]
+    cited += [(key, "gears") for mesh in meshes for key in mesh.case.gears.sources]
+    rated = [mesh for mesh in meshes if mesh.case.gears.rated]
+    cited += [(key, "strength") for mesh in rated for key in mesh.rated.sources]
+    cited += [(key, "losses") for table in _loss_tables(document) for key in set_sources(table)]
+    solids = [used.record for mesh in meshes for used in mesh.solids]
+    data = [("oil", mesh.lubricant.data()) for mesh in meshes]
+    data += [("materials", solid.data()) for solid in solids]
+    cited += [(one.source, of) for of, values in data for one in values.values() if one.source]
+    uses: dict[str, dict[str, None]] = {}
+    for key, of in cited:
+        uses.setdefault(key, {})[of] = None
+    return [{"key": key, "text": cite(key), "of": ", ".join(of)} for key, of in uses.items()]
 
 
 def _loss_tables(document: Document) -> list[Any]:

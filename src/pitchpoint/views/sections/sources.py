@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from pitchpoint.cases.record import sources_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.inputs import set_for_run
 from pitchpoint.views.section import Block, Drawn, Heading, Page, Section
@@ -11,8 +12,7 @@ __all__ = ["SOURCES"]
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    every = [source for one in page.outcomes.values() for source in one.manifest["sources"]]
-    sources = list({source["key"]: source for source in every}.values())
+    sources = sources_of(one.manifest for one in page.outcomes.values())
     if sources:
         yield Drawn("sources.html.jinja", {"sources": sources})
     yield Heading("This result")
