@@ -41,8 +41,8 @@ from pitchpoint.views.outlines import visible_points
 from pitchpoint.views.path import path_of
 from pitchpoint.views.picture import Body, Picture, picture_of
 from pitchpoint.views.point import period_of
-from pitchpoint.views.report import _failing, render, write_report
-from pitchpoint.views.section import KeyFigure, Paragraph, naming
+from pitchpoint.views.report import render, write_report
+from pitchpoint.views.section import KeyFigure, Paragraph, naming, told_of_variants
 from pitchpoint.views.sections import compared as comparison
 from pitchpoint.views.sections.answer import ANSWER, summary
 from pitchpoint.views.sections.back_driving import back_driving_figure
@@ -1100,7 +1100,10 @@ def test_numbers_beside_print_have_seven_digits_and_unknown_ones_are_said() -> N
 def test_what_fails_alike_in_several_variants_is_said_once() -> None:
     told = {"warm": ["Teeth melt."], "cold": ["Teeth jam."], "hot": ["Teeth melt."]}
     outcomes = {name: Outcome({"implausible": texts}, {}) for name, texts in told.items()}
-    assert _failing(outcomes) == {"Teeth melt.": ["warm", "hot"], "Teeth jam.": ["cold"]}
+    assert told_of_variants(outcomes, "implausible") == {
+        "Teeth melt.": ["warm", "hot"],
+        "Teeth jam.": ["cold"],
+    }
 
 
 def test_what_a_result_of_another_build_lacks_is_said_with_how_to_make_it_anew(

@@ -3,23 +3,24 @@
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain, zip_longest
+from itertools import chain
 from math import isfinite
 from pathlib import Path
 from typing import Literal
 
 import xarray as xr
 
-from pitchpoint.analyses.figures import headline
+from pitchpoint.analyses.figures import headline, of_contact
 from pitchpoint.doubts import as_doubt
 from pitchpoint.results.target_rows import in_words
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
+from pitchpoint.views.figures import laws
 from pitchpoint.views.inputs import number
 from pitchpoint.views.inputs import words as input_words
 from pitchpoint.views.point import ratio_words, speed_ratio
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import KeyFigure, Page, key_figures, said
+from pitchpoint.views.section import KeyFigure, Page, key_figures, said, told_of_variants
 from pitchpoint.views.sections.studies import is_swept, swept_place
 
 __all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen", "swept_beside"]
@@ -102,13 +103,26 @@ def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     }
     ranked = sorted(chain(*figures.values()), key=lambda figure: figure.order)
     names = dict.fromkeys(figure.name for figure in ranked)
-    return [
-        *_differing_bases(outcomes),
-        *(
-            {"": name} | {variant: own.get(name, "–") for variant, own in values.items()}
-            for name in names
-        ),
+    rows = [
+        {"": name} | {variant: own.get(name, "–") for variant, own in values.items()}
+        for name in names
     ]
+    known = {v: "%" in own.get("Efficiency", "") for v, own in values.items()}
+    others = {v: _by_other_laws(outcome) if known[v] else "" for v, outcome in outcomes.items()}
+    if any(others.values()):
+        at = 1 + [*names].index("Efficiency")
+        rows.insert(at, {"": "by other laws"} | {v: told or "–" for v, told in others.items()})
+    return [*_differing_bases(outcomes), *rows]
+
+
+def _by_other_laws(outcome: Outcome) -> str:
+    """Efficiency by the other friction laws that the case names, whether in their range or not."""
+    if "operation" not in outcome.parts or of_contact(outcome.parts["operation"]):
+        return ""
+    data, first = outcome.parts["operation"], _law(outcome)
+    values = zip(laws(data), data["mean_efficiency"].values[:, 0], strict=True)
+    each = ((law, value) for law, value in values if law != first and isfinite(value))
+    return "; ".join(f"{show.quantity('mean_efficiency', value)} {law}" for law, value in each)
 
 
 def _differing_bases(outcomes: Mapping[str, Outcome]) -> Iterator[dict[str, str]]:
@@ -207,12 +221,7 @@ def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
 
 def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
     """Briefs of all variants, each once and the worst of each first, those of some with their variants."""
-    told: dict[str, list[str]] = {}
-    ranked = zip_longest(*(outcome.manifest[kind] for outcome in outcomes.values()))
-    for row in ranked:
-        for variant, text in zip(outcomes, row, strict=True):
-            if text is not None:
-                told.setdefault(show.pretty(as_doubt(text).brief), []).append(variant)
+    told = told_of_variants(outcomes, kind, lambda text: show.pretty(as_doubt(text).brief))
     return [
         text if len(names) == len(outcomes) else f"{_few(names, len(outcomes))}: {text}"
         for text, names in told.items()

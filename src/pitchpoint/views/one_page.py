@@ -13,7 +13,7 @@ from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
 from pitchpoint.views.point import ratio_words, way_in_a_turn
-from pitchpoint.views.section import Page, Paragraph, Table, key_figures, made_of
+from pitchpoint.views.section import Page, Paragraph, Table, key_figures, made_of, told_of_variants
 from pitchpoint.views.sections.answer import operation_words, sharing_words
 
 __all__ = ["one_page"]
@@ -173,10 +173,7 @@ def _standing(page: Page) -> Table | None:
 
 def _doubts(page: Page) -> list[str]:
     """Warnings of all, each once, with the names of those that have it where not all do."""
-    of: dict[str, list[str]] = {}
-    for name, outcome in page.outcomes.items():
-        for text in outcome.manifest["warnings"]:
-            of.setdefault(str(text), []).append(name)
+    of = told_of_variants(page.outcomes, "warnings")
     everyone = len(page.outcomes)
     return [t if len(of[t]) == everyone else f"{', '.join(of[t])}: {t}" for t in of]
 

@@ -35,6 +35,7 @@ from pitchpoint.views.section import (
     Variants,
     panels,
     said,
+    told_of_variants,
 )
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
             cases=page.cases,
             designs=designs,
             variants=[*outcomes],
-            implausible=_failing(outcomes),
+            implausible=told_of_variants(outcomes, "implausible"),
             cited=any(one.manifest["sources"] for one in outcomes.values()),
             sections=made,
             absent=_absent(bare, lacking),
@@ -113,15 +114,6 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
             plotly=packed_plotly(),
         )
     )
-
-
-def _failing(outcomes: Mapping[str, Outcome]) -> dict[str, list[str]]:
-    """What cannot stand, each sentence once with the variants that it is about."""
-    variants: dict[str, list[str]] = {}
-    for variant, outcome in outcomes.items():
-        for text in outcome.manifest["implausible"]:
-            variants.setdefault(text, []).append(variant)
-    return variants
 
 
 def _made(section: Section, page: Page) -> dict[str, Any]:
@@ -190,9 +182,6 @@ def packed_plotly() -> str:
         if path is not None:
             write(path, text.encode())
         return text
-_IN_UNIT = re.compile(r"(?<=[Ng]) (?=[cm]?m\b)")
-"""A space within the unit of a torque, a stiffness against rotation or an inertia."""
-
     return packed.decode()
 
 
@@ -200,6 +189,9 @@ def _as_text(content: str) -> str:
     """Content compressed, five characters for four bytes, none of which HTML reads as anything else."""
     return base64.b85encode(gzip.compress(content.encode(), mtime=0)).decode().translate(_PLAIN)
 
+
+_IN_UNIT = re.compile(r"(?<=[Ng]) (?=[cm]?m\b)")
+"""A space within the unit of a torque, a stiffness against rotation or an inertia."""
 
 _PLAIN = str.maketrans("<>&", ".:,")
 
@@ -221,7 +213,6 @@ def environment() -> "jinja2.Environment":
     kept = _kept_pages()
     made = jinja2.Environment(
         bytecode_cache=None if kept is None else jinja2.FileSystemBytecodeCache(str(kept)),
-    made.filters["breakable"] = _breakable
         loader=jinja2.PackageLoader("pitchpoint.views"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
@@ -230,16 +221,9 @@ def environment() -> "jinja2.Environment":
     )
     made.filters["marked"] = _marked
     made.filters["typeset"] = _typeset
+    made.filters["breakable"] = _breakable
     made.globals["drawn"] = _drawn
     return made
-
-def _breakable(words: str) -> "markupsafe.Markup":
-    """Words, escaped, that break after an underscore of a name rather than within it, and within no unit."""
-    from markupsafe import Markup, escape
-
-    whole = _IN_UNIT.sub("\u00a0", str(escape(words)))
-    return Markup(whole.replace("_", "_<wbr>"))
-
 
 
 def _typeset(words: str) -> "markupsafe.Markup":
@@ -247,6 +231,14 @@ def _typeset(words: str) -> "markupsafe.Markup":
     from markupsafe import Markup, escape
 
     return Markup(show.subscripts(show.pretty(str(escape(words)))))
+
+
+def _breakable(words: str) -> "markupsafe.Markup":
+    """Words, escaped, that break after an underscore of a name rather than within it, and within no unit."""
+    from markupsafe import Markup, escape
+
+    whole = _IN_UNIT.sub("\u00a0", str(escape(words)))
+    return Markup(whole.replace("_", "_<wbr>"))
 
 
 def _marked(words: str) -> "markupsafe.Markup":

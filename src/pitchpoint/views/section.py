@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import zip_longest
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
@@ -43,6 +44,7 @@ __all__ = [
     "reason",
     "said",
     "tabbed",
+    "told_of_variants",
 ]
 
 Made = TypeVar("Made")
@@ -565,6 +567,24 @@ def _settled(block: Block) -> Block:
     if isinstance(block, Variants):
         return Variants({name: [*map(_settled, them)] for name, them in block.each.items()})
     return block
+
+
+def told_of_variants(
+    outcomes: Mapping[str, Outcome], kind: str, told: Callable[[str], str] = str
+) -> dict[str, list[str]]:
+    """Sentences on what fails or is doubtful, each once with its variants, the worst of each variant first.
+
+    Args:
+        outcomes: by variant.
+        kind: "implausible" or "warnings".
+        told: how a sentence is told, where not as it is; those that are told alike are one.
+    """
+    variants: dict[str, list[str]] = {}
+    for row in zip_longest(*(outcome.manifest[kind] for outcome in outcomes.values())):
+        for variant, text in zip(outcomes, row, strict=True):
+            if text is not None:
+                variants.setdefault(told(text), []).append(variant)
+    return variants
 
 
 def key_figures(sections: "Iterable[Section]", outcome: Outcome) -> list[KeyFigure]:

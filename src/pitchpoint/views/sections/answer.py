@@ -39,6 +39,7 @@ from pitchpoint.views.section import (
     key_figure,
     key_figures,
     made_of,
+    told_of_variants,
 )
 from pitchpoint.views.sections.back_driving import (
     back_driving,
@@ -71,7 +72,7 @@ def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
     values = {
         "variants": variants,
-        "warnings": (warnings := _warned(page)),
+        "warnings": (warnings := told_of_variants(page.outcomes, "warnings")),
         "first_doubt": show.first_clauses(next(iter(warnings), ""), _SUMMED_UP),
         "several": page.several,
         "designs": page.designs,
@@ -283,15 +284,6 @@ def _at_contact(data: Any) -> tuple[str, ...]:
 def _range(data: xr.Dataset, name: str, value: Callable[[str], float]) -> str:
     ends = f"min_{name}", f"max_{name}"
     return show.span(*ends, [value(end) for end in ends], data)
-
-
-def _warned(page: Page) -> dict[str, list[str]]:
-    """Sentences above every number, each with the variants that it is about."""
-    found: dict[str, list[str]] = {}
-    for name, outcome in page.outcomes.items():
-        for text in outcome.manifest["warnings"]:
-            found.setdefault(text, []).append(name)
-    return found
 
 
 def _drag(data: xr.Dataset, law: int) -> str:
