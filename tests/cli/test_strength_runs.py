@@ -3,6 +3,7 @@
 import json
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -155,7 +156,12 @@ def test_the_first_screen_says_on_what_safeties_stand(outcome: Outcome) -> None:
             show.number(float(data[f"{part}_{name}"][at])) for name in ("safety", "cycles")
         )
         assert figure.value == safety
-        assert figure.detail == (f"at gear {at + 1}; application factor 1.25, {cycles} load cycles")
+        life = f"{cycles} load cycles (20000 h)"
+        assert figure.detail == f"at gear {at + 1}; {life}, application factor 1.25"
+    inputs = [row for row in outcome.manifest["inputs"] if row["key"] != "life"]
+    endless = replace(outcome, manifest=outcome.manifest | {"inputs": inputs})
+    (flanks, _) = STRENGTH.answer(endless)
+    assert flanks.detail.endswith("; endless life, application factor 1.25")
 
 
 def test_limits_without_a_material_that_has_them(tmp_path: Path) -> None:

@@ -79,9 +79,12 @@ def test_a_whole_table(case: Case) -> None:
         ({"torque": "5 N"}, r'^operation.torque: "5 N" is a force, but a torque is needed'),
         ({"torque": -5.0}, r'^operation.torque: "-5.0 N m" is out of range; allowed is 0 N m to'),
         ({"roughness.ra": [1e-6, 1.0]}, r'^roughness.ra: "1.0 m" is out of range'),
+        ({"module": 2}, r'100 mm; "2 mm" is in it \(from Python a plain number is in m\)$'),
+        ({"temperature": 60}, r'; "60 degC" is in it \(from Python a plain number is in K\)$'),
+        ({"module": 2000}, r'"2000.0 m" is out of range; allowed is 0.01 mm to 100 mm$'),
         ({"specific_heat": 460.0}, r"^specific_heat: several keys end so; give one of materials."),
     ],
-    ids=["bare", "dotted", "unit", "range", "list", "several"],
+    ids=["bare", "dotted", "unit", "range", "list", "no SI", "no K", "too large", "several"],
 )
 def test_a_change_that_cannot_be(case: Case, change: dict[str, Any], told: str) -> None:
     with pytest.raises(InputError, match=told):

@@ -93,10 +93,20 @@ class Quantity:
         if isinstance(value, SIValue):
             return number
         if not math.isfinite(number) or self._outside(number):
-            raise InputError(f"{shown(value)} is out of range; {self.allowed}", value=value)
+            meant = self._meant(value)
+            raise InputError(f"{shown(value)} is out of range; {self.allowed}{meant}", value=value)
         if self.whole and number != round(number):
             raise InputError(f"{shown(value)} is not a whole number; {self.allowed}", value=value)
         return number
+
+    def _meant(self, value: Any) -> str:
+        """What a number in SI, as those of Python are, may mean that is in the range; empty if nothing."""
+        si_unit = units.si_unit(self.kind)
+        number, _, unit = str(value).partition(" ")
+        meant = f"{number.removesuffix('.0')} {self.unit}"
+        if self.unit in ("1", si_unit) or unit != si_unit or not self._reads(meant):
+            return ""
+        return f'; "{meant}" is in it (from Python a plain number is in {si_unit})'
 
     def _outside(self, number: float) -> bool:
         """Beyond the range, by more than the last bit that converting a bound such as 60 deg leaves."""

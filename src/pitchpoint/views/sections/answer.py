@@ -166,7 +166,7 @@ def _tile(figure: KeyFigure) -> KeyFigure:
     return replace(figure, detail=show.whole_clauses(figure.detail.lstrip(",; "), _IN_A_TILE))
 
 
-_IN_A_TILE = 64
+_IN_A_TILE = 68
 """Characters beside a value; what is longer stands in the list below the tiles."""
 
 _SUMMED_UP = 100

@@ -12,6 +12,7 @@ from pitchpoint.doubts import apart, doubts_of, without_repeats
 from pitchpoint.results.by_stage import as_label
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
+from pitchpoint.views.inputs import words
 from pitchpoint.views.point import member_names
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
@@ -201,7 +202,7 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
         if not known.isnull().all():
             at = known.argmin([*known.dims])
             least = known.isel(at)
-            place, duty = f"at {_place(least, outcome)}", _duty(data, at, f"{part}_cycles")
+            place, duty = f"at {_place(least, outcome)}", _duty(outcome, at, f"{part}_cycles")
             detail = "; ".join([place, *_doubted(outcome, least, stress), duty])
             value = show.number(float(least))
             yield KeyFigure(order, f"Safety of {where}", value, detail, f"{value} {place}")
@@ -229,16 +230,22 @@ def _doubted(outcome: Outcome, value: xr.DataArray, stress: str) -> list[str]:
     return [one.removeprefix(begin).rstrip(".") for one in briefs if one.startswith(begin)]
 
 
-def _duty(data: xr.Dataset, place: Mapping[Hashable, xr.DataArray], cycles: str) -> str:
-    """Application factor and load cycles of a gear, on which its safety stands."""
+def _duty(outcome: Outcome, place: Mapping[Hashable, xr.DataArray], cycles: str) -> str:
+    """Life of a gear, with its load cycles where one is asked, and application factor of a safety."""
+    data = outcome.parts["strength"]
 
     def there(name: str) -> float:
         values = data[name]
         return float(values.isel({dim: at for dim, at in place.items() if dim in values.dims}))
 
-    count = there(cycles)
-    life = f"{show.number(count)} load cycles" if np.isfinite(count) else "to endure"
-    return f"application factor {show.number(there('application_factor'))}, {life}"
+    count, factor = there(cycles), show.number(there("application_factor"))
+    time = words(outcome, "strength", "life")
+    life = f"{show.number(count)} load cycles{f' ({time})' if time else ''}"
+    if not np.isfinite(count):
+        life = "to endure"
+    elif not time and not outcome.manifest["plastic"]:
+        life = "endless life"  # the count is where the line of steel turns level
+    return f"{life}, application factor {factor}"
 
 
 def _sums_up(outcome: Outcome) -> Iterator[Table | Paragraph]:
