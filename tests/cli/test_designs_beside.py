@@ -187,6 +187,25 @@ def test_differences_are_those_of_the_results(compared: Outcomes) -> None:
     assert rows["efficiency is that of the"][:2] == ("teeth alone", "teeth alone")
 
 
+def test_what_is_of_other_things_is_not_subtracted(compared: Outcomes) -> None:
+    first, last = compared.values()
+    operation = last.parts["operation"].copy()
+    operation["mean_efficiency"] = operation["mean_efficiency"].assign_attrs(
+        operation["mean_efficiency"].attrs, lacks="bearing of its drum"
+    )
+    parts = {**last.parts, "operation": operation}
+    other = replace(last, parts=parts, manifest=last.manifest | {"members": ["drum", "gear 2"]})
+    rows = {row[0]: row[1:] for row in result_table({"one": first, "other": other}).rows}
+    bases = rows["efficiency is that of the"]
+    assert bases[:2] == ("teeth alone", "teeth alone, without the bearing of its drum")
+    for name in ("mean efficiency (xu_2007) [%]", "mean power loss (xu_2007) [W]"):
+        assert rows[name][2] == "of other things"
+    assert {told[2] for name, told in rows.items() if "contact ratio" in name} == {
+        "of other things"
+    }
+    assert "of other things" not in rows["largest Hertz pressure (xu_2007) [MPa]"][2]
+
+
 def test_films_count_only_where_pairs_touch(compared: Outcomes) -> None:
     figures = [one for one in main_results(compared) if one.name == "film_thickness"]
     for figure in figures:

@@ -235,6 +235,12 @@ def test_variants_stand_side_by_side(pair: dict[str, Outcome]) -> None:
     rows = beside_each_other(two)
     assert [row[""] for row in rows] == [figure.name for figure in key_figures(in_order(), one)]
     assert all(row["default"] == row["bad"] for row in rows)
+    first, another = one.parts["operation"], by_another_law(one).parts["operation"]
+    both = replace(one, parts={**one.parts, "operation": xr.concat([first, another], "law")})
+    rows = {row[""]: row for row in beside_each_other({"default": one, "both": both})}
+    assert rows["by other laws"]["default"] == "–"
+    efficiency = show.quantity("mean_efficiency", float(first["mean_efficiency"].values[0, 0]))
+    assert rows["by other laws"]["both"].endswith(f"{efficiency} another")
     averaged = replace(one, manifest=one.manifest | {"averaging": "path"})
     law, mean, *_ = beside_each_other({"default": one, "other": by_another_law(averaged)})
     assert law[""] == "Friction" and law["default"] != law["other"] == "another"

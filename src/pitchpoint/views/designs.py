@@ -146,9 +146,12 @@ _UNLIKE = "of other things"
 _OF_POWER = ("efficiency", "loss", "input_torque", "torque_ripple")
 """Parts of the names of figures that are of what the efficiency is of."""
 
+_OF_BODIES = ("reaction", "contact_ratio")
+"""Parts of the names of figures that are of the bodies of a drive."""
+
 
 def _unlike(figure: Figure, first: Outcome, other: Outcome) -> bool:
-    """True for figures of which one design has those of its teeth and another those of its drive, say.
+    """True for figures of which one design has those of its teeth and another those of its drive or bodies.
 
     What is of other things has a difference, but it says nothing of the designs.
     """
@@ -159,6 +162,8 @@ def _unlike(figure: Figure, first: Outcome, other: Outcome) -> bool:
         told = _tolerances
     elif figure.part == "torsion" or "stiffness" in figure.name:
         told = _yields
+    elif any(part in figure.name for part in _OF_BODIES):
+        told = _bodies
     else:
         return False
     return told(first) != told(other)
@@ -197,7 +202,13 @@ def _efficiency(outcome: Outcome) -> str:
     operation = outcome.parts.get("operation")
     if operation is None or "mean_efficiency" not in operation:
         return ""
-    return covers(operation).partition(":")[0] or "whole drive"
+    of = covers(operation).partition(":")[0] or "whole drive"
+    lacks = operation["mean_efficiency"].attrs.get("lacks")
+    return f"{of}, without the {lacks}" if lacks else of
+
+
+def _bodies(outcome: Outcome) -> str:
+    return ", ".join(outcome.manifest["members"])
 
 
 def _tolerances(outcome: Outcome) -> str:
