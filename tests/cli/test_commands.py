@@ -367,6 +367,7 @@ def test_another_case_is_not_written_over(
     assert times(tmp_path / "results" / "tiny")["operation"] != made["operation"]
 
 
+@pytest.mark.whole
 def test_a_run_that_is_set_otherwise_says_what_it_replaces(
     pitchpoint: Callable[..., Told], tiny: Path, finished: Path, tmp_path: Path
 ) -> None:
