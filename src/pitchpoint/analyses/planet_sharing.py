@@ -1,7 +1,10 @@
 """How planets share a load: forces on their pins, the mesh load factor, its spread by tolerance."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import xarray as xr
+from jaxtyping import Float
 
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.torsion import mesh_slopes
@@ -12,21 +15,47 @@ from pitchpoint.drive.torques import train_torques
 from pitchpoint.loading.planets import path_stiffness, planet_forces
 from pitchpoint.results.store import dataset
 
-__all__ = ["sharing_of"]
+__all__ = ["Sharing", "shared", "sharing_of"]
 
 PERCENTILES = (50.0, 90.0, 99.0)
 SAMPLES = 4096
 """Sets of pins that are drawn: some forty of them lie beyond the 99th percentile."""
 
 
-def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
-    """Dataset of the part.
+@dataclass(frozen=True)
+class Sharing:
+    """How the planets of a train share its load.
 
-    From the equilibrium of springs that only push, see `planet_forces`: teeth at the load of the operating
-    point in series with the pin, without friction, weight and centrifugal force.
+    Attributes:
+        errors: of the pins along their circle [m].
+        forces: on the pins along their circle [N].
+        equal: force on each pin if they shared alike [N].
+        stiffness: of the way over one planet [N/m].
+        drawn: mesh load factors at `PERCENTILES` of sets of pins by tolerance; none without one.
+    """
+
+    errors: Float[np.ndarray, " planet"]
+    forces: Float[np.ndarray, " planet"]
+    equal: float
+    stiffness: float
+    drawn: Float[np.ndarray, " percentile"] | None
+
+    @property
+    def factor(self) -> float:
+        """Mesh load factor K_γ by the errors of the pins alone."""
+        return float(self.forces.max() / self.equal)
+
+    @property
+    def rated_factor(self) -> float:
+        """Mesh load factor that a rating takes: by tolerance that of nearly all sets of pins."""
+        return self.factor if self.drawn is None else float(self.drawn[-1])
+
+
+def shared(built: BuiltTrain) -> Sharing:
+    """How the planets of a train share the load of its operating point, see `sharing_of`.
 
     Args:
-        built: the case.
+        built: the case, with pins out of place.
     """
     train, table, load = built.design, built.case.train, float(built.case.operation.load)
     assert table is not None
@@ -48,31 +77,44 @@ def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     angles, floating = np.asarray(train.angles), bool(table.floating)
     errors = np.array(table.pin_errors or [0.0] * count)
     forces = planet_forces(total, stiffness, errors, angles, floating=floating)
-    factor = float(forces.max() / pin)
-    drawn = {}
+    drawn = None
     if table.pin_tolerance:
         random = np.random.default_rng(0)
         size = (SAMPLES, count)
         far = table.pin_tolerance / 2.0 * np.sqrt(random.uniform(size=size))
         placed = errors + far * np.cos(random.uniform(0.0, 2.0 * np.pi, size=size))
         every = planet_forces(total, stiffness, placed, angles, floating=floating)
-        factors = np.percentile(every.max(axis=1) / pin, PERCENTILES)
-        drawn = {"drawn_planet_load_factor": (("percentile",), factors)}
+        drawn = np.percentile(every.max(axis=1) / pin, PERCENTILES)
+    return Sharing(errors, forces, pin, stiffness, drawn)
+
+
+def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
+    """Dataset of the part.
+
+    From the equilibrium of springs that only push, see `planet_forces`: teeth at the load of the operating
+    point in series with the pin, without friction, weight and centrifugal force.
+
+    Args:
+        built: the case.
+    """
+    sharing, table = shared(built), built.case.train
+    assert table is not None
+    drawn = sharing.drawn
     return dataset(
         {
-            "pin_error": (("planet",), errors),
-            "pin_force": (("planet",), forces),
-            "planet_share": (("planet",), forces / pin),
-            "planet_load_factor": ((), factor),
-            "planet_stiffness": ((), stiffness),
-            **drawn,
+            "pin_error": (("planet",), sharing.errors),
+            "pin_force": (("planet",), sharing.forces),
+            "planet_share": (("planet",), sharing.forces / sharing.equal),
+            "planet_load_factor": ((), sharing.factor),
+            "planet_stiffness": ((), sharing.stiffness),
+            **({} if drawn is None else {"drawn_planet_load_factor": (("percentile",), drawn)}),
         },
         {
-            "planet": np.arange(1, count + 1),
-            **({"percentile": [*PERCENTILES]} if drawn else {}),
+            "planet": np.arange(1, sharing.errors.size + 1),
+            **({} if drawn is None else {"percentile": [*PERCENTILES]}),
         },
         title="sharing of planets",
-        warnings=[*_lifted(forces), *_stepped(built)],
+        warnings=[*_lifted(sharing.forces), *_stepped(built)],
         floating=table.floating,
         rigid_pins=int(table.pin_stiffness is None),
     )

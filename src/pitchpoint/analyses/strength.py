@@ -1,6 +1,7 @@
 """Strength of cylindrical pairs: forces, flank pressure, root stress, safeties at the operating point."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import islice
 from math import nan
 from typing import Any
@@ -10,10 +11,12 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import RATING, numbers
+from pitchpoint.analyses.lacking import no_pins
+from pitchpoint.analyses.planet_sharing import PERCENTILES, shared
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
 from pitchpoint.doubts import Doubt, fails, in_stage
 from pitchpoint.efficiency.summary import in_chunks, in_groups
 from pitchpoint.gears.mesh import Mesh
@@ -83,7 +86,7 @@ def _unrated(built: Ready) -> str | None:
 
 def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """The rating of a pair, or of those stages of a drive that are pairs of cylindrical gears."""
-    stages = _rated(built)
+    stages, on_sharing = _with_sharing(built)
     each = _ratings([one for _, one in stages])
     several = isinstance(built, BuiltDrive)
     values = each[0]
@@ -107,7 +110,8 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         method=_method([one for _, one in stages]),
         assumed=told(lambda one, _: _assumed(one)),
         withheld=told(lambda one, found: [*one.rated.withheld, *_bounds(one, found)]),
-        remarks=[*told(lambda one, _: [*_remarks(one)]), *built.on_strength],
+        remarks=[*told(lambda one, _: [*_remarks(one)]), *built.on_strength, *on_sharing],
+        planets=max(built.copies) if isinstance(built, BuiltTrain) else 1,
         warnings=told(lambda one, found: [*_failing(one, found), *_doubts(one, found)]),
     )
 
@@ -116,6 +120,50 @@ def _rated(built: Ready) -> list[tuple[Label, Built]]:
     """Meshes that are rated with their labels, in the order of the power."""
     meshes = zip(built.mesh_labels, built.meshes, strict=True)
     return [(label, one) for label, one in meshes if one.case.gears.rated]
+
+
+def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
+    """Meshes that are rated, with K_γ by the pins of their planets where that is more, and sentences on it.
+
+    A factor that the case gives stays. So does that of the standard where pins alone make less of it.
+    """
+    stages = _rated(built)
+    if not isinstance(built, BuiltTrain):
+        return stages, []
+    lacks = no_pins(built)
+    if lacks is not None:
+        out_of_place = not isinstance(lacks, Unasked)
+        return stages, [f"Pins out of place are not in K_γ: {lacks}."] * out_of_place
+    sharing = shared(built)
+    factor = sharing.rated_factor
+    rated = [
+        (number, _sharing_by(one, factor) if _open_sharing(built, number) else one)
+        for number, one in stages
+    ]
+    within = "" if sharing.drawn is None else f" in {PERCENTILES[-1]:g} % of sets of pins"
+    bears = f"By its pins a planet bears up to {factor:.3g} of an equal share{within}"
+    if any(one is not before for (_, one), (_, before) in zip(rated, stages, strict=True)):
+        return rated, [f"{bears}: K_γ is that."]
+    return rated, [
+        f"{bears}; K_γ stays that of the standard or of [strength], since weight, friction and deviations of "
+        "teeth are not among them."
+    ]
+
+
+def _open_sharing(built: BuiltTrain, number: Label) -> bool:
+    """True for a mesh of planets whose K_γ the case leaves open."""
+    tables = built.case.strength, built.case.stages[str(number)].strength
+    given = any(table is not None and table.mesh_load_factor is not None for table in tables)
+    return built.copies[built.numbers.index(number)] > 1 and not given
+
+
+def _sharing_by(built: Built, factor: float) -> Built:
+    """A mesh under a mesh load factor, where that is more than what it has."""
+    table = built.case.strength
+    if table is None or factor <= (table.mesh_load_factor or 1.0):
+        return built
+    changed = table.model_copy(update={"mesh_load_factor": factor})
+    return replace(built, case=built.case.model_copy(update={"strength": changed}))
 
 
 def _ratings(pairs: Sequence[Built]) -> list[Numbers]:
@@ -163,7 +211,7 @@ def ratings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     """
     if STRENGTH.why_not(points[0]) is not None:
         return {}
-    pairs = [[one for _, one in _rated(point)] for point in points]
+    pairs = [[one for _, one in _with_sharing(point)[0]] for point in points]
     found = iter(_ratings([one for each in pairs for one in each]))
     extremes = [_extremes([*islice(found, len(each))]) for each in pairs]
     return {

@@ -476,7 +476,7 @@ class BuiltTrain(BuiltDrive):
 
         count = max(self.copies)
         share = (
-            f"K_γ = {MESH_LOAD[count]} for {count} planets by IEC 61400-4"
+            f"K_γ is at least {MESH_LOAD[count]}, for {count} planets by IEC 61400-4"
             if count in MESH_LOAD
             else "K_γ = 1"
         )

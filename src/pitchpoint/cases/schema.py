@@ -1405,7 +1405,7 @@ class StrengthTable(Table):
     application_factor: Annotated[float, LOAD_FACTOR] | None = None
     """Application factor K_A; 1 unless given."""
     mesh_load_factor: Annotated[float, LOAD_FACTOR] | None = None
-    """Mesh load factor K_γ of planets that share a load; by IEC 61400-4 for 3 to 7, else 1, unless given."""
+    """Mesh load factor K_γ of planets; by IEC 61400-4 for 3 to 7, else 1, or by their pins, unless given."""
     dynamic_factor: Annotated[float, LOAD_FACTOR] | None = None
     """Dynamic factor K_v; by ISO 6336-1, of plastics 1, unless given."""
     dynamic_method: Literal["B", "C"] = "C"

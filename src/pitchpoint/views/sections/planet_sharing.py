@@ -32,7 +32,7 @@ def _assumed(data: xr.Dataset) -> str:
     return (
         f"Springs that only push, {stiffness} over one planet: {pins}, {moves}; without friction, weight and "
         "centrifugal force. By tolerance pins lie anywhere in their circles alike. The rating of teeth "
-        "takes the factor of [strength], not this one."
+        "takes the larger of this factor and that of the standard, unless [strength] gives one."
     )
 
 
@@ -64,8 +64,10 @@ def _drawn(data: xr.Dataset) -> list[tuple[str, ...]]:
 
 
 def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
-    """The mesh load factor, by tolerance about the errors that are given, or by these alone."""
+    """The mesh load factor where no rating has it: by tolerance about the errors given, or by these alone."""
     data = outcome.parts["planet_sharing"]
+    if "strength" in outcome.parts:  # which has the factor that it takes
+        return
     if "drawn_planet_load_factor" in data:
         level, factor = _drawn(data)[-1]
         detail = f"at most in {level} of sets"

@@ -218,6 +218,11 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
             more = f"name one that has them, or give strength.sigma_{limit}"
             detail = "; ".join([*_doubted(outcome, most, stress), *lacks, more])
             yield KeyFigure(order, f"Stress of {where}", value, detail)
+    planets = int(data.attrs.get("planets", 1))
+    if planets > 1:
+        factor = show.number(float(data["mesh_load_factor"].max()), 3)
+        detail = f"at most, over an equal share of {planets} planets"
+        yield KeyFigure(42.0, "Load on a planet", f"K_γ {factor}", detail)
 
 
 def _doubted(outcome: Outcome, value: xr.DataArray, stress: str) -> list[str]:
