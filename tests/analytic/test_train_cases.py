@@ -308,7 +308,7 @@ def test_planets_share_a_load_bear_both_ways_and_meet_sun_and_ring_in_turn(plane
 
 @pytest.mark.whole
 def test_the_rating_takes_the_load_of_planets_whose_pins_are_out_of_place():
-    """As if K_γ had been given; less than the standard has, or a factor that is given, pins change nothing."""
+    """As if K_γ had been given; where the standard has more, or the case gives one, pins change nothing."""
 
     def rated(**changes):
         built = load_case({"gears": SET | changes, **TABLES}, settings=given)
@@ -339,7 +339,7 @@ def test_the_rating_takes_the_load_of_planets_whose_pins_are_out_of_place():
 
 @pytest.mark.whole
 def test_the_rating_of_a_wind_turbine_stage_is_that_of_a_commercial_program():
-    """Second stage of the gearbox of Nejad and others (2016), by ISO 6336:2006, with factors as printed there.
+    """Second stage of the gearbox of Nejad and others (2016), by ISO 6336:2006, load factors as printed.
 
     Source: a printout of KISSsoft 03/2017, file stage_02.rtf in github.com/gfsReboucas/Drivetrain.
     """
