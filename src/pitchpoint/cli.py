@@ -761,11 +761,20 @@ def new(
         str,
         typer.Argument(
             metavar="FAMILY",
-            help="spur, helical, strain_wave, rack_and_pinion, torus, ball_on_disc, two_stages "
-            "or planetary.",
+            help="spur, helical, strain_wave, rack_and_pinion, torus, ball_on_disc, two_stages, "
+            "planetary or 3K.",
             autocompletion=_families_from,
         ),
     ],
+    ratio: Annotated[
+        float | None,
+        typer.Option(help="Of planetary and 3K: teeth for this ratio, input over output."),
+    ] = None,
+    torque: Annotated[
+        str | None,
+        typer.Option(help='With --ratio: a module that bears it at the output, "20 N m".'),
+    ] = None,
+    planets: Annotated[int, typer.Option(help="With --ratio: number of planets.")] = 3,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FILE", help="Default: the screen, as for -."),
@@ -777,7 +786,16 @@ def new(
     """
     from pitchpoint.cases.template import template
 
-    _write(template(family), output)
+    if output is not None and output.exists():
+        raise InputError("is there already; give another name", file=str(output))
+    if ratio is None:
+        if torque is not None:
+            raise InputError("goes with --ratio; the file has its own", key="torque")
+        _write(template(family), output)
+        return
+    from pitchpoint.sizing.for_ratio import case_for_ratio
+
+    _write(case_for_ratio(family, ratio, torque=torque, planets=planets), output)
 
 
 def _write(text: str, path: Path | None) -> None:

@@ -344,7 +344,12 @@ def test_the_rating_of_a_wind_turbine_stage_is_that_of_a_commercial_program():
     Source: a printout of KISSsoft 03/2017, file stage_02.rtf in github.com/gfsReboucas/Drivetrain.
     """
     shortened = -1.75 / 21.0
-    common = {"module": "21 mm", "face_width": "550 mm", "centre_distance": "584 mm", "dedendum": 1.25}
+    common = {
+        "module": "21 mm",
+        "face_width": "550 mm",
+        "centre_distance": "584 mm",
+        "dedendum": 1.25,
+    }
     sun = {"teeth": [18, 36], "profile_shift": [0.389, 0.504], "fillet_radius": 0.38}
     ring = {"teeth": [36, -93], "profile_shift": [0.504, 0.1171], "fillet_radius": [0.38, 0.3]}
     stages = [

@@ -1606,7 +1606,10 @@ OTHER_CALLS = {
     "run pair.toml --set": '; write --set operation.torque="50 N m"',
     "run pair.toml other.toml": "it takes one case, pitchpoint compare several",
     "show": "a name out of pitchpoint cases",
-    "new 3K": "pitchpoint.three_k_sets has those for a ratio",
+    "new wolfrom": "did you mean 3K?",
+    "new spur --ratio 3": "is for planetary and 3K; leave it out for spur",
+    "new planetary --ratio 2": "2 is no ratio of one planetary set with 3 planets, which reaches",
+    "new planetary --torque 5": "goes with --ratio",
     "new pair.toml": "'pair.toml' is a file and no family of gears; write new spur -o FILE",
 }
 

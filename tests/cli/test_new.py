@@ -5,15 +5,19 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pitchpoint import cli
+from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.document import read, resolve
 from pitchpoint.cases.schema import Case, DriveCase, keys, quantity_at, validate
 from pitchpoint.cases.template import FAMILIES, template
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.runs.check import check
+from pitchpoint.runs.run import load_case
+from pitchpoint.sizing.for_ratio import MODULES, SAFETIES, case_for_ratio, planetary_teeth
 
 HEAD = re.compile(r"(?:# )?\[([a-z_.0-9]+)\](?:  #.*)?")
 KEY = re.compile(r"# ([a-z_0-9]+ = .*)")
@@ -119,3 +123,73 @@ def test_a_dash_stands_for_the_screen(
     assert caught.value.code == 0
     assert capsys.readouterr().out == template("spur")
     assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.parametrize("planets", [1, 3, 4, 5])
+def test_teeth_for_a_ratio_assemble_and_planets_stay_apart(planets: int) -> None:
+    """Planets whose number divides sun and ring; tips apart, from the distance of neighbours."""
+    for basic in (2.0, 2.8, 3.5):
+        teeth = [*planetary_teeth(basic, planets)]
+        assert teeth
+        for sun, planet, ring in teeth:
+            assert (sun + ring) % planets == 0
+            assert 0 <= ring - sun - 2 * planet <= 1
+            if planets > 1:
+                assert (sun + planet) * np.sin(np.pi / planets) > planet + 2.0
+        assert teeth[0][2] / teeth[0][0] == pytest.approx(basic, rel=0.006)
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize(
+    ("ratio", "sense"),
+    [(5.0, "sun carrier ring"), (-3.0, "sun ring carrier"), (1.2, "ring carrier sun")],
+)
+def test_a_planetary_set_for_a_ratio_turns_so(ratio: float, sense: str) -> None:
+    built = load_case(tomllib.loads(case_for_ratio("planetary", ratio)))
+    train = built.case.train
+    assert " ".join([train.input, train.output, *train.held]) == sense
+    assert float(built.design.ratio) == pytest.approx(ratio, rel=1e-9)
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize(("family", "ratio"), [("planetary", 5.0), ("3K", 100.0)])
+def test_the_module_is_the_smallest_that_bears_the_torque(family: str, ratio: float) -> None:
+    text = case_for_ratio(family.lower(), ratio, torque="200 N m")
+    tree = tomllib.loads(text)
+    gears = [tree["gears"]] if family == "planetary" else [one["gears"] for one in tree["stages"]]
+    module = float(gears[0]["module"].removesuffix(" mm"))
+
+    def safeties(module: float) -> list[float]:
+        for one in gears:
+            old = float(one["module"].removesuffix(" mm"))
+            for key in {"module", "face_width", "centre_distance"} & one.keys():
+                one[key] = f"{float(one[key].removesuffix(' mm')) * module / old} mm"
+        rated = ratings_of([load_case(tree)], 1)
+        return [float(rated[f"least_{part}_safety"][1].item()) for part in SAFETIES]
+
+    assert (np.array(safeties(module)) >= [*SAFETIES.values()]).all()
+    smaller = MODULES[MODULES.index(module) - 1]
+    assert (np.array(safeties(smaller)) < [*SAFETIES.values()]).any()
+    built = load_case(tomllib.loads(text))
+    assert float(built.design.ratio) == pytest.approx(ratio, rel=0.03)
+    assert built.case.operation.load == 200.0
+
+
+@pytest.mark.parametrize(
+    ("family", "ratio", "more", "told"),
+    [
+        ("planetary", 2.0, {}, "which reaches, from sun to carrier 2.6 to 13"),
+        ("planetary", 0.2, {}, "ask for 5, and exchange input and output"),
+        ("planetary", 5.0, {"torque": "5"}, "5"),
+        ("planetary", 5.0, {"torque": "0 N m"}, "more than zero"),
+        ("planetary", 5.0, {"planets": 30}, "1 to 24"),
+        ("3K", -100.0, {}, "it is the size"),
+        ("spur", 5.0, {}, "is for planetary and 3K"),
+    ],
+)
+def test_what_no_set_has_is_told_in_a_sentence(
+    family: str, ratio: float, more: dict[str, object], told: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        case_for_ratio(family, ratio, **more)
+    assert told in str(caught.value)

@@ -22,7 +22,7 @@ from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import alternatives, forms, sentences, tag
 from pitchpoint.registry import known_as
 
-__all__ = ["FAMILIES", "template"]
+__all__ = ["FAMILIES", "sample_tree", "template"]
 
 _CYLINDRICAL = ("spur", "helical")
 """Kinds of cylindrical gears."""
@@ -36,13 +36,13 @@ _MORE: Mapping[str, Tree] = {
 }
 """What a case to begin with has beside the sample of its family, such as all that loses and yields."""
 
-_DRIVES = {"two_stages": "stages.toml", PLANETARY: "planetary.toml"}
+_DRIVES = {"two_stages": "stages.toml", PLANETARY: "planetary.toml", "3K": "three_k.toml"}
 """Samples of drives of several meshes, by name."""
 
 FAMILIES = (*(tag(table) for table in TABLES), *_CYLINDRICAL, *_DRIVES)
 """What a case file may begin with."""
 
-_MEANT = ("gears", STAGES, "lubricant", "roughness", "operation", "models")
+_MEANT = ("gears", STAGES, "train", "materials", "lubricant", "roughness", "operation", "models")
 """Tables that stand in it; all others are remarks."""
 
 _ARRANGING = ("gears", STAGES, "train")
@@ -54,11 +54,13 @@ _FEW = 9
 """Names that are listed in a remark."""
 
 
-def template(family: str) -> str:
+def template(family: str, changes: Tree | None = None, remarks: Sequence[str] = ()) -> str:
     """A case file that runs as it is, its optional keys as remarks with kind, range and usual value.
 
     Args:
         family: one of `FAMILIES`.
+        changes: tables with values in the place of those of the sample.
+        remarks: sentences at its head.
 
     Raises:
         InputError: there is no such family.
@@ -70,11 +72,14 @@ def template(family: str) -> str:
         )
     if found is None:
         raise InputError(f"'{shorten(family)}' is no family of gears{no_family(family, FAMILIES)}")
-    model, tree = _sample(found)
+    model, sample = _sample(found)
+    tree = _changed(sample, changes or {})
+    told = (line for text in remarks for line in textwrap.wrap(text, _WIDTH - 2))
     lines = [
         f"# A case of Pitchpoint, {found.replace('_', ' ')}. It runs as it is: pitchpoint run FILE.",
         "# Keys behind a # are optional; what they say is the usual value, or an example of one.",
         "# pitchpoint check FILE tells all that is wrong, pitchpoint models every law, oil and material.",
+        *(f"# {line}" for line in told),
         f"title = {_toml('My ' + found.replace('_', ' '))}",
         *(line for key in model.model_fields for line in _of_table(model, key, tree)),
         "",
@@ -82,6 +87,23 @@ def template(family: str) -> str:
         '# ra = "0.8 um"',
     ]
     return "\n".join(lines) + "\n"
+
+
+def sample_tree(family: str, changes: Tree) -> Tree:
+    """Tables of a sample, with changes as `template` takes them."""
+    return _changed(_sample(family)[1], changes)
+
+
+def _changed(tree: Tree, changes: Tree) -> Tree:
+    """Tables with other values in them; lists as a whole."""
+    merged = dict(tree)
+    for key, value in changes.items():
+        before = tree.get(key)
+        if isinstance(before, dict) and isinstance(value, dict):
+            merged[key] = _changed(before, value)
+        else:
+            merged[key] = value
+    return merged
 
 
 def _sample(family: str) -> tuple[type[BaseModel], Tree]:

@@ -127,9 +127,11 @@ def no_family(name: str, known: Collection[str]) -> str:
     if letters(name).startswith("epicyclic"):
         return nearest(PLANETARY, known)
     if letters(name).removesuffix("set") in ("3k", "threek", "wolfrom"):
+        if "3K" in known:
+            return "; did you mean 3K?"
         return (
             ": it is planetary with second gears, second = { teeth = [planet, ring], face_width = ... } "
-            "under [gears], and pitchpoint.three_k_sets has those for a ratio"
+            "under [gears]; pitchpoint new 3K --ratio 100 writes one for a ratio"
         )
     plain = letters(name).removesuffix("s").removesuffix("gear").removesuffix("drive")
     if {plain, letters(name)} & _NO_FAMILIES:

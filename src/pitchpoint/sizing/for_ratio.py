@@ -1,0 +1,230 @@
+"""A case file of a planetary or 3K set from a ratio: teeth that assemble, a module that bears the torque."""
+
+from collections.abc import Callable, Iterator
+from itertools import islice
+from math import ceil, pi, sin
+from typing import Any
+
+from pitchpoint import units
+from pitchpoint._jax import double_precision
+from pitchpoint.analyses.strength import ratings_of
+from pitchpoint.cases.template import sample_tree, template
+from pitchpoint.errors import InputError
+from pitchpoint.gears.planetary import PLANETARY, PLANETS
+from pitchpoint.registry import letters
+from pitchpoint.runs.run import load_case
+from pitchpoint.sizing.three_k import three_k_sets, three_k_tables
+
+__all__ = ["case_for_ratio", "planetary_teeth"]
+
+Tree = dict[str, Any]
+Making = Callable[[float], Tree]
+"""Tables of a case with its gears for a module [mm]."""
+
+THREE_K = "3K"
+FOR_RATIO = (PLANETARY, THREE_K)
+
+MODULES = (
+    *(0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0),
+    *(12.0, 16.0, 20.0, 25.0, 32.0),
+)
+"""Those of the first series of ISO 54, with finer ones of DIN 780 [mm]."""
+SAFETIES = {"flank": 1.2, "root": 1.5}
+MATERIAL = "case-hardened-mq"
+WIDTH = {PLANETARY: 12.0, THREE_K: 10.0}
+"""Face width [modules]."""
+PIN = 0.4
+"""Mean diameter of the bearing of a planet over its reference diameter."""
+
+SUNS, LARGEST_RING = range(12, 81), 240
+LEAST_PLANET = 18
+UNDERCUT_BELOW = 17.1
+"""Teeth, 2 over the square of the sine of 20 degrees: fewer need a profile shift."""
+_BETWEEN_PLANETS = 2.5
+"""Addenda and room between tip circles of neighbouring planets [modules]."""
+_NEAR = 0.005
+"""Relative difference of ratios that counts as none against the size of a set."""
+MOST_TRIED = 40
+
+ARRANGED = (
+    ("sun", "carrier", "ring", lambda ratio: ratio - 1.0, lambda basic: 1.0 + basic),
+    ("ring", "carrier", "sun", lambda ratio: 1.0 / (ratio - 1.0), lambda basic: 1.0 + 1.0 / basic),
+    ("sun", "ring", "carrier", lambda ratio: -ratio, lambda basic: -basic),
+)
+"""Input, output and held body; teeth of ring over sun by the ratio, and the ratio by these."""
+
+
+def planetary_teeth(basic: float, planets: int) -> Iterator[tuple[int, int, int]]:
+    """Teeth of sun, planet and ring that assemble, for a number of the ring over that of the sun.
+
+    Args:
+        basic: teeth of ring over teeth of sun.
+        planets: at equal angles, whose tips are apart.
+
+    Returns:
+        All with suns of 12 to 80, planets from 18 and rings up to 240 teeth; nearest and smallest first.
+
+    Example:
+        >>> from itertools import islice
+        >>> [*islice(planetary_teeth(4.0, 3), 2)]
+        [(12, 18, 48), (13, 20, 53)]
+    """
+
+    def found() -> Iterator[tuple[int, int, int]]:
+        for sun in SUNS:
+            for ring in range(round(basic * sun) - 3, round(basic * sun) + 4):
+                planet = (ring - sun) // 2
+                apart = (sun + planet) * sin(pi / planets)
+                touching = planets > 1 and apart < planet + _BETWEEN_PLANETS
+                whole = (sun + ring) % planets == 0
+                if whole and planet >= LEAST_PLANET and ring <= LARGEST_RING and not touching:
+                    yield sun, planet, ring
+
+    def order(teeth: tuple[int, int, int]) -> tuple[int, int, int]:
+        sun, _, ring = teeth
+        return round(abs(ring / sun / basic - 1.0) / _NEAR), (ring - sun) % 2, ring
+
+    return iter(sorted(found(), key=order))
+
+
+@double_precision()
+def case_for_ratio(
+    family: str, ratio: float, *, torque: str | None = None, planets: int = 3
+) -> str:
+    """A case file of a set of this ratio, with a module that bears the torque.
+
+    Args:
+        family: "planetary" or "3K".
+        ratio: speed of the input over that of the output; of a 3K set its size, which is met within 3 %.
+        torque: at the output, with its unit; the module is 1 mm and stays unsized without one.
+        planets: at equal angles.
+
+    Raises:
+        InputError: another family, no such teeth, more torque than gears of 32 mm module bear.
+
+    The module is the smallest with which the least safeties by ISO 6336 are at least `SAFETIES`, of gears of
+    `MATERIAL` whose face width is `WIDTH` and that run at 3000 rpm.
+    """
+    named = next((one for one in FOR_RATIO if letters(one) == letters(family)), None)
+    if named is None:
+        raise InputError(
+            f"is for {' and '.join(FOR_RATIO)}; leave it out for {family}", key="ratio"
+        )
+    PLANETS.read(planets)
+    newtons = None if torque is None else units.parse(torque, "torque")
+    if newtons is not None and newtons <= 0.0:
+        raise InputError(f"{torque} was given; it is more than zero", key="torque")
+    make, met = (_planetary if named == PLANETARY else _three_k)(ratio, planets)
+
+    def with_rest(module: float) -> Tree:
+        rest: Tree = {"materials": {"gear_1": MATERIAL, "gear_2": MATERIAL}}
+        return make(module) | (rest | {"operation": {"torque": torque}} if torque else {})
+
+    if torque is None:
+        remark = "The module is not sized: --torque is what the output bears."
+        return template(named, with_rest(1.0), [f"Ratio {met:.6g}. {remark}"])
+    module, safeties = _sized(named, with_rest)
+    borne = ", ".join(f"{part}s {value:.3g}" for part, value in safeties.items())
+    asked = " and ".join(f"{least:g} ({part}s)" for part, least in SAFETIES.items())
+    return template(
+        named,
+        with_rest(module),
+        [
+            f"Ratio {met:.6g}. Module {module:g} mm for {torque}: least safeties by ISO 6336 {borne}; asked "
+            f"were {asked}.",
+            "Load factors but K_v and that of planets are 1: give those of your drive in [strength].",
+        ],
+    )
+
+
+def _planetary(ratio: float, planets: int) -> tuple[Making, float]:
+    """Tables of the first set that can be made, and its ratio."""
+    arranged = next((one for one, low, high in _reach(planets) if low <= ratio <= high), None)
+    if 0.0 < abs(ratio) < 1.0:
+        raise InputError(
+            f"{ratio:g} is a step up; ask for {1.0 / ratio:.5g}, and exchange input and output in the file",
+            key="ratio",
+        )
+    if arranged is None:
+        reach = "; ".join(
+            f"{one[0]} to {one[1]} {low:.3g} to {high:.3g}" for one, low, high in _reach(planets)
+        )
+        raise InputError(
+            f"{ratio:g} is no ratio of one planetary set with {planets} planets, which reaches, from {reach}"
+            "; others have two sets in a row (pitchpoint docs stages) or a 3K (new 3K)",
+            key="ratio",
+        )
+    turned, loaded, held, basic, back = arranged
+    ends = {} if held == "ring" else {"input": turned, "output": loaded, "held": held}
+    for sun, planet, ring in islice(planetary_teeth(basic(ratio), planets), MOST_TRIED):
+        gears: Tree = {"teeth": [sun, planet, ring], "planets": planets, **ends}
+        if sun < UNDERCUT_BELOW:
+            gears["profile_shift"] = [ceil(100.0 * (1.0 - sun / UNDERCUT_BELOW)) / 100.0, 0.0]
+
+        def make(module: float, gears: Tree = gears, planet: int = planet) -> Tree:
+            lengths = {
+                "module": f"{module:g} mm",
+                "face_width": f"{WIDTH[PLANETARY] * module:g} mm",
+            }
+            pin = {"mean_diameter": f"{PIN * planet * module:.3g} mm"}
+            return {"gears": gears | lengths, "losses": {"pin": pin}}
+
+        if _can_be_made(PLANETARY, make):
+            return make, back(ring / sun)
+    raise InputError(
+        f"no teeth for a ratio of {ratio:g} with {planets} planets can be made; take another number of them",
+        key="ratio",
+    )
+
+
+def _reach(planets: int) -> Iterator[tuple[tuple[Any, ...], float, float]]:
+    """Arrangements of a set with the least and the largest ratio that they have teeth for."""
+    most = sin(pi / planets) if planets > 2 else 1.0
+    basics = 1.6, min(1.0 + 2.0 * most / (1.0 - most) if most < 1.0 else 12.0, 12.0)
+    for one in ARRANGED:
+        low, high = sorted(one[4](basic) for basic in basics)
+        yield one, low, high
+
+
+def _can_be_made(family: str, make: Making) -> bool:
+    try:
+        load_case(sample_tree(family, make(1.0)))
+    except InputError:
+        return False
+    return True
+
+
+def _three_k(ratio: float, planets: int) -> tuple[Making, float]:
+    """Tables of the set that loses least in its worse direction, and its ratio."""
+    if ratio <= 1.0:
+        raise InputError(
+            f"{ratio:g} was given; of a 3K set it is the size, from some 20 on", key="ratio"
+        )
+    sets = three_k_sets((0.97 * ratio, 1.03 * ratio), planets=planets, count=1)
+    chosen = sets.isel(set=0)
+
+    def make(module: float) -> Tree:
+        return three_k_tables(chosen, f"{module:g} mm", f"{WIDTH[THREE_K] * module:g} mm")
+
+    return make, float(chosen["ratio"])
+
+
+def _sized(family: str, make: Making) -> tuple[float, dict[str, float]]:
+    """The smallest module of the series that bears the load, with its least safeties."""
+
+    def safeties(module: float) -> dict[str, float]:
+        rated = ratings_of([load_case(sample_tree(family, make(module)))], 1)
+        return {part: float(rated[f"least_{part}_safety"][1][0, 0]) for part in SAFETIES}
+
+    # With the face width in modules stresses of roots go with the cube, of flanks with the power of 1.5.
+    first = safeties(1.0)
+    flank, root = (SAFETIES[part] / first[part] for part in SAFETIES)
+    near = 0.9 * max(flank ** (2.0 / 3.0), root ** (1.0 / 3.0))
+    for module in (one for one in MODULES if one >= near):
+        reached = safeties(module)
+        if all(reached[part] >= least for part, least in SAFETIES.items()):
+            return module, reached
+    raise InputError(
+        f"gears of {MODULES[-1]:g} mm module do not bear it; give less, or a file of your own",
+        key="torque",
+    )
