@@ -67,7 +67,7 @@ def planetary_teeth(basic: float, planets: int) -> Iterator[tuple[int, int, int]
     Example:
         >>> from itertools import islice
         >>> [*islice(planetary_teeth(4.0, 3), 2)]
-        [(12, 18, 48), (13, 20, 53)]
+        [(12, 18, 48), (18, 27, 72)]
     """
 
     def found() -> Iterator[tuple[int, int, int]]:
