@@ -10,6 +10,7 @@ from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.doubts import doubts_of
 from pitchpoint.drive.kinematics import Ends, Link
+from pitchpoint.drive.thrusts import axial_loads
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.errors import InputError
@@ -143,6 +144,27 @@ def test_torque_and_forces_over_the_period_have_the_means_of_the_operating_point
     for name in ("pair_23_61", "two_stage"):
         case = load_case(EXAMPLES / f"{name}.toml")
         assert "do not turn together" in ANALYSES["train_period"].why_not(case)
+
+
+def test_helical_planets_balance_their_thrusts_and_are_tilted_by_them():
+    """F_a = F_t tan β at the reference circles; a planet takes none and both of them as a couple."""
+    built = load_case({"gears": SET | {"helix_angle": "20 deg"}, **TABLES})
+    train = built.design
+    links = [one.link for one in train.meshes]
+    ends = Ends({"sun": 314.0}, train.held, train.loaded)
+    found = axial_loads(
+        links, train.planets, train_torques(links, ends, 60.0, [1.0, 1.0]).shares, built.copies
+    )
+    of_reference = 24e-3 / np.cos(np.radians(20.0)) / 2.0
+    axial = 60.0 * 24 / 108 / of_reference * np.tan(np.radians(20.0))
+    thrusts = {body: abs(force) for body, force in found.thrusts.items()}
+    assert thrusts == pytest.approx({"sun": axial, "planet": 0.0, "ring": axial}, abs=1e-9)
+    assert found.thrusts["sun"] == pytest.approx(-found.thrusts["ring"], rel=1e-12)
+    distance = float(built.meshes[0].dimensions["centre_distance"])
+    arms = distance * (30 / 54 + 30 / 54)
+    assert found.tilting == pytest.approx(axial / 3 * arms, rel=1e-12)
+    sizes = ANALYSES["strength"].compute(built, {}, lambda *_: None)["axial_force"].values
+    assert sizes == pytest.approx([axial / 3] * 2, rel=1e-9)
 
 
 PINS = {"pin_errors": ["20 um", 0, 0, 0], "pin_tolerance": "20 um", "planets": 4}

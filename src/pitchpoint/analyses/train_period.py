@@ -6,6 +6,9 @@ import xarray as xr
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.cases.built_drive import BuiltTrain
+from pitchpoint.drive.kinematics import Ends
+from pitchpoint.drive.thrusts import axial_loads
+from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.drive import NODES_OF_TRAINS
 from pitchpoint.efficiency.quasi_static import power_ratio
 from pitchpoint.efficiency.train_cycle import train_cycle
@@ -35,6 +38,7 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     solved = codes == Code.SOLVED
     ratios = [power_ratio(cycle.output_power, cycle.input_power) for cycle in cycles]
     driven = np.stack([cycle.input_torque for cycle in cycles])
+    thrusts, tilting = _axial_loads(built)
     return dataset(
         {
             "driver_angle": (("node",), first.phase * float(train.period)),
@@ -43,13 +47,26 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
             "efficiency": (("law", "node"), np.stack(ratios)),
             "loss": (("law", "node"), np.stack([cycle.loss for cycle in cycles])),
             "contact_force": (("law", "stage", "planet", "node"), forces),
+            "body_thrust": (("body",), [*thrusts.values()]),
+            "planet_tilting_moment": ((), tilting),
         },
         {
             "law": built.law_names,
             "stage": [*built.numbers],
             "planet": np.arange(1, planets + 1),
+            "body": [*thrusts],
         },
         title="period of the train",
         solve=told_of(codes, np.stack([cycle.status.residual for cycle in cycles])),
         driver_period=float(train.period),
     )
+
+
+def _axial_loads(built: BuiltTrain) -> tuple[dict[str, float], float]:
+    """Thrusts on the bodies, one planet for all, and the moment that tilts it, without losses."""
+    train = built.design
+    links = [one.link for one in train.meshes]
+    ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
+    ideal = train_torques(links, ends, float(built.case.operation.load), [1.0] * len(links))
+    found = axial_loads(links, train.planets, ideal.shares, built.copies)
+    return dict(found.thrusts), found.tilting

@@ -80,6 +80,10 @@ VARIABLES: dict[str, Variable] = {
     "ball_contact_diameter": length("diameter on which the balls touch", "d_K"),
     "pin_error": Variable("way by which a pin is ahead along its circle", "e", "m", "um", "length"),
     "pin_force": force("force of a planet on its pin along the circle", "F_pin"),
+    "body_thrust": force("axial force of the teeth on a body, one planet", "F_a"),
+    "planet_tilting_moment": Variable(
+        "moment of the axial forces that tilts a planet", "M_p", "N m", "N m", "torque"
+    ),
     "planet_share": Variable("load of a planet over that of an equal share", "F/F_mean", "1"),
     "planet_load_factor": Variable("mesh load factor by the errors of the pins", "K_γ", "1"),
     "drawn_planet_load_factor": Variable(

@@ -159,6 +159,7 @@ TRAIN_PERIOD = Section(
     order=205.0,
     parts=("train_period",),
     blocks="pitchpoint.views.sections.train_period:train_period_blocks",
+    screen=of_part("train_period", "pitchpoint.views.sections.train_period:train_period_printed"),
     main_figure="train0_input_torque",
 )
 MOTION = Section(

@@ -22,10 +22,10 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.lines import gapped, titled
-from pitchpoint.views.section import Block, Page, Paragraph, naming
+from pitchpoint.views.section import Block, Page, Paragraph, Printed, Table, naming
 from pitchpoint.views.sections.stages import stage_words
 
-__all__ = ["train_period_blocks"]
+__all__ = ["train_period_blocks", "train_period_printed"]
 
 _PART = "train_period"
 
@@ -42,6 +42,9 @@ def train_period_blocks(page: Page) -> Iterator[Block]:
             "planets share a load: of all forces that hold the train those of the least sum of squares are "
             f"shown{first}."
         )
+        if data["body_thrust"].any():
+            yield Table(_HEADS, _thrusts(data), compact=True)
+            yield Paragraph(_tilted(data), "note")
         figures = [
             *(
                 _over_angle(f"train{position}_{name}", name, variant, data, page.curves)
@@ -52,6 +55,34 @@ def train_period_blocks(page: Page) -> Iterator[Block]:
         curves = [page.curves[variant, law] for law in laws(data)]
         title = variant if len(there) > 1 else ""
         yield from naming(title, [Panel(title, figures, curves)])
+
+
+_HEADS = ["body", f"axial force [{show.unit_of('body_thrust')}]"]
+
+
+def _thrusts(data: xr.Dataset) -> list[tuple[str, ...]]:
+    values = zip(data["body"].values, data["body_thrust"].values, strict=True)
+    return [
+        (str(body), show.quantity("body_thrust", float(value), with_unit=False))
+        for body, value in values
+    ]
+
+
+def _tilted(data: xr.Dataset) -> str:
+    moment = show.quantity("planet_tilting_moment", float(data["planet_tilting_moment"]))
+    return (
+        "Axial forces of the teeth without losses, of one planet; one sense, one sign. They tilt "
+        f"each planet by {moment} about the tangent of the circle of the pins, which its bearings bear as a "
+        "couple beside the force on the pin. Gears of a planet have one hand and count as lying in one plane."
+    )
+
+
+def train_period_printed(outcome: Outcome) -> Iterator[Printed]:
+    """What the screen shows of helical gears."""
+    data = outcome.parts[_PART]
+    if data["body_thrust"].any():
+        rows = [dict(zip(_HEADS, row, strict=True)) for row in _thrusts(data)]
+        yield Printed("Axial forces on the shafts", rows, _tilted(data))
 
 
 def _over_angle(name: str, variable: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
