@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pitchpoint.drive.assembly import equal_angles
-from pitchpoint.loading.planets import path_stiffness, planet_forces
+from pitchpoint.loading.planets import PinEquivalents, path_stiffness, planet_forces
 
 ANGLE = np.radians(24.6)
 STIFFNESS = path_stiffness(
@@ -94,3 +94,58 @@ def test_three_planets_around_a_floating_body_share_alike_whatever_the_errors():
     errors = np.random.default_rng(5).normal(0.0, 1e-4, (200, 3))
     forces = planet_forces(900.0, STIFFNESS, errors, equal_angles(3), floating=True)
     np.testing.assert_allclose(forces, 300.0, rtol=1e-8)
+
+
+def closings(angles, sun, ring, *, thicker, off_planet, off_sun, off_ring):
+    """Closing of both meshes of each planet by deviations, along the normals, by the equations of motion."""
+    p, q = angles - sun, angles + ring
+    radial, tangential = (off_planet[0] * of(off_planet[1]) for of in (np.cos, np.sin))
+    at_sun = -radial * np.sin(sun) - tangential * np.cos(sun) + thicker * np.cos(np.radians(20)) / 2
+    at_ring = (
+        radial * np.sin(ring) - tangential * np.cos(ring) + thicker * np.cos(np.radians(20)) / 2
+    )
+    for (offset, phase), closing, at in ((off_sun, at_sun, p), (off_ring, at_ring, q)):
+        x, y = offset * np.cos(phase), offset * np.sin(phase)
+        closing += y * np.cos(at) - x * np.sin(at)
+    return at_sun, at_ring
+
+
+def test_deviations_of_teeth_load_planets_as_the_meshes_of_both_sides_have_it():
+    """Springs of all meshes with the turns of sun and planets as unknowns, beside pins out of place."""
+    random = np.random.default_rng(11)
+    sun, ring, stiff_sun, stiff_ring = np.radians(24.2), np.radians(15.6), 4e8, 6e8
+    lever = 1.0 / (np.cos(sun) + np.cos(ring))
+    path = path_stiffness(levers=(lever, lever), stiffnesses=(stiff_sun, stiff_ring))
+    alike = PinEquivalents(sun, ring, np.radians(20.0))
+    for count in (3, 4, 5):
+        angles, total = equal_angles(count), 9e4
+        far = {
+            "thicker": random.normal(0.0, 5e-6, count),
+            "off_planet": (5e-6, random.uniform(0.0, 6.0, count)),
+            "off_sun": (8e-6, 0.7),
+            "off_ring": (6e-6, 2.9),
+        }
+        at_sun, at_ring = closings(angles, sun, ring, **far)
+        # Unknown: turn of the sun and of each planet, whose two forces are equal; their sum is given.
+        system, right = np.zeros((count + 1, count + 1)), np.zeros(count + 1)
+        for n in range(count):
+            system[n, 0], system[n, n + 1] = stiff_sun, stiff_sun + stiff_ring
+            right[n] = stiff_ring * at_ring[n] - stiff_sun * at_sun[n]
+        system[count] = stiff_sun
+        system[count, 0] *= count
+        right[count] = total - stiff_sun * at_sun.sum()
+        turns = np.linalg.solve(system, right)
+        at_teeth = stiff_sun * (turns[0] + turns[1:] + at_sun)
+        assert at_teeth.min() > 0.0
+        errors = (
+            alike.of_thickness(far["thicker"])
+            + alike.of_planet(*far["off_planet"])
+            + alike.of_sun(*far["off_sun"], angles)
+            + alike.of_ring(*far["off_ring"], angles)
+        )
+        pins = planet_forces(total / lever, path, errors, angles)
+        np.testing.assert_allclose(pins * lever, at_teeth, rtol=1e-9)
+        free = planet_forces(
+            total / lever, path, alike.of_sun(8e-6, 0.7, angles), angles, floating=True
+        )
+        np.testing.assert_allclose(free, total / lever / count, rtol=1e-8)

@@ -192,6 +192,16 @@ def test_planets_share_by_the_springs_of_their_teeth_and_pins():
     assert float(soft["planet_load_factor"]) == pytest.approx(1.0 + more / alike)
     drawn = soft["drawn_planet_load_factor"].values
     assert 1.0 < drawn[0] < drawn[1] < drawn[2] < 1.0 + 4 * more / alike
+    more = {"thickness_tolerance": "10 um", "planet_runout": "16 um", "central_runout": "20 um"}
+    for key, width in more.items():
+        alone = SET | {"face_width": "12 mm", "planets": 4, key: width}
+        factors = compute(load_case({"gears": alone, **TABLES}), {}, lambda *_: None)
+        factors = factors["drawn_planet_load_factor"].values
+        assert 1.0 < factors[0] < factors[2], key
+    # Runout of the sun is that of a body out of the axis, which a floating one is not: no planet feels it.
+    floats = load_case({"gears": alone | {"floating": "sun"}, **TABLES})
+    factors = compute(floats, {}, lambda *_: None)["drawn_planet_load_factor"].values
+    assert factors == pytest.approx([1.0] * 3, rel=1e-8)
     idle = load_case({"gears": set_of, **TABLES}, settings={"operation.torque": "0 N m"})
     assert ANALYSES["planet_sharing"].why_not(idle) == "planets share no load where there is none"
     (lifted,) = doubts_of(data.attrs)

@@ -107,7 +107,7 @@ def no_pins(built: Ready) -> str | None:
         return Unasked("it has no planets")
     train = built.case.train
     if train is None or not _out_of_place(built):
-        return Unasked("pin_errors or pin_tolerance of a planetary set asks for it")
+        return Unasked("pin_errors, pin_tolerance and the like of a planetary set ask for it")
     on_planets = [one for one in built.design.meshes if one.carrier != HOUSING]
     if built.case.operation.load == 0.0:
         return "planets share no load where there is none"
@@ -119,7 +119,7 @@ def no_pins(built: Ready) -> str | None:
 def _out_of_place(built: BuiltTrain) -> bool:
     """True if pins of a set are said to be out of place."""
     train = built.case.train
-    return train is not None and bool(train.pin_errors or train.pin_tolerance)
+    return train is not None and bool(train.pin_errors or train.by_tolerance)
 
 
 def no_joint(built: Built) -> str | None:

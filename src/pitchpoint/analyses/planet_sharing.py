@@ -1,6 +1,7 @@
 """How planets share a load: forces on their pins, the mesh load factor, its spread by tolerance."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -9,10 +10,11 @@ from jaxtyping import Float
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.torsion import mesh_slopes
 from pitchpoint.cases.built_drive import BuiltTrain
+from pitchpoint.cases.schema import TrainTable
 from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.kinematics import HOUSING, Ends
 from pitchpoint.drive.torques import train_torques
-from pitchpoint.loading.planets import path_stiffness, planet_forces
+from pitchpoint.loading.planets import PinEquivalents, path_stiffness, planet_forces
 from pitchpoint.results.store import dataset
 
 __all__ = ["Sharing", "shared", "sharing_of"]
@@ -31,7 +33,7 @@ class Sharing:
         forces: on the pins along their circle [N].
         equal: force on each pin if they shared alike [N].
         stiffness: of the way over one planet [N/m].
-        drawn: mesh load factors at `PERCENTILES` of sets of pins by tolerance; none without one.
+        drawn: mesh load factors at `PERCENTILES` of sets by tolerance, in any position; none without one.
     """
 
     errors: Float[np.ndarray, " planet"]
@@ -47,7 +49,7 @@ class Sharing:
 
     @property
     def rated_factor(self) -> float:
-        """Mesh load factor that a rating takes: by tolerance that of nearly all sets of pins."""
+        """Mesh load factor that a rating takes: by tolerance that of nearly all sets."""
         return self.factor if self.drawn is None else float(self.drawn[-1])
 
 
@@ -78,14 +80,56 @@ def shared(built: BuiltTrain) -> Sharing:
     errors = np.array(table.pin_errors or [0.0] * count)
     forces = planet_forces(total, stiffness, errors, angles, floating=floating)
     drawn = None
-    if table.pin_tolerance:
-        random = np.random.default_rng(0)
-        size = (SAMPLES, count)
-        far = table.pin_tolerance / 2.0 * np.sqrt(random.uniform(size=size))
-        placed = errors + far * np.cos(random.uniform(0.0, 2.0 * np.pi, size=size))
+    if table.by_tolerance:
+        placed = errors + _drawn_errors(built, table, angles)
         every = planet_forces(total, stiffness, placed, angles, floating=floating)
         drawn = np.percentile(every.max(axis=1) / pin, PERCENTILES)
     return Sharing(errors, forces, pin, stiffness, drawn)
+
+
+def _drawn_errors(
+    built: BuiltTrain, table: TrainTable, angles: Float[np.ndarray, " planet"]
+) -> Float[np.ndarray, "sample planet"]:
+    """Sets by tolerance, each in a position of its gears: deviations as places of pins on their circle [m].
+
+    Pins lie anywhere in their circles and thicknesses in their field alike, gears are off their axes by half
+    of their runout at any phase.
+    """
+    random = np.random.default_rng(0)
+    size = (SAMPLES, angles.size)
+
+    def phases(shape: tuple[int, ...]) -> np.ndarray:
+        return np.asarray(random.uniform(0.0, 2.0 * np.pi, size=shape))
+
+    far = (table.pin_tolerance or 0.0) / 2.0 * np.sqrt(random.uniform(size=size))
+    drawn: np.ndarray = far * np.cos(phases(size))
+    alike = _equivalents(built)
+    if alike is None:
+        return drawn
+    if table.thickness_tolerance:
+        drawn += alike.of_thickness(
+            table.thickness_tolerance * random.uniform(-0.5, 0.5, size=size)
+        )
+    if table.planet_runout:
+        drawn += alike.of_planet(table.planet_runout / 2.0, phases(size))
+    if table.central_runout:
+        off, one = table.central_runout / 2.0, (SAMPLES, 1)
+        drawn += alike.of_sun(off, phases(one), angles) + alike.of_ring(off, phases(one), angles)
+    return drawn
+
+
+def _equivalents(built: BuiltTrain) -> PinEquivalents | None:
+    """How deviations of teeth load planets of one gear between a sun and a ring; None for others."""
+    meshes: list[Any] = [one.link.mesh for one in built.design.meshes if one.carrier != HOUSING]
+    meshes.sort(key=lambda mesh: bool(mesh.internal))
+    if [bool(mesh.internal) for mesh in meshes] != [False, True] or _planet_gears(built) > 1:
+        return None
+    sun, ring = (
+        float(np.arccos(np.abs(np.sum(mesh.base_radii)) / float(mesh.centre_distance)))
+        for mesh in meshes
+    )
+    normal, helix = float(meshes[0].pressure_angle), float(meshes[0].helix_angle)
+    return PinEquivalents(sun, ring, normal, float(np.arcsin(np.sin(helix) * np.cos(normal))))
 
 
 def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
@@ -122,17 +166,23 @@ def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
 
 def _stepped(built: BuiltTrain) -> list[Doubt]:
     """Planets of two gears, on which errors along the radius act too."""
-    members = [one for mesh in built.member_motions for one in mesh]
-    if len({one.body for one in members if one.carrier != HOUSING}) < 2:
+    if _planet_gears(built) < 2:
         return []
     return [
         Doubt(
-            "Errors of pins along the radius are left out; on stepped planets they load them unlike too.",
+            "Errors of pins along the radius, runout and thickness of teeth are left out; on stepped planets "
+            "they load them unlike too.",
             moves=GUESSED,
             about=("planet_load_factor",),
-            brief="Radial errors of pins are left out of the load of stepped planets.",
+            brief="Only pins along their circle load stepped planets unlike here.",
         )
     ]
+
+
+def _planet_gears(built: BuiltTrain) -> int:
+    """Gears that a planet has."""
+    members = [one for mesh in built.member_motions for one in mesh]
+    return len({one.body for one in members if one.carrier != HOUSING})
 
 
 def _lifted(forces: np.ndarray) -> list[Doubt]:

@@ -140,13 +140,15 @@ def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
         (number, _sharing_by(one, factor) if _open_sharing(built, number) else one)
         for number, one in stages
     ]
-    within = "" if sharing.drawn is None else f" in {PERCENTILES[-1]:g} % of sets of pins"
-    bears = f"By its pins a planet bears up to {factor:.3g} of an equal share{within}"
+    within = "" if sharing.drawn is None else f" in {PERCENTILES[-1]:g} % of sets by tolerance"
+    bears = (
+        f"By the deviations of the set a planet bears up to {factor:.3g} of an equal share{within}"
+    )
     if any(one is not before for (_, one), (_, before) in zip(rated, stages, strict=True)):
         return rated, [f"{bears}: K_γ is that."]
     return rated, [
-        f"{bears}; K_γ stays that of the standard or of [strength], since weight, friction and deviations of "
-        "teeth are not among them."
+        f"{bears}; K_γ stays that of the standard or of [strength], which stand for weight, friction and "
+        "what else is not among them."
     ]
 
 

@@ -1708,8 +1708,21 @@ class TrainTable(Table):
     """How far each pin is ahead along its circle, to where its planet pushes it, so that it bears less."""
     pin_tolerance: Annotated[float, DEVIATION] | None = None
     """Diameter of the circle in which each pin lies by tolerance."""
+    thickness_tolerance: Annotated[float, DEVIATION] | None = None
+    """Width of the field in which the normal tooth thickness of the planets lies."""
+    planet_runout: Annotated[float, DEVIATION] | None = None
+    """Runout F_r of the teeth of each planet about its bearing, twice the eccentricity."""
+    central_runout: Annotated[float, DEVIATION] | None = None
+    """Runout F_r of sun and ring, each about the axis of the carrier."""
     pin_stiffness: Annotated[float, STIFFNESS] | None = None
     """Stiffness of a pin and its bearing along the circle; rigid unless given."""
+
+    @property
+    def by_tolerance(self) -> bool:
+        """True where sets are drawn by tolerance."""
+        return any(
+            (self.pin_tolerance, self.thickness_tolerance, self.planet_runout, self.central_runout)
+        )
 
 
 class DriveCase(Table):
@@ -1871,10 +1884,13 @@ def _check_pins(train: TrainTable, meshes: Sequence[tuple[str, ...]], wrong: Com
     if given not in (0, count):
         told = f"{given} were given for {count} planets; give the error of each"
         wrong.add(InputError(told, key="train.pin_errors"))
-    if not (given or train.pin_tolerance):
+    if not (given or train.by_tolerance):
         for key in ("floating", "pin_stiffness"):
             if getattr(train, key):
-                told = "counts where pins are out of place; give pin_errors or pin_tolerance, or leave it out"
+                told = (
+                    "counts where pins are out of place; give pin_errors, pin_tolerance or the like, or "
+                    "leave it out"
+                )
                 wrong.add(InputError(told, key=f"train.{key}"))
 
 

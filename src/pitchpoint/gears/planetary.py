@@ -64,6 +64,11 @@ MOST_PLANETS = 24
 TEETH = Quantity("dimensionless", 5, 2_000, whole=True)
 PLANETS = Quantity("dimensionless", 1, MOST_PLANETS, whole=True)
 
+_OF_SHARING = (
+    *("pin_tolerance", "thickness_tolerance", "planet_runout", "central_runout", "pin_stiffness"),
+)
+"""Keys of how planets share a load that the table [train] has too."""
+
 PIN_ERROR = Quantity("length", -1e-2, 1e-2, "um")
 PinErrors = Annotated[tuple[Annotated[float, PIN_ERROR], ...], Field(max_length=MOST_PLANETS)]
 
@@ -233,6 +238,12 @@ class PlanetaryGears(Table):
     """How far each pin is ahead along its circle, to where its planet pushes it, so that it bears less."""
     pin_tolerance: Annotated[float, DEVIATION] | None = None
     """Diameter of the circle in which each pin lies by tolerance."""
+    thickness_tolerance: Annotated[float, DEVIATION] | None = None
+    """Width of the field in which the normal tooth thickness of the planets lies."""
+    planet_runout: Annotated[float, DEVIATION] | None = None
+    """Runout F_r of the teeth of each planet about its bearing, twice the eccentricity."""
+    central_runout: Annotated[float, DEVIATION] | None = None
+    """Runout F_r of sun and ring, each about the axis of the carrier."""
     pin_stiffness: Annotated[float, STIFFNESS] | None = None
     """Stiffness of a pin and its bearing along the circle; rigid unless given."""
 
@@ -344,7 +355,7 @@ class PlanetaryGears(Table):
     def train(self) -> Tree:
         """Table [train]."""
         pins = [SIValue(error) for error in self.pin_errors]
-        values = {"pin_tolerance": self.pin_tolerance, "pin_stiffness": self.pin_stiffness}
+        values = {name: getattr(self, name) for name in _OF_SHARING}
         return {
             "input": self.input,
             "output": self.output,

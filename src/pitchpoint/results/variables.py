@@ -86,9 +86,7 @@ VARIABLES: dict[str, Variable] = {
     ),
     "planet_share": Variable("load of a planet over that of an equal share", "F/F_mean", "1"),
     "planet_load_factor": Variable("mesh load factor by the errors of the pins", "K_γ", "1"),
-    "drawn_planet_load_factor": Variable(
-        "mesh load factor of sets whose pins lie by tolerance", "K_γ", "1"
-    ),
+    "drawn_planet_load_factor": Variable("mesh load factor of sets by tolerance", "K_γ", "1"),
     "planet_stiffness": stiffness("stiffness of the way over one planet along its circle", "k_p"),
     "disc_mass": Variable("mass of a gear as a disc", "m", "kg", "kg", "mass"),
     "disc_inertia": Variable(

@@ -20,7 +20,7 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts["planet_sharing"]
     yield Table(_HEADS, _rows(data), compact=True)
     if "drawn_planet_load_factor" in data:
-        yield Table(["of sets of pins by tolerance", "K_γ at most"], _drawn(data), compact=True)
+        yield Table(["of sets by tolerance", "K_γ at most"], _drawn(data), compact=True)
     yield Paragraph(_assumed(data), "note")
 
 
@@ -31,7 +31,8 @@ def _assumed(data: xr.Dataset) -> str:
     stiffness = show.quantity("planet_stiffness", float(data["planet_stiffness"]))
     return (
         f"Springs that only push, {stiffness} over one planet: {pins}, {moves}; without friction, weight and "
-        "centrifugal force. By tolerance pins lie anywhere in their circles alike. The rating of teeth "
+        "centrifugal force. By tolerance pins lie anywhere in their circles and thicknesses in their "
+        "field alike, and runout counts in any position. The rating of teeth "
         "takes the larger of this factor and that of the standard, unless [strength] gives one."
     )
 
