@@ -14,7 +14,6 @@ from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.analyses.lacking import no_pins
-from pitchpoint.analyses.planet_sharing import PERCENTILES, shared
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
 from pitchpoint.doubts import Doubt, fails, in_stage
@@ -130,6 +129,8 @@ def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
     stages = _rated(built)
     if not isinstance(built, BuiltTrain):
         return stages, []
+    from pitchpoint.analyses.planet_sharing import PERCENTILES, shared  # few cases ask for it
+
     lacks = no_pins(built)
     if lacks is not None:
         out_of_place = not isinstance(lacks, Unasked)
