@@ -54,10 +54,9 @@ def axial_loads(
         leading = next((k for k, body in enumerate(link.bodies) if body in planets), 0)
         both = 2.0 * shares[link.bodies[leading]] * sin(float(mesh.helix_angle))
         force = both / (count * abs(teeth[leading]) * float(mesh.module))
-        for member, sense in ((leading, 1.0), (1 - leading, -1.0)):
-            body = link.bodies[member]
-            times = 1 if body in planets else count
-            thrusts[body] = thrusts.get(body, 0.0) + sense * times * force
+        for member, body in enumerate(link.bodies):
+            times = (1 if body in planets else count) * (1.0 if member == leading else -1.0)
+            thrusts[body] = thrusts.get(body, 0.0) + times * force
         if link.bodies[leading] in planets:
             radius = float(mesh.centre_distance) * abs(teeth[leading] / sum(teeth))
             tilting += force * (radius if mesh.internal else -radius)
