@@ -180,9 +180,10 @@ def test_the_module_is_the_smallest_that_bears_the_torque(family: str, ratio: fl
     [
         ("planetary", 2.0, {}, "which reaches, from sun to carrier 2.6 to 13"),
         ("planetary", 0.2, {}, "ask for 5, and exchange input and output"),
-        ("planetary", 5.0, {"torque": "5"}, "5"),
+        ("planetary", 5.0, {"torque": "5 N"}, 'torque: "5 N" is a force'),
+        ("3K", 3000.0, {}, "pitchpoint.three_k_sets takes other limits"),
         ("planetary", 5.0, {"torque": "0 N m"}, "more than zero"),
-        ("planetary", 5.0, {"planets": 30}, "1 to 24"),
+        ("planetary", 5.0, {"planets": 30}, "planets: 30 is out of range; allowed is 1 to 24"),
         ("3K", -100.0, {}, "it is the size"),
         ("spur", 5.0, {}, "is for planetary and 3K"),
     ],

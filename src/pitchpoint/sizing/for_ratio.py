@@ -110,9 +110,8 @@ def case_for_ratio(
         raise InputError(
             f"is for {' and '.join(FOR_RATIO)}; leave it out for {family}", key="ratio"
         )
-    PLANETS.read(planets)
-    newtons = None if torque is None else units.parse(torque, "torque")
-    if newtons is not None and newtons <= 0.0:
+    _check("planets", lambda: PLANETS.read(planets))
+    if torque is not None and _check("torque", lambda: units.parse(torque, "torque")) <= 0.0:
         raise InputError(f"{torque} was given; it is more than zero", key="torque")
     make, met = (_planetary if named == PLANETARY else _three_k)(ratio, planets)
 
@@ -135,6 +134,14 @@ def case_for_ratio(
             "Load factors but K_v and that of planets are 1: give those of your drive in [strength].",
         ],
     )
+
+
+def _check(key: str, read: Callable[[], float]) -> float:
+    """What is read, or its error with the key."""
+    try:
+        return read()
+    except InputError as error:
+        raise error.at(key=key) from None
 
 
 def _planetary(ratio: float, planets: int) -> tuple[Making, float]:
@@ -200,7 +207,12 @@ def _three_k(ratio: float, planets: int) -> tuple[Making, float]:
         raise InputError(
             f"{ratio:g} was given; of a 3K set it is the size, from some 20 on", key="ratio"
         )
-    sets = three_k_sets((0.97 * ratio, 1.03 * ratio), planets=planets, count=1)
+    try:
+        sets = three_k_sets((0.97 * ratio, 1.03 * ratio), planets=planets, count=1)
+    except InputError as error:
+        raise InputError(
+            f"{error.message}: pitchpoint.three_k_sets takes other limits", key=error.key or "ratio"
+        ) from None
     chosen = sets.isel(set=0)
 
     def make(module: float) -> Tree:
