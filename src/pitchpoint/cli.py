@@ -774,7 +774,9 @@ def new(
         str | None,
         typer.Option(help='With --ratio: a module that bears it at the output, "20 N m".'),
     ] = None,
-    planets: Annotated[int, typer.Option(help="With --ratio: number of planets.")] = 3,
+    planets: Annotated[
+        int | None, typer.Option(help="With --ratio: number of planets, 3 unless given.")
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FILE", help="Default: the screen, as for -."),
@@ -789,13 +791,17 @@ def new(
     if output is not None and output.exists():
         raise InputError("is there already; give another name", file=str(output))
     if ratio is None:
-        if torque is not None:
-            raise InputError("goes with --ratio; the file has its own", key="torque")
+        for key, value in {"torque": torque, "planets": planets}.items():
+            if value is not None:
+                raise InputError("goes with --ratio; the file has its own", key=key)
         _write(template(family), output)
         return
     from pitchpoint.sizing.for_ratio import case_for_ratio
 
-    _write(case_for_ratio(family, ratio, torque=torque, planets=planets), output)
+    _write(
+        case_for_ratio(family, ratio, torque=torque, planets=3 if planets is None else planets),
+        output,
+    )
 
 
 def _write(text: str, path: Path | None) -> None:

@@ -632,7 +632,7 @@ def drawn(count, seed):
 @pytest.mark.whole
 def test_random_films_are_off_by_less_than_is_told_and_half_by_more_than_a_third_of_it():
     """With 65 nodes, where one coarser grid is the only one, the gap beside the smallest films tells."""
-    case, _ = drawn(60, 31)
+    case, _ = drawn(60, 7306)
     coarse, usual, fine = (solve_lines(case, nodes=n, profiles=False) for n in (65, 129, 257))
     assert_estimates(usual, fine)
     assert_estimates(coarse, usual, ("minimum_film",))

@@ -245,7 +245,9 @@ def test_meshes_of_sets_in_a_row_are_those_of_each_set_by_itself():
         got, want = of_stage(spans, labels[3])[variable], of_stage(ring, 2)[variable]
         assert got.values == pytest.approx(want.values, rel=1e-12, nan_ok=True)
     carried = built.carried_by_meshes(figures(built))
-    again = [one.carrying(load) for one, load in zip(sets, carried.tolist(), strict=True)]
+    speeds = SPEED, SPEED / RATIOS[0]
+    points = zip(SETS, carried.tolist(), speeds, strict=True)
+    again = [alone(gears, load, speed) for gears, load, speed in points]
     loads = [mesh.case.operation.load for one in again for mesh in one.at_work]
     assert [mesh.case.operation.load for mesh in built.at_work] == pytest.approx(loads, rel=1e-12)
     assert not built.locked
@@ -313,7 +315,7 @@ def test_a_3k_set_is_a_stage():
         ({"module": "1.2 mm"}, {}, "second.teeth", "it has some 79"),
         ({"tip_alteration": [0, 3]}, {}, "second.tip_alteration", "out of range"),
         ({}, {"output": "carrier"}, "output", "the carrier bears planets alone"),
-        ({}, {"held": "second ring"}, "output", "the ring is none of them"),
+        ({}, {"held": "second ring"}, "held", "the ring is none of them"),
     ],
 )  # fmt: skip
 def test_wrong_second_gears_are_told_with_their_key(more, ends, key, told):

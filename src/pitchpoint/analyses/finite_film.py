@@ -534,7 +534,7 @@ def _interferometry(built: Built, values: Mapping[str, np.ndarray]) -> str:
         np.nanmax(values["read_film"] / values["central_film"]) - 1.0,
         asked(built).refractive_index,
     )
-    if read == 0.0:
+    if abs(read) < 1e-9:
         return f"{words}; the oil of this case is incompressible, and is read as it is."
     return f"{words}: by {in_percent(read)} in the middle with an index of {index:g} there."
 

@@ -166,7 +166,7 @@ def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
 
 def _stepped(built: BuiltTrain) -> list[Doubt]:
     """Planets of two gears, on which errors along the radius act too."""
-    if _planet_gears(built) < 2:
+    if _equivalents(built) is not None:
         return []
     return [
         Doubt(

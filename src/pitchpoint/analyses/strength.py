@@ -16,6 +16,7 @@ from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.analyses.lacking import no_pins
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
+from pitchpoint.cases.strength import MESH_LOAD
 from pitchpoint.doubts import Doubt, fails, in_stage
 from pitchpoint.efficiency.summary import in_chunks, in_groups
 from pitchpoint.gears.mesh import Mesh
@@ -110,9 +111,17 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         assumed=told(lambda one, _: _assumed(one)),
         withheld=told(lambda one, found: [*one.rated.withheld, *_bounds(one, found)]),
         remarks=[*told(lambda one, _: [*_remarks(one)]), *built.on_strength, *on_sharing],
-        planets=max(built.copies) if isinstance(built, BuiltTrain) else 1,
+        **_planets(built),
         warnings=told(lambda one, found: [*_failing(one, found), *_doubts(one, found)]),
     )
+
+
+def _planets(built: Ready) -> dict[str, Any]:
+    """Number of the planets that share a load, and their usual mesh load factor; of a lone train."""
+    if not isinstance(built, BuiltTrain):
+        return {}
+    count = max(built.copies)
+    return {"planets": count, "usual_mesh_load_factor": MESH_LOAD.get(count, 1.0)}
 
 
 def _rated(built: Ready) -> list[tuple[Label, Built]]:

@@ -347,7 +347,9 @@ class BuiltDrive:
         """Mean torque that each stage carries with all losses, by the first law; none if it locks."""
         figures = drive_figures([(self.design, self.operation)], self.models[0].stages)
         carried = self.carried_by_meshes({name: values[0] for name, values in figures.items()})
-        return [] if np.isnan(carried).any() else carried.tolist()
+        # Without load there is no efficiency of a train to go by, and nothing to carry.
+        idle = self.case.operation.load == 0.0
+        return [] if np.isnan(carried).any() and not idle else np.nan_to_num(carried).tolist()
 
     @property
     def locked(self) -> bool:

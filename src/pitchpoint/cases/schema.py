@@ -1640,7 +1640,7 @@ class StageTable(Table):
     wear: WearTable | None = None
     """Asks for wear of the stage, over turns of the shaft that drives it; none unless given."""
     dynamics: Dynamics | None = None
-    """Asks for vibration of the stage by itself; none unless given."""
+    """Asks for vibration of the stage by itself, speeds being those of its own driver; none unless given."""
     place: Annotated[float, PLACE] = 0.0
     """Place of the middle of its face along the shafts."""
     turn: Annotated[float, TURN] = 0.0

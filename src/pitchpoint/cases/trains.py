@@ -293,6 +293,7 @@ def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
     assert train is not None
     losses = [loss for loss in case.losses.values() if loss.bearing != "none"]
     borne = [{*loss.between} for loss in losses]
+    out_of_place = bool(train.pin_errors) or train.by_tolerance
     alone = case.strength is None or case.strength.mesh_load_factor is None
     worn = any(one.wear is not None for one in case.stages.values())
     warmed = any(one.warming is not None for one in built)
@@ -300,5 +301,5 @@ def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
         *[_WORN] * worn,
         *[_WARMED] * warmed,
         *[_UNBRAKED] * ({train.planet, train.carrier} not in borne),
-        *[_MANY] * (train.planets > max(MESH_LOAD) and alone),
+        *[_MANY] * (train.planets > max(MESH_LOAD) and alone and not out_of_place),
     )

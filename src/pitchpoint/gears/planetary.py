@@ -249,24 +249,24 @@ class PlanetaryGears(Table):
 
     @model_validator(mode="after")
     def _whole(self) -> "PlanetaryGears":
-        if self.second is not None and "output" not in self.model_fields_set:
-            # A copy, which keeps what was given as given.
-            return self.model_copy(update={"output": SECOND})._checked()
-        return self._checked()
+        given = {*self.model_fields_set}
+        if self.second is not None and "output" not in given:
+            return self.model_copy(update={"output": SECOND})._checked(given)
+        return self._checked(given)
 
-    def _checked(self) -> "PlanetaryGears":
+    def _checked(self, given: set[str]) -> "PlanetaryGears":
         """The set; InputError unless its bodies have three different parts, and rings are around planets."""
         roles = {"input": self.input, "output": self.output, "held": self.held}
         ends = BODIES if self.second is None else ("sun", "ring", SECOND)
         missing = [body for body in ends if body not in roles.values()]
         if missing:
-            wrong = [name for name in roles if name in self.model_fields_set]
+            wrong = [name for name in roles if name in given]
             told = ", ".join(f"{name} = {body}" for name, body in roles.items())
             of_two = "" if self.second is None else "; of a 3K set the carrier bears planets alone"
             raise InputError(
                 f"{told}: input, output and held are three different ones of {', '.join(ends)}, and the "
                 f"{missing[0]} is none of them{of_two}",
-                key=[*wrong, "output"][0] if self.second else wrong[-1],
+                key=wrong[-1],
             )
         sun, planet, ring = self.teeth
         if ring <= planet:

@@ -157,8 +157,10 @@ def _planetary(ratio: float, planets: int) -> tuple[Making, float]:
             f"{one[0]} to {one[1]} {low:.3g} to {high:.3g}" for one, low, high in _reach(planets)
         )
         raise InputError(
-            f"{ratio:g} is no ratio of one planetary set with {planets} planets, which reaches, from {reach}"
-            "; others have two sets in a row (pitchpoint docs stages) or a 3K (new 3K)",
+            f"{planets} planets have no room on a carrier; take fewer"
+            if not reach
+            else f"{ratio:g} is no ratio of one planetary set with {planets} planets, which reaches, from "
+            f"{reach}; others have two sets in a row (pitchpoint docs stages) or a 3K (new 3K)",
             key="ratio",
         )
     turned, loaded, held, basic, back = arranged
@@ -188,7 +190,7 @@ def _reach(planets: int) -> Iterator[tuple[tuple[Any, ...], float, float]]:
     """Arrangements of a set with the least and the largest ratio that they have teeth for."""
     most = sin(pi / planets) if planets > 2 else 1.0
     basics = 1.6, min(1.0 + 2.0 * most / (1.0 - most) if most < 1.0 else 12.0, 12.0)
-    for one in ARRANGED:
+    for one in ARRANGED if basics[0] < basics[1] else ():
         low, high = sorted(one[4](basic) for basic in basics)
         yield one, low, high
 

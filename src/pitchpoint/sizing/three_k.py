@@ -18,6 +18,8 @@ from pitchpoint import units
 from pitchpoint._jax import double_precision
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pairs
+from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
+from pitchpoint.gears.planetary import PLANETARY
 from pitchpoint.gears.table import SHIFT
 
 __all__ = ["mesh_efficiency", "three_k_efficiencies", "three_k_sets", "three_k_tables"]
@@ -30,11 +32,11 @@ _INVOLUTE = tan(_ALPHA) - _ALPHA
 _DEDENDUM, _SUN_FILLET, _FILLET = 1.25, 0.38, 0.2
 
 _PAIRS = (
-    (("sun", "planet"), (0, 1), 1, (_SUN_FILLET, _FILLET)),
-    (("planet", "ring"), (1, 2), -1, (_FILLET, _FILLET)),
-    (("planet", "output ring"), (3, 4), -1, (_FILLET, _FILLET)),
+    ((0, 1), 1, (_SUN_FILLET, _FILLET)),
+    ((1, 2), -1, (_FILLET, _FILLET)),
+    ((3, 4), -1, (_FILLET, _FILLET)),
 )
-"""Of each mesh the bodies, its gears, the sign of the second number of teeth, and fillets [modules]."""
+"""Of each mesh its gears, the sign of the second number of teeth, and fillets [modules]."""
 
 _THIN_TIP = 0.2
 _BETWEEN_PLANETS = 0.5
@@ -204,7 +206,7 @@ def three_k_sets(
 
 
 def three_k_tables(chosen: xr.Dataset, module: str, face_width: str) -> dict[str, Any]:
-    """Tables of a case for one set: its meshes and the train that they are.
+    """Table of gears of a case for one set, whose rings follow from the centre distance of sun and planet.
 
     Args:
         chosen: one of `three_k_sets`, as `sets.isel(set=0)`.
@@ -216,35 +218,37 @@ def three_k_tables(chosen: xr.Dataset, module: str, face_width: str) -> dict[str
     Example:
         >>> from pitchpoint.sizing.three_k import three_k_sets
         >>> sets = three_k_sets((90.0, 110.0), sun=(12, 13), planet=(45, 60), count=1)
-        >>> tables = three_k_tables(sets.isel(set=0), "0.5 mm", "8 mm")
-        >>> [stage["gears"]["teeth"] for stage in tables["stages"]]
-        [[12, 60], [60, -132], [47, -119]]
+        >>> gears = three_k_tables(sets.isel(set=0), "0.5 mm", "8 mm")["gears"]
+        >>> gears["teeth"], gears["second"]["teeth"]
+        ([12, 60, 132], [47, 119])
     """
     if "set" in chosen.dims:
         raise InputError("one set is needed; choose it as sets.isel(set=0)", key="chosen")
     z = [int(number) for number in chosen["teeth"].values]
     x = [round(float(shift), 6) for shift in chosen["profile_shift"].values]
     shortened = round(float(chosen["tip_alteration"]), 6)
-    distance = 1e3 * units.parse(module, "length") * float(chosen["centre_distance"])
-    units.parse(face_width, "length")
-    stages = [
-        {
-            "bodies": [*bodies],
-            "gears": {
-                "teeth": [z[first], sign * z[second]],
-                "module": module,
-                "face_width": face_width,
-                "profile_shift": [x[first], x[second]],
-                "tip_alteration": [shortened if gear < 2 else 0.0 for gear in (first, second)],
-                "fillet_radius": [*fillets],
-                "dedendum": _DEDENDUM,
-                "centre_distance": f"{distance:.10g} mm",
-            },
+    for length in (module, face_width):
+        units.parse(length, "length")
+    second = {
+        "teeth": z[3:],
+        "face_width": face_width,
+        "profile_shift": [x[3], FROM_CENTRE_DISTANCE],
+        "tip_alteration": 0.0,
+    }
+    return {
+        "gears": {
+            "family": PLANETARY,
+            "teeth": z[:3],
+            "planets": int(chosen.attrs["planets"]),
+            "module": module,
+            "face_width": face_width,
+            "profile_shift": x[:2],
+            "tip_alteration": [shortened, shortened, 0.0],
+            "fillet_radius": [_SUN_FILLET, _FILLET, _FILLET],
+            "dedendum": _DEDENDUM,
+            "second": second,
         }
-        for bodies, (first, second), sign, fillets in _PAIRS
-    ]
-    ends = {"input": "sun", "output": "output ring", "held": "ring"}
-    return {"stages": stages, "train": {**ends, "planets": int(chosen.attrs["planets"])}}
+    }
 
 
 @dataclass(frozen=True)
@@ -512,7 +516,7 @@ def _tooth_is_sound(teeth: Values, shift: Values, tip: Values, fillet: float) ->
 def _can_be_made(teeth: np.ndarray, points: _Points) -> np.ndarray:
     """True for sets of which every mesh passes the checks of a pair."""
     made = np.ones(len(teeth), bool)
-    for _, (first, second), sign, fillets in _PAIRS:
+    for (first, second), sign, fillets in _PAIRS:
         made &= build_cylindrical_pairs(
             teeth=np.stack([teeth[:, first], sign * teeth[:, second]], axis=1),
             module=1.0,

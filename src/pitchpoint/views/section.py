@@ -309,7 +309,14 @@ def of_meshes(outcome: Outcome, *parts: str) -> list[tuple[str, Outcome]]:
     whole = {name: data for name, data in outcome.parts.items() if stages_of(data)}
     of_all = {name: data for name, data in outcome.parts.items() if name not in whole}
     return [
-        (f"stage {label}", replace(outcome, parts=of_all | _of_stage(whole, label)))
+        (
+            f"stage {label}",
+            replace(
+                outcome,
+                parts=of_all | _of_stage(whole, label),
+                manifest=_manifest_of(outcome.manifest, label),
+            ),
+        )
         for label in labels
     ] or [("", outcome)]
 
@@ -354,11 +361,14 @@ def _manifest_of(manifest: Mapping[str, Any], number: Label) -> dict[str, Any]:
     known = next(one for one in manifest["stages"] if one["number"] == number)
     load = "force" if "loaded" in known["travels"] else "torque"
     point = {"speed": known["speed"], load: known["load"]}
-    inside = f"{number}."
+    inside = (
+        f"{str(number).partition(' ')[0]}."  # rows of a set stand for its meshes, but for its gears
+    )
     rows = []
     for row in manifest["inputs"]:
         table, _, key = row["key"].removeprefix(inside).partition(".")
-        if row["table"] == "stages" and row["key"].startswith(inside):
+        of_set = table == "gears" and not isinstance(number, int)
+        if row["table"] == "stages" and row["key"].startswith(inside) and not of_set:
             rows.append({**row, "table": table, "key": key})
         elif row["table"] == "operation" and row["key"] in point:
             rows.append({**row, "value": point[row["key"]]})
@@ -388,6 +398,10 @@ def tabbed(groups: Iterable[tuple[str, Iterable[Block]]]) -> Iterator[Block]:
 def _told_apart(blocks: Iterable[Block], ending: str) -> Iterator[Block]:
     """Blocks whose figures have names with an ending, so that a page may have the like of them."""
     for block in blocks:
+        if isinstance(block, Variants):
+            each = {name: [*_told_apart(them, ending)] for name, them in block.each.items()}
+            yield Variants(each)
+            continue
         if not isinstance(block, Panel):
             yield block
             continue
@@ -404,7 +418,9 @@ def _told_apart(blocks: Iterable[Block], ending: str) -> Iterator[Block]:
 def naming(variant: str, blocks: "Iterable[Any]") -> Iterator[Any]:
     """Blocks whose figures name a variant at the end of their titles; as they are without a variant."""
     for block in blocks:
-        if variant and isinstance(block, Panel):
+        if variant and isinstance(block, Variants):
+            yield Variants({name: [*naming(variant, them)] for name, them in block.each.items()})
+        elif variant and isinstance(block, Panel):
             figures = [replace(one, title=f"{one.title} · {variant}") for one in block.figures]
             yield replace(block, figures=figures)
         else:

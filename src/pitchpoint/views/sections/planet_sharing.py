@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
@@ -65,9 +66,10 @@ def _drawn(data: xr.Dataset) -> list[tuple[str, ...]]:
 
 
 def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
-    """The mesh load factor where no rating has it: by tolerance about the errors given, or by these alone."""
-    data = outcome.parts["planet_sharing"]
-    if "strength" in outcome.parts:  # which has the factor that it takes
+    """The mesh load factor where no rating takes it: by tolerance about errors given, or by these alone."""
+    data, rated = outcome.parts["planet_sharing"], outcome.parts.get("strength")
+    worst = data.get("drawn_planet_load_factor", data["planet_load_factor"]).max()
+    if rated is not None and np.isclose(rated["mesh_load_factor"].max(), worst):
         return
     if "drawn_planet_load_factor" in data:
         level, factor = _drawn(data)[-1]
@@ -75,7 +77,8 @@ def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     else:
         factor = show.quantity("planet_load_factor", float(data["planet_load_factor"]))
         detail = "by the errors of the pins"
-    yield KeyFigure(57.0, "Load on a planet", f"K_γ {factor}", detail)
+    name = "Load on a planet" if rated is None else "Load by deviations"
+    yield KeyFigure(57.0, name, f"K_γ {factor}", detail)
 
 
 def sharing_printed(outcome: Outcome) -> Iterator[Printed]:

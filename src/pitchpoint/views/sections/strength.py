@@ -221,7 +221,13 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
     planets = int(data.attrs.get("planets", 1))
     if planets > 1:
         factor = show.number(float(data["mesh_load_factor"].max()), 3)
-        detail = f"at most, over an equal share of {planets} planets"
+        usual = data.attrs.get("usual_mesh_load_factor")
+        whence = (
+            "assumed by IEC 61400-4"
+            if float(data["mesh_load_factor"].max()) == usual
+            else "at most"
+        )
+        detail = f"{whence}, over an equal share of {planets} planets"
         yield KeyFigure(42.0, "Load on a planet", f"K_γ {factor}", detail)
 
 
@@ -244,7 +250,9 @@ def _duty(outcome: Outcome, place: Mapping[Hashable, xr.DataArray], cycles: str)
         return float(values.isel({dim: at for dim, at in place.items() if dim in values.dims}))
 
     count, factor = there(cycles), show.number(there("application_factor"))
-    time = words(outcome, "strength", "life")
+    stage = str(data["stage"].values[int(place["stage"])]) if "stage" in place else ""
+    time = words(outcome, "stages", f"{stage.partition(' ')[0]}.strength.life") if stage else ""
+    time = time or words(outcome, "strength", "life")
     life = f"{show.number(count)} load cycles{f' ({time})' if time else ''}"
     if not np.isfinite(count):
         life = "to endure"

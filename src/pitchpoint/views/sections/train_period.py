@@ -42,7 +42,7 @@ def train_period_blocks(page: Page) -> Iterator[Block]:
             "planets share a load: of all forces that hold the train those of the least sum of squares are "
             f"shown{first}."
         )
-        if data["body_thrust"].any():
+        if "body_thrust" in data and data["body_thrust"].any():
             yield Table(_HEADS, _thrusts(data), compact=True)
             yield Paragraph(_tilted(data), "note")
         figures = [
@@ -80,7 +80,7 @@ def _tilted(data: xr.Dataset) -> str:
 def train_period_printed(outcome: Outcome) -> Iterator[Printed]:
     """What the screen shows of helical gears."""
     data = outcome.parts[_PART]
-    if data["body_thrust"].any():
+    if "body_thrust" in data and data["body_thrust"].any():
         rows = [dict(zip(_HEADS, row, strict=True)) for row in _thrusts(data)]
         yield Printed("Axial forces on the shafts", rows, _tilted(data))
 
