@@ -213,7 +213,7 @@ def test_planets_share_by_the_springs_of_their_teeth_and_pins():
     [
         ({"planets": 3}, "pin_errors: 4 were given for 3 planets; give the error of each"),
         ({"pin_errors": "20 um"}, "pin_errors"),
-        ({"floating": "planet"}, "\"planet\" is not allowed; use 'sun', 'carrier' or 'ring'"),
+        ({"floating": "planet"}, "\"planet\" is not allowed; use 'sun', 'carrier'"),
         (
             {"pin_errors": [], "pin_tolerance": 0.0, "floating": "sun"},
             "floating: counts where pins",

@@ -494,6 +494,11 @@ PLANETARY = {
     **{key: BASE[key] for key in ("lubricant", "roughness")},
     "operation": {"torque": "60 N m", "speed": "3000 rpm", "temperature": "60 degC"},
 }
+SECOND = {"teeth": [34, 88], "face_width": "10 mm", "module": "1 mm", "tip_alteration": [0, 0]}
+THREE_K = {
+    **PLANETARY,
+    "gears": {**PLANETARY["gears"], "teeth": [18, 36, 90], "second": SECOND},
+}
 TRAIN = {
     "stages": {
         "1": {
@@ -531,6 +536,7 @@ BASES = {
     "rig": RIG,
     "worn": WORN,
     "planetary": PLANETARY,
+    "3K": THREE_K,
     "train": TRAIN,
 }
 WALKS = [
@@ -549,6 +555,7 @@ WALKS = [
     ("rig", schema.HeightTables, ("film", "heights")),
     ("worn", schema.WornTable, ("worn",)),
     ("planetary", planetary.PlanetaryGears, ("gears",)),
+    ("3K", planetary.SecondGears, ("gears", "second")),
     ("train", schema.TrainTable, ("train",)),
 ]
 """Sound case, table and its place: together every table of the schema."""

@@ -152,7 +152,7 @@ def test_roots_that_break_at_once(gear: SolidInUse, stress: float, words: str) -
         solids=(STEEL, gear), case=SimpleNamespace(gears=SimpleNamespace(rated=True))
     )
     strength = xr.Dataset({"root_stress": (("gear",), [1e8, stress])})
-    told = unlikely(SimpleNamespace(single={1: mesh}), {"strength": strength})  # type: ignore[arg-type]
+    told = unlikely(SimpleNamespace(meshes=(mesh,)), {"strength": strength})  # type: ignore[arg-type]
     assert len(told) == bool(words)
     assert words in "".join(told)
 
