@@ -1,6 +1,7 @@
 """How planets share a load: forces on their pins, the mesh load factor, its spread by tolerance."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -53,6 +54,7 @@ class Sharing:
         return self.factor if self.drawn is None else float(self.drawn[-1])
 
 
+@lru_cache(maxsize=4)
 def shared(built: BuiltTrain) -> Sharing:
     """How the planets of a train share the load of its operating point, see `sharing_of`.
 

@@ -65,7 +65,11 @@ TEETH = Quantity("dimensionless", 5, 2_000, whole=True)
 PLANETS = Quantity("dimensionless", 1, MOST_PLANETS, whole=True)
 
 _OF_SHARING = (
-    *("pin_tolerance", "thickness_tolerance", "planet_runout", "central_runout", "pin_stiffness"),
+    "pin_tolerance",
+    "thickness_tolerance",
+    "planet_runout",
+    "central_runout",
+    "pin_stiffness",
 )
 """Keys of how planets share a load that the table [train] has too."""
 

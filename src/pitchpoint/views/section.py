@@ -342,18 +342,14 @@ def by_mesh(outcomes: Mapping[str, Outcome], *parts: str) -> dict[str, Outcome]:
 
 def _meshes(outcome: Outcome, *parts: str) -> dict[str, Outcome]:
     """The meshes of a drive that have some parts, each by itself under its name; without one of one mesh."""
-    names = {part.partition(".")[0] for part in parts}
-    labels = dict.fromkeys(label for name in names for label in stages_of(outcome.parts[name]))
-    whole = {name: data for name, data in outcome.parts.items() if stages_of(data)}
-    each = {
-        f"stage {label}": replace(
-            outcome,
-            parts=_of_stage(whole, label),
-            manifest=_manifest_of(outcome.manifest, label),
-        )
-        for label in labels
-    } or {"": outcome}
-    return {label: one for label, one in each.items() if all(_has(one, part) for part in parts)}
+    of_a_drive = [name for name, data in outcome.parts.items() if not stages_of(data)]
+    found = {}
+    for stage, mesh in of_meshes(outcome, *parts):
+        own = {name: data for name, data in mesh.parts.items() if name not in of_a_drive}
+        alone = replace(mesh, parts=own) if stage else mesh
+        if all(_has(alone, part) for part in parts):
+            found[stage] = alone
+    return found
 
 
 def _manifest_of(manifest: Mapping[str, Any], number: Label) -> dict[str, Any]:
