@@ -2,9 +2,21 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from pitchpoint.results.rounding import difference
-from pitchpoint.views.figures import Choice, Figure, Menu, Panel, continued, layout, rounded
+from pitchpoint.views.campbell import campbell
+from pitchpoint.views.figures import (
+    PALETTE,
+    Choice,
+    Figure,
+    Key,
+    Menu,
+    Panel,
+    continued,
+    layout,
+    rounded,
+)
 
 
 def drawn(y: list[float], **axis: object) -> dict[str, object]:
@@ -86,3 +98,16 @@ def test_two_menus_count_through_all_choices() -> None:
     selects = [(step, at) for _, step, at in panel.selects]
     assert selects == [(3, 1), (1, 1)]
     assert choices[sum(step * at for step, at in selects)].label == "b2"
+
+
+def test_words_at_ends_of_lines_of_a_campbell_diagram_leave_each_other_room() -> None:
+    data = xr.Dataset({"speed": ("speed", np.linspace(0.0, 600.0, 5))})
+    orders = [(Key(str(order), PALETTE[0]), float(order)) for order in (1, 2, 3, 4, 100)]
+
+    def words(most: float) -> list[str]:
+        figure = campbell("it", data, orders, [], most, marked=True)
+        assert len(figure.data) == len(orders)
+        return [str(mark["text"]) for mark in figure.layout["annotations"]]
+
+    assert words(18000.0) == ["1", "4", "100"]
+    assert words(900.0) == ["1", "2", "3", "4", "100"]

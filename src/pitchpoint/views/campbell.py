@@ -14,6 +14,9 @@ __all__ = ["campbell"]
 _ROOM = (1.04, 1.06)
 """Of the axes for marks at the ends of the lines."""
 
+_APART = 0.06, 0.09
+"""Of the axes between marks that do not touch: a figure on paper is lower than on the screen."""
+
 _LABEL: dict[str, Any] = {
     "showarrow": False,
     "xanchor": "left",
@@ -39,7 +42,7 @@ def campbell(
         orders: entry of the legend, and frequency for a unit of speed [Hz s/rad].
         natural: entry of the legend, and natural frequency [Hz].
         most: highest frequency [Hz].
-        marked: True if every line of an order has its word at its end.
+        marked: True if lines of orders have their words at their ends, as far as there is room for them.
     """
     fastest = float(data["speed"].values[-1])
     ends = display("speed", np.array([0.0, fastest]), data)
@@ -53,12 +56,13 @@ def campbell(
     for key, value in natural:
         traces.append(plain(key, ends, display("natural_frequency", np.full(2, value)), unit))
     room = _ROOM if marked else (1.0, 1.0)
-    words = {"annotations": marks} if marked else {}
+    highest = float(display("natural_frequency", most))
+    words = {"annotations": _legible(marks, float(ends[1]), highest)} if marked else {}
     axes = layout(
         show.axis_title("speed", data),
         f"frequency [{unit}]",
         xaxis={"range": [0.0, room[0] * float(ends[1])]},
-        yaxis={"range": [0.0, room[1] * float(display("natural_frequency", most))]},
+        yaxis={"range": [0.0, room[1] * highest]},
         **words,
     )
     keys = tuple(key for key, _ in (*orders, *natural))
@@ -70,3 +74,16 @@ def campbell(
         "Where a wave crosses a natural frequency lies a critical speed (Campbell's diagram).",
         keys,
     )
+
+
+def _legible(marks: Sequence[Trace], fastest: float, highest: float) -> list[Trace]:
+    """Those of some marks that do not stand on the one before."""
+    kept: list[Trace] = []
+    for mark in marks:
+        across, up = _APART[0] * fastest, _APART[1] * highest
+        touching = [
+            k for k in kept if abs(mark["x"] - k["x"]) < across and abs(mark["y"] - k["y"]) < up
+        ]
+        if not touching:
+            kept.append(mark)
+    return kept
