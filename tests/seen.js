@@ -18,6 +18,11 @@
     if (shown(one) && one.scrollWidth > one.clientWidth + 1) faults.push("wider than the paper: " + name(one));
   }
 
+  // Columns behind the edge of a narrow window, but for tables whose first one stays where the others pass.
+  if (width <= 500 && !height) for (const one of document.querySelectorAll(".scroll:not(:has(> .wide))")) {
+    if (shown(one) && one.scrollWidth > one.clientWidth + 1) faults.push("behind the edge of the window: " + name(one));
+  }
+
   for (const one of document.querySelectorAll(".tiles > div, .card, p, dd, figcaption, h1, h2, h3, h4")) {
     if (shown(one) && !one.closest(".spoken, .plot") && one.scrollWidth > one.clientWidth + 1 && one.clientWidth) faults.push("wider than its place: " + name(one));
   }
@@ -32,6 +37,21 @@
       word.setEnd(texts.currentNode, index + letters.length);
       const lines = [...word.getClientRects()].filter((part) => part.width > 0);
       if (lines.some((part) => part.top > lines[0].bottom - 2)) faults.push(`"${letters}" is broken: ${name(one)}`);
+    }
+  }
+
+  // Units on another line than their numbers; values of tiles are narrow.
+  for (const one of document.querySelectorAll("p, dd, li, td, th, figcaption, caption, summary")) {
+    if (!shown(one) || one.closest(".spoken, .plot")) continue;
+    const texts = document.createTreeWalker(one, NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) for (const { 0: pair, index } of texts.currentNode.data.matchAll(/\d[ \u00a0]([%°µ]|([kMG]?(N|Pa|W|g|Hz)|[mkc]?m|m?s|rpm|arcmin)(?![\w-]))/g)) {
+      if (texts.currentNode.parentElement.closest("strong, .big, option")) continue;
+      const lines = [index, index + pair.length - 1].map((at) => {
+        word.setStart(texts.currentNode, at);
+        word.setEnd(texts.currentNode, at + 1);
+        return word.getBoundingClientRect();
+      });
+      if (lines[1].top > lines[0].bottom - 2) faults.push(`"${pair}" is parted: ${name(one)}`);
     }
   }
 
@@ -53,11 +73,21 @@
     return 0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05;
   };
   const ground = light(height ? "rgb(255, 255, 255)" : getComputedStyle(document.querySelector("section")).backgroundColor);
+  const painted = document.createElement("i");
+  document.body.append(painted);
+  const shade = (colour) => light(((painted.style.color = colour), getComputedStyle(painted).color));
   for (const plot of document.querySelectorAll(".plot")) {
     if (!shown(plot)) continue;
     const say = (words) => faults.push(`figure ${plot.id}: ${words}`);
     const marks = [...plot.querySelectorAll(drawn)].map(box);
     if (!marks.some((one) => one.width + one.height > 1)) say("empty");
+    // Half of a map is at most as light as this, where everything around it is dark.
+    for (const { colorscale, z, zmin, zmax } of ground < 0.5 && !height ? plot._fullData.filter((one) => one.z && one.showscale) : []) {
+      const values = z.flatMap((row) => [...row]).filter(Number.isFinite).sort((a, b) => a - b);
+      const place = (values[values.length >> 1] - zmin) / (zmax - zmin);
+      const stop = colorscale.findLast(([at]) => at <= Math.min(Math.max(place, 0), 1));
+      if (shade(stop[1]) > 0.45) say("a bright map on dark paper");
+    }
     const level = (one) => Math.min(Math.abs(one.getScreenCTM().a), Math.abs(one.getScreenCTM().b)) < 0.01;
     const texts = [...plot.querySelectorAll("text")].filter((one) => shown(one) && one.textContent.trim() && level(one));
     const [outer, boxes] = [box(plot), texts.map(box)];
@@ -74,6 +104,8 @@
       }
     });
   }
+
+  painted.remove();
 
   // Lines of legends, which have the colours of those in figures.
   for (const one of document.querySelectorAll(".legend line, .keys line")) {

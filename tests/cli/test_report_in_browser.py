@@ -115,6 +115,7 @@ _SPOILED = {
     "cut": "document.querySelector('#cycle_input_torque .xtitle').setAttribute('x', 9999)",
     '" on "': "Plotly.relayout('along_loss', {'yaxis.tickfont.size': 60})",
     "is broken": "document.querySelector('#models thead th').style.cssText = 'display: block; width: 30px'",
+    "is parted": "document.querySelector('#sources').innerHTML += '<p style=width:3em>It is 123 µm</p>'",
     "told from its ground": "document.querySelector('#along_loss .xtitle').style.fill = '#fafafa'",
 }
 
@@ -125,6 +126,28 @@ def test_what_is_cut_empty_or_overlapping_is_found(wide: Browser, fault: str) ->
     wide.run(f"({_SPOILED[fault]}, null)")
     assert any(fault in words for words in faults_shown(wide, 1280))
     wide.window = None
+
+
+def test_a_table_wider_than_a_narrow_window_is_found_and_widens_nothing_else(
+    chromium: Browser, report: Path
+) -> None:
+    chromium.open(report, 500)
+    chromium.wait(ALL)
+    table = "<div class=scroll><table class=compact><td style=min-width:470px>1</table></div>"
+    chromium.run(
+        f"(document.querySelector('#models').insertAdjacentHTML('beforeend', '{table}'), null)"
+    )
+    (fault,) = faults_shown(chromium, 500)
+    assert "behind the edge of the window" in fault
+
+
+def test_a_bright_map_on_dark_paper_is_found(chromium: Browser, report: Path) -> None:
+    chromium.open(report, 1280, prefers_color_scheme="dark")
+    chromium.wait(ALL)
+    assert faults_shown(chromium, 1280) == []
+    bright = "{colorscale: [[[0, '#ffc'], [1, '#fff']]]}"
+    chromium.run(f"Plotly.restyle('map_mean_loss', {bright}).then(() => null)")
+    assert faults_shown(chromium, 1280) == ["figure map_mean_loss: a bright map on dark paper"]
 
 
 def test_lines_stand_out_from_dark_paper_and_have_their_colours_back_on_white(

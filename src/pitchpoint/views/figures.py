@@ -23,8 +23,8 @@ __all__ = [
     "GREY",
     "INK",
     "NO_POWER",
-    "OVER_COLOURS",
     "PALETTE",
+    "RISING",
     "Choice",
     "Curve",
     "Curves",
@@ -36,6 +36,7 @@ __all__ = [
     "continued",
     "curves",
     "display",
+    "evenly",
     "hovered",
     "law_title",
     "laws",
@@ -59,8 +60,16 @@ Curves = Mapping[tuple[str, str], "Curve"]
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#B07C00", "#56B4E9", "#5A5A5A")
 DASHES = ("solid", "dash", "dot", "dashdot")
 INK, GREY = "#24303a", "#7b8791"
-OVER_COLOURS = "rgb(36, 48, 58)"
-"""Ink on a map of a named colour scale, as light on dark paper: pages turn only colours written with #."""
+
+
+def evenly(*colours: str) -> list[list[Any]]:
+    """A scale of colours for a map, written with #: pages turn only these over for dark paper."""
+    last = len(colours) - 1
+    return [[place / last, colour] for place, colour in enumerate(colours)]
+
+
+RISING = evenly("#fffef2", "#fed976", "#fd8d3c", "#e31a1c", "#800026")
+"""For a map of what is nothing on most of it; the ground is nearly that of the paper."""
 
 GRID = "#e6eaed"
 NO_POWER = "Undefined here: no power is transmitted."

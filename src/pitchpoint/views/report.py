@@ -93,7 +93,7 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
     made = [_made(section, page) for section in page.sections]
     shown = list(panels(block for one in made for block in one["blocks"]))
     figures = [figure for panel in shown for figure in panel.figures if figure.drawn]
-    return (
+    return _unbroken(
         environment()
         .get_template("report.html.jinja")
         .render(
@@ -189,6 +189,17 @@ def _as_text(content: str) -> str:
     """Content compressed, five characters for four bytes, none of which HTML reads as anything else."""
     return base64.b85encode(gzip.compress(content.encode(), mtime=0)).decode().translate(_PLAIN)
 
+
+def _unbroken(html: str) -> str:
+    """A page whose numbers stand on one line with their units; but for values of tiles, which are narrow."""
+    return _SHOWN.sub(lambda text: _WITH_UNIT.sub("\u00a0", text.group()), html)
+
+
+_SHOWN = re.compile(r"(?<!<strong)>[^<>]*\d [^<>]+<")
+_WITH_UNIT = re.compile(
+    r"(?<=\d) (?=[%°µ]|(?:[kMG]?(?:N|Pa|W|g|J|Hz)|[mkc]?m|m?s|rpm|arcmin|arcsec)(?![\w-]))"
+)
+"""A space between a number and its unit, in what stands between two tags."""
 
 _IN_UNIT = re.compile(r"(?<=[Ng]) (?=[cm]?m\b)")
 """A space within the unit of a torque, a stiffness against rotation or an inertia."""

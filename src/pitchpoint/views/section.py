@@ -45,6 +45,7 @@ __all__ = [
     "said",
     "tabbed",
     "told_of_variants",
+    "turned",
 ]
 
 Made = TypeVar("Made")
@@ -83,6 +84,29 @@ class Table:
     repeats: bool = False
     names: int = 1
     block: ClassVar[str] = "table"
+
+
+_ACROSS = 4
+"""Columns of numbers that stand on a narrow screen; a table of more is wide."""
+
+
+def turned(heads: Sequence[str], columns: Sequence[Sequence[str]], first: str = "") -> Table:
+    """A table of a few things with many figures each, which stand under each other: it is then narrow.
+
+    Args:
+        heads: names of the figures.
+        columns: for each thing its name, then its figures.
+        first: head of the names.
+
+    Example:
+        >>> table = turned(["z", "m"], [["gear 1", "20", "2 mm"], ["gear 2", "40", "2 mm"]])
+        >>> table.head, table.rows
+        (['', 'gear 1', 'gear 2'], [('z', '20', '40'), ('m', '2 mm', '2 mm')])
+    """
+    names, *figures = zip(*columns, strict=True)
+    rows = [(head, *cells) for head, cells in zip(heads, figures, strict=True)]
+    wide = len(names) > _ACROSS
+    return Table([first, *names], rows, compact=not wide, wide=wide)
 
 
 @dataclass(frozen=True)

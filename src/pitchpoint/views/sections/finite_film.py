@@ -12,13 +12,14 @@ from pitchpoint.views import show
 from pitchpoint.views.figures import (
     GREY,
     INK,
-    OVER_COLOURS,
     PALETTE,
+    RISING,
     Figure,
     Key,
     Panel,
     Trace,
     display,
+    evenly,
     layout,
     plain,
     rounded,
@@ -81,15 +82,15 @@ _CONTACTS = {"finite_line": "line contacts with their ends", "elliptic": "ellipt
 def maps_panel(name: str, data: xr.Dataset, kept: int) -> Panel:
     """Pressure, film and its temperature over the patch of a contact, and cuts through them."""
     figures = [
-        _map(f"{name}_pressure", data, kept, "field_pressure", "YlOrRd"),
-        _map(f"{name}_film", data, kept, "field_film", "Viridis"),
+        _map(f"{name}_pressure", data, kept, "field_pressure"),
+        _map(f"{name}_film", data, kept, "field_film", _OF_FILM),
         _cut_across(f"{name}_cut_pressure", data, kept, "field_pressure"),
         _cut_across(f"{name}_cut_film", data, kept, "field_film"),
         _ridge(f"{name}_ridge", data, kept),
         _valley(f"{name}_valley", data, kept),
     ]
     if "field_rise" in data:
-        figures[2:2] = [_map(f"{name}_rise", data, kept, "field_rise", "Inferno")]
+        figures[2:2] = [_map(f"{name}_rise", data, kept, "field_rise")]
         figures.append(_warmth_along(f"{name}_warmth", data, kept))
     if is_rough(data):
         figures += [
@@ -111,7 +112,7 @@ def is_rough(data: xr.Dataset) -> bool:
 
 def _roughness(name: str, data: xr.Dataset, kept: int) -> Figure:
     """Heights of both surfaces as the cells of the grid see them."""
-    heat = {**_heat(data, kept, "field_heights"), "colorscale": "Greys"}
+    heat = {**_heat(data, kept, "field_heights"), "colorscale": evenly("#1c1c1c", "#ffffff")}
     look = _patch_axes(data, kept)
     note = "Every cell sees the mean of the map over its area; what stands out is above zero."
     keys = (Key("edge of the dry contact", INK, "dot"),)
@@ -150,7 +151,9 @@ def _middle_film(data: xr.Dataset, kept: int) -> float:
     return float(film[row, np.argmax(pressure[row])])
 
 
-def _map(name: str, data: xr.Dataset, kept: int, variable: str, colours: str) -> Figure:
+def _map(
+    name: str, data: xr.Dataset, kept: int, variable: str, colours: list[list[Any]] = RISING
+) -> Figure:
     """A variable over the patch, with the edge of the dry contact."""
     values = data[variable].values[kept]
     low, high = min(float(np.nanmin(values)), 0.0), _END_OF_COLOURS[variable](data, kept)
@@ -160,7 +163,6 @@ def _map(name: str, data: xr.Dataset, kept: int, variable: str, colours: str) ->
         "zmin": shown[0],
         "zmax": shown[1],
         "colorscale": colours,
-        "reversescale": variable == "field_pressure",
     }
     look = _patch_axes(data, kept)
     note = _CUT_COLOURS.get(variable, "") if high < float(np.nanmax(values)) else ""
@@ -203,7 +205,7 @@ def _outline(data: xr.Dataset, kept: int, heat: Trace) -> Trace:
         "y": heat["y"],
         "z": rounded(dry / np.max(dry), 3),
         "contours": {"start": _EDGE, "end": _EDGE, "size": 1.0, "coloring": "none"},
-        "line": {"color": OVER_COLOURS, "width": 1.2, "dash": "dot"},
+        "line": {"color": INK, "width": 1.2, "dash": "dot"},
         "showscale": False,
         "hoverinfo": "skip",
     }
@@ -232,6 +234,9 @@ def _highest(data: xr.Dataset, kept: int) -> float:
     middle = float(np.max(pressure[pressure.shape[0] // 2]))
     return min(float(np.max(pressure)), _STEEP * middle)
 
+
+_OF_FILM = evenly("#081d58", "#225ea8", "#41b6c4", "#c7e9b4", "#fffff2")
+"""Colours of a film: what is thin stands out from what is too thick to matter."""
 
 _END_OF_COLOURS: Mapping[str, Callable[[xr.Dataset, int], float]] = {
     "field_pressure": _highest,

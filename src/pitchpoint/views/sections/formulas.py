@@ -18,6 +18,7 @@ from pitchpoint.status import Code
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
     PALETTE,
+    RISING,
     Choice,
     Figure,
     Key,
@@ -343,7 +344,7 @@ def _map(name: str, one: Maps, data: xr.Dataset) -> Figure:
         "x": x,
         "y": y,
         "z": rounded(values, 4),
-        "colorscale": "Viridis",
+        "colorscale": RISING,
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~r}} {unit}<extra></extra>",
     }

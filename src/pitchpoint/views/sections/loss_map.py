@@ -22,6 +22,7 @@ from pitchpoint.views.figures import (
     Menu,
     Panel,
     display,
+    evenly,
     law_title,
     laws,
     layout,
@@ -209,7 +210,7 @@ def _figure(
     heat = {
         "type": "contour",
         **shown,
-        **_COLOURS.get(name, {"colorscale": _evenly("#ffffcc", "#feb24c", "#f4714d")}),
+        **_COLOURS.get(name, {"colorscale": evenly("#ffffcc", "#feb24c", "#f4714d")}),
         "hoverongaps": False,
         **scale,
         "zauto": not scale,
@@ -261,20 +262,14 @@ def _beginning(name: str, data: xr.Dataset, chart: Chart, shown: Mapping[str, An
     return f" From {' and '.join(ends)} on, the smallest that were computed above rest."
 
 
-def _evenly(*colours: str) -> list[list[Any]]:
-    """A scale of colours; light throughout, so that dark numbers on contours are read everywhere."""
-    last = len(colours) - 1
-    return [[place / last, colour] for place, colour in enumerate(colours)]
-
-
 _SIGNED = "mean_input_torque"
 """A quantity whose scale has zero in its middle."""
 
 _COLOURS: dict[str, dict[str, Any]] = {
-    "mean_efficiency": {"colorscale": _evenly("#8fa3cf", "#c9cdd0", "#ffe45c")},
-    _SIGNED: {"colorscale": _evenly("#e08a6d", "#f4f2ef", "#79a9d8")},
+    "mean_efficiency": {"colorscale": evenly("#8fa3cf", "#c9cdd0", "#ffe45c")},
+    _SIGNED: {"colorscale": evenly("#e08a6d", "#f4f2ef", "#79a9d8")},
 }
-"""Colours of quantities of which little is not what is wanted."""
+"""Colours of quantities of which little is not what is wanted; light, so that contours can be read."""
 
 _AXES = {"torque": "temperature", "speed": "temperature", "temperature": "torque"}
 """For the axis of a figure, what its lines differ in."""

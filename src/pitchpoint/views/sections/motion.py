@@ -14,6 +14,7 @@ from pitchpoint.views.campbell import campbell
 from pitchpoint.views.figures import (
     GREY,
     PALETTE,
+    RISING,
     Figure,
     Key,
     Panel,
@@ -346,7 +347,7 @@ def _waterfall(name: str, data: xr.Dataset) -> Figure:
         "x": rounded(display("speed", data["speed"].values, data)),
         "y": orders[kept].tolist(),
         "z": [rounded(row) for row in display("spectrum", amplitude).T],
-        "colorscale": "Cividis",
+        "colorscale": RISING,
         "hoverongaps": False,
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~r}} {unit}<br>%{{x:.4~r}}, order %{{y}}<extra></extra>",

@@ -23,7 +23,7 @@ from pitchpoint.views.figures import (
 )
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Heading, Page, Printed, Section, Table, naming
+from pitchpoint.views.section import Block, Heading, Page, Printed, Section, naming, turned
 
 __all__ = ["STAGES", "stage_rows", "stage_words"]
 
@@ -71,17 +71,16 @@ def _blocks(page: Page) -> Iterator[Block]:
             yield Heading(title)
         data = outcome.parts["operation"]
         names = [name for name in FIGURES if name in data]
-        rows = [
-            (
-                stage_words(outcome, at, stage),
-                law,
-                *(show.quantity(n, float(data[n].values[k, 0, at]), of=data) for n in names),
-            )
-            for k, law in enumerate(laws(data))
-            for at, stage in enumerate(data["stage"].values)
-        ]
         titles = [show.described(name, data).long_name for name in names]
-        yield Table(["Stage", "Friction law", *titles], rows)
+        for k, law in enumerate(laws(data)):
+            columns = [
+                (
+                    f"stage {stage_words(outcome, at, stage)}",
+                    *(show.quantity(n, float(data[n].values[k, 0, at]), of=data) for n in names),
+                )
+                for at, stage in enumerate(data["stage"].values)
+            ]
+            yield turned(titles, columns, f"by {law}")
     for position, title, outcome in page.each("torsion.stage_wind_up"):
         figure = _wind_up(f"stages{position}", outcome.parts["torsion"])
         yield from naming(title, [Panel(title, [figure])])

@@ -1,7 +1,7 @@
 """Strength of the teeth: forces, stresses and safeties, with every factor by name."""
 
 import json
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from itertools import chain
 from math import inf
 
@@ -25,6 +25,7 @@ from pitchpoint.views.section import (
     Section,
     Table,
     by_variant,
+    turned,
 )
 
 __all__ = ["STRENGTH", "strength_rows"]
@@ -168,11 +169,19 @@ def _values(name: str, data: xr.Dataset) -> tuple[str, ...]:
     return tuple(_cell(data, name, gear) for gear in range(2))
 
 
+def _by_gear(rows: Sequence[Mapping[str, str]]) -> Table:
+    """Forces, stresses and safeties with a column for each gear, those of trains with their stage."""
+    heads = [name for name in rows[0] if name not in ("stage", "gear")]
+    columns = []
+    for row in rows:
+        stage = f", stage {row['stage']}" if "stage" in row else ""
+        columns.append([f"{row['gear']}{stage}", *(row[name] for name in heads)])
+    return turned(heads, columns)
+
+
 def _blocks_of(_: int, outcome: Outcome) -> Iterator[Block]:
     whole = outcome.parts["strength"]
-    rows = strength_rows(outcome)
-    whole_words = [[cell.replace(" ", "\u00a0") for cell in row.values()] for row in rows]
-    yield Table([*rows[0]], whole_words)
+    yield _by_gear(strength_rows(outcome))
     for text in chain(*_doubts(whole).values()):
         yield Paragraph(text, "warning")
     for text in _caveats(whole):

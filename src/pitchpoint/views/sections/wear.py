@@ -14,6 +14,7 @@ from pitchpoint.views.figures import (
     GREY,
     INK,
     PALETTE,
+    RISING,
     Choice,
     Figure,
     Key,
@@ -319,7 +320,7 @@ def _map(name: str, data: xr.Dataset, member: int) -> Figure:
         "x": rounded(display("across_place", data["across_place"].values)),
         "y": rounded(display(place, x[order])),
         "z": rounded(display("worn_depth", data["worn_depth"].values[-1, member][order]), 4),
-        "colorscale": "YlOrRd",
+        "colorscale": RISING,
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~r}} {unit}<br>y %{{x:.4~r}} {across}, r %{{y:.4~r}} {along}"
         "<extra></extra>",

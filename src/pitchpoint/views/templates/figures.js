@@ -10,10 +10,12 @@
     const [r, g, b] = [1, 3, 5].map((at) => parseInt(full.slice(at, at + 2), 16) / 255);
     const [low, high] = [Math.min(r, g, b), Math.max(r, g, b)];
     const [light, span] = [(low + high) / 2, high - low];
-    const share = span ? span / (1 - Math.abs(2 * light - 1)) : 0;
     const [first, second] = high === r ? [g - b, 0] : high === g ? [b - r, 2] : [r - g, 4];
     const hue = span ? (60 * (first / span + second) + 360) % 360 : 0;
     let lightness = Math.round(100 - 88 * light);
+    // Grounds of zones and maps stay as pale: a tint that keeps its share is strong where it is dark.
+    const of = light < NEARLY_WHITE ? light : lightness / 100;
+    const share = span ? span / (1 - Math.abs(2 * of - 1)) : 0;
     while (light < NEARLY_WHITE && contrast(hue, 0.8 * share, lightness / 100) < least) lightness++;
     const turned = `hsl(${hue.toFixed(0)}, ${(80 * share).toFixed(0)}%, ${lightness}%)`;
     onWhite.set(turned, colour);
