@@ -14,7 +14,7 @@ from pitchpoint.cases.build import _roughness
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import Surface
 from pitchpoint.cases.solids import SolidInUse, failures
-from pitchpoint.doubts import apart, fails
+from pitchpoint.doubts import apart, fails, moves
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.applicability import limits_words
@@ -85,6 +85,20 @@ def test_doubts_about_films_stand_with_their_table() -> None:
         built = case()
         built.case.film, built.laws = film, [XU]
         assert _reasons(built, XU, run) == told
+
+
+def test_friction_of_a_thin_film_is_beside_that_of_boundary_lubrication() -> None:
+    steel = in_use("case-hardened-mq")
+    (told,) = caveats.boundary_warning(case("none", steel, steel), ISO, cycle(lambda_ratio=0.25))
+    # 0.1 of 1/1.25^2 of the load, over the 0.04 of the law.
+    assert "0.25 of the composite roughness" in told and "up to 1.6 times" in told
+    assert moves(told) == pytest.approx(0.6)
+    thick = cycle(lambda_ratio=np.array([0.25, 0.5]).reshape(2, 1, 1))
+    rough = cycle(lambda_ratio=0.25, friction=0.07)
+    for run, law in ((thick, ISO), (rough, ISO), (cycle(lambda_ratio=0.25), XU)):
+        assert not caveats.boundary_warning(case("none", steel, steel), law, run)
+    nylon = in_use("PA66")
+    assert not caveats.boundary_warning(case("none", steel, nylon), ISO, cycle(lambda_ratio=0.25))
 
 
 def test_flanks_without_roughness_have_a_film_without_limit() -> None:

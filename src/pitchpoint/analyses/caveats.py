@@ -20,6 +20,7 @@ from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
 from pitchpoint.lubrication.registry import (
     BOUNDARY,
     ROLLING_RESISTANCE,
+    USUAL_BOUNDARY,
     AsperityLoad,
     FilmThickness,
     FrictionLaw,
@@ -29,6 +30,7 @@ from pitchpoint.status import Code
 __all__ = [
     "asperity_warning",
     "beyond_face",
+    "boundary_warning",
     "cold_warning",
     "conformal",
     "conformal_warning",
@@ -395,6 +397,40 @@ def asperity_warning(law: AsperityLoad | None, run: Mapping[str, np.ndarray]) ->
             )
         )
     return told_of_law(law, reasons)
+
+
+def boundary_warning(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
+    """That a law leaves out friction of asperities, where these carry most of the load over the whole cycle.
+
+    Asperities carry 1/(1 + lambda)^2 of the load (Olver and Spikes 2004, `olver_spikes_2004`), with the
+    friction of steel in oil under boundary lubrication. Laws of full films say that they are out of their
+    range; one that was fitted to gears knows none, and its coefficient may be far below this share.
+    """
+    loaded = run["load"] > 0.0
+    of_steel = law.largest == BOUNDARY and not any(used.plastic for used in built.solids)
+    if law.full_film or not (of_steel and loaded.any()):
+        return []
+    carried = (1.0 + np.maximum(run["lambda_ratio"], 0.0)) ** -2.0
+    if np.min(carried, where=loaded, initial=1.0) < 0.5:
+        return []
+    loss = run["sliding_loss"] * run["weight"][:, None, None]
+    more = np.divide(
+        USUAL_BOUNDARY * carried, run["friction"], where=loss > 0.0, out=np.ones_like(loss)
+    )
+    times = (
+        float(np.sum(loss * np.maximum(more, 1.0)) / np.sum(loss)) if np.any(loss > 0.0) else 1.0
+    )
+    thinnest = float(np.min(run["lambda_ratio"], where=loaded, initial=np.inf))
+    doubt = Doubt(
+        f"the film is down to {thinnest:.2g} of the composite roughness Rq, and asperities carry most of the "
+        f"load; with boundary friction of steel in oil, about {USUAL_BOUNDARY:g}, the loss is up to "
+        f"{times:.2g} times as large",
+        "boundary",
+        times,
+        moves=times - 1.0,
+        brief=f"film down to {thinnest:.2g} Rq, loss up to {times:.2g} times",
+    )
+    return told_of_law(law, [doubt]) if times > 1.0 else []
 
 
 def told_of_law(law: Limited, reasons: Sequence[str]) -> list[str]:

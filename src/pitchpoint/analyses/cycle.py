@@ -9,6 +9,7 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.caveats import (
     asperity_warning,
     beyond_face,
+    boundary_warning,
     cold_warning,
     conformal_warning,
     demand_convergence,
@@ -79,6 +80,11 @@ def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
         text
         for law, run in zip(built.laws, runs, strict=True)
         for text in told_of_law(law, _reasons(built, law, run))
+    ]
+    warnings += [
+        text
+        for law, run in zip(built.laws, runs, strict=True)
+        for text in boundary_warning(built, law, run)
     ]
     warnings += _cold(built, runs)
     warnings += film_warning(built.film, runs[0])

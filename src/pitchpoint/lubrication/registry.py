@@ -22,6 +22,7 @@ __all__ = [
     "INLET_HEATING",
     "LAWS",
     "ROLLING_RESISTANCE",
+    "USUAL_BOUNDARY",
     "AsperityLoad",
     "ChosenLaws",
     "FilmThickness",
@@ -31,7 +32,10 @@ __all__ = [
 ]
 
 BOUNDARY: Final = 0.2
-"""Coefficient that steel in oil does not exceed in boundary lubrication, where it is about 0.1."""
+"""Coefficient that steel in oil does not exceed in boundary lubrication."""
+
+USUAL_BOUNDARY: Final = 0.1
+"""Coefficient of steel in oil in boundary lubrication, about."""
 
 
 @dataclass(frozen=True, eq=False)
