@@ -326,6 +326,82 @@ def test_wrong_second_gears_are_told_with_their_key(more, ends, key, told):
     assert f"gears.{key}" in str(caught.value)
 
 
+def stepped(**more):
+    """Gears of a stepped set in the short form: the ring meshes with second gears of the planets."""
+    second = {"teeth": [24, 78], "face_width": "10 mm"}
+    table = {"teeth": [18, 36], "module": "1 mm", "face_width": "12 mm", "second": second}
+    return {"family": "planetary", **table, **more}
+
+
+@pytest.mark.whole
+def test_a_stepped_set_is_the_train_of_its_meshes():
+    """The short form is two meshes with a train, with the ratio of its teeth."""
+    width = {"module": "1 mm"}
+    meshes = [
+        {
+            "bodies": ["sun", "planet"],
+            "gears": {
+                "teeth": [18, 36],
+                "fillet_radius": [0.38, 0.2],
+                "face_width": "12 mm",
+                **width,
+            },
+        },
+        {
+            "bodies": ["planet", "ring"],
+            "gears": {"teeth": [24, -78], "fillet_radius": 0.2, "face_width": "10 mm", **width},
+        },
+    ]
+    train = {"input": "sun", "output": "carrier", "held": "ring", "planets": 3}
+    point = {"operation": operation(60.0, SPEED)}
+    built = alone(stepped(), 60.0, SPEED)
+    got = figures(built)
+    want = figures(load_case({"stages": meshes, "train": train, **point, **TABLES}))
+    assert built.design.ratio == pytest.approx(1 + 36 * 78 / (18 * 24), rel=1e-12)
+    assert [one.design.mesh.face_width for one in built.stages] == [12e-3, 10e-3]
+    for name in ("mean_efficiency", "max_input_torque", "stage_loss", "stage_speed"):
+        assert got[name] == pytest.approx(want[name], rel=1e-9), name
+
+
+@pytest.mark.whole
+def test_a_stepped_set_is_a_stage():
+    """A pair before it and a simple set behind it: the product of all, each from a file of its own."""
+    gears = [PAIR, stepped(), SETS[0]]
+    made = drive(*gears)
+    found = figures(made)
+    apart = by_themselves(made, gears, found)
+    product = np.prod([one["mean_efficiency"] for one in apart])
+    assert found["mean_efficiency"] == pytest.approx(product, rel=1e-9)
+    assert abs(made.motion[-1]) == pytest.approx(1.0 / RATIO_OF_PAIR / 7.5 / RATIOS[0])
+    assert of(made, "strength")["stage"].values.tolist()[1:3] == [
+        "2 (sun and planet)",
+        "2 (planet and ring)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("more", "key", "told"),
+    [
+        ({"planets": 4}, "planets", "of 1 to 8 planets fit 1, 2, 3"),
+        ({"teeth": [15, 90], "second": {"teeth": [42, 147], "face_width": "10 mm"}}, "planets",
+         "the planets run into each other"),
+        ({"face_width": ["12 mm"] * 3}, "face_width", "give those of these two here and that of the ring"),
+        ({"tip_alteration": [0, 0, 0]}, "tip_alteration", "that of the ring in the table second"),
+        ({"second": {"teeth": [24, 90], "face_width": "10 mm"}}, "second.teeth", "it has some 78"),
+        ({"second": {"teeth": [24, 20], "face_width": "10 mm"}}, "second.teeth", "not around a gear of 24"),
+        ({"output": "second ring"}, "output", "three different ones of sun, carrier, ring"),
+        ({"fillet_radius": [0.38, 0.2, 0.6]}, "fillet_radius", "runs with fillet_radius = [0.38, 0.2, 0.44]"),
+        ({"cutter_teeth": 70}, "cutter_teeth", "runs with addendum = [1, 1, 0.807]"),
+    ],
+)  # fmt: skip
+def test_a_wrong_stepped_set_is_told_with_its_key(more, key, told):
+    """One sentence with the key that the table has."""
+    with pytest.raises(InputError) as caught:
+        alone(stepped(**more), 60.0, SPEED)
+    assert told in str(caught.value)
+    assert f"gears.{key}:" in str(caught.value)
+
+
 def of_piece(analysis, built, number):
     """A piece of an analysis by its number."""
     return analysis.compute(built, [*analysis.pieces(built)][number], lambda *_: None)

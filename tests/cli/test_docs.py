@@ -41,7 +41,7 @@ STRENGTH, SHAFT, INSPECTION, LIMITS = blocks("guide/sizing.md", "toml")
 (MOTION,) = blocks("guide/motion.md", "toml")
 FILM, OIL, FINITE, HEIGHTS = blocks("guide/films.md", "toml")
 WEAR, WORN = blocks("guide/wear.md", "toml")
-STAGES, PLANETARY, SETS, THREE_K, TRAIN, OF_TRAIN = blocks("guide/stages.md", "toml")
+STAGES, PLANETARY, SETS, STEPPED, THREE_K, TRAIN, OF_TRAIN = blocks("guide/stages.md", "toml")
 (TARGETS,) = blocks("guide/targets.md", "toml")
 (RACK,) = blocks("gears/rack_and_pinion.md", "toml")
 (TORUS,) = blocks("gears/torus.md", "toml")
@@ -77,6 +77,7 @@ CASES = {
     "stages": STAGES,
     "planetary": PLANETARY,
     "sets in a row": SETS,
+    "stepped": (PLANETARY, STEPPED),
     "3K set": (PLANETARY, THREE_K),
     "train": TRAIN,
     "losses of a train": (PLANETARY, OF_TRAIN),
@@ -127,7 +128,7 @@ def test_every_block_is_known() -> None:
     assert set(kinds) <= {"sh", "toml", "python", *OF_THE_SITE}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 29
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 30
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 

@@ -381,10 +381,12 @@ def _at_output(tree: Tree) -> tuple[float, bool]:
         raise LookupError  # by what turns and is held, not by a chain of stages
     if "train" in tree:
         planetary = PlanetaryGears.model_validate(tree["gears"])
-        if planetary.second is not None:
+        second = planetary.second
+        if second is not None and not planetary.stepped:
             raise LookupError  # by both rings
-        train, teeth = tree["train"], planetary.teeth
-        loads = {"sun": teeth[0], "ring": teeth[2], "carrier": teeth[0] + teeth[2]}
+        train, (sun, planet, *ring) = tree["train"], planetary.teeth
+        of_ring = planet * second.teeth[1] / second.teeth[0] if second is not None else ring[0]
+        loads = {"sun": sun, "ring": of_ring, "carrier": sun + of_ring}
         return loads[train["output"]] / loads[train["input"]], False
     for gears, driver in _chain(tree):
         torques = gears.relative_torques

@@ -1,8 +1,9 @@
 """The table [gears] of a planetary gear set: the meshes for which its numbers stand."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import cos, isfinite, pi
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -79,18 +80,28 @@ PinErrors = Annotated[tuple[Annotated[float, PIN_ERROR], ...], Field(max_length=
 _LISTS = ("teeth", "profile_shift", "addendum", "dedendum", "fillet_radius", "tip_alteration")
 """Keys that hold a value for each of sun, planet and ring."""
 
+_WITHOUT_RING = ("teeth", "face_width", "profile_shift", "tip_alteration")
+"""Keys that hold values of sun and planet alone where the ring meshes with second gears of the planets."""
+
 _OF_ALL = ("module", "pressure_angle", "helix_angle", "least_tip_thickness")
 """Keys whose value all gears have."""
 
 Three = tuple[float, float, float]
+TwoOrThree = tuple[float, ...]
 Tree = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class OfThree(Pair):
-    """A value for each of sun, planet and ring, or one for all; that of the ring may follow from the rest."""
+    """A value for each of sun, planet and ring, or one for all; that of the ring may follow from the rest.
+
+    Attributes:
+        follows: True if the ring may have the text of what follows, or be left out.
+        stepped: True if sun and planet alone have one where the ring meshes with second gears.
+    """
 
     follows: bool = False
+    stepped: bool = False
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
@@ -98,7 +109,7 @@ class OfThree(Pair):
         """What editors know of the values."""
         each = self.each.json_schema
         item = {"anyOf": [each, {"const": FROM_CENTRE_DISTANCE}]} if self.follows else each
-        least = 2 if self.follows else 3
+        least = 2 if self.follows or self.stepped else 3
         every = {"type": "array", "items": item, "minItems": least, "maxItems": 3}
         return {"anyOf": [each, every], "description": self.told}
 
@@ -122,6 +133,8 @@ class OfThree(Pair):
             )
         if len(every) == 2 and self.follows:
             every.append(FROM_CENTRE_DISTANCE)
+        if len(every) == 2 and self.stepped:
+            return tuple(map(self.each.read, every))
         if len(every) != 3:
             raise InputError(
                 f"{shown(value)} has {len(every)} values; give those of sun, planet and ring, or one for "
@@ -160,7 +173,7 @@ class OfPlanetAndRing(Pair):
 
 
 class SecondGears(Table):
-    """A second gear on every planet, and the ring that it meshes with: a 3K set, after Wolfrom.
+    """A second gear on every planet, and the ring that it meshes with: of a stepped set, or a 3K (Wolfrom).
 
     Pressure angle, helix and racks are those of planet and ring; the centre distance is that of the set.
     """
@@ -180,13 +193,18 @@ class SecondGears(Table):
     """Tip alteration coefficients; those that keep the tip clearance unless given."""
 
 
+def _is_two(value: Any) -> bool:
+    return isinstance(value, list | tuple) and len(value) == 2
+
+
 class PlanetaryGears(Table):
     """A planetary gear set: a sun, planets on a carrier, and a ring around them, of one module.
 
     One of sun, carrier and ring is turned, one takes the load, one is held. All planets are alike and stand
-    at equal angles. Meshes of sun and planet, and of planet and ring, have the same centre distance. With a
-    `second` gear on the planets and a second ring it is a 3K set: sun and both rings are turned, loaded and
-    held, and the carrier bears the planets alone.
+    at equal angles. Meshes of sun and planet, and of planet and ring, have the same centre distance. With
+    `second` gears on the planets, and `teeth` of sun and planet alone, it is a stepped set: its ring meshes
+    with the second gears. With `teeth` of a ring as well, second gears and their ring make a 3K set: sun and
+    both rings are turned, loaded and held, and the carrier bears the planets alone.
     """
 
     explored: ClassVar[tuple[str, float]] = ("profile_shift.2", 0.2)
@@ -198,19 +216,19 @@ class PlanetaryGears(Table):
 
     family: Literal["planetary"] = "planetary"
     """Family of these gears: a planetary set."""
-    teeth: Annotated[Three, OfThree(TEETH), Field(examples=[[24, 30, 84]])]
-    """Numbers of teeth of sun, planet and ring, all positive."""
+    teeth: Annotated[TwoOrThree, OfThree(TEETH, stepped=True), Field(examples=[[24, 30, 84]])]
+    """Numbers of teeth of sun, planet and ring, all positive; of sun and planet alone for a stepped set."""
     planets: Annotated[float, PLANETS] = 3.0
     """Number of planets."""
     module: Annotated[float, MODULE]
     """Normal module m_n of all gears."""
-    face_width: Annotated[Three, OfThree(WIDTH)]
+    face_width: Annotated[TwoOrThree, OfThree(WIDTH, stepped=True)]
     """Face widths of sun, planet and ring; of two in mesh the smaller one counts."""
     pressure_angle: Annotated[float, ANGLE] = pi / 9
     """Normal pressure angle α_n of the basic racks."""
     helix_angle: Annotated[float, HELIX] = 0.0
     """Helix angle β on the reference cylinders; 0 for spur gears."""
-    profile_shift: Annotated[Three, OfThree(SHIFT, follows=True)] = _USUAL_SHIFTS
+    profile_shift: Annotated[TwoOrThree, OfThree(SHIFT, follows=True)] = _USUAL_SHIFTS
     """Profile shift coefficients of sun, planet and ring; that of the ring as follows unless given."""
     addendum: Annotated[Three, OfThree(RACK)] = (1.0, 1.0, 1.0)
     """Addendum of the basic racks, in modules."""
@@ -219,17 +237,17 @@ class PlanetaryGears(Table):
     fillet_radius: Annotated[Three, OfThree(FILLET)] = (0.38, 0.2, 0.2)
     """Fillet radius ρ_fP of the racks in modules; 0.38 of the sun, 0.2 where a ring meshes, unless given."""
     cutter_teeth: Annotated[float, CUTTER_TEETH] | None = None
-    """Teeth z_0 of the pinion cutter of the (first) ring; unless given the ring has arcs as fillets."""
+    """Teeth z_0 of the pinion cutter of the (first) ring; unless given it has arcs as fillets."""
     cutter_profile_shift: Annotated[float, SHIFT] | None = None
     """Profile shift x_0 of that cutter, as it is ground; 0 unless given."""
-    tip_alteration: Annotated[Three, OfThree(TIP)] | None = None
+    tip_alteration: Annotated[TwoOrThree, OfThree(TIP, stepped=True)] | None = None
     """Tip alteration coefficients; those that keep the tip clearance of each mesh unless given."""
     least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
     """Tip thickness that shortening keeps, in modules; helical 0.25, spur 0, unless given."""
     centre_distance: Annotated[float, DISTANCE] | None = None
     """Centre distance of both meshes; that of sun and planet without backlash unless given."""
     second: SecondGears | None = None
-    """Second gears of the planets and their ring, for a 3K set; none unless given."""
+    """Second gears of the planets and their ring, for a stepped set or a 3K; none unless given."""
     input: Body = "sun"
     """Body that drives."""
     output: Body = "carrier"
@@ -251,29 +269,69 @@ class PlanetaryGears(Table):
     pin_stiffness: Annotated[float, STIFFNESS] | None = None
     """Stiffness of a pin and its bearing along the circle; rigid unless given."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _values_of_ring(cls, table: Any) -> Any:
+        """The table; InputError for values of a ring beside sun and planet of a stepped set."""
+        if (
+            not isinstance(table, Mapping)
+            or "second" not in table
+            or not _is_two(table.get("teeth"))
+        ):
+            return table
+        for key in _WITHOUT_RING[1:]:
+            value = table.get(key)
+            if isinstance(value, list | tuple) and len(value) == 3:
+                raise InputError(
+                    f"{shown(value)} has 3 values, and {shown(table['teeth'])} are teeth of sun and planet; "
+                    "give those of these two here and that of the ring in the table second",
+                    key=key,
+                )
+        return table
+
+    @property
+    def stepped(self) -> bool:
+        """True if the ring meshes with second gears of the planets, and there is no other ring."""
+        return len(self.teeth) == 2 and self.second is not None
+
     @model_validator(mode="after")
     def _whole(self) -> "PlanetaryGears":
         given = {*self.model_fields_set}
-        if self.second is not None and "output" not in given:
+        self._check_lengths()
+        if self.second is not None and not self.stepped and "output" not in given:
             return self.model_copy(update={"output": SECOND})._checked(given)
         return self._checked(given)
+
+    def _check_lengths(self) -> None:
+        """InputError for values of sun and planet alone, where a ring meshes with the same planets."""
+        if self.stepped:
+            return
+        for key in _WITHOUT_RING:
+            values = getattr(self, key)
+            if values is not None and len(values) == 2:
+                of_two = "second = { teeth = [planet, ring], face_width = ... } for stepped planets"
+                rest = of_two if key == "teeth" else "one for all"
+                raise InputError(
+                    f"the list has 2 values; give those of sun, planet and ring, or {rest}", key=key
+                )
 
     def _checked(self, given: set[str]) -> "PlanetaryGears":
         """The set; InputError unless its bodies have three different parts, and rings are around planets."""
         roles = {"input": self.input, "output": self.output, "held": self.held}
-        ends = BODIES if self.second is None else ("sun", "ring", SECOND)
+        three_k = self.second is not None and not self.stepped
+        ends = ("sun", "ring", SECOND) if three_k else BODIES
         missing = [body for body in ends if body not in roles.values()]
         if missing:
             wrong = [name for name in roles if name in given]
             told = ", ".join(f"{name} = {body}" for name, body in roles.items())
-            of_two = "" if self.second is None else "; of a 3K set the carrier bears planets alone"
+            of_two = "; of a 3K set the carrier bears planets alone" if three_k else ""
             raise InputError(
                 f"{told}: input, output and held are three different ones of {', '.join(ends)}, and the "
                 f"{missing[0]} is none of them{of_two}",
                 key=wrong[-1],
             )
-        sun, planet, ring = self.teeth
-        if ring <= planet:
+        sun, planet = self.teeth[:2]
+        if not self.stepped and (ring := self.teeth[2]) <= planet:
             raise InputError(
                 f"a ring of {ring:.0f} teeth is not around a planet of {planet:.0f}; with a sun of {sun:.0f} "
                 f"teeth it has some {sun + 2.0 * planet:.0f}",
@@ -291,7 +349,7 @@ class PlanetaryGears(Table):
     def _shift_of_ring(self) -> "PlanetaryGears":
         """The shift of the ring that leaves no backlash at the centre distance of sun and planet."""
         shifts: Any = self.profile_shift  # that of the ring may be the text still
-        sun, planet, ring = shifts
+        sun, planet = shifts[:2]
         if not isfinite(self.distance):
             raise InputError(
                 f"sun and planet with {sun:g} and {planet:g} always have backlash; give larger ones, or a "
@@ -299,7 +357,9 @@ class PlanetaryGears(Table):
                 key="profile_shift",
             )
         changes: Tree = {}
-        if ring == FROM_CENTRE_DISTANCE:
+        if self.stepped:
+            changes["profile_shift"] = sun, planet
+        elif shifts[2] == FROM_CENTRE_DISTANCE:
             ring = self._follows(self.teeth[1:], self.module, planet)
             changes["profile_shift"] = sun, planet, ring
             if not SHIFT.low <= ring <= SHIFT.high:
@@ -352,7 +412,7 @@ class PlanetaryGears(Table):
             return self.centre_distance
         gears = [
             Toothing(teeth, self.module, self.pressure_angle, self.helix_angle, shift)
-            for teeth, shift in [*zip(self.teeth, self.profile_shift, strict=True)][:2]
+            for teeth, shift in zip(self.teeth[:2], self.profile_shift[:2], strict=True)
         ]
         return distance_without_backlash(*gears)
 
@@ -372,20 +432,23 @@ class PlanetaryGears(Table):
 
     def meshes(self) -> list[Tree]:
         """Tables [[stages]] of sun and planet, of planet and ring, and of a second ring."""
-        sun, planet, ring = self.teeth
-        found: list[Tree] = [
-            {"bodies": ["sun", "planet"], "gears": self._pair(0, [sun, planet])},
-            {"bodies": ["planet", "ring"], "gears": self._pair(1, [planet, -ring])},
+        sun, planet, *rings = self.teeth
+        found: list[Tree] = [{"bodies": ["sun", "planet"], "gears": self._pair(0, [sun, planet])}]
+        found += [
+            {"bodies": ["planet", "ring"], "gears": self._pair(1, [planet, -ring])}
+            for ring in rings
         ]
         if self.second is not None:
-            found.append({"bodies": ["planet", SECOND], "gears": self._second_pair(self.second)})
+            ring = "ring" if self.stepped else SECOND
+            found.append({"bodies": ["planet", ring], "gears": self._second_pair(self.second)})
         return found
 
     def _second_pair(self, second: SecondGears) -> Tree:
         """Table [gears] of the second gears and their ring, racks as those of planet and ring."""
         planet, ring = second.teeth
         of_set = self._pair(1, [planet, -ring])
-        own_keys = ("tip_alteration", "cutter_teeth", "cutter_profile_shift")
+        of_first = () if self.stepped else ("cutter_teeth", "cutter_profile_shift")
+        own_keys = ("tip_alteration", *of_first)
         pair = {key: value for key, value in of_set.items() if key not in own_keys}
         own = {"profile_shift": second.profile_shift, "tip_alteration": second.tip_alteration}
         return {
@@ -398,7 +461,7 @@ class PlanetaryGears(Table):
     def _pair(self, first: int, teeth: Sequence[float]) -> Tree:
         """Table [gears] of two neighbours among sun, planet and ring."""
 
-        def both(values: Three) -> list[float]:
+        def both(values: TwoOrThree) -> list[float]:
             return [*values[first : first + 2]]
 
         pairs = {name: getattr(self, name) for name in _LISTS[1:]}
@@ -420,6 +483,17 @@ class PlanetaryGears(Table):
         return found
 
 
+_RACKS = ("addendum", "dedendum", "fillet_radius")
+"""Keys of which second gears and their ring have the values of planet and ring."""
+
+
+def _of_racks(gears: PlanetaryGears, found: re.Match[str]) -> str:
+    """Values of the racks of second gear and ring as the list that the set has."""
+    name, planet, ring = found.groups()
+    given = getattr(gears, name) if name in _RACKS else None
+    return found[0] if given is None else f"{name} = [{given[0]:g}, {planet}, {ring}]"
+
+
 _TWO = re.compile(r"\b(\w+) = \[([^,\]]+), ([^,\]]+)\]")
 
 
@@ -434,12 +508,12 @@ def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:
     if table == "train":
         return error.at(key=f"gears.{inside}")
     number, _, key = inside.partition(".")
-    if table == "stages" and number == "3":
+    if table == "stages" and number == ("2" if gears.stepped else "3"):
         words = "in the mesh of the second gear of the planets (gear 1) and its ring (gear 2)"
         table, _, inside = key.partition(".")
         own = table == "gears" and inside.partition(".")[0] in SecondGears.model_fields
         key = f"gears.second.{inside}" if own else key
-        told = f"{words}: {error.message}"
+        told = f"{words}: {_TWO.sub(partial(_of_racks, gears), error.message)}"
         return InputError(told, file=error.file, key=key or None, value=error.value)
     if table != "stages" or number not in ("1", "2"):
         return error
@@ -447,7 +521,7 @@ def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:
 
     def of_three(found: re.Match[str]) -> str:
         name, *pair = found.groups()
-        if name not in _LISTS:
+        if name not in _LISTS or (gears.stepped and name in _WITHOUT_RING):
             return found[0]
         given = getattr(gears, name) or ("",) * 3
         rest = (
