@@ -9,7 +9,7 @@ from jaxtyping import Float
 from pitchpoint._jax import array
 from pitchpoint.drive.kinematics import Link
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
+from pitchpoint.gears.pairs import planet_gears
 
 __all__ = ["check_neighbours", "equal_angles", "planet_phases"]
 
@@ -45,8 +45,8 @@ def check_neighbours(
     around = np.sort(np.mod(angles, 2.0 * pi))
     closest = float(np.min(np.diff([*around, around[0] + 2.0 * pi])))
     for link in links:
-        mesh = link.mesh
-        if not isinstance(mesh, InvolutePair):
+        mesh = planet_gears(link.mesh)
+        if mesh is None:
             continue
         number = next(k for k, body in enumerate(link.bodies) if body in planets)
         apart = 2.0 * float(mesh.centre_distance) * np.sin(closest / 2.0)
@@ -126,8 +126,8 @@ def _fitted(
 
 def _teeth(link: Link, planets: Sequence[str], angle: float) -> list[Teeth]:
     """Angle of a tooth of each body of a mesh at phase zero, and how far it turns in a period."""
-    mesh = link.mesh
-    if not isinstance(mesh, InvolutePair) or sum(body in planets for body in link.bodies) != 1:
+    mesh = planet_gears(link.mesh)
+    if mesh is None or sum(body in planets for body in link.bodies) != 1:
         raise InputError(
             f"the mesh of {' and '.join(link.bodies)} is not one of a planet and a central gear with "
             "involute teeth"

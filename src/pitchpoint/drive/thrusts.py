@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import sin
 
 from pitchpoint.drive.kinematics import Link
-from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
+from pitchpoint.gears.pairs import planet_gears
 
 __all__ = ["AxialLoads", "axial_loads"]
 
@@ -46,8 +46,8 @@ def axial_loads(
     thrusts: dict[str, float] = {}
     tilting = 0.0
     for link, shares, count in zip(links, torques, copies, strict=True):
-        mesh = link.mesh
-        if not isinstance(mesh, InvolutePair):
+        mesh = planet_gears(link.mesh)
+        if mesh is None:
             continue
         teeth = [float(number) for number in mesh.teeth]
         # The planet, else the first gear, has the hand that counts as positive.

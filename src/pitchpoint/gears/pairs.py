@@ -27,6 +27,7 @@ __all__ = [
     "largest_radius",
     "of_pairs",
     "on_edge",
+    "planet_gears",
     "touching",
     "way",
 ]
@@ -175,3 +176,22 @@ def flanks_in_turn(mesh: Any) -> Float[Array, "2"]:
         TypeError: they do not go round, see `has`.
     """
     raise TypeError(f"engagements of {type(mesh).__name__} do not go round")
+
+
+@singledispatch
+def planet_gears(mesh: Any) -> Any:
+    """Gears of a mesh of which either can be on a planet; None where they cannot.
+
+    Args:
+        mesh: any family.
+
+    Returns:
+        Their `teeth`, `module` [m], `helix_angle` [rad], `centre_distance` [m], `tip_radii` [m], whether they
+        are `internal`, and `tooth_angles(phase)` [rad], see `InvolutePair`.
+
+    Example:
+        >>> from pitchpoint.gears.pairs import planet_gears
+        >>> planet_gears("no gears") is None
+        True
+    """
+    return None

@@ -31,7 +31,7 @@ from pitchpoint.gears.involute import (
     transverse_angle,
 )
 from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
-from pitchpoint.gears.pairs import flanks_in_turn
+from pitchpoint.gears.pairs import flanks_in_turn, planet_gears
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.roots import hypot, root
 
@@ -731,3 +731,8 @@ def _plain_inertia(pair: InvolutePair, density: Float[Array, "2"]) -> Float[Arra
 
 completed.register(InvolutePair, lambda pair: pair.completed())
 flanks_in_turn.register(InvolutePair, lambda pair: jnp.abs(pair.teeth))
+
+
+@planet_gears.register
+def _planet_gears(pair: InvolutePair) -> InvolutePair:
+    return pair
