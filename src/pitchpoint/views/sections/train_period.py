@@ -1,6 +1,7 @@
 """A gear train over its period: torque and efficiency over the angle, what each planet carries."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -96,8 +97,22 @@ def _over_angle(name: str, variable: str, variant: str, data: xr.Dataset, known:
         name,
         f"{titled(variable, data)} over the angle of the driving body",
         traces,
-        layout(short_axis("driver_angle"), short_axis(variable, data)),
+        layout(short_axis("driver_angle"), short_axis(variable, data), xaxis=_legible(data)),
+        _SHOWN if _legible(data) else "",
     )
+
+
+_PIECES = 150
+"""Events of a course that can be told from each other in one figure; many come at once."""
+
+_SHOWN = "The beginning; a double click shows the whole period."
+
+
+def _legible(data: xr.Dataset) -> dict[str, Any]:
+    """Range of the axis of the angle where a period has more pieces than a figure shows; else nothing."""
+    angle = display("driver_angle", data["driver_angle"].values)
+    jumps = np.flatnonzero(np.diff(angle) < 1e-9 * angle[-1])
+    return {"range": [0.0, float(angle[jumps[_PIECES]])]} if len(jumps) > _PIECES else {}
 
 
 def _forces(name: str, outcome: Outcome) -> Iterator[Figure]:
@@ -121,6 +136,11 @@ def _forces(name: str, outcome: Outcome) -> Iterator[Figure]:
             f"{name}{at}",
             f"Normal force of the teeth, stage {stage_words(outcome, at, stage)}",
             [plain(key, *gapped(angle, forces[k]), unit) for k, key in enumerate(keys)],
-            layout(short_axis("driver_angle"), short_axis("contact_force", data)),
-            keys=keys,
+            layout(
+                short_axis("driver_angle"),
+                short_axis("contact_force", data),
+                xaxis=_legible(data),
+            ),
+            _SHOWN if _legible(data) else "",
+            keys,
         )
