@@ -18,7 +18,7 @@ import xarray as xr
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.path import PathOfContact, path_of
-from pitchpoint.views.point import period_of
+from pitchpoint.views.point import named_members, period_of
 
 __all__ = ["Body", "Picture", "picture_of"]
 
@@ -308,12 +308,13 @@ def picture_of(outcome: Outcome) -> Picture:
     motion = dict(zip(manifest["members"], manifest["motion"], strict=True))
     period = period_of(outcome)
     step = -period.angle if period.backwards else period.angle
+    names = dict(zip(motion, named_members(outcome), strict=True))
     bodies = tuple(
-        _body(teeth.isel(body=k), name, motion[name] * step)
+        _body(teeth.isel(body=k), names[name], motion[name] * step)
         for k, name in enumerate(map(str, teeth["body"].values))
     )
     driver = str(manifest["driver"])
-    return Picture(teeth, path_of(outcome), bodies, (driver, motion[driver]))
+    return Picture(teeth, path_of(outcome), bodies, (names[driver], motion[driver]))
 
 
 def _body(layer: xr.Dataset, name: str, moved: float) -> Body:

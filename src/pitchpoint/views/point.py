@@ -15,6 +15,7 @@ __all__ = [
     "OperatingPoint",
     "Period",
     "member_names",
+    "named_members",
     "of_geometry",
     "operating_point",
     "period_of",
@@ -95,6 +96,14 @@ def member_names(outcome: Outcome, stage: Label) -> dict[str, str]:
     bodies = str(known["bodies"]).split(" and ")
     members = [str(member) for member in known["members"]]
     return dict(zip(members, bodies if len(bodies) == len(members) else members, strict=True))
+
+
+def named_members(outcome: Outcome) -> list[str]:
+    """Members of a mesh by the bodies of a train that they are, "sun" say; else by themselves."""
+    manifest = outcome.manifest
+    members = [str(member) for member in manifest["members"]]
+    bodies = str(manifest.get("bodies", "")).split(" and ")
+    return bodies if len(bodies) == len(members) else members
 
 
 def speed_ratio(outcome: Outcome) -> float:

@@ -7,6 +7,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import PALETTE, Figure, Key, layout, plain
 from pitchpoint.views.path import marks, path_of
+from pitchpoint.views.point import named_members
 
 __all__ = ["sliding_figure", "specific_sliding"]
 
@@ -25,7 +26,7 @@ def sliding_figure(name: str, outcome: Outcome) -> Figure:
     place = np.linspace(0.0, path.transverse_ratio, 121)
     start, pitch = float(teeth["points"].values[0]), float(teeth["base_pitch"])
     values = specific_sliding(teeth, start + place * pitch)
-    first, second = outcome.manifest["members"]
+    first, second = named_members(outcome)
     keys = (Key(first, PALETTE[0]), Key(second, PALETTE[1], "dash"))
     end = path.transverse_ratio
     lowest = float(np.nanmin(values))

@@ -13,7 +13,7 @@ from pitchpoint.views.figures import Panel, pair_key
 from pitchpoint.views.inputs import words
 from pitchpoint.views.path import PathOfContact, path_of
 from pitchpoint.views.picture import picture_of
-from pitchpoint.views.point import of_geometry
+from pitchpoint.views.point import named_members, of_geometry
 from pitchpoint.views.section import (
     Block,
     Drawn,
@@ -42,16 +42,24 @@ def _blocks(page: Page) -> Iterator[Block]:
         panel = Panel("", [sliding_figure(f"sliding{position}", outcome)])
         (sliding,) = naming(variants, [panel])
         values = {
-            "variants": variants,
+            "variants": _titled(variants, outcome),
             "picture": picture_of(outcome).svg(f"mesh{position}"),
             "plane": _plane(outcome),
             "sliding": sliding,
-            "members": outcome.manifest["members"],
+            "members": named_members(outcome),
             "dimensions": dimensions(outcome),
             "path": path_of(outcome),
             "internal": _internal(outcome.parts["teeth"]),
         }
         yield Drawn("teeth.html.jinja", {"t": values}, [sliding])
+
+
+def _titled(variants: str, outcome: Outcome) -> str:
+    """Names of what has these teeth, with the bodies where that is one mesh of a train."""
+    bodies = str(outcome.manifest.get("bodies", ""))
+    return (
+        f"{variants}: {bodies}" if bodies and variants.endswith(tuple("0123456789")) else variants
+    )
 
 
 def _moving(outcome: Outcome, name: str) -> Moving:
@@ -118,7 +126,7 @@ def _sums_up(outcome: Outcome) -> Iterator[Table]:
         rows = [row for row in dimensions(mesh) if not row[0].startswith(_DETAILS)]
         both = [row if len(row) == 3 else (row[0], row[1], row[1]) for row in rows]
         title = ", ".join(filter(None, ["Gears", name]))
-        yield Table([title, *mesh.manifest["members"][:2]], both, caption=title)
+        yield Table([title, *named_members(mesh)[:2]], both, caption=title)
 
 
 Dimension = tuple[str, float, int, Variable]
