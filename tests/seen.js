@@ -51,7 +51,7 @@
         word.setEnd(texts.currentNode, at + 1);
         return word.getBoundingClientRect();
       });
-      if (lines[1].top > lines[0].bottom - 2) faults.push(`"${pair}" is parted: ${name(one)}`);
+      if (lines[0].height && lines[1].top > lines[0].bottom - 2) faults.push(`"${pair}" is parted: ${name(one)}`);
     }
   }
 

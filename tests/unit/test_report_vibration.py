@@ -36,7 +36,7 @@ from pitchpoint.views.sections.vibration import (
 )
 
 FOUND, UNSTABLE = "a steady state was found, and disturbances of it die out", "it <b>grows</b>"
-BESIDE = "a contact ratio of 0.9 is below the 1.2 for which ISO 6336-1 gives its estimate"
+BESIDE = "A contact ratio of 0.9 is below the 1.2 for which ISO 6336-1 gives its estimate"
 EVIL = "</script><img src=x>"
 
 
@@ -279,7 +279,7 @@ def test_top_tells_stiffness_and_transmission_error(whole: Outcome) -> None:
     top, rest = words(on_screen).split("Inputs as resolved")
     assert "3.977 N/µm in the mean, varies by 16.14 %" in top
     assert "5.6 µm dynamic, peak to peak at 5.355 N m, 42 µm in the mean" in top
-    assert "of the design" in top
+    assert "Of the design" in top
     # Four teeth come into mesh in each turn.
     assert f"Natural frequency 6800 Hz that of the mesh at {6800 * 60 // 4} rpm of gear 1" in top
     assert BESIDE in top  # what is doubtful of a part counts at the top

@@ -20,7 +20,14 @@ from pitchpoint.views.inputs import number
 from pitchpoint.views.inputs import words as input_words
 from pitchpoint.views.point import ratio_words, speed_ratio
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import KeyFigure, Page, key_figures, said, told_of_variants
+from pitchpoint.views.section import (
+    KeyFigure,
+    Page,
+    key_figures,
+    said,
+    stages_together,
+    told_of_variants,
+)
 from pitchpoint.views.sections.studies import is_swept, swept_place
 
 __all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen", "swept_beside"]
@@ -87,7 +94,8 @@ def first_screen(
     head = [Line(text, "title") for text in titles]
     head += [Line(show.first_clauses(at, width))] if at else []
     room = max(room - len(titles), 0)
-    figures = _aligned(key_figures(in_order(), outcome)[:room], width) if len(outcomes) == 1 else []
+    known = stages_together(key_figures(in_order(), outcome)) if len(outcomes) == 1 else []
+    figures = _aligned(known[:room], width)
     fails, doubtful = (
         [line for line in doubts if line.style == style] for style in ("fails", "doubt")
     )
@@ -240,7 +248,7 @@ def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
     names = [show.one_line(figure.name) for figure in figures]
     values = [show.one_line(figure.value) for figure in figures]
     name_width = max(map(len, names))
-    value_width = max((len(value) for value in values if len(value) <= width // 7), default=0)
+    value_width = max((len(value) for value in values if len(value) <= width // 5), default=0)
     lines = []
     for figure, name, value in zip(figures, names, values, strict=True):
         begin = f"{name:<{name_width}}  {value:<{value_width}}  "

@@ -182,11 +182,16 @@ def _one(value: Any, row: Row, name: str = "") -> str:
     """A value of a row; of a list of tables that at a name."""
     kind = row["kind"].get(name, "") if isinstance(row["kind"], dict) else row["kind"]
     if not kind or not isinstance(value, float):
-        return "undefined" if value is None else str(value)
+        return "undefined" if value is None else _word(value)
     follows = row["table"] == DIMENSIONS or row.get("status") == "derived"
     if follows and abs(value) < _ROUNDING:
         value = 0.0
     return _shown(value, kind, _unit(row["table"], f"{row['key']}.{name}".removesuffix("."), kind))
+
+
+def _word(value: Any) -> str:
+    """A value without a unit as a case file has it."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def in_words(value: float, quantity: Quantity) -> str:

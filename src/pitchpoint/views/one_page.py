@@ -13,7 +13,15 @@ from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
 from pitchpoint.views.point import ratio_words, way_in_a_turn
-from pitchpoint.views.section import Page, Paragraph, Table, key_figures, made_of, told_of_variants
+from pitchpoint.views.section import (
+    Page,
+    Paragraph,
+    Table,
+    key_figures,
+    made_of,
+    stages_together,
+    told_of_variants,
+)
 from pitchpoint.views.sections.answer import operation_words, sharing_words
 
 __all__ = ["one_page"]
@@ -195,7 +203,7 @@ def _results(page: Page, outcome: Outcome) -> Table:
         few = dict([*page.outcomes.items()][:_COLUMNS])
         rows = [[*row.values()] for row in beside_each_other(few)][:_RESULTS]
         return Table(["", *few], rows, caption="Results")
-    figures = key_figures(page.sections, outcome)[:_RESULTS]
+    figures = stages_together(key_figures(page.sections, outcome))[:_RESULTS]
     return Table(
         ["", "", ""], [(f.name, f.value, _detail(f.detail)) for f in figures], caption="Results"
     )

@@ -93,7 +93,7 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
     made = [_made(section, page) for section in page.sections]
     shown = list(panels(block for one in made for block in one["blocks"]))
     figures = [figure for panel in shown for figure in panel.figures if figure.drawn]
-    return _unbroken(
+    return _as_printed(
         environment()
         .get_template("report.html.jinja")
         .render(
@@ -190,18 +190,33 @@ def _as_text(content: str) -> str:
     return base64.b85encode(gzip.compress(content.encode(), mtime=0)).decode().translate(_PLAIN)
 
 
-def _unbroken(html: str) -> str:
-    """A page whose numbers stand on one line with their units; but for values of tiles, which are narrow."""
-    return _SHOWN.sub(lambda text: _WITH_UNIT.sub("\u00a0", text.group()), html)
+def _as_printed(html: str) -> str:
+    """A page whose numbers and units are those of a book, and stand on one line but for values of tiles."""
+    head, main, rest = html.partition("<main>")
+    shown, end, scripts = rest.partition("</main>")
+    shown = _SHOWN.sub(lambda text: _number_as_printed(text.group()), shown)
+    return "".join((head, main, shown, end, scripts))
 
 
-_SHOWN = re.compile(r"(?<!<strong)>[^<>]*\d [^<>]+<")
-_WITH_UNIT = re.compile(
-    r"(?<=\d) (?=[%°µ]|(?:[kMG]?(?:N|Pa|W|g|J|Hz)|[mkc]?m|m?s|rpm|arcmin|arcsec)(?![\w-]))"
+def _number_as_printed(text: str) -> str:
+    for pattern, instead in _PRINTED:
+        text = pattern.sub(instead, text)
+    return text
+
+
+_SHOWN = re.compile(r"(?<!<strong)>[^<>]*\d[^<>]+<")
+_UNIT = r"[%°µ]|(?:[kMG]?(?:N|Pa|W|g|J|Hz|K)|[mkc]?m|m?s|rpm|arcmin|arcsec)(?![a-zA-Z_-])"
+_PRINTED = (
+    (re.compile(r"(?<=[\s(>])-(?=\d)"), "\u2212"),
+    (re.compile(r"(?<=\d)e-0*(?=\d)"), "e\u2212"),
+    (re.compile(r"(?<=\d)e\+0*(?=\d)"), "e"),
+    (re.compile(r"(?<=\d)[ \u00a0](?:deg\b|°(?![CF]))"), "°"),
+    (re.compile(r"((?:[\dKgN][ \u00a0]|/)[kcm]?m)2(?!\w)"), r"\1²"),
+    (re.compile(rf"(?<=\d) (?={_UNIT})"), "\u00a0"),
 )
-"""A space between a number and its unit, in what stands between two tags."""
+"""Minus, powers of ten, degrees, squares, and the space between a number and its unit."""
 
-_IN_UNIT = re.compile(r"(?<=[Ng]) (?=[cm]?m\b)")
+_IN_UNIT = re.compile(r"(?<=[Ng]) (?=[cm]?m(?![a-z]))")
 """A space within the unit of a torque, a stiffness against rotation or an inertia."""
 
 _PLAIN = str.maketrans("<>&", ".:,")
@@ -232,6 +247,7 @@ def environment() -> "jinja2.Environment":
     )
     made.filters["marked"] = _marked
     made.filters["typeset"] = _typeset
+    made.filters["sentence"] = show.sentence
     made.filters["breakable"] = _breakable
     made.globals["drawn"] = _drawn
     return made

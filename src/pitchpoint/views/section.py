@@ -43,6 +43,7 @@ __all__ = [
     "panels",
     "reason",
     "said",
+    "stages_together",
     "tabbed",
     "told_of_variants",
     "turned",
@@ -178,6 +179,23 @@ class Printed:
     line: str = ""
 
 
+_GOES_ON = (
+    "at",
+    "by",
+    "of",
+    "in",
+    "on",
+    "over",
+    "with",
+    "without",
+    "to",
+    "from",
+    "for",
+    "that",
+    "as",
+)
+"""Words with which the sentence of a value goes on; before others it has a comma."""
+
 _ELSE = 60.0
 """Order from which on a figure is what else a joint has, see `KeyFigure`."""
 
@@ -207,9 +225,11 @@ class KeyFigure:
     @property
     def words(self) -> str:
         """Value and what goes with it."""
-        begins = self.detail[:1]
-        between = "" if begins in ("", ",", ";") else ", " if begins.isdigit() else " "
-        return f"{self.value}{between}{self.detail}"
+        first = self.detail.partition(" ")[0]
+        if not first or first[0] in ",;":
+            return f"{self.value}{self.detail}"
+        goes_on = first in _GOES_ON or first.startswith("(")
+        return f"{self.value}{' ' if goes_on else ', '}{self.detail}"
 
     def of(self, stage: str) -> "KeyFigure":
         """That of a stage; what limits a drive keeps its place, the rest comes behind that of the whole."""
@@ -321,6 +341,12 @@ def _with_bodies(stage: str, outcome: Outcome) -> str:
     return ": ".join(filter(None, (stage, known.get(stage, ""))))
 
 
+def _bodies(stage: str, page: Page) -> str:
+    """Bodies of a stage whose label does not have them, where all outcomes of a page name them alike."""
+    each = {str(one.manifest.get("bodies", "")) for one in page.outcomes.values()}
+    return each.pop() if len(each) == 1 and stage.removeprefix("stage ").isdigit() else ""
+
+
 def of_meshes(outcome: Outcome, *parts: str) -> list[tuple[str, Outcome]]:
     """The outcome without a title, or that of every stage where a drive has some parts of each of its meshes.
 
@@ -406,7 +432,7 @@ def by_variant(
 
 def tabbed(groups: Iterable[tuple[str, Iterable[Block]]]) -> Iterator[Block]:
     """Blocks by title of their variant, one variant at a time; one alone stands under its title, if any."""
-    each = {title: tuple(naming(title, blocks)) for title, blocks in groups}
+    each = {title: tuple(naming(title.partition(": ")[0], blocks)) for title, blocks in groups}
     if len(each) > 1:
         yield Variants(each)
         return
@@ -531,7 +557,10 @@ class Section:
             return self.blocks(page)
         pages = (page.meshes(*self.parts) or {"": page}).items()
         return tabbed(
-            (label, _told_apart(self.blocks(one), f"_mesh{k}" if k else ""))
+            (
+                ": ".join(filter(None, (label, _bodies(label, one)))),
+                _told_apart(self.blocks(one), f"_mesh{k}" if k else ""),
+            )
             for k, (label, one) in enumerate(pages)
         )
 
@@ -627,6 +656,29 @@ def key_figures(sections: "Iterable[Section]", outcome: Outcome) -> list[KeyFigu
     """What sections answer of an outcome, in the order of the figures."""
     each = (figure for section in sections for figure in section.answers(outcome))
     return sorted(each, key=lambda figure: figure.order)
+
+
+def stages_together(figures: "Iterable[KeyFigure]") -> list[KeyFigure]:
+    """Key figures of which those that are the same for several stages are one.
+
+    Example:
+        >>> each = [KeyFigure(60.0, "Backlash", "0 µm").of(f"stage {one}") for one in (1, 2, 3)]
+        >>> [one.name for one in stages_together(each)]
+        ['Backlash, stages 1, 2 and 3']
+    """
+    alike: dict[tuple[str, str, str], list[KeyFigure]] = {}
+    for figure in figures:
+        name = figure.name.partition(", stage ")[0]
+        alike.setdefault((name, figure.value, figure.detail), []).append(figure)
+    return [_of_stages(name, those) for (name, *_), those in alike.items()]
+
+
+def _of_stages(name: str, figures: Sequence[KeyFigure]) -> KeyFigure:
+    """One key figure in place of those that are the same for some stages."""
+    stages = [figure.name.removeprefix(f"{name}, stage ") for figure in figures]
+    if len(stages) < 2:
+        return figures[0]
+    return replace(figures[0], name=f"{name}, stages {', '.join(stages[:-1])} and {stages[-1]}")
 
 
 def of_part(part: str, place: str) -> Callable[..., Any]:

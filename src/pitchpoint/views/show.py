@@ -22,6 +22,7 @@ __all__ = [
     "one_line",
     "pretty",
     "quantity",
+    "sentence",
     "signed",
     "span",
     "subscripts",
@@ -85,6 +86,20 @@ def unit(name: str) -> str:
 def pretty(text: str) -> str:
     """Text in which units that follow a number are printed as in a book."""
     return _LAST_UNIT.sub(lambda found: f" {_UNITS[found.group(1)]}", text)
+
+
+def sentence(text: str, whole: bool = True) -> str:
+    """A clause as a sentence: with a capital, but for names with digits, and where it is whole a full stop.
+
+    Example:
+        >>> [sentence(text) for text in ("gear 2: a rim is thin", "xu_2007: out of its range.")]
+        ['Gear 2: a rim is thin.', 'xu_2007: out of its range.']
+    """
+    begun = text[:1].upper() + text[1:] if _PLAIN_WORD.match(text) else text
+    return begun if not whole or begun.endswith((".", "!", "?", ":")) else f"{begun}."
+
+
+_PLAIN_WORD = re.compile(r"[a-z]+[ ,:]")
 
 
 def subscripts(text: str) -> str:

@@ -39,6 +39,7 @@ from pitchpoint.views.section import (
     key_figure,
     key_figures,
     made_of,
+    stages_together,
     told_of_variants,
 )
 from pitchpoint.views.sections.back_driving import (
@@ -133,7 +134,7 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
     """What the top of the page says about one variant."""
     manifest, parts = outcome.manifest, outcome.parts
     single = of_contact(parts.get("operation", ()))
-    figures = key_figures(page.sections, outcome)
+    figures = stages_together(key_figures(page.sections, outcome))
     return {
         "name": name,
         "oil": manifest["oil"],

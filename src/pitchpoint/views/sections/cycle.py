@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.figures import of_contact
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -267,7 +268,8 @@ _NO_FILM = 1e-3
 def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     """The thinnest film over roughness and what asperities carry at most, under the first law."""
     data = outcome.parts.get("cycle")
-    if data is None or "lambda_ratio" not in data:
+    of_rig = of_contact(outcome.parts.get("operation", ()))  # which has it among its main figures
+    if data is None or of_rig or "lambda_ratio" not in data:
         return
     ratio = data["lambda_ratio"].values[0][data["load"].values[0] > 0.0]
     if ratio.size and np.isfinite(ratio).any():

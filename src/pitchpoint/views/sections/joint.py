@@ -32,6 +32,7 @@ from pitchpoint.views.section import (
     Printed,
     Table,
     naming,
+    turned,
 )
 
 __all__ = [
@@ -222,7 +223,8 @@ def joint_blocks(page: Page) -> Iterator[Block]:
         )
         yield _own_table(outcome)
         rows = critical_rows(outcome)
-        yield Table([*rows[0]], [[*row.values()] for row in rows])
+        first, *heads = rows[0]
+        yield turned(heads, [[*row.values()] for row in rows], first)
         yield from naming(title, [joint_panel(f"joint{position}", "", outcome)])
         rows = _curve_rows(outcome)
         yield Paragraph(_whole(data))

@@ -174,7 +174,7 @@ def _by_gear(rows: Sequence[Mapping[str, str]]) -> Table:
     heads = [name for name in rows[0] if name not in ("stage", "gear")]
     columns = []
     for row in rows:
-        stage = f", stage {row['stage']}" if "stage" in row else ""
+        stage = f", stage\u00a0{row['stage']}" if "stage" in row else ""
         columns.append([f"{row['gear']}{stage}", *(row[name] for name in heads)])
     return turned(heads, columns)
 

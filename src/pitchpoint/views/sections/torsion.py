@@ -466,12 +466,21 @@ def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     words, data = torsion_answer(outcome), outcome.parts["torsion"]
     figure = key_figure(70.0, _words(data).stiffness, words, " at the operating point")
     slopes = _slopes(data)
-    yield replace(figure, detail=f", {slopes}; {figure.detail}" if slopes else figure.detail)
+    rigid = _rigid(data)
+    detail = figure.detail.replace(f"; {rigid} are not in it", "")
+    each = (slopes, f"without {rigid}" if rigid else "", detail)
+    yield replace(figure, detail="; ".join(filter(None, each)))
     if "catalogue_lost_motion" in data:
         values = data["catalogue_lost_motion"].values
         shown = dict.fromkeys(show.quantity("catalogue_lost_motion", float(v)) for v in values)
         detail = "at ±4 % of torque, tooth friction alone"
         yield KeyFigure(71.0, "Lost motion", " and ".join(shown), detail)
+
+
+def _rigid(data: xr.Dataset) -> str:
+    """What a stiffness is without, as "shafts and bearings"; empty where its analysis named nothing."""
+    rigid, without, _ = str(data.attrs.get("brief", "")).partition(" are not in it")
+    return rigid if without else ""
 
 
 def _slopes(data: xr.Dataset) -> str:

@@ -121,7 +121,7 @@
         names[lane].setAttribute("dy", ".35em");
       });
       const now = mesh.querySelector(".now");
-      if (now) now.textContent = (zone.of_mm * length).toPrecision(4) + " " + zone.unit + " now;";
+      if (now) now.textContent = Number((zone.of_mm * length).toPrecision(4)) + " " + zone.unit + " now;";
     }
 
     let timer = 0;
@@ -329,7 +329,7 @@
   function print(place, resized) {
     const { data, layout } = place;
     const width = place.closest(".glance") ? 270 : place.closest(".figures > :last-child:nth-child(odd)") ? 688 : 338;
-    const size = resized ? { width, height: 210 } : {};
+    const size = resized ? { width, height: 184 } : {};
     const paper = dark.matches ? JSON.parse(JSON.stringify({ data, layout }), whiter) : { data, layout };
     restore.push(() => Plotly.react(place, data, layout).then(() => Plotly.Plots.resize(place)));
     return Plotly.react(place, paper.data, { ...paper.layout, autosize: !resized, font: { ...paper.layout.font, size: 9 }, ...size });
