@@ -28,7 +28,7 @@ from pitchpoint.cases.library import find
 from pitchpoint.cases.loss_sets import loss_sets
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.quasi_static import Engagement, Operation, cycle, engagement
-from pitchpoint.efficiency.running_torque import starting_torque
+from pitchpoint.efficiency.running_torque import torques_at_rest
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.runs.run import load_case
@@ -143,7 +143,7 @@ def starting(built: Built) -> float:
     """Torque that starts a drive without load [N m]."""
     idle, models = replace(built.operation, load=jnp.asarray(0.0)), built.models[0]
     known = engaged(built.design, idle, models)
-    return float(starting_torque(built.design, idle, models, known))
+    return float(torques_at_rest(built.design, idle, models, known)[1])
 
 
 def both_ways(dry: float) -> np.ndarray:

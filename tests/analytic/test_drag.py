@@ -13,7 +13,7 @@ from pitchpoint.efficiency.breakaway import dry_and_viscous
 from pitchpoint.efficiency.drag import Drag, at_rest
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
-from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
+from pitchpoint.efficiency.running_torque import no_load_torque, torques_at_rest
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
@@ -335,10 +335,10 @@ def test_running_and_starting_torque_without_load():
     # The force presses both bearings; the torque of the teeth on gear 1 is half that on gear 2.
     first = floor[0] + 0.4 + 1e-3 * 0.06 * force
     smooth = local_models(0.0)
-    assert float(starting_torque(built, idle, smooth)) == pytest.approx(first + force * BASE[0])
-    rough = float(starting_torque(built, idle, local_models()))
+    assert float(torques_at_rest(built, idle, smooth)[1]) == pytest.approx(first + force * BASE[0])
+    rough = float(torques_at_rest(built, idle, local_models())[1])
     assert rough > first + force * BASE[0]
-    assert float(starting_torque(built, point, local_models())) > rough + 159.0 / 2.0
+    assert float(torques_at_rest(built, point, local_models())[1]) > rough + 159.0 / 2.0
     running = float(no_load_torque(built, point, smooth))
     nu = 1e6 * float(OIL.kinematic_viscosity(328.15))
     load_free = [
@@ -353,9 +353,9 @@ def test_back_driving_starts_against_the_breakaway_of_the_input():
     drag = bearing(0, f0=0.0, f1=0.0, breakaway_torque=0.4), bearing(1, f0=0.0, f1=0.0)
     idle = operation(0.0, 10.0)
     backwards = design(*drag, mesh=supported(driver=2))
-    smooth = float(starting_torque(backwards, idle, local_models(0.0)))
+    smooth = float(torques_at_rest(backwards, idle, local_models(0.0))[1])
     assert smooth == pytest.approx(0.4 * 2.0, rel=1e-9)
-    assert float(starting_torque(backwards, idle, local_models())) > smooth
+    assert float(torques_at_rest(backwards, idle, local_models())[1]) > smooth
 
 
 # ------------------------------------------------------------------ breakaway

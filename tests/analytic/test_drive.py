@@ -13,7 +13,7 @@ from pitchpoint.efficiency.drive import Stage, chained, drive_cycle
 from pitchpoint.efficiency.drive_summary import mean_friction_of_drive
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, extremes
 from pitchpoint.efficiency.registry import BEARING_LOSS
-from pitchpoint.efficiency.running_torque import starting_torque_of_drive
+from pitchpoint.efficiency.running_torque import torques_at_rest_of_drive
 from pitchpoint.efficiency.summary import mean_friction
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
@@ -182,8 +182,8 @@ def test_seals_of_all_shafts_are_what_starts_a_drive_without_friction():
     idle = Operation(*map(jnp.asarray, (0.0, 1e-3, 330.0)))
     laws = [models(0.0)] * 2
     first = 0.1 + 0.2 * 23 / 61 + 0.5 / RATIO
-    assert float(starting_torque_of_drive(drive, idle, laws)) == pytest.approx(first, rel=1e-12)
-    back = starting_torque_of_drive(drive.driven_backwards(), idle, laws)
+    assert float(torques_at_rest_of_drive(drive, idle, laws)[1]) == pytest.approx(first, rel=1e-12)
+    back = torques_at_rest_of_drive(drive.driven_backwards(), idle, laws)[1]
     assert float(back) == pytest.approx(first * RATIO, rel=1e-12)
 
 

@@ -9,9 +9,7 @@ from pitchpoint.analyses.analysis import Subject
 from pitchpoint.analyses.plausibility import unlikely
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.running import from_rest
-from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.running_torque import torques_at_rest
-from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import CollectedInputError, InputError
 from pitchpoint.results.by_stage import of_stage, stages_of
 from pitchpoint.runs.run import load_case
@@ -73,9 +71,7 @@ def set_before_pair():
 
 def figures(built, law=0):
     """Figures of a drive, or of a set or pair alone, at its operating point."""
-    point, models = (built.design, built.operation), built.models[law]
-    several = hasattr(built, "stages")
-    found = drive_figures([point], models.stages) if several else summarise([point], models)
+    found = built.figures_of([(built.design, built.operation)], built.models[law])
     return {name: values[0] for name, values in found.items()}
 
 

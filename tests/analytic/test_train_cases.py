@@ -12,7 +12,6 @@ from pitchpoint.doubts import doubts_of
 from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.drive.thrusts import axial_loads
 from pitchpoint.drive.torques import train_torques
-from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case
 
@@ -59,7 +58,7 @@ PIN = {
 
 def figures(tree, **settings):
     built = load_case(tree, settings={key.replace("__", "."): v for key, v in settings.items()})
-    found = drive_figures([(built.design, built.operation)], built.models[0].stages)
+    found = built.figures_of([(built.design, built.operation)], built.models[0])
     return built, {name: values[0] for name, values in found.items()}
 
 
@@ -451,7 +450,7 @@ def test_a_set_is_the_train_of_its_meshes():
     assert (back.driver, back.loaded) == ("carrier", "sun")
     assert back.case.operation.torque == pytest.approx(60.0 * 24 / 108)
     assert back.case.operation.speed == pytest.approx(np.pi * 100 * 24 / 108)
-    returned = drive_figures([(back.design, back.operation)], built.models[0].stages)
+    returned = back.figures_of([(back.design, back.operation)], built.models[0])
     eta, basic = float(np.prod(returned["stage_efficiency"][0])), -84 / 24
     willis = (1 - basic) / (1 - basic / eta)
     assert returned["mean_efficiency"][0] == pytest.approx(willis, rel=1e-5)

@@ -23,7 +23,7 @@ from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.quasi_static import Operation, cycle, engagement
-from pitchpoint.efficiency.running_torque import starting_torque
+from pitchpoint.efficiency.running_torque import torques_at_rest
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.gears.strain_wave.ball_bearing import Balls
 from pitchpoint.gears.strain_wave.design import build_strain_wave
@@ -199,7 +199,9 @@ def of_size(size, ratio):
 
 def from_rest(built):
     idle, models = replace(built.operation, load=jnp.asarray(0.0)), built.models[0]
-    return float(starting_torque(built.design, idle, models, engaged(built.design, idle, models)))
+    return float(
+        torques_at_rest(built.design, idle, models, engaged(built.design, idle, models))[1]
+    )
 
 
 @pytest.mark.whole

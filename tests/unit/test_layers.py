@@ -224,6 +224,36 @@ def test_a_mesh_has_few_members_that_are_abstract_or_final() -> None:
     assert len(names) == MEMBERS
 
 
+def types_asked(tree: ast.AST) -> set[str]:
+    """Names of the classes that `isinstance` asks for in a module, wherever the call breaks its lines."""
+    return {
+        name.id
+        for call in ast.walk(tree)
+        if isinstance(call, ast.Call) and ast.unparse(call.func) in ("isinstance", "issubclass")
+        for name in ast.walk(call.args[1])
+        if isinstance(name, ast.Name)
+    }
+
+
+BUILT = {"Built", "BuiltDrive", "BuiltTrain", "Ready"}
+
+
+def test_what_is_built_answers_for_itself() -> None:
+    """Be it one mesh, stages or a train: nothing asks which it is; nor for pairs, outside of gears."""
+    for file in sorted(SOURCE.rglob("*.py")):
+        inner = file.relative_to(SOURCE)
+        pairs = set() if inner.parts[0] in ("gears", "published") else FAMILIES | {"InvolutePair"}
+        found = types_asked(ast.parse(file.read_text("utf-8"))) & (BUILT | pairs)
+        assert not found, f"{inner} asks for {found}"
+
+
+def test_a_type_that_is_asked_for_is_seen() -> None:
+    tree = ast.parse(
+        "any(isinstance(one, int | BuiltTrain) and not isinstance(two, (Built,)) for one in x)"
+    )
+    assert types_asked(tree) == {"int", "BuiltTrain", "Built"}
+
+
 def test_views_do_not_read_the_name_of_the_family() -> None:
     names = {"cylindrical", "strain_wave", "ball_on_disc", "rack_and_pinion", "torus"}
     for file in sorted((SOURCE / "views").rglob("*.py")):

@@ -126,7 +126,7 @@ class Entry:
         """Why the part does not exist for a case; None where it does."""
         if self.of_no_train and built.averaging == TRAIN_PERIOD:
             return self.of_no_train
-        if self.of == "drive" or not isinstance(built, BuiltDrive):
+        if self.of == "drive":
             return self.lacks(built)
         reasons = [*map(self.lacks, built.meshes)]
         return None if None in reasons else reasons[0]
@@ -176,8 +176,7 @@ class Analysis(Entry):
         """The analysis itself, unless a case lacks something that it needs; of a drive see `of_stages`."""
         if self.why_not(subject.built):
             return ()
-        several = self.of == "mesh" and isinstance(subject.built, BuiltDrive)
-        return (of_stages(self) if several else self,)
+        return (of_stages(self) if self.of == "mesh" and subject.built.numbers else self,)
 
 
 def of_stages(analysis: Analysis) -> Analysis:

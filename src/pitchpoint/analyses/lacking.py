@@ -2,7 +2,7 @@
 
 from pitchpoint.analyses.analysis import Unasked, has_key
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, BuiltTrain, Ready
+from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltTrain, Ready
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
@@ -26,9 +26,13 @@ __all__ = [
 
 def rigid(built: Ready) -> str | None:
     """Why nothing is computed of how teeth yield; of a drive that of the first stage where nothing is."""
-    if isinstance(built, BuiltDrive):
-        each = zip(built.numbers, map(rigid, built.stages), strict=True)
-        return next((f"stage {number}: {why}" for number, why in each if why), None)
+    each = zip(built.mesh_numbers, map(_rigid, built.meshes), strict=True)
+    told = (f"stage {number}: {why}" if number else why for number, why in each if why)
+    return next(told, None)
+
+
+def _rigid(built: Built) -> str | None:
+    """The same of one mesh."""
     by_stiffness = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
     dynamics, touches = built.case.dynamics, touching(built.design.mesh)
     if by_stiffness or dynamics is not None or not touches or any(built.deviations):
@@ -65,11 +69,10 @@ def without_formula(built: Ready) -> str | None:
 def without_films(built: Ready) -> str | None:
     """Why films are not solved over a map."""
     why_not = without_formula(built)
-    if why_not is None or not isinstance(built, Built):
-        return None
-    if touching(built.design.mesh) and built.case.loss_map is None:
-        return f"{why_not}, and one with a table [loss_map] has it from films at few of them"
-    return None if touching(built.design.mesh) else why_not
+    if why_not is None or not all(touching(mesh.design.mesh) for mesh in built.meshes):
+        return why_not
+    told = f"{why_not}, and one with a table [loss_map] has it from films at few of them"
+    return told if built.case.loss_map is None else None
 
 
 def no_bodies(built: Built) -> str | None:
@@ -83,7 +86,7 @@ def no_bodies(built: Built) -> str | None:
 
 def of_one_mesh(built: Ready) -> str | None:
     """Why there are no sums over the meshes of a drive."""
-    if isinstance(built, BuiltDrive):
+    if built.numbers:
         return None
     return Unasked("backlash, masses and inertia of one mesh stand with its gears")
 
@@ -92,7 +95,7 @@ def without_train(built: Ready) -> str | None:
     """Why there is no period in which all meshes come together again."""
     if built.averaging == TRAIN_PERIOD:
         return None
-    if isinstance(built, BuiltDrive) and built.sets:
+    if built.trains:
         return (
             "stages do not come together again; a planetary set in a file of its own has its period"
         )
@@ -101,17 +104,18 @@ def without_train(built: Ready) -> str | None:
 
 def no_pins(built: Ready) -> str | None:
     """Why nothing is computed of how planets share a load."""
-    if isinstance(built, BuiltDrive) and any(_out_of_place(one) for one in built.sets.values()):
+    out_of_place = any(map(_out_of_place, built.trains))
+    if out_of_place and not built.planets:
         return "pins out of place are those of one set; a file of the set alone has how its planets share"
-    if not isinstance(built, BuiltTrain):
+    if not built.planets:
         return Unasked("it has no planets")
-    train = built.case.train
-    if train is None or not _out_of_place(built):
+    if not out_of_place:
         return Unasked("pin_errors, pin_tolerance and the like of a planetary set ask for it")
-    on_planets = [one for one in built.design.meshes if one.carrier != HOUSING]
+    (alone,) = built.trains
+    on_planets = [one for one in alone.design.meshes if one.carrier != HOUSING]
     if built.case.operation.load == 0.0:
         return "planets share no load where there is none"
-    if train.planets < 2 or len(on_planets) != 2:
+    if alone.planets < 2 or len(on_planets) != 2:
         return "planets that share a load by their pins are several, each in two meshes"
     return None
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,9 +13,8 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.lacking import untransmitted, without_films
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import Doubt, doubts_of, in_percent
-from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.film_map import FilmMap, film_map
 from pitchpoint.efficiency.in_turns import in_turns
 from pitchpoint.efficiency.quasi_static import (
@@ -132,7 +132,7 @@ def at_torque(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
 def told_of_films(built: Ready) -> list[str]:
     """How near the friction of films comes that is interpolated over the map."""
     laws = [law for law in built.laws if law.films is not None]
-    return [_solved_films(built, law)[1] for law in laws] if isinstance(built, Built) else []
+    return [_solved_films(mesh, law)[1] for law in laws for mesh in built.meshes]
 
 
 Map = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -149,10 +149,10 @@ def maps(built: Ready, torque: float, speeds: np.ndarray, degrees: np.ndarray) -
         degrees: temperatures of the oil [K].
     """
     moving = np.where(speeds > 0.0, speeds, 1.0)
-    if isinstance(built, BuiltDrive):
+    if built.numbers:
         found = _of_drive(built, torque, moving, degrees)
     else:
-        found = _of_mesh(built, torque, moving, degrees)
+        found = _of_mesh(built.meshes[0], torque, moving, degrees)
     turns = (speeds > 0.0)[:, None]
     for loss, efficiency, locked in found:
         yield np.where(turns, loss, 0.0), np.where(turns, efficiency, np.nan), locked
@@ -240,9 +240,7 @@ def _loss_of(design: Design, operation: Operation, known: Engagement, found: Bal
     return cycle_of(design, operation, known, found).mean_loss
 
 
-def _of_drive(
-    built: BuiltDrive, torque: float, speeds: np.ndarray, degrees: np.ndarray
-) -> Iterator[Map]:
+def _of_drive(built: Any, torque: float, speeds: np.ndarray, degrees: np.ndarray) -> Iterator[Map]:
     """The same for a drive, by the program of its operating points."""
     points = [
         (built.design, Operation(array(torque), array(speed), array(degree)))
@@ -250,7 +248,7 @@ def _of_drive(
         for degree in degrees
     ]
     for models in built.models:
-        found = drive_figures(points, models.stages)
+        found = built.figures_of(points, models)
         loss, efficiency, locked = (found[n].reshape(speeds.size, degrees.size) for n in _NAMES)
         yield loss, efficiency, locked
 

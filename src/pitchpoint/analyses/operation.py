@@ -23,7 +23,7 @@ from pitchpoint.analyses.lacking import untransmitted
 from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import FELT, GUESSED, Doubt, doubts_of, in_percent, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.results.store import without_nan
@@ -40,14 +40,16 @@ DIFFERS = 1.5
 
 def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     data = summaries([built], built.models, beside([built]), title="operating point")
-    beyond = _rated_below(built, data) if isinstance(built, BuiltDrive) else []
-    data.attrs.update(stored([*doubts_of(data.attrs), *_implausible(built), *beyond]))
+    beyond = *_implausible(built), *_rated_below(built, data)
+    data.attrs.update(stored([*doubts_of(data.attrs), *beyond]))
     return data
 
 
-def _rated_below(built: BuiltDrive, data: xr.Dataset) -> list[str]:
+def _rated_below(built: Ready, data: xr.Dataset) -> list[str]:
     """Stages that carry more than what they are rated for, since those behind them lose power."""
     names = ("stage_input_torque", "stage_efficiency")
+    if names[0] not in data:
+        return []
     laws = range(data.sizes["law"])
     each = [built.carried_by_meshes({n: data[n].values[k, 0] for n in names}) for k in laws]
     carried = np.fmax.reduce(each).tolist()  # under the law that asks for most
@@ -55,8 +57,10 @@ def _rated_below(built: BuiltDrive, data: xr.Dataset) -> list[str]:
     return [
         in_stage(number, doubt)
         for number, stage, torque in stages
-        if isinstance(stage, Built) and stage.case.gears.rated
-        for doubt in _above(stage, torque)
+        if not stage.trains
+        for mesh in stage.meshes
+        if mesh.case.gears.rated
+        for doubt in _above(mesh, torque)
     ]
 
 
@@ -78,15 +82,12 @@ def _above(stage: Built, torque: float) -> Iterator[Doubt]:
 
 def _implausible(built: Ready) -> list[str]:
     """What cannot be in the stages of a drive; of one mesh its cycle tells it."""
-    return (
-        [
-            in_stage(label, text)
-            for k, (label, one) in enumerate(zip(built.mesh_labels, built.meshes, strict=True))
-            for text in _of_mesh(one, [acting.of_meshes[k] for acting in built.models])
-        ]
-        if isinstance(built, BuiltDrive)
-        else []
-    )
+    return [
+        in_stage(label, text)
+        for k, (label, one) in enumerate(zip(built.mesh_labels, built.meshes, strict=True))
+        if label
+        for text in _of_mesh(one, [models.of_meshes[k] for models in built.models])
+    ]
 
 
 def _of_mesh(mesh: Built, under: Sequence[Models]) -> list[str]:
@@ -163,24 +164,24 @@ def _of_solved(ends: Sequence[tuple[str, float]]) -> list[Doubt]:
 
 def _untried(built: Ready) -> str | None:
     """Why no other friction law is tried."""
-    if isinstance(built, BuiltDrive) and all(built.own_friction):
+    if all(built.mesh_own_friction):
         return "every stage has a friction law of its own, in whose place no other is tried"
     return None
 
 
 def _why_outside(built: Ready, under: Sequence[Any]) -> list[list[str]]:
     """Why each of some laws does not hold; in a drive the stages where it acts, with their numbers."""
-    if isinstance(built, Built):
-        runs = zip(under, profiles(built, under), strict=True)
-        return [why_outside(built, models.law, run) for models, run in runs]
     found: list[list[str]] = [[] for _ in under]
-    own_friction = dict(zip(built.numbers, built.own_friction, strict=True))
-    meshes = zip(built.mesh_numbers, built.mesh_labels, built.meshes, strict=True)
-    for k, (number, label, one) in enumerate(meshes):
-        if not own_friction[number]:
-            each = _why_outside(one, [acting.of_meshes[k] for acting in under])
-            for reasons, told in zip(found, each, strict=True):
-                reasons += [f"in stage {label} {reason}" for reason in told]
+    meshes = zip(built.mesh_own_friction, built.mesh_labels, built.meshes, strict=True)
+    for k, (own, label, mesh) in enumerate(meshes):
+        if own:
+            continue
+        acting, place = (
+            [models.of_meshes[k] for models in under],
+            f"in stage {label} " * bool(label),
+        )
+        for reasons, models, run in zip(found, acting, profiles(mesh, acting), strict=True):
+            reasons += [place + reason for reason in why_outside(mesh, models.law, run)]
     return found
 
 

@@ -1,7 +1,6 @@
 """Torque that runs and starts a drive with losses beside its teeth, as a dataset of a case."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,14 +10,10 @@ from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.lacking import untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
-from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.schema import TEMPERATURE
 from pitchpoint.doubts import Doubt
-from pitchpoint.efficiency.drive_summary import drive_figures
-from pitchpoint.efficiency.quasi_static import Engagement, Operation
-from pitchpoint.efficiency.running_torque import no_load_torque, torques_at_rest
-from pitchpoint.efficiency.summary import engaged
+from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.results.store import dataset, without_nan
 from pitchpoint.status import locked_or_lost, told
 
@@ -99,24 +94,8 @@ def running_part(built: Ready) -> xr.Dataset:
 def _running(built: Ready, speeds: np.ndarray, degrees: np.ndarray) -> np.ndarray:
     """Torque of the driver that runs without load [law, speed, temperature]."""
     speed, degree = np.meshgrid(speeds, degrees, indexing="ij")
-    if isinstance(built, BuiltDrive):
-        return _running_drive(built, speed, degree)
-    known = _engaged(built, 0.0)
     points = Operation(*map(array, (0.0 * speed, speed, degree)))
-    each = [no_load_torque(built.design, points, own, known) for own in built.models]
-    return np.stack([np.asarray(one) for one in each])
-
-
-def _running_drive(built: BuiltDrive, speeds: np.ndarray, degrees: np.ndarray) -> np.ndarray:
-    every = zip(speeds.ravel(), degrees.ravel(), strict=True)
-    running = [(built.design, Operation(*map(array, (0.0, *one)))) for one in every]
-    found = [drive_figures(running, own.stages) for own in built.models]
-    torques = [np.where(one["locked"], np.nan, one["mean_input_torque"]) for one in found]
-    return np.stack(torques).reshape(-1, *speeds.shape)
-
-
-def _engaged(built: Built, load: float) -> Engagement | None:
-    return engaged(built.design, replace(built.operation, load=array(load)), built.models[0])
+    return np.stack(built.no_load_torques(points))
 
 
 def from_rest(
@@ -137,24 +116,13 @@ def from_rest(
     points = Operation(
         *(array(np.broadcast_to(one, degrees.shape)) for one in (load, speed, degrees))
     )
-    nothing: Any = (np.full(degrees.shape, np.nan),) * 2
-    each: list[Any]
-    if isinstance(built, BuiltDrive):
-        each = [built.torques_at_rest(points, own) for own in built.models]
-    else:
-        known = _engaged(built, load)
-        each = [
-            nothing if own.law.films else torques_at_rest(built.design, points, own, known)
-            for own in built.models
-        ]
-    mean, largest = (np.stack([*map(np.asarray, one)]) for one in zip(*each, strict=True))
+    mean, largest = map(np.stack, zip(*built.torques_at_rest(points), strict=True))
     return mean, largest
 
 
 def has_spread(built: Ready) -> bool:
     """True if a place says by how much what holds it at rest may be more or less."""
-    stages = built.stages if isinstance(built, BuiltDrive) else ()
-    every: tuple[Ready, ...] = built, *stages
+    every: tuple[Ready, ...] = built, *built.stages
     return any(loss.breakaway_spread > 1.0 for one in every for loss in one.case.losses.values())
 
 
@@ -172,7 +140,7 @@ def _fitted(built: Ready) -> str:
 
 def _of_set(built: Ready, data: Mapping[str, Any], degrees: np.ndarray) -> str:
     """How the torque from rest backwards stands to that forwards, in words; empty without a set of losses."""
-    if isinstance(built, BuiltDrive) or built.fitted is None:
+    if built.fitted is None:
         return ""
     at = int(np.argmin(np.abs(degrees - built.case.operation.temperature)))
     forth, back = (float(data[name][1][0, at]) for name in TORQUES[1:])
@@ -235,13 +203,13 @@ def _easily_started(
 def running_axes(built: Ready) -> tuple[np.ndarray, np.ndarray]:
     """Speeds [rad/s] and temperatures [K] with those of the operating point.
 
-    Speeds go up to that of the loss map; of a drive of several meshes there is that of the operating
-    point alone. Temperatures are those of the map where the case gives them, else they go from the oil's
+    Speeds go up to that of the loss map; of a drive of stages there is that of the operating point
+    alone. Temperatures are those of the map where the case gives them, else they go from the oil's
     lowest to a warm one, with that of a cold day where the oil reaches it.
     """
     point, asked = built.case.operation, built.case.loss_map
     speeds, degrees = map_axes(built)[1:]
-    count = 0 if isinstance(built, BuiltDrive) else SPEEDS
+    count = 0 if built.numbers else SPEEDS
     speeds = np.linspace(0.0, speeds[-1], count + 1)[1:]
     if asked is None or not asked.temperatures:
         low, high = built.temperatures

@@ -15,7 +15,7 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.analyses.lacking import no_pins
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
+from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.cases.strength import MESH_LOAD
 from pitchpoint.doubts import Doubt, fails, in_stage
 from pitchpoint.efficiency.summary import in_chunks, in_groups
@@ -88,7 +88,7 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """The rating of a pair, or of those stages of a drive that are pairs of cylindrical gears."""
     stages, on_sharing = _with_sharing(built)
     each = _ratings([one for _, one in stages])
-    several = isinstance(built, BuiltDrive)
+    several = bool(built.numbers)
     values = each[0]
     labels: dict[str, list[Any]] = {"gear": ["gear 1", "gear 2"]}
     if several:
@@ -118,10 +118,8 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
 
 def _planets(built: Ready) -> dict[str, Any]:
     """Number of the planets that share a load, and their usual mesh load factor; of a lone train."""
-    if not isinstance(built, BuiltTrain):
-        return {}
-    count = max(built.copies)
-    return {"planets": count, "usual_mesh_load_factor": MESH_LOAD.get(count, 1.0)}
+    count = built.planets
+    return {"planets": count, "usual_mesh_load_factor": MESH_LOAD.get(count, 1.0)} if count else {}
 
 
 def _rated(built: Ready) -> list[tuple[Label, Built]]:
@@ -136,7 +134,7 @@ def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
     A factor that the case gives stays. So does that of the standard where pins alone make less of it.
     """
     stages = _rated(built)
-    if not isinstance(built, BuiltTrain):
+    if not built.planets:
         return stages, []
     from pitchpoint.analyses.planet_sharing import PERCENTILES, shared  # few cases ask for it
 
@@ -144,10 +142,11 @@ def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
     if lacks is not None:
         out_of_place = not isinstance(lacks, Unasked)
         return stages, [f"Pins out of place are not in K_γ: {lacks}."] * out_of_place
-    sharing = shared(built)
+    (train,) = built.trains
+    sharing = shared(train)
     factor = sharing.rated_factor
     rated = [
-        (number, _sharing_by(one, factor) if _open_sharing(built, number) else one)
+        (number, _sharing_by(one, factor) if _open_sharing(train, number) else one)
         for number, one in stages
     ]
     within = "" if sharing.drawn is None else f" in {PERCENTILES[-1]:g} % of sets by tolerance"

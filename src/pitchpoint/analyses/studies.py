@@ -11,7 +11,7 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject, Unasked
 from pitchpoint.analyses.figures import by_law, json_figures
 from pitchpoint.analyses.strength import ratings_of
-from pitchpoint.analyses.summaries import beside, joined, summaries
+from pitchpoint.analyses.summaries import alone, beside, joined, summaries
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import leaves
@@ -143,11 +143,11 @@ def more_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
 def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     """Variables [law, point] or [point, place] that belong to the source of a case; none for most."""
     source = points[0].case.source
-    alone = [point for point in points if isinstance(point, Built)]
-    if source not in PUBLICATIONS or not alone:
+    meshes = alone(points)
+    if source not in PUBLICATIONS or not meshes:
         return {}
     read, courses = PUBLICATIONS[source].read, PUBLICATIONS[source].courses
-    found = [read(_at(point)) for point in alone]
+    found = [read(_at(point)) for point in meshes]
 
     def variable(name: str) -> tuple[tuple[str, str], np.ndarray]:
         values = np.array([one[name] for one in found])

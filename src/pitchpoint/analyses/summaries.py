@@ -17,9 +17,8 @@ from pitchpoint.analyses.caveats import (
     why_not_at,
 )
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import Acting, BuiltDrive, Ready
+from pitchpoint.cases.built_drive import Acting, Ready
 from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, doubts_of, stored
-from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.rows import NODES
@@ -35,6 +34,7 @@ from pitchpoint.status import told as told_of
 
 __all__ = [
     "AT_CONTACT",
+    "alone",
     "at_contact",
     "beside",
     "few",
@@ -72,14 +72,9 @@ def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
     return ("law", "point", last)[: values.ndim]
 
 
-def _touching(point: Ready) -> bool:
-    """True for one mesh whose rigid flanks all touch."""
-    return isinstance(point, Built) and touching(point.design.mesh)
-
-
-def _meshes(points: Sequence[Ready]) -> list[Built]:
-    """Points of one mesh; none where they are drives of several."""
-    return [point for point in points if isinstance(point, Built)]
+def alone(points: Sequence[Ready]) -> list[Built]:
+    """Points of one mesh; none where they are drives of stages."""
+    return [mesh for point in points if not point.numbers for mesh in point.meshes]
 
 
 def summaries(
@@ -129,10 +124,10 @@ def summaries(
     reasons = _why_not(laws, points, extremes, unsure) if extremes else None
     if reasons is not None and several and len(under) > 1:
         out |= _of_laws_in_range(out["mean_efficiency"], reasons == "")
-    if not _touching(points[0]):
-        out.pop("loss_factor", None)  # of the shares of one load: no figure of the gears alone
-    else:
+    if "loss_factor" in out and touching(points[0].meshes[0].design.mesh):
         out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
+    else:
+        out.pop("loss_factor", None)  # of the shares of one load: no figure of the gears alone
     told = dict.fromkeys(text for point in points for text in point.warnings)
     warnings = few([*told]) if len(points) > 1 else [*told]
     if "vibration_status" in extra:
@@ -141,7 +136,7 @@ def summaries(
         warnings += status_sentences(extra["vibration_status"][1][0])
     if carrying is not None and slices is not None:
         carried = np.where(out["locked"], np.nan, carrying)
-        warnings += faces_warning(_meshes(points), carried, slices[0])
+        warnings += faces_warning(alone(points), carried, slices[0])
     for models, code in zip(under, turns["turns_code"], strict=True):
         warnings += _lost_warning(models.law, code)
     if reasons is not None and len(points) > 1:
@@ -198,7 +193,7 @@ def _why_not(
                     ),
                 ]
             )
-            for at, point in enumerate(_meshes(points))
+            for at, point in enumerate(alone(points))
         ]
         for k, law in enumerate(laws)
     ]
@@ -236,7 +231,7 @@ def _turns(runs: Sequence[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
 
 def _warming(points: Sequence[Ready]) -> dict[str, Any]:
     """What became of the balances of heat, modulus and friction; nothing where no teeth warm up."""
-    found = [point.warming for point in _meshes(points)]
+    found = [point.warming for point in alone(points)]
     each = [(one.code, one.residual, one.iterations) for one in found if one is not None]
     return {"warming": told_of(*map(np.array, zip(*each, strict=True)))} if each else {}
 
@@ -252,7 +247,7 @@ def _balances(values: Mapping[str, Any]) -> dict[str, Any]:
 def _labels(built: Ready) -> dict[str, Any]:
     """Places beside the teeth where power is lost, where there are some, and numbers of stages."""
     places = {"place": built.places} if built.places else {}
-    stages = {"stage": [*built.numbers]} if isinstance(built, BuiltDrive) else {}
+    stages = {"stage": [*built.numbers]} if built.numbers else {}
     return {**places, **stages}
 
 
@@ -301,13 +296,13 @@ def _grouped(
 ) -> dict[str, np.ndarray]:
     """Summaries in order, points of equal static structure computed together."""
     if models.law.films is not None:
-        return _by_films(_meshes(points), models.law.name, progress)
+        return _by_films(alone(points), models.law.name, progress)
 
     def of(group: Sequence[Ready]) -> dict[str, np.ndarray]:
-        each: list[Any] = [(point.design, point.operation) for point in group]
-        if isinstance(models, Acting):
-            return drive_figures(each, models.stages, progress)
-        return summarise(each, models, progress)
+        kind: Any = group[0]
+        each = [(point.design, point.operation) for point in group]
+        found: dict[str, np.ndarray] = kind.figures_of(each, models, progress)
+        return found
 
     return in_groups(of, points, _design)
 
@@ -341,14 +336,14 @@ def profiles(
 
 def beside(points: Sequence[Ready]) -> dict[str, Any]:
     """Figures of points beside those of their cycle: vibration, temperatures, the contact of a rig."""
-    alone = _meshes(points)
-    if not alone:
+    meshes = alone(points)
+    if not meshes:
         return {}
-    under = alone[0].models
+    under = meshes[0].models
     return {
-        **vibrations(alone, len(under)),
-        **temperatures(alone, len(under)),
-        **at_contact(alone, under),
+        **vibrations(meshes, len(under)),
+        **temperatures(meshes, len(under)),
+        **at_contact(meshes, under),
     }
 
 

@@ -14,7 +14,7 @@ from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.doubts import Doubt, in_percent, in_stage
 from pitchpoint.efficiency.drag import at_rest, bearing_loads
@@ -52,7 +52,7 @@ _OTHER_STIFFNESS = ("tangent_torsional_stiffness", "phase_mean_torsional_stiffne
 def torsion_part(built: Ready) -> xr.Dataset:
     """Wind-up, stiffness and load on every pair for torques up to twice that of the operating point."""
     torques = _torques(built)
-    return _of_drive(built, torques) if isinstance(built, BuiltDrive) else _of_mesh(built, torques)
+    return _of_drive(built, torques) if built.numbers else _of_mesh(built.meshes[0], torques)
 
 
 def _torques(built: Ready) -> np.ndarray:
@@ -60,7 +60,7 @@ def _torques(built: Ready) -> np.ndarray:
     return np.linspace(0.0, 2.0 * built.case.operation.load or 1.0, TORQUES)
 
 
-def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
+def _of_drive(built: Ready, torques: np.ndarray) -> xr.Dataset:
     """Wind-up and stiffness at the output: stages are springs one behind the other.
 
     Each adds its rotation times the ratio between it and the output, and carries the load times the
@@ -127,14 +127,14 @@ _SLOPELESS = (
 )
 
 
-def _of_meshes(built: BuiltDrive, torques: np.ndarray) -> list[dict[str, Any]]:
+def _of_meshes(built: Ready, torques: np.ndarray) -> list[dict[str, Any]]:
     """What winds up in one copy of each mesh under torques at the output, without friction."""
     unloaded = np.zeros(len(built.models))
     each = zip(built.meshes, built.steps, built.copies, strict=True)
     return [_torsion(one, torques * step / count, unloaded) for one, step, count in each]
 
 
-def mesh_slopes(built: BuiltDrive) -> np.ndarray:
+def mesh_slopes(built: Ready) -> np.ndarray:
     """Torque over turn of the driven member of one copy of each mesh, the slope at its load [N m/rad]."""
     torques, load = _torques(built), built.case.operation.load
     slopes = (one["tangent_torsional_stiffness"] for one in _of_meshes(built, torques))
@@ -142,7 +142,7 @@ def mesh_slopes(built: BuiltDrive) -> np.ndarray:
 
 
 def _parts_of_stages(
-    built: BuiltDrive, steps: np.ndarray, each: list[dict[str, Any]]
+    built: Ready, steps: np.ndarray, each: list[dict[str, Any]]
 ) -> dict[str, np.ndarray]:
     """Parts of the wind-up at the output by stage and name [rad]; nothing where no body couples teeth."""
     if not any(found["parts"] for found in each):
@@ -155,9 +155,7 @@ def _parts_of_stages(
     return parts
 
 
-def _on_edges_of_stages(
-    built: BuiltDrive, torques: np.ndarray, each: list[dict[str, Any]]
-) -> list[str]:
+def _on_edges_of_stages(built: Ready, torques: np.ndarray, each: list[dict[str, Any]]) -> list[str]:
     return [
         in_stage(number, told)
         for number, found in zip(built.mesh_numbers, each, strict=True)

@@ -1,9 +1,10 @@
 """From a validated case to the design, the operating point and the laws that compute it."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, reduce
-from typing import TYPE_CHECKING, Any, TypeVar
+from math import pi
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 import equinox as eqx
 import numpy as np
@@ -44,10 +45,12 @@ from pitchpoint.contact.contacts import TOUCH, Shape
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.doubts import GUESSED, Doubt, as_doubt
+from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
-from pitchpoint.efficiency.summary import engaged
+from pitchpoint.efficiency.running_torque import no_load_torque, torques_at_rest
+from pitchpoint.efficiency.summary import engaged, summarise
 from pitchpoint.efficiency.warm_teeth import balance
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.bodies import main_dimensions, plain_inertia
@@ -96,10 +99,13 @@ __all__ = [
     "FILM_SOLVERS",
     "TEETH_ALONE",
     "Built",
+    "MemberMotion",
+    "Period",
     "build",
     "check_alone",
     "covered",
     "drags",
+    "ends_of",
     "gears_of",
     "held_by",
     "operation_at",
@@ -139,6 +145,49 @@ UNSETTLED = Doubt(
 NO_PLASTIC = "No gear is of plastic: the tooth temperature changes nothing."
 
 
+class Period(NamedTuple):
+    """After what a stage is as it was.
+
+    Attributes:
+        period: angle of its driver, or of the phase of a train [rad, or m of what travels].
+        pitch: what the period is called.
+        against: why time runs against the phase; empty where it does not.
+    """
+
+    period: float
+    pitch: str
+    against: str = ""
+
+
+class MemberMotion(NamedTuple):
+    """How a member of a mesh moves in its drive, for a radian of the input in a second.
+
+    Attributes:
+        body: its name in the drive; members of several meshes that are one gear have one name.
+        rate: about its axis, or of what travels along it, from the housing [rad/s or m/s].
+        copies: how many of it there are.
+        orbit: speed of its axis about that of its carrier [m/s].
+        carrier: that bears its axis, or the housing.
+    """
+
+    body: str
+    rate: float
+    copies: int = 1
+    orbit: float = 0.0
+    carrier: str = HOUSING
+
+    def in_stage(self, number: int, rate: float) -> "MemberMotion":
+        """The member as that of a stage of a drive whose driver turns at this rate [rad/s]."""
+        of_stage = f"stage {number}: "
+        return MemberMotion(
+            of_stage + self.body,
+            self.rate * rate,
+            self.copies,
+            self.orbit * abs(rate),
+            HOUSING if self.carrier == HOUSING else of_stage + self.carrier,
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class Built:
     """A case ready to compute.
@@ -163,6 +212,21 @@ class Built:
     told: tuple[str, ...]
     warming: Status | None = None
     fitted: tuple[float, float] | None = None
+
+    numbers: ClassVar[tuple[int, ...]] = ()
+    stages: ClassVar[tuple[()]] = ()
+    documents: ClassVar[tuple[()]] = ()
+    stage_bodies: ClassVar[tuple[()]] = ()
+    trains: ClassVar[tuple[()]] = ()
+    planets: ClassVar[int] = 0
+    on_strength: ClassVar[tuple[()]] = ()
+    on_load_factors: ClassVar[tuple[()]] = ()
+    """Its file has no stages, and so nothing that is of several meshes, see `BuiltDrive`."""
+    mesh_numbers: ClassVar[tuple[int, ...]] = (0,)
+    mesh_labels: ClassVar[tuple[int | str, ...]] = ("",)
+    mesh_own_friction: ClassVar[tuple[bool, ...]] = (False,)
+    copies: ClassVar[tuple[int, ...]] = (1,)
+    """Its only mesh needs no label, and its friction law is that of the case."""
 
     def __repr__(self) -> str:
         return brief(self)
@@ -278,26 +342,6 @@ class Built:
         return self.case.models.averaging
 
     @property
-    def numbers(self) -> tuple[int, ...]:
-        """Of its only mesh."""
-        return (1,)
-
-    @property
-    def mesh_labels(self) -> "list[int | str]":
-        """Of its only mesh, which needs none."""
-        return [""]
-
-    @property
-    def stage_bodies(self) -> list[str]:
-        """Bodies of each stage in words; none of one mesh."""
-        return []
-
-    @property
-    def copies(self) -> tuple[int, ...]:
-        """How many there are of its mesh."""
-        return (1,)
-
-    @property
     def steps(self) -> np.ndarray:
         """Torque on the loaded member of its mesh for a unit at the output."""
         return np.ones(1)
@@ -307,10 +351,44 @@ class Built:
         """Meshes under the torques that they carry with all losses: itself."""
         return (self,)
 
-    @property
-    def on_strength(self) -> tuple[str, ...]:
-        """Sentences on what a rating takes where there are several meshes; none of one."""
-        return ()
+    def carried_by_meshes(self, _: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Torque on the loaded member of its mesh with all losses: its load."""
+        return np.array([self.case.operation.load])
+
+    @staticmethod
+    def figures_of(
+        points: "Sequence[tuple[Design, Operation]]",
+        models: Models,
+        progress: Callable[[int], None] | None = None,
+    ) -> dict[str, np.ndarray]:
+        """Figures of operating points of designs of equal static structure, see `summarise`."""
+        return summarise(points, models, progress)
+
+    def no_load_torques(self, points: Operation) -> list[np.ndarray]:
+        """Torque of the driver that runs without load [*b], by each friction law, see `no_load_torque`."""
+        known = self._engaged_under(0.0)
+        return [np.asarray(no_load_torque(self.design, points, one, known)) for one in self.models]
+
+    def torques_at_rest(self, points: Operation) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Mean and largest torque of the driver that starts the mesh, by each law, see `torques_at_rest`.
+
+        Args:
+            points: operating points [*b] under one load; laws that solve films have NaN there.
+        """
+        known, nothing = (
+            self._engaged_under(points.load.ravel()[0]),
+            np.full(points.load.shape, np.nan),
+        )
+        each = [
+            (nothing, nothing)
+            if one.law.films
+            else torques_at_rest(self.design, points, one, known)
+            for one in self.models
+        ]
+        return [(np.asarray(mean), np.asarray(largest)) for mean, largest in each]
+
+    def _engaged_under(self, load: Any) -> Engagement | None:
+        return engaged(self.design, replace(self.operation, load=array(load)), self.models[0])
 
     @property
     def drags(self) -> tuple[Drag, ...]:
@@ -409,6 +487,59 @@ class Built:
         return abs(float(self.nominal["loaded"] @ self.nominal["motion"]))
 
     @cached_property
+    def ends(self) -> tuple[float, float]:
+        """Rates of the driver and of the loaded member, in the sense that presses the flanks that touch."""
+        return ends_of(self.design.mesh)
+
+    @property
+    def step(self) -> float:
+        """Rate of the loaded member for a unit rate of the driver."""
+        return self.ends[1] / self.ends[0]
+
+    @property
+    def sense(self) -> float:
+        """Sense of the driver by which the flanks touch that do."""
+        return float(np.sign(self.ends[0]))
+
+    @property
+    def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:
+        """Motion of the members of its mesh, in the order of its coordinates."""
+        rates = (self.nominal["motion"] / self.ends[0]).tolist()
+        each = zip(self.bodies, rates, strict=True)
+        return (tuple(MemberMotion(coordinate.body, rate) for coordinate, rate in each),)
+
+    @property
+    def period(self) -> Period:
+        """After what the mesh is as it was."""
+        words, backwards = way(self.design.mesh), self.nominal["onward"] < 0.0
+        against = words.against.format(self.driver) if backwards else ""
+        return Period(float(self.nominal["period"]), words.pitch, against)
+
+    def periods_per_turn(self, end: End) -> float:
+        """Mesh periods in a turn of the driver or of the loaded member."""
+        rate = abs(float(self.nominal[end] @ self.nominal["motion"]))
+        return 2.0 * pi / (float(self.nominal["period"]) * rate)
+
+    def on_shafts(self, first: int, free: int) -> dict[str, int]:
+        """Shaft of a drive for each member; one that is held has a number of its own.
+
+        Args:
+            first: number of the shaft that drives; that which it loads is the next one.
+            free: number of the first member that is held.
+        """
+        found: dict[str, int] = {}
+        for number, name in enumerate(self.case.gears.members):
+            drives, loaded = (self.nominal[end][number] for end in _ENDS)
+            found[name] = first if drives else first + 1 if loaded else free
+            free += not (drives or loaded)
+        return found
+
+    @property
+    def inner_bearing(self) -> frozenset[str]:
+        """Bodies between which a bearing is on which the teeth press inside the drive; none of most."""
+        return frozenset(self.design.mesh.body.inner_bearing)
+
+    @cached_property
     def bodies(self) -> tuple[Coordinate, ...]:
         """Coordinates of the mesh without their places."""
         return _bodies(*_form(self.design.mesh))
@@ -441,7 +572,7 @@ class Built:
     @property
     def lacks_bearing(self) -> bool:
         """True where teeth press on a bearing inside the drive, and no loss of the case stands for it."""
-        inner = self.design.mesh.body.inner_bearing
+        inner = self.inner_bearing
         given = (frozenset(loss.between) for loss in self.case.losses.values())
         return bool(inner) and inner not in given
 
@@ -504,6 +635,12 @@ def _bodies(structure: Any, leaves: tuple[Any, ...]) -> tuple[Coordinate, ...]:
         lambda mesh: mesh.coordinates, jax.tree.unflatten(structure, leaves)
     )
     return found
+
+
+def ends_of(mesh: Mesh) -> tuple[float, float]:
+    """Rates of the driver and of the loaded member of a mesh."""
+    motion = np.asarray(mesh.motion)
+    return float(np.asarray(mesh.driver) @ motion), float(np.asarray(mesh.loaded) @ motion)
 
 
 def operation_at(point: Operating) -> Operation:

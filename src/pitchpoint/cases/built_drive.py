@@ -1,17 +1,21 @@
 """A case of several meshes ready to compute: stages one behind the other, or a train that turns together."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from math import pi
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from pitchpoint._jax import array
 from pitchpoint.brief import brief
 from pitchpoint.cases.build import (
     BEARING_FREE,
     TEETH_ALONE,
     Built,
+    MemberMotion,
+    Period,
     covered,
     held_by,
     operation_at,
@@ -19,13 +23,11 @@ from pitchpoint.cases.build import (
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.schema import DriveCase
 from pitchpoint.doubts import in_stage
-from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Drive
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.efficiency.running_torque import torques_at_rest_of_drive
-from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.variable import End
@@ -39,9 +41,7 @@ __all__ = [
     "Acting",
     "BuiltDrive",
     "BuiltTrain",
-    "MemberMotion",
     "Ready",
-    "ends_of",
 ]
 
 _BY_METHOD_B = (
@@ -73,40 +73,10 @@ class Acting:
     @property
     def of_meshes(self) -> tuple[Models, ...]:
         """Models of each mesh."""
-        each = (one.of_meshes if isinstance(one, Acting) else (one,) for one in self.of_stages)
-        return tuple(models for several in each for models in several)
+        return tuple(models for one in self.of_stages for models in one.of_meshes)
 
     def __repr__(self) -> str:
         return brief(self)
-
-
-class MemberMotion(NamedTuple):
-    """How a member of a mesh moves in its drive, for a radian of the input in a second.
-
-    Attributes:
-        body: its name in the drive; members of several meshes that are one gear have one name.
-        rate: about its axis, or of what travels along it, from the housing [rad/s or m/s].
-        copies: how many of it there are.
-        orbit: speed of its axis about that of its carrier [m/s].
-        carrier: that bears its axis, or the housing.
-    """
-
-    body: str
-    rate: float
-    copies: int = 1
-    orbit: float = 0.0
-    carrier: str = HOUSING
-
-    def in_stage(self, number: int, rate: float) -> "MemberMotion":
-        """The member as that of a stage of a drive whose driver turns at this rate [rad/s]."""
-        of_stage = f"stage {number}: "
-        return MemberMotion(
-            of_stage + self.body,
-            self.rate * rate,
-            self.copies,
-            self.orbit * abs(rate),
-            HOUSING if self.carrier == HOUSING else of_stage + self.carrier,
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +102,12 @@ class BuiltDrive:
     operation: Operation
     told: tuple[str, ...]
 
+    fitted: ClassVar[None] = None
+    film_model: ClassVar[None] = None
+    following: ClassVar[Mapping[str, Any]] = {}
+    inner_bearing: ClassVar[frozenset[str]] = frozenset()
+    """Each mesh has its own, see `Built`."""
+
     def __repr__(self) -> str:
         return brief(self)
 
@@ -140,7 +116,12 @@ class BuiltDrive:
         """Sentences about the drive, and about each of its stages."""
         of_meshes = zip(self.mesh_labels, self.meshes, strict=True)
         told = (
-            *((number, text) for number, one in self.sets.items() for text in one.told),
+            *(
+                (number, text)
+                for number, one in zip(self.numbers, self.stages, strict=True)
+                for train in one.trains
+                for text in train.told
+            ),
             *((label, text) for label, mesh in of_meshes for text in mesh.warnings),
         )
         left_out = TEETH_ALONE, BEARING_FREE
@@ -189,6 +170,12 @@ class BuiltDrive:
         return tuple("friction" in table.model_fields_set for table in tables)
 
     @property
+    def mesh_own_friction(self) -> tuple[bool, ...]:
+        """For each mesh whether its stage has a friction law of its own."""
+        each = zip(self.stages, self.own_friction, strict=True)
+        return tuple(own for one, own in each for _ in one.meshes)
+
+    @property
     def laws(self) -> list[FrictionLaw]:
         """Friction laws of the case, in order."""
         return [models.law for models in self.models]
@@ -231,10 +218,14 @@ class BuiltDrive:
         return found
 
     @property
-    def sets(self) -> "dict[int, BuiltTrain]":
-        """Stages that are planetary sets by their number, in the order of the power."""
-        each = zip(self.numbers, self.stages, strict=True)
-        return {number: one for number, one in each if isinstance(one, BuiltTrain)}
+    def trains(self) -> "tuple[BuiltTrain, ...]":
+        """Sets of meshes that turn together: those among its stages, in the order of the power."""
+        return tuple(train for one in self.stages for train in one.trains)
+
+    @property
+    def planets(self) -> int:
+        """How many planets share the load of the drive: none of stages in a row, whose sets have theirs."""
+        return 0
 
     @property
     def travels(self) -> frozenset[End]:
@@ -302,11 +293,16 @@ class BuiltDrive:
     @property
     def on_strength(self) -> tuple[str, ...]:
         """Sentences on what a rating takes where there are several meshes."""
-        of_sets = ((number, one.on_strength[1:]) for number, one in self.sets.items())
-        return (
-            "Forces and stresses are those without friction and losses, for the load at the output.",
-            *(in_stage(number, text) for number, told in of_sets for text in told),
+        told = (
+            "Forces and stresses are those without friction and losses, for the load at the output."
         )
+        return told, *self.on_load_factors
+
+    @property
+    def on_load_factors(self) -> tuple[str, ...]:
+        """Those of them on load factors of its sets."""
+        each = zip(self.numbers, self.stages, strict=True)
+        return tuple(in_stage(number, text) for number, one in each for text in one.on_load_factors)
 
     @property
     def drags(self) -> tuple[Drag, ...]:
@@ -323,10 +319,30 @@ class BuiltDrive:
             stages.append(replace(stage, design=replace(stage.design, drag=held)))
         return replace(self, design=replace(self.design, drag=drag, stages=tuple(stages)))
 
-    def torques_at_rest(self, points: Operation, acting: Acting) -> tuple[np.ndarray, np.ndarray]:
-        """Mean and largest torque of the input that starts the drive, see `torques_at_rest_of_drive`."""
-        mean, largest = torques_at_rest_of_drive(self.design, points, acting.stages)
-        return np.asarray(mean), np.asarray(largest)
+    @staticmethod
+    def figures_of(
+        points: Sequence[tuple[Any, Operation]],
+        models: Acting,
+        progress: Callable[[int], None] | None = None,
+    ) -> dict[str, np.ndarray]:
+        """Figures of operating points of drives of equal static structure, see `drive_figures`."""
+        return drive_figures(points, models.stages, progress)
+
+    def no_load_torques(self, points: Operation) -> list[np.ndarray]:
+        """Torque of the input that runs without load [*b], by each friction law."""
+        every = zip(points.speed.ravel(), points.temperature.ravel(), strict=True)
+        running = [(self.design, Operation(*map(array, (0.0, *one)))) for one in every]
+        found = [self.figures_of(running, one) for one in self.models]
+        torques = [np.where(one["locked"], np.nan, one["mean_input_torque"]) for one in found]
+        return [one.reshape(points.speed.shape) for one in torques]
+
+    def torques_at_rest(self, points: Operation) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Mean and largest torque of the input that starts the drive [*b], by each friction law."""
+        each = [self._at_rest(points, one.stages) for one in self.models]
+        return [(np.asarray(mean), np.asarray(largest)) for mean, largest in each]
+
+    def _at_rest(self, points: Operation, models: tuple[Any, ...]) -> tuple[Any, Any]:
+        return torques_at_rest_of_drive(self.design, points, models)
 
     @property
     def copies(self) -> tuple[int, ...]:
@@ -345,7 +361,7 @@ class BuiltDrive:
     @cached_property
     def _carried(self) -> list[float]:
         """Mean torque that each stage carries with all losses, by the first law; none if it locks."""
-        figures = drive_figures([(self.design, self.operation)], self.models[0].stages)
+        figures = self.figures_of([(self.design, self.operation)], self.models[0])
         carried = self.carried_by_meshes({name: values[0] for name, values in figures.items()})
         # Without load there is no efficiency of a train to go by, and nothing to carry.
         idle = self.case.operation.load == 0.0
@@ -381,14 +397,10 @@ class BuiltDrive:
         """Rates of the shafts for a radian of the input."""
         rates, sense = [1.0], 1.0
         for one in self.stages:
-            if isinstance(one, BuiltTrain):
-                step = 1.0 / float(one.design.ratio)
-            else:
-                first, last = ends_of(one.design.mesh)
-                step = last / first
-                sense = first / rates[-1]  # in which the flanks that touch turn the input
-            rates.append(rates[-1] * step)
-        return [float(np.sign(sense)) * rate for rate in rates]
+            # In which the flanks that touch turn the input; a set turns either way.
+            sense = one.sense * float(np.sign(rates[-1])) or sense
+            rates.append(rates[-1] * one.step)
+        return [sense * rate for rate in rates]
 
     @property
     def output_rate(self) -> float:
@@ -398,23 +410,12 @@ class BuiltDrive:
     @property
     def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:
         """Motion of the members of each mesh, in the order of its coordinates."""
-        found: list[tuple[MemberMotion, ...]] = []
-        for number, one, entering in zip(self.numbers, self.stages, self.motion[:-1], strict=True):
-            if isinstance(one, BuiltTrain):
-                found += [
-                    tuple(member.in_stage(number, entering) for member in members)
-                    for members in one.member_motions
-                ]
-                continue
-            rates = (one.nominal["motion"] / ends_of(one.design.mesh)[0]).tolist()
-            each = zip(one.bodies, rates, strict=True)
-            found.append(
-                tuple(
-                    MemberMotion(coordinate.body, rate).in_stage(number, entering)
-                    for coordinate, rate in each
-                )
-            )
-        return tuple(found)
+        each = zip(self.numbers, self.stages, self.motion[:-1], strict=True)
+        return tuple(
+            tuple(member.in_stage(number, entering) for member in members)
+            for number, one, entering in each
+            for members in one.member_motions
+        )
 
     @cached_property
     def backwards(self) -> "BuiltDrive":
@@ -424,12 +425,8 @@ class BuiltDrive:
         load = {"torque": None, "force": None, stages[-1].carried.kind: point.load * step}
         changed = point.model_copy(update={**load, "speed": point.speed * step})
         turned = self.design.driven_backwards()
-        warm = [
-            replace(place, design=one.design)
-            if isinstance(one, BuiltTrain)
-            else replace(place, design=replace(place.alone, solids=one.design.solids))
-            for place, one in zip(turned.stages, stages, strict=True)
-        ]
+        each = zip(turned.stages, stages, strict=True)
+        warm = [replace(place, design=one.design) for place, one in each]
         return replace(
             self,
             case=self.case.model_copy(update={"operation": changed}),
@@ -472,11 +469,21 @@ class BuiltTrain(BuiltDrive):
         return TRAIN_PERIOD
 
     @property
-    def on_strength(self) -> tuple[str, ...]:
-        """Sentences on what a rating takes where there are several meshes."""
+    def trains(self) -> "tuple[BuiltTrain, ...]":
+        """Sets of meshes that turn together: itself."""
+        return (self,)
+
+    @property
+    def planets(self) -> int:
+        """How many planets share the load."""
+        return max(self.copies)
+
+    @property
+    def on_load_factors(self) -> tuple[str, ...]:
+        """Sentences on the load factors that a rating takes."""
         from pitchpoint.cases.strength import MESH_LOAD
 
-        count = max(self.copies)
+        count = self.planets
         share = (
             f"K_γ is at least {MESH_LOAD[count]}, for {count} planets by IEC 61400-4"
             if count in MESH_LOAD
@@ -484,7 +491,6 @@ class BuiltTrain(BuiltDrive):
         )
         by_method_b = any(one.rated.table.dynamic_method == "B" for one in self.stages)
         return (
-            *super().on_strength,
             *[_BY_METHOD_B] * by_method_b,
             f"Where [strength] says nothing else, {share}, teeth that two mates load both ways have "
             f"Y_M = 0.7, and a gear that meets all planets has {count} load cycles in a turn against the "
@@ -501,11 +507,21 @@ class BuiltTrain(BuiltDrive):
         drag = held_by(self.design.drag, self.case.losses, way)
         return replace(self, design=replace(self.design, drag=drag))
 
-    def torques_at_rest(self, points: Operation, acting: Acting) -> tuple[np.ndarray, np.ndarray]:
-        """Mean and largest torque of the input that starts the train, see `torques_at_rest_of_train`."""
+    @staticmethod
+    def figures_of(
+        points: Sequence[tuple[Any, Operation]],
+        models: Acting,
+        progress: Callable[[int], None] | None = None,
+    ) -> dict[str, np.ndarray]:
+        """Figures of operating points of trains of equal static structure, see `train_figures`."""
+        from pitchpoint.efficiency.train_summary import train_figures
+
+        return train_figures(points, models.stages, progress)
+
+    def _at_rest(self, points: Operation, models: tuple[Any, ...]) -> tuple[Any, Any]:
         from pitchpoint.efficiency.train_summary import torques_at_rest_of_train
 
-        return torques_at_rest_of_train(self.design, points, acting.stages)
+        return torques_at_rest_of_train(self.design, points, models)
 
     @property
     def copies(self) -> tuple[int, ...]:
@@ -541,7 +557,7 @@ class BuiltTrain(BuiltDrive):
 
     def carried_by_meshes(self, figures: Mapping[str, np.ndarray]) -> np.ndarray:
         """Torque on the driven member of one copy of each mesh with all losses, see `BuiltDrive`."""
-        ends = np.array([np.abs(ends_of(one.design.mesh)) for one in self.stages])
+        ends = np.abs([one.ends for one in self.stages])
         driving = (
             figures["stage_input_torque"] * figures["stage_efficiency"] / np.array(self.copies)
         )
@@ -554,9 +570,33 @@ class BuiltTrain(BuiltDrive):
         return [rates[body] / rates[self.driver] for body in self.case.bodies]
 
     @property
+    def step(self) -> float:
+        """Rate of the output for a radian of the input."""
+        return 1.0 / float(self.design.ratio)
+
+    @property
     def output_rate(self) -> float:
         """Rate of the output for a radian of the input, without sign."""
-        return 1.0 / abs(float(self.design.ratio))
+        return abs(self.step)
+
+    @property
+    def sense(self) -> float:
+        """Sense of the input by which the flanks touch that do: it turns either way alike."""
+        return 0.0
+
+    @property
+    def period(self) -> Period:
+        """After what the train is as it was."""
+        return Period(float(self.design.period), TRAIN_PERIOD)
+
+    def periods_per_turn(self, end: End) -> float:
+        """Mesh periods in a turn of the input or of the output."""
+        turns = 1.0 if end == "driver" else self.output_rate
+        return 2.0 * pi * self.design.meshes[0].periods / (float(self.design.period) * turns)
+
+    def on_shafts(self, first: int, _: int) -> dict[str, int]:
+        """Shaft of a drive for each of its ends, see `Built.on_shafts`."""
+        return {self.driver: first, self.loaded: first + 1}
 
     @property
     def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:
@@ -594,9 +634,3 @@ class BuiltTrain(BuiltDrive):
 
 
 Ready = Built | BuiltDrive
-
-
-def ends_of(mesh: Mesh) -> tuple[float, float]:
-    """Rates of the driver and of the loaded member of a mesh."""
-    motion = np.asarray(mesh.motion)
-    return float(np.asarray(mesh.driver) @ motion), float(np.asarray(mesh.loaded) @ motion)

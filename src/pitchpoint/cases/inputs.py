@@ -9,7 +9,7 @@ from pydantic import BaseModel
 
 from pitchpoint._jax import array
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
 from pitchpoint.cases.height_maps import MEMBERS, digest_of
 from pitchpoint.cases.loss_sets import SET, marks_of
@@ -137,7 +137,7 @@ def input_rows(
         studies: beside those of the case.
     """
     every = {**built.case.studies, **(studies or {})}
-    own = _of_drive(built, document) if isinstance(built, BuiltDrive) else _of_mesh(built, document)
+    own = _of_drive(built, document) if built.numbers else _of_mesh(built.meshes[0], document)
     return [
         *own,
         *(row for name, study in every.items() for row in _of_study(name, study, document)),
@@ -166,7 +166,7 @@ def _digests(built: Built) -> Iterator[Row]:
             yield _row("film", f"heights.{name}.digest", digest_of(one.file), "", held)
 
 
-def _of_films(built: Built) -> dict[str, Followed]:
+def _of_films(built: Ready) -> dict[str, Followed]:
     """Choices by which films are solved, as they are where the case leaves them open."""
     if built.film_model is None:
         return {}
@@ -182,22 +182,20 @@ def _mark(found: Followed) -> Provenance:
     return Provenance(found.status, note=found.note)
 
 
-def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
+def _of_drive(built: Any, document: Document) -> Iterator[Row]:
     """Rows of the stages, then those of the tables that they share."""
     short = built.case.gears is not None  # for which the stages stand
     document = with_meshes(document)
     for number, one, inside in zip(built.numbers, built.stages, built.documents, strict=True):
         own = document.tree[STAGES][str(number)]
-        following = (
-            {"gears": one.following, "film": _of_films(one)} if isinstance(one, Built) else {}
-        )
+        following = {"gears": one.following, "film": _of_films(one)}
         for table in ("gears", *(key for key in _OF_STAGE if key in own)):
             for row in _rows(one.case, inside, table, following.get(table)):
                 holds = not short and _holds(own, table, row["key"])
                 follows = {"status": "derived"} if short and row["status"] == "given" else {}
                 yield _in_stage({**row, **follows}, number, given=holds)
-        if isinstance(one, Built):
-            yield from (_in_stage(row, number, given=False) for row in _digests(one))
+        for mesh in one.meshes:
+            yield from (_in_stage(row, number, given=False) for row in _digests(mesh))
         for key in ("bodies", "driver", "place", "turn"):
             if key in own and not short:
                 path, value = f"{number}.{key}", getattr(built.case.stages[str(number)], key)
@@ -210,7 +208,7 @@ def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
             yield from (row for row in _rows(built.case, document, table) if row["value"] != "")
 
 
-def _models(built: BuiltDrive, document: Document) -> Iterator[Row]:
+def _models(built: Any, document: Document) -> Iterator[Row]:
     """Rows of the models, once where no stage has its own."""
     whole = {row["key"]: row for row in _rows(built.case, document, "models") if row["given"]}
     each = [

@@ -6,7 +6,6 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from itertools import pairwise
-from math import pi
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -16,11 +15,12 @@ from pitchpoint.cases.build import (
     Built,
     build,
     drags,
+    ends_of,
     gears_of,
     operation_at,
     without_bearing,
 )
-from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready, ends_of
+from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import (
@@ -30,7 +30,6 @@ from pitchpoint.cases.schema import (
     Case,
     DriveCase,
     Operating,
-    StageTable,
     is_planetary,
     planetary_of,
     validate,
@@ -178,7 +177,7 @@ def _together(
     if case.train is not None:
         from pitchpoint.cases.trains import about_trains, train_of
 
-        meshes = tuple(one for one in built if isinstance(one, Built))
+        meshes = tuple(mesh for one in built for mesh in one.meshes)
         told = about_trains(case, meshes)
         return BuiltTrain(
             case, meshes, numbers, tuple(documents), train_of(case, meshes), point, told
@@ -405,14 +404,11 @@ def _drive(case: DriveCase, built: Sequence[Built | BuiltTrain]) -> Drive:
     held = 0
     stages, inner = [], set()
     for first, (one, table) in enumerate(zip(built, case.stages.values(), strict=True)):
-        if isinstance(one, BuiltTrain):
-            stages.append(Stage(one.design, (first, first + 1)))
-            continue
-        names = _on_shafts(one, first, count + held)
+        names = one.on_shafts(first, count + held)
         held += len(names) - 2
-        stages.append(_stage(one, table, tuple(names.values())))
-        bearing = [f"shaft {names[body] + 1}" for body in one.design.mesh.body.inner_bearing]
-        inner.add(frozenset(bearing))
+        shafts = tuple(names.values())
+        stages.append(Stage(one.design, shafts, array(table.turn), array(table.place)))
+        inner.add(frozenset(f"shaft {names[body] + 1}" for body in one.inner_bearing))
     still = [f"held {number}" for number in range(held)]
     bodies = (*case.bodies, *still)
     placed = drags(case.losses, bodies, inner - {frozenset()})
@@ -431,32 +427,17 @@ def _drive(case: DriveCase, built: Sequence[Built | BuiltTrain]) -> Drive:
     return chained(stages, placed)
 
 
-def _on_shafts(one: Built, first: int, free: int) -> dict[str, int]:
-    """Shaft of each member of a stage; a member that is held has a number of its own."""
-    found: dict[str, int] = {}
-    for number, name in enumerate(one.case.gears.members):
-        drives, loaded = (one.nominal[end][number] for end in ("driver", "loaded"))
-        found[name] = first if drives else first + 1 if loaded else free
-        free += not (drives or loaded)
-    return found
-
-
-def _stage(one: Built, table: StageTable, shafts: tuple[int, ...]) -> Stage:
-    return Stage(one.design, shafts, array(table.turn), array(table.place))
-
-
 def _few_meetings(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
     """Shafts on which few phases of two stages meet, where all are assumed to."""
     for shaft, (before, behind) in enumerate(pairwise(built), 2):
-        meshes = [_per_turn(before, "loaded"), _per_turn(behind, "driver")]
+        meshes = [before.periods_per_turn("loaded"), behind.periods_per_turn("driver")]
         # Meshes of a set go by in fractions of a tooth for a turn against the housing.
         often = Fraction(meshes[0] / meshes[1]).limit_denominator(MOST_TEETH)
         if min(often.numerator, often.denominator) < SEVERAL_MEETINGS:
             first, second = (f"{count:.6g}" for count in meshes)
-            sets = isinstance(before, BuiltTrain) or isinstance(behind, BuiltTrain)
             ratio = (
                 f"as {often.numerator} to {often.denominator}"
-                if sets
+                if before.trains or behind.trains
                 else f"with the common divisor {meshes[0] / often.numerator:.0f}"
             )
             yield Doubt(
@@ -472,8 +453,7 @@ def _few_meetings(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
 def _on_sets(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
     """Planetary sets of which not all is computed that a file of them alone has."""
     for number, one in enumerate(built, 1):
-        if isinstance(one, BuiltTrain):
-            point = one.case.operation
+        for point in (train.case.operation for train in one.trains):
             yield Doubt(
                 f"Stage {number} is a planetary set: sharing of its planets and its state over a period are "
                 f"not computed here. A file of this set alone has them, with torque "
@@ -496,29 +476,19 @@ def _on_vibration(case: DriveCase) -> Iterator[str]:
         )
 
 
-def _per_turn(one: Built | BuiltTrain, end: str) -> float:
-    """Mesh periods in a turn of the driver or of the loaded member of a stage."""
-    if isinstance(one, BuiltTrain):
-        turns = 1.0 if end == "driver" else one.output_rate
-        return 2.0 * pi * one.design.meshes[0].periods / (float(one.design.period) * turns)
-    rate = abs(float(one.nominal[end] @ one.nominal["motion"]))
-    return 2.0 * pi / (float(one.nominal["period"]) * rate)
-
-
 def _adding_thrusts(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
     """Shafts on which helical gears of two meshes press the same way along the axis.
 
     The frame of a mesh gives its two members opposite hands, and other flanks turn both over.
     """
     for shaft, (before, behind) in enumerate(pairwise(built), 2):
-        if isinstance(before, BuiltTrain) or isinstance(behind, BuiltTrain):
+        if before.trains or behind.trains:
             continue
-        helical = [
-            float(one.dimensions.get("overlap_ratio", 0.0)) > 0.0 for one in (before, behind)
-        ]
-        members = np.argmax(before.nominal["loaded"]), np.argmax(behind.nominal["driver"])
+        (first,), (second,) = before.meshes, behind.meshes
+        helical = [float(one.dimensions.get("overlap_ratio", 0.0)) > 0.0 for one in (first, second)]
+        members = np.argmax(first.nominal["loaded"]), np.argmax(second.nominal["driver"])
         if all(helical) and members[0] == members[1]:
-            gear = before.case.gears.members[members[0]]
+            gear = first.case.gears.members[members[0]]
             yield (
                 f"On shaft {shaft} the helical {gear}s of stages {shaft - 1} and {shaft} have opposite "
                 "hands: their axial forces add up. Those of a gear 2 and a gear 1 counteract."
@@ -531,7 +501,7 @@ def _on_one_place(case: DriveCase, built: Sequence[Built | BuiltTrain]) -> Itera
     if not any("place" in table.model_fields_set for table in tables):
         return
     for shaft, (first, second) in enumerate(pairwise(zip(tables, built, strict=True)), 2):
-        if isinstance(first[1], BuiltTrain) or isinstance(second[1], BuiltTrain):
+        if first[1].trains or second[1].trains:
             continue
         apart = abs(second[0].place - first[0].place)
         widths = (getattr(one.case.gears, "face_width", 0.0) for _, one in (first, second))

@@ -27,7 +27,6 @@ from pitchpoint.programs import program
 from pitchpoint.status import Code
 
 if TYPE_CHECKING:
-    from pitchpoint.efficiency.train import Train
     from pitchpoint.efficiency.train_state import TrainState
 
 __all__ = ["drive_figures", "drive_nodes", "mean_friction_of_drive", "together"]
@@ -100,31 +99,23 @@ def _sizes(mesh: Mesh, sharing: LoadSharing, nodes: int) -> tuple[Array, Array]:
 
 
 def drive_figures(
-    points: "Sequence[tuple[Drive | Train, Operation]]",
+    points: Sequence[Point],
     models: Sequence[StageModels],
     progress: Callable[[int], None] | None = None,
 ) -> dict[str, np.ndarray]:
     """Figures of many points, each quantity [point], [point, place] or [point, stage].
 
     Args:
-        points: drives or trains and operating points of equal static structure.
+        points: drives and operating points of equal static structure.
         models: laws of each stage.
         progress: told the number of finished points after each chunk.
 
     From the states of `drive_cycle`, means and extremes over all meetings of their phases.
     """
-    chains = [(drive, operation) for drive, operation in points if isinstance(drive, Drive)]
-    if not chains:
-        # Only now: a pair or a chain does not load what trains take.
-        from pitchpoint.efficiency.train_summary import train_figures
-
-        trains: Any = points
-        of_meshes: Any = models
-        return train_figures(trains, of_meshes, progress)
     parts: list[dict[str, np.ndarray]] = []
     done = 0
-    size = together(chains[0][0], models)
-    for drive, operations in _of_one_drive(chains, models):
+    size = together(points[0][0], models)
+    for drive, operations in _of_one_drive(points, models):
         for start in range(0, len(operations), size):
             some = operations[start : start + size]
             parts.append(_chunk(drive, some, models, size))

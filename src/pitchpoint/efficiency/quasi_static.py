@@ -195,6 +195,11 @@ class Models(eqx.Module):
         return self.friction[int(self.choice)]
 
     @property
+    def of_meshes(self) -> "tuple[Models, ...]":
+        """Models of each mesh: of the only one."""
+        return (self,)
+
+    @property
     def each(self) -> "tuple[Models, ...]":
         """The same models under each of the friction laws."""
         return tuple(replace(self, choice=array(number)) for number in range(len(self.friction)))

@@ -15,8 +15,6 @@ from pitchpoint.programs import program
 
 __all__ = [
     "no_load_torque",
-    "starting_torque",
-    "starting_torque_of_drive",
     "torques_at_rest",
     "torques_at_rest_of_drive",
 ]
@@ -112,17 +110,3 @@ def _at_rest_of_stage(drive: Drive, number: int, laws: Any, point: Operation) ->
 
     each = torques_at_rest_of_train(braked_train(drive, number), point, laws)
     return array(each[0]), array(each[1])
-
-
-def starting_torque(
-    design: Design, operation: Operation, models: Models, engaged: Engagement | None = None
-) -> Each:
-    """Torque at which the driver begins to turn from rest at the worst phase, see `torques_at_rest` [N m]."""
-    return torques_at_rest(design, operation, models, engaged)[1]
-
-
-def starting_torque_of_drive(
-    drive: Drive, operation: Operation, models: Sequence[StageModels]
-) -> Each:
-    """The same of a drive, see `torques_at_rest_of_drive` [N m]."""
-    return torques_at_rest_of_drive(drive, operation, models)[1]

@@ -103,10 +103,11 @@ def _frame(rows: Mapping[str, Mapping[str, Any]], told: Mapping[str, Any]) -> "p
 
 def _one_mesh(base: Variant) -> Built:
     built = base.built({})
-    if not isinstance(built, Built):
+    if built.numbers:
         told = "derivatives are those of one mesh; a stage in a file of its own has them"
         raise InputError(told, file=base.name)
-    return built
+    (mesh,) = built.meshes
+    return mesh
 
 
 def _under(built: Built, law: str | None) -> Models:
@@ -198,10 +199,9 @@ def _moved(base: Variant, here: Inputs, setting: Setting, value: float) -> Leave
 def _built_at(base: Variant, here: Inputs, setting: tuple[str, Any]) -> Leaves | None:
     """Numbers of the design with a key changed; None where it cannot be built, or is of another form."""
     try:
-        built = base.built(dict([setting]))
+        (built,) = base.built(dict([setting])).meshes
     except InputError:
         return None
-    assert isinstance(built, Built)
     found = _numbers_of(built)
     alike = bool(jax.tree.structure(found) == jax.tree.structure(here))  # type: ignore[operator]
     leaves, own = _leaves(found), _leaves(here)

@@ -14,8 +14,7 @@ from pitchpoint.analyses.analysis import Analysis
 from pitchpoint.analyses.figures import main_figures
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import sweep_values
-from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import BuiltDrive, Ready
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.schema import Sweep, quantity_at
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError
@@ -222,20 +221,18 @@ def _computed(
         there += _there(built, WITHOUT_CYCLE)
     work = [Job(each, built) for each in there]
     outcome = run_variant(one, work, folder=None, studies={}, progress=Progress())
-    return outcome, _of_stages(one, built) if isinstance(built, BuiltDrive) else {}
+    return outcome, _of_stages(one, built)
 
 
-def _of_stages(variant: Variant, drive: BuiltDrive) -> dict[int, Outcome]:
+def _of_stages(variant: Variant, drive: Ready) -> dict[int, Outcome]:
     """Teeth of each stage that is one mesh by its number, in the order of the power."""
     found = {}
     for number, stage, inside in zip(drive.numbers, drive.stages, drive.documents, strict=True):
-        if not isinstance(stage, Built):
-            continue
         alone = Variant(inside.tree, inside.name, variant.variant, folder=variant.folder)
-        work = [Job(teeth, stage) for teeth in _there(stage, TEETH)]
-        found[number] = run_variant(
-            alone, work, folder=None, studies={}, progress=Progress(), whole=False
-        )
+        if work := [Job(teeth, stage) for teeth in _there(stage, TEETH)]:
+            found[number] = run_variant(
+                alone, work, folder=None, studies={}, progress=Progress(), whole=False
+            )
     return found
 
 

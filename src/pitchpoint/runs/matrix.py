@@ -9,7 +9,7 @@ from typing import Any
 
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.build import FILM_SOLVERS, Built
+from pitchpoint.cases.build import FILM_SOLVERS
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.schema import with_meshes
@@ -74,8 +74,7 @@ def _train(settings: Mapping[str, Any]) -> Ready:
 
 def _asking(sample: str) -> list[Ready]:
     """The sample, the same with every solver of films that its contacts have, with wear, with all maps."""
-    built = load_case(sample)
-    assert isinstance(built, Built)
+    (built,) = load_case(sample).meshes
     solvers = FILM_SOLVERS[built.design.mesh.shape]
     films = [load_case(sample, settings=_films(one)) for one in solvers]
     worn = [load_case(sample, settings=_WEAR)] if has(built.design.mesh, flanks_in_turn) else []

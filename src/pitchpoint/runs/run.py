@@ -23,7 +23,7 @@ from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, BuiltTrain, Ready
+from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.handed_over import FILES, hand_over
 from pitchpoint.cases.library import names
@@ -38,7 +38,6 @@ from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPER
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
-from pitchpoint.gears.pairs import way
 from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.ehl.registry import ASPERITIES, ISOTHERMAL, SMOOTH, THERMAL
@@ -750,11 +749,11 @@ def _rows(built: Ready, variant: Variant, parts: Mapping[str, xr.Dataset]) -> li
 
 def _stages(built: Ready) -> list[dict[str, Any]]:
     """What is known of the stages of a drive; nothing of one mesh alone."""
-    if not isinstance(built, BuiltDrive) or len(built.meshes) < 2:
+    if len(built.meshes) < 2:
         return []
     bodies = built.stage_bodies or [""] * len(built.stages)
     stages = [
-        _stage(number, SET if isinstance(one, BuiltTrain) else named, one)
+        _stage(number, SET if one.trains else named, one)
         for number, one, named in zip(built.numbers, built.stages, bodies, strict=True)
     ]
     of_sets = [named for one in built.stages for named in one.stage_bodies]
@@ -778,24 +777,12 @@ def _stage(label: Label, bodies: str, built: Built | BuiltTrain) -> dict[str, An
         "speed": point.speed,
         "load": point.load,
         "travels": sorted(built.travels),
-        **_period(built),
+        **built.period._asdict(),
     }
 
 
 SET = "planetary set"
 """What a stage is whose meshes turn together."""
-
-
-def _period(mesh: Built | BuiltTrain) -> dict[str, Any]:
-    """Period of a stage, what it is called, and why time runs against its phase, if it does."""
-    if isinstance(mesh, BuiltTrain):
-        return {"period": float(mesh.design.period), "pitch": TRAIN_PERIOD, "against": ""}
-    words, backwards = way(mesh.design.mesh), mesh.nominal["onward"] < 0.0
-    return {
-        "period": float(mesh.nominal["period"]),
-        "pitch": words.pitch,
-        "against": words.against.format(mesh.driver) if backwards else "",
-    }
 
 
 @double_precision()
@@ -831,7 +818,7 @@ def _manifest(variant: Variant, built: Ready, rows: Sequence[inputs.Row]) -> dic
         "members": list(case.bodies),
         "stages": _stages(built),
         "motion": built.motion,
-        **_period(meshes[0]),
+        **meshes[0].period._asdict(),
         "travels": sorted(built.travels),
         "lacks": {},
         "averaging": built.averaging,
@@ -883,8 +870,6 @@ def _lacking(built: Ready) -> dict[str, str]:
 
 def _models(built: Ready) -> dict[str, Any]:
     """Models that the case uses beside friction, by effect; with the stage where they differ."""
-    if isinstance(built, Built):
-        return _of_mesh(built)
     each = [_of_mesh(mesh) for mesh in built.meshes]
     bearings = _bearings(built.case.losses)
     found = {effect: law for effect, law in each[0].items() if _everywhere(effect, law, each)}
