@@ -788,8 +788,6 @@ def new(
     """
     from pitchpoint.cases.template import template
 
-    if output is not None and output.exists():
-        raise InputError("is there already; give another name", file=str(output))
     if ratio is None:
         for key, value in {"torque": torque, "planets": planets}.items():
             if value is not None:
