@@ -73,7 +73,7 @@ def mesh_efficiency(
     Validity: one or two pairs in contact that share the load as one, small losses: with a coefficient of 0.1
     it is low by some 2 % of the loss.
 
-    Source: Ohlendorf (1958), as in Niemann and Winter.
+    Source: Ohlendorf (1958), as in Niemann and Winter; VDI 2736 Part 2 (2014), equation 8, for spur gears.
 
     Example:
         >>> import numpy as np

@@ -3,7 +3,7 @@
 The work that slides between the flanks in one turn is 2 pi T H_V; k_w times it is the volume that all
 teeth lose. The depth is that volume over the flanks in use, so that it is the mean of the local depth.
 
-Equations 8, 19 and 20 were taken from one public program (tkuhn39 2026), whose tests hold them against
+Equations 19 and 20 were taken from one public program (tkuhn39 2026), whose tests hold them against
 the report of a commercial program; the guideline itself was not at hand.
 """
 
@@ -12,44 +12,9 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Numbers
 
-__all__ = ["flank_length", "loss_factor", "mean_wear_depth"]
+__all__ = ["flank_length", "mean_wear_depth"]
 
 Each = Float[Numbers, "*#b"]
-
-
-def loss_factor(
-    *,
-    teeth_1: Each,
-    teeth_2: Each,
-    contact_ratio_1: Each,
-    contact_ratio_2: Each,
-    base_helix: Each | float = 0.0,
-) -> Float[Array, "..."]:
-    """Loss factor H_V of an external pair, pi (u+1)/(z2 cos beta_b) (1 - e1 - e2 + e1^2 + e2^2) [1].
-
-    Args:
-        teeth_1, teeth_2: z of pinion and wheel, u = z2/z1, shape (...) [1].
-        contact_ratio_1, contact_ratio_2: parts of the transverse contact ratio between pitch point and
-            tip of pinion and wheel, shape (...) [1].
-        base_helix: helix angle on the base cylinder beta_b, shape (...) [rad].
-
-    Returns:
-        H_V, broadcast shape of the arguments [1].
-
-    Validity:
-        Pairs that share the load equally, with a transverse contact ratio between 1 and 2 whose parts are
-        both at most 1.
-
-    Source: VDI 2736 Part 2 (2014), equation 8, known as Ohlendorf's or Wimmer's.
-
-    Example:
-        >>> factor = loss_factor(teeth_1=51, teeth_2=52, contact_ratio_1=0.600, contact_ratio_2=0.554)
-        >>> round(float(factor), 4)
-        0.0626
-    """
-    one, two = jnp.asarray(contact_ratio_1), jnp.asarray(contact_ratio_2)
-    teeth = 1.0 / jnp.asarray(teeth_1) + 1.0 / jnp.asarray(teeth_2)
-    return jnp.pi * teeth / jnp.cos(base_helix) * (1.0 - one - two + one**2 + two**2)
 
 
 def flank_length(
@@ -91,7 +56,7 @@ def mean_wear_depth(
     Args:
         torque: T on this gear, shape (...) [N m].
         turns: N of this gear, in each of which every tooth is loaded once, shape (...) [1].
-        loss_factor: H_V of the pair, shape (...) [1].
+        loss_factor: H_V of the pair by equation 8, which is `mesh_efficiency`, shape (...) [1].
         rate: k_w of this gear, shape (...) [1/Pa].
         face_width: b, common to both gears, shape (...) [m].
         teeth: z of this gear, shape (...) [1].
