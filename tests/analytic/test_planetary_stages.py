@@ -1,5 +1,6 @@
 """Planetary sets as stages of a drive, beside each set and pair from a file of its own."""
 
+import json
 from functools import cache
 
 import numpy as np
@@ -398,6 +399,41 @@ def test_a_wrong_stepped_set_is_told_with_its_key(more, key, told):
     assert f"gears.{key}:" in str(caught.value)
 
 
+PINS = [{"pin_errors": ["2 um", 0, 0]}, {"pin_tolerance": "20 um", "floating": "sun"}]
+
+
+@pytest.mark.whole
+def test_planets_of_sets_in_a_row_share_as_those_of_each_set_by_itself():
+    """Forces, factors and rating at the load without losses; the section tells each stage."""
+    gears = [{**one, **pins} for one, pins in zip(SETS, PINS, strict=True)]
+    built = drive(PAIR, *gears)
+    speeds = SPEED / RATIO_OF_PAIR, SPEED / RATIO_OF_PAIR / RATIOS[0]
+    loads = LOAD / RATIOS[1], LOAD
+    points = zip(gears, loads, speeds, strict=True)
+    apart = [alone(*point) for point in points]
+    sharing = of(built, "planet_sharing")
+    assert stages_of(sharing) == (2, 3)
+    for label, one in zip((2, 3), apart, strict=True):
+        got, want = of_stage(sharing, label), of(one, "planet_sharing")
+        assert {*got.data_vars} == {*want.data_vars}
+        for name in want.data_vars:
+            np.testing.assert_allclose(got[name].values, want[name].values, rtol=1e-9)
+    whole = of(built, "strength")
+    factors = np.hstack([1.0, *(of(one, "strength")["mesh_load_factor"].values for one in apart)])
+    assert factors[1] > 1.1 and factors[3] > 1.1
+    assert whole["mesh_load_factor"].values == pytest.approx(factors, rel=1e-9)
+    remarks = json.loads(whole.attrs["remarks"])
+    assert [text[:8] for text in remarks if "By the deviations" in text] == ["Stage 2:", "Stage 3:"]
+
+
+@pytest.mark.whole
+def test_one_of_two_sets_may_have_pins_out_of_place():
+    """The other one has no sharing, and both without pins out of place have no such part."""
+    built = drive(SETS[0], {**SETS[1], **PINS[1]})
+    assert stages_of(of(built, "planet_sharing")) == (2,)
+    assert "ask for it" in ANALYSES["planet_sharing"].why_not(two_sets())
+
+
 def of_piece(analysis, built, number):
     """A piece of an analysis by its number."""
     return analysis.compute(built, [*analysis.pieces(built)][number], lambda *_: None)
@@ -406,7 +442,7 @@ def of_piece(analysis, built, number):
 def test_what_a_set_in_a_row_does_not_have_is_told_with_its_operating_point():
     """Sharing of planets is in a file of its own, at the torque and speed that stand in the sentence."""
     built = two_sets()
-    told = [text for text in built.warnings if "planetary set" in text]
+    told = [text for text in built.warnings if "is a planetary set" in text]
     assert len(told) == 2
     assert "torque 9.25926 N m and speed 3000 rpm" in told[0]
     assert "torque 40 N m and speed 666.667 rpm" in told[1]

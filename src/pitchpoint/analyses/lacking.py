@@ -103,15 +103,23 @@ def without_train(built: Ready) -> str | None:
 
 
 def no_pins(built: Ready) -> str | None:
-    """Why nothing is computed of how planets share a load."""
-    out_of_place = any(map(_out_of_place, built.trains))
-    if out_of_place and not built.planets:
-        return "pins out of place are those of one set; a file of the set alone has how its planets share"
+    """Why nothing is computed of how planets share a load; of stages where no set has it."""
+    if built.trains and not built.planets:
+        each = {
+            n: no_pins(one)
+            for n, one in zip(built.numbers, built.stages, strict=True)
+            if one.trains
+        }
+        if None in each.values():
+            return None
+        first = next(iter(each.values()))
+        asked = {n: why for n, why in each.items() if why and not isinstance(why, Unasked)}
+        return next((f"stage {number}: {why}" for number, why in asked.items()), first)
     if not built.planets:
         return Unasked("it has no planets")
-    if not out_of_place:
-        return Unasked("pin_errors, pin_tolerance and the like of a planetary set ask for it")
     (alone,) = built.trains
+    if not _out_of_place(alone):
+        return Unasked("pin_errors, pin_tolerance and the like of a planetary set ask for it")
     on_planets = [one for one in alone.design.meshes if one.carrier != HOUSING]
     if built.case.operation.load == 0.0:
         return "planets share no load where there is none"

@@ -9,13 +9,15 @@ import xarray as xr
 from jaxtyping import Float
 
 from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.lacking import no_pins
 from pitchpoint.analyses.torsion import mesh_slopes
-from pitchpoint.cases.built_drive import BuiltTrain
+from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain
 from pitchpoint.cases.schema import TrainTable
 from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.kinematics import HOUSING, Ends
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.loading.planets import PinEquivalents, path_stiffness, planet_forces
+from pitchpoint.results.by_stage import by_stage
 from pitchpoint.results.store import dataset
 
 __all__ = ["Sharing", "shared", "sharing_of"]
@@ -134,14 +136,31 @@ def _equivalents(built: BuiltTrain) -> PinEquivalents | None:
     return PinEquivalents(sun, ring, normal, float(np.arcsin(np.sin(helix) * np.cos(normal))))
 
 
-def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
-    """Dataset of the part.
+def sharing_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
+    """Dataset of the part, of stages with a dimension `stage`: of every set whose pins are out of place.
+
+    A set that is a stage shares the load that it has without losses behind it, as it is rated.
+
+    Args:
+        built: a set, or stages with sets among them.
+    """
+    if built.planets:
+        return _sharing_of_set(built.trains[0])
+    stages = zip(built.numbers, built.stages, strict=True)
+    return by_stage(
+        {
+            n: _sharing_of_set(one.trains[0])
+            for n, one in stages
+            if one.trains and no_pins(one) is None
+        }
+    )
+
+
+def _sharing_of_set(built: BuiltTrain) -> xr.Dataset:
+    """Dataset of one set.
 
     From the equilibrium of springs that only push, see `planet_forces`: teeth at the load of the operating
     point in series with the pin, without friction, weight and centrifugal force.
-
-    Args:
-        built: the case.
     """
     sharing, table = shared(built), built.case.train
     assert table is not None

@@ -134,6 +134,8 @@ def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
     A factor that the case gives stays. So does that of the standard where pins alone make less of it.
     """
     stages = _rated(built)
+    if built.trains and not built.planets:
+        return _with_sharing_of_sets(built, stages)
     if not built.planets:
         return stages, []
     from pitchpoint.analyses.planet_sharing import PERCENTILES, shared  # few cases ask for it
@@ -159,6 +161,19 @@ def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
         f"{bears}; K_γ stays that of the standard or of [strength], which stand for weight, friction and "
         "what else is not among them."
     ]
+
+
+def _with_sharing_of_sets(
+    built: Ready, stages: Sequence[tuple[Label, Built]]
+) -> tuple[list[tuple[Label, Built]], list[str]]:
+    """The same of a drive with planetary sets among its stages, each with its own factor."""
+    found: list[Built] = []
+    told: list[str] = []
+    for number, one in zip(built.numbers, built.stages, strict=True):
+        each, sentences = _with_sharing(one)
+        found += [mesh for _, mesh in each]
+        told += [in_stage(number, text) for text in sentences]
+    return [(label, mesh) for (label, _), mesh in zip(stages, found, strict=True)], told
 
 
 def _open_sharing(built: BuiltTrain, number: Label) -> bool:

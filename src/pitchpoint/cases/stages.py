@@ -455,12 +455,12 @@ def _on_sets(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
     for number, one in enumerate(built, 1):
         for point in (train.case.operation for train in one.trains):
             yield Doubt(
-                f"Stage {number} is a planetary set: sharing of its planets and its state over a period are "
-                f"not computed here. A file of this set alone has them, with torque "
+                f"Stage {number} is a planetary set: its state over a period is not computed here. A file of "
+                f"this set alone has it, with torque "
                 f"{one.carried.show(point.load)} and speed {SPEED.show(point.speed)}, which is the set "
                 "without losses behind it.",
                 moves=REMARKED,
-                brief=f"Stage {number}: sharing of planets in a file of this set alone.",
+                brief=f"Stage {number}: its period in a file of this set alone.",
             )
 
 

@@ -7,7 +7,16 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Table, by_variant
+from pitchpoint.views.section import (
+    Block,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    Table,
+    by_variant,
+    of_meshes,
+)
 
 __all__ = ["sharing_blocks", "sharing_facts", "sharing_printed"]
 
@@ -67,9 +76,14 @@ def _drawn(data: xr.Dataset) -> list[tuple[str, ...]]:
 
 def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """The mesh load factor where no rating takes it: by tolerance about errors given, or by these alone."""
-    data, rated = outcome.parts["planet_sharing"], outcome.parts.get("strength")
+    rated = outcome.parts.get("strength")
+    for label, one in of_meshes(outcome, "planet_sharing"):
+        yield from _fact(one.parts["planet_sharing"], rated, f", {label}" if label else "")
+
+
+def _fact(data: xr.Dataset, rated: xr.Dataset | None, of_stage: str) -> Iterator[KeyFigure]:
     worst = data.get("drawn_planet_load_factor", data["planet_load_factor"]).max()
-    if rated is not None and np.isclose(rated["mesh_load_factor"].max(), worst):
+    if rated is not None and np.isclose(rated["mesh_load_factor"], worst).any():
         return
     if "drawn_planet_load_factor" in data:
         level, factor = _drawn(data)[-1]
@@ -78,7 +92,7 @@ def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         factor = show.quantity("planet_load_factor", float(data["planet_load_factor"]))
         detail = "by the errors of the pins"
     name = "Load on a planet" if rated is None else "Load by deviations"
-    yield KeyFigure(57.0, name, f"K_γ {factor}", detail)
+    yield KeyFigure(57.0, f"{name}{of_stage}", f"K_γ {factor}", detail)
 
 
 def sharing_printed(outcome: Outcome) -> Iterator[Printed]:
