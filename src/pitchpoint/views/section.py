@@ -678,7 +678,13 @@ def _of_stages(name: str, figures: Sequence[KeyFigure]) -> KeyFigure:
     stages = [figure.name.removeprefix(f"{name}, stage ") for figure in figures]
     if len(stages) < 2:
         return figures[0]
-    return replace(figures[0], name=f"{name}, stages {', '.join(stages[:-1])} and {stages[-1]}")
+    few = len(stages) < 4 and all(stage.isdigit() for stage in stages)
+    told = (
+        f"stages {', '.join(stages[:-1])} and {stages[-1]}"
+        if few
+        else f"{len(stages)} meshes alike"
+    )
+    return replace(figures[0], name=f"{name}, {told}")
 
 
 def of_part(part: str, place: str) -> Callable[..., Any]:

@@ -202,16 +202,28 @@ def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None)
     """Value of a variable of a result in its display unit [SI in], see `described`.
 
     Example:
-        >>> quantity("mean_efficiency", 0.99354)
-        '99.35 %'
+        >>> quantity("mean_efficiency", 0.99354), quantity("normal_backlash", 6e-15)
+        ('99.35 %', '0 µm')
     """
     variable = described(name, of)
     if not isfinite(value):
         if name.endswith("film_error"):
             return "not known"
         return "undefined, no power" if variable.display == "%" else "undefined"
-    shown = float(displayed(variable, value))
+    rounding = name in _DIFFERENCES and abs(value) < _OF_DIFFERENCES
+    shown = float(displayed(variable, 0.0 if rounding else value))
     return f"{number(shown)} {unit(variable.display)}".strip() if with_unit else number(shown)
+
+
+_DIFFERENCES = (
+    "circumferential_backlash",
+    "normal_backlash",
+    "backlash_on_circle",
+    "backlash_along_normal",
+    "backlash_angle",
+)
+_OF_DIFFERENCES = 1e-12
+"""What rounding leaves of differences of dimensions of a large gear [m, rad]."""
 
 
 def span(low: str, high: str, values: Sequence[float], of: Any = None) -> str:

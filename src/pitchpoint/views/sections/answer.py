@@ -32,6 +32,7 @@ from pitchpoint.views.screen import cell, efficiency_of, head, shown
 from pitchpoint.views.section import (
     Block,
     Drawn,
+    Heading,
     KeyFigure,
     Page,
     Printed,
@@ -81,8 +82,14 @@ def _blocks(page: Page) -> Iterator[Block]:
         "curves": list(_sums_of_curves(page)),
     }
     yield Drawn("answer.html.jinja", values)
+    headings = set()
     for section in page.sections:
-        yield from made_of(page.outcomes.values(), partial(section.closing, page))
+        for block in made_of(page.outcomes.values(), partial(section.closing, page)):
+            if not isinstance(block, Heading):
+                yield block
+            elif block.words not in headings:  # sections of unlike meshes close alike
+                headings.add(block.words)
+                yield block
 
 
 _SUMS = ("mean_efficiency", "mean_loss", "mean_input_torque", "torque_ripple")
