@@ -662,8 +662,9 @@ def stages_together(figures: "Iterable[KeyFigure]") -> list[KeyFigure]:
     """Key figures of which those that are the same for several stages are one.
 
     Example:
-        >>> each = [KeyFigure(60.0, "Backlash", "0 µm").of(f"stage {one}") for one in (1, 2, 3)]
-        >>> [one.name for one in stages_together(each)]
+        >>> from pitchpoint.views.section import KeyFigure
+        >>> alone = KeyFigure(60.0, "Backlash", "0 µm")
+        >>> [one.name for one in stages_together(alone.of(f"stage {k}") for k in (1, 2, 3))]
         ['Backlash, stages 1, 2 and 3']
     """
     alike: dict[tuple[str, str, str], list[KeyFigure]] = {}

@@ -143,7 +143,7 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     yield Table(["dimension", *gears], measured_rows(data), compact=True)
     if "flank_tolerance" in data:
         classes = [f"{value:.0f}" for value in json.loads(data.attrs["iso_class"])]
-        titles = [f"{gear}, class\u00a0{of}" for gear, of in zip(gears, classes, strict=True)]
+        titles = [f"{gear}, class {of}" for gear, of in zip(gears, classes, strict=True)]
         yield Table(["tolerance by ISO 1328-1", *titles], _tolerance_rows(data), compact=True)
     if data.sizes["case"] == 1:
         yield Paragraph(
