@@ -1,7 +1,7 @@
 """What a drive of several meshes is at its ends: backlash at the output, masses, reflected inertia."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import xarray as xr
@@ -48,6 +48,12 @@ def _carriers(data: xr.Dataset) -> str:
     return " and ".join(json.loads(data.attrs["carriers"]))
 
 
+def _listed(names: Sequence[object]) -> str:
+    """Names as a sentence has them: "1, 2 and 3"."""
+    *first, last = map(str, names)
+    return " and ".join(filter(None, [", ".join(first), last]))
+
+
 def _of_planets(data: xr.Dataset) -> Iterator[str]:
     """What is not known of a train."""
     if _carriers(data):
@@ -60,14 +66,14 @@ def _of_backlash(data: xr.Dataset) -> Iterator[str]:
     """Stages without tolerances, or without a backlash by their teeth."""
     unknown = json.loads(data.attrs["without_backlash"])
     if unknown:
-        listed = " and ".join(map(str, unknown))
+        listed = _listed(unknown)
         yield (
             f"No backlash at the output: that of stage {listed} does not follow from the thickness of teeth; "
             "what plays without load stands under torsion."
         )
     numbers = json.loads(data.attrs["without_tolerances"])
     if numbers and "output_backlash" in data:
-        listed = " and ".join(map(str, numbers))
+        listed = _listed(numbers)
         yield (
             f"Stage{'s' if len(numbers) > 1 else ''} {listed} without tolerances in [gears.inspection]: the "
             "nominal backlash counts."

@@ -120,10 +120,26 @@ _DETAILS = (
 """How dimensions begin that a page which sums up leaves out."""
 
 
+_MAIN = (
+    "number of teeth",
+    "module",
+    "normal module",
+    "helix angle",
+    "profile shift",
+    "centre distance",
+    "face width",
+)
+_LEGIBLE = 2
+"""Meshes with all their dimensions that one page holds in letters which can be read."""
+
+
 def _sums_up(outcome: Outcome) -> Iterator[Table]:
-    """Dimensions that a drawing has; what both gears share stands in both columns."""
-    for name, mesh in by_mesh({"": outcome}, *_PARTS).items():
+    """Dimensions that a drawing has, of many meshes the main ones; what both gears share stands twice."""
+    meshes = by_mesh({"": outcome}, *_PARTS)
+    for name, mesh in meshes.items():
         rows = [row for row in dimensions(mesh) if not row[0].startswith(_DETAILS)]
+        if len(meshes) > _LEGIBLE:
+            rows = [row for row in rows if row[0].startswith(_MAIN)]
         both = [row if len(row) == 3 else (row[0], row[1], row[1]) for row in rows]
         title = ", ".join(filter(None, ["Gears", name]))
         yield Table([title, *named_members(mesh)[:2]], both, caption=title)
