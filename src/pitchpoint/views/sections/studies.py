@@ -53,7 +53,7 @@ _PLACE = 2
 
 _WITHOUT = "Without friction the efficiency is 100 %, and the torque has no ripple."
 
-_WIDE = 8
+_WIDE = 5
 """Columns from beyond which a table is a wide one."""
 
 _MOST = 12
