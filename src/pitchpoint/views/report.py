@@ -213,6 +213,7 @@ _PRINTED = (
     (re.compile(r"(?<=\d)[ \u00a0](?:deg\b|°(?![CF]))"), "°"),
     (re.compile(r"((?:[\dKgN][ \u00a0]|/)[kcm]?m)2(?!\w)"), r"\1²"),
     (re.compile(rf"(?<=\d) (?={_UNIT})"), "\u00a0"),
+    (re.compile(r"((?<=\d\u00a0N)|(?<=\d\u00a0kN)) (?=m(?![a-zA-Z]))"), "\u00a0"),
 )
 """Minus, powers of ten, degrees, squares, and the space between a number and its unit."""
 
