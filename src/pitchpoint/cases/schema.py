@@ -2180,6 +2180,8 @@ def validate(document: Document) -> Case | DriveCase:
         if key in document.tree and not (key == "gears" and of_set):
             given = document.tree[key]
             why = why if isinstance(given, Mapping) else f"{shown(given)} {why}"
+            if key == "gears" and isinstance(given, Mapping) and given:
+                why += f": write stages.1.gears.{next(iter(given))} for those of the first one"
             raise InputError(why, file=document.name, key=key)
     return validated(DriveCase, document)
 
@@ -2210,7 +2212,7 @@ def form_of(tree: Mapping[str, Any]) -> "type[Case] | type[DriveCase]":
 
 
 _OF_ONE_MESH = {
-    "gears": "was given with [[stages]]; gears belong to a stage, or are all that the file has",
+    "gears": "was given with [[stages]], each of which has gears of its own",
     "dynamics": "vibration is that of a mesh; give a stage the table, [stages.dynamics] under its [[stages]]",
     "film": "films are those of a mesh; give a stage the table, film = { ... } under its [[stages]]",
     "wear": "wear is that of a mesh; give a stage the table, wear = { ... } under its [[stages]]",

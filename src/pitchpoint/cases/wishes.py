@@ -103,7 +103,8 @@ def value_advice(key: str, value: Any) -> str:
     """
     key = re.sub(r"^stages\.\d+\.", "", key)
     words = value.strip().casefold() if isinstance(value, str) else ""
-    if isinstance(value, list | tuple) and (len(value) > 2 or key.startswith("operation.")):
+    several = isinstance(value, list | tuple) and key != "gears.teeth"
+    if several and (len(value) > 2 or key.startswith("operation.")):
         return f"several values are swept: --sweep {key}=FIRST:LAST:COUNT, or a study in Python"
     if key == "lubricant.name":
         return "any other oil is given by base, viscosity_40 and viscosity_100 in place of its name"
@@ -548,7 +549,8 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             Wish(
                 names,
                 ("teeth",),
-                "numbers of teeth stand in one list, of sun, planet and ring, all positive",
+                "numbers of teeth stand in one list, of sun, planet and ring, all positive"
+                + "; planets says how many planets there are" * ("planet" in names),
                 _of_members(*names),
             )
             for names in _TEETH_OF_SET
