@@ -312,7 +312,7 @@ def test_a_3k_set_is_a_stage():
         ({"module": "1.2 mm"}, {}, "second.teeth", "it has some 79"),
         ({"tip_alteration": [0, 3]}, {}, "second.tip_alteration", "out of range"),
         ({}, {"output": "carrier"}, "output", "the carrier bears planets alone"),
-        ({}, {"held": "second ring"}, "held", "the ring is none of them"),
+        ({}, {"held": "second ring"}, "held", "none of them is the ring"),
     ],
 )  # fmt: skip
 def test_wrong_second_gears_are_told_with_their_key(more, ends, key, told):

@@ -950,7 +950,13 @@ def bad_stages() -> Iterator[Bad]:
             ("the path of one pair does not stand for several meshes",),
             "stages.2.models.averaging",
         ),
-        ("gears too", ("gears",), BASE["gears"], ("was given with [[stages]]",), "gears: "),
+        (
+            "gears too",
+            ("gears",),
+            BASE["gears"],
+            ("was given with [[stages]]", "write stages.1.gears."),
+            "gears: ",
+        ),
         ("dynamics", ("dynamics",), {}, ("that of a mesh; give a stage the table",), "dynamics: "),
         (
             "film",
@@ -993,6 +999,13 @@ def bad_stages() -> Iterator[Bad]:
             "sanchez",
             ("sanchez_2017",),
             "models.load_sharing",
+        ),
+        (
+            "planet",
+            ("losses",),
+            {"oil": {"between": ["planet", "carrier"], **seal}},
+            ("losses within a set stand in its stage, stages.1.losses",),
+            "losses.oil.between",
         ),
         (
             "shaft",

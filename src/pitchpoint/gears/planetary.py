@@ -326,8 +326,8 @@ class PlanetaryGears(Table):
             told = ", ".join(f"{name} = {body}" for name, body in roles.items())
             of_two = "; of a 3K set the carrier bears planets alone" if three_k else ""
             raise InputError(
-                f"{told}: input, output and held are three different ones of {', '.join(ends)}, and the "
-                f"{missing[0]} is none of them{of_two}",
+                f"{told}: input, output and held are three different ones of {', '.join(ends)}; "
+                f"none of them is the {missing[0]} here{of_two}",
                 key=wrong[-1],
             )
         sun, planet = self.teeth[:2]
