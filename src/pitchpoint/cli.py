@@ -831,7 +831,9 @@ def _settings(texts: list[str]) -> dict[str, Any]:
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals or not key.strip():
-            raise InputError(f"{shown(text)} is not KEY=VALUE", key="--set")
+            raise InputError(
+                f'{shown(text)} is not KEY=VALUE, such as operation.torque="60 N m"', key="--set"
+            )
         settings[key.strip()] = _value(value.strip())
     return settings
 

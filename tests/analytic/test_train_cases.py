@@ -505,7 +505,7 @@ def test_stiffness_at_the_output_is_that_of_the_springs_of_all_planets():
         ({"gears.input": "carrier"}, r"gears.input: .* none of them is the sun"),
         ({"gears.teeth": [24, 30, 20]}, r"20 teeth is not around a planet of 30; .* some 84"),
         ({"gears.teeth": [24, 30]}, r"has 2 values; give those of sun, planet and ring"),
-        ({"gears.profile_shift": [0.1]}, r"has 1 values; give those of sun, planet and ring"),
+        ({"gears.profile_shift": [0.1]}, r"has 1 value; give those of sun, planet and ring"),
         (
             {"gears.held": "planet"},
             r"gears.held: 'planet' is not allowed; use|\"planet\" is not allowed",

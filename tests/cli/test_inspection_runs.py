@@ -171,7 +171,7 @@ def test_teeth_that_can_jam_are_told(built) -> None:
         ),
         ('centre_distance_field = "h7"', "known symmetrical tolerance field"),
         ('thickness_field = "cd35"', "not a known tolerance field of the tooth thickness"),
-        ('thickness_field = ["cd25"]', "has 1 values; give one for both gears"),
+        ('thickness_field = ["cd25"]', "has 1 value; give one for both gears"),
         (
             'thickness_field = "cd25"\nupper_thickness_allowance = "-40 um"\n'
             'lower_thickness_allowance = "-60 um"',

@@ -115,6 +115,20 @@ def test_what_stands_under_two_names_makes_one_list():
     assert "the key is profile_shift" in refused(tree)  # that of gear 2 is not known
 
 
+def test_wear_by_other_names_is_asked_for_as_cycles() -> None:
+    tree = copy.deepcopy(BASE) | {"wear": {"law": "archard_1953", "turns": 1e6, "k": 1e-7}}
+    told = refused(tree)
+    assert (
+        "wear.turns: is not a known key: cycles are turns of the driver; write cycles = 1e+06"
+        in told
+    )
+    assert "write coefficient = 1e-07" in told
+    read(
+        copy.deepcopy(BASE)
+        | {"wear": tomllib.loads("law = 'archard_1953'\ncycles = 1e+06\ncoefficient = 1e-07")}
+    )
+
+
 def test_tables_of_other_programs_are_answered():
     told = refused(copy.deepcopy(BASE) | {"oil": {}, "strength": {"KA": 1.25, "SHmin": 1.2}})
     assert "oil: is not a known table: the oil has a table [lubricant]" in told

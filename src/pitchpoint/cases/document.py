@@ -486,7 +486,11 @@ def _tables_merged(base: Tree, overlay: Tree) -> Tree:
 
 
 def _of_gear(values: Any, gear: str, value: Any) -> Any:
-    """Values of two gears, or of all of a set, with that of one of them replaced."""
+    """Values of two gears, or of all of a set, with that of one of them replaced; or stages with one."""
+    if isinstance(values, dict) and "1" in values:
+        if gear not in values:
+            raise InputError(f"there is no stage {shorten(gear)}; use {' or '.join(values)}")
+        return {**values, gear: value}
     if isinstance(values, dict):
         values = values.get("value")
     each = list(values) if isinstance(values, list | tuple) and len(values) > 1 else [values] * 2

@@ -103,7 +103,7 @@ def value_advice(key: str, value: Any) -> str:
     """
     key = re.sub(r"^stages\.\d+\.", "", key)
     words = value.strip().casefold() if isinstance(value, str) else ""
-    several = isinstance(value, list | tuple) and key != "gears.teeth"
+    several = isinstance(value, list | tuple) and key.split(".")[-1] != "teeth"
     if several and (len(value) > 2 or key.startswith("operation.")):
         return f"several values are swept: --sweep {key}=FIRST:LAST:COUNT, or a study in Python"
     if key == "lubricant.name":
@@ -1076,6 +1076,28 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             ),
             (),
             "safeties are results; a bound on them stands in [targets] or in a study",
+        ),
+    ),
+    "wear": (
+        Wish(
+            (
+                "turns",
+                "revolutions",
+                "n_turns",
+                "number_of_turns",
+                "n_cycles",
+                "load_cycles",
+                "life",
+            ),
+            ("cycles",),
+            "cycles are turns of the driver",
+            _renamed("cycles"),
+        ),
+        Wish(
+            ("k", "archard", "archard_coefficient", "wear_coefficient", "wear_factor"),
+            ("coefficient",),
+            "K of Archard's law is coefficient",
+            _renamed("coefficient"),
         ),
     ),
     "roughness": (

@@ -36,7 +36,7 @@ from pitchpoint.gears.table import (
     WIDTH,
     Load,
 )
-from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
+from pitchpoint.input.quantities import Pair, Quantity, SIValue, count_of, shown
 from pitchpoint.input.tables import Table
 
 __all__ = [
@@ -137,7 +137,7 @@ class OfThree(Pair):
             return tuple(map(self.each.read, every))
         if len(every) != 3:
             raise InputError(
-                f"{shown(value)} has {len(every)} values; give those of sun, planet and ring, or one for "
+                f"{shown(value)} has {count_of(every)}; give those of sun, planet and ring, or one for "
                 f"all; {self.each.allowed}"
             )
         follows = self.follows and every[2] == FROM_CENTRE_DISTANCE
@@ -158,7 +158,7 @@ class OfPlanetAndRing(Pair):
         every = list(value) if isinstance(value, list | tuple) else [value] * 2
         if len(every) != 2:
             raise InputError(
-                f"{shown(value)} has {len(every)} values; give those of the second gear of the planets and "
+                f"{shown(value)} has {count_of(every)}; give those of the second gear of the planets and "
                 f"of its ring, or one for both; {self.each.allowed}"
             )
         if self.each is TEETH and any(isinstance(one, int | float) and one < 0 for one in every):

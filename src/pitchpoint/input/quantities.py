@@ -17,7 +17,7 @@ from pydantic_core import CoreSchema, core_schema
 from pitchpoint import units
 from pitchpoint.errors import InputError, shorten
 
-__all__ = ["Pair", "Quantity", "SIValue", "for_both", "named", "shown", "text"]
+__all__ = ["Pair", "Quantity", "SIValue", "count_of", "for_both", "named", "shown", "text"]
 
 
 TOO_LONG = 10**40
@@ -201,6 +201,16 @@ _MANY = 1e9
 """Bound from which on a plain number counts turns, not parts of one."""
 
 
+def count_of(values: Sequence[Any]) -> str:
+    """How many values a list has, in words.
+
+    Example:
+        >>> count_of([3, 4])
+        '2 values'
+    """
+    return f"{len(values)} value{'s' * (len(values) != 1)}"
+
+
 @dataclass(frozen=True)
 class Pair:
     """Annotation of a field that holds one value for both gears, or a list of two."""
@@ -231,7 +241,7 @@ class Pair:
         if isinstance(value, list | tuple):
             if len(value) != 2:
                 raise InputError(
-                    f"{shown(value)} has {len(value)} values; give one for both gears, or a list "
+                    f"{shown(value)} has {count_of(value)}; give one for both gears, or a list "
                     f"of two{_with_points(value)}; {self.each.allowed}"
                 )
             return self.each.read(value[0]), self.each.read(value[1])
@@ -301,7 +311,7 @@ def for_both(read: Callable[[Any], str]) -> Callable[[Any], tuple[str, str]]:
         given = value if isinstance(value, list | tuple) else [value, value]
         if len(given) != 2:
             raise InputError(
-                f"{shown(value)} has {len(given)} values; give one for both gears, or a list of two"
+                f"{shown(value)} has {count_of(given)}; give one for both gears, or a list of two"
             )
         return read(given[0]), read(given[1])
 
