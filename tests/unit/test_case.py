@@ -117,8 +117,9 @@ def test_the_operating_point_goes_before_other_tables_and_stages_have_numbers() 
         InputError, match=r"one of stages\.1\.gears\.module, stages\.2\.gears\.module"
     ):
         drive.key("module")
+    of_file = Case(str(EXAMPLES[0].with_stem("two_stage")))
     with pytest.raises(InputError, match=r"there is no stage 7; use 1 or 2"):
-        drive.set({"stages.7": {}})
+        of_file.set({"stages.7": {}})
 
 
 def test_a_case_says_in_a_line_what_it_is(case: Case) -> None:
