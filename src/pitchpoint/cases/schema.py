@@ -2117,7 +2117,7 @@ def _check_bodies(loss: Loss, turning: Sequence[str], bodies: Sequence[str]) -> 
         f"{shown(strange)} travels, and losses are torques between bodies that turn; name two of "
         f"{', '.join(known)}"
         if strange in bodies
-        else f"{shown(strange)} is no body of this drive{nearest(strange, known)}{_of_set(strange, known)}"
+        else f"{shown(strange)} is no body of this drive{nearest(strange, known)}{_within_set(strange, known)}"
         if strange is not None
         else f"{shown(first)} was given twice; name two bodies of {', '.join(dict.fromkeys(known))}"
     )
@@ -2125,7 +2125,7 @@ def _check_bodies(loss: Loss, turning: Sequence[str], bodies: Sequence[str]) -> 
         raise InputError(told, key="between")
 
 
-def _of_set(body: str, known: Sequence[str]) -> str:
+def _within_set(body: str, known: Sequence[str]) -> str:
     """Where losses at a body of a planetary set stand in a drive of stages, as a clause; else empty."""
     of_stages = "shaft 2" in known and body in ("planet", *BODIES)
     return "; losses within a set stand in its stage, stages.1.losses" if of_stages else ""
