@@ -118,7 +118,7 @@ def test_the_operating_point_goes_before_other_tables_and_stages_have_numbers() 
     ):
         drive.key("module")
     of_file = Case(str(EXAMPLES[0].with_stem("two_stage")))
-    with pytest.raises(InputError, match="there is no stage .*7.*; use stages.1 to stages.2"):
+    with pytest.raises(InputError, match=r"there is no stage .*7.*; use stages.1 to stages.2"):
         of_file.set({"stages.7": {}})
 
 

@@ -2117,7 +2117,8 @@ def _check_bodies(loss: Loss, turning: Sequence[str], bodies: Sequence[str]) -> 
         f"{shown(strange)} travels, and losses are torques between bodies that turn; name two of "
         f"{', '.join(known)}"
         if strange in bodies
-        else f"{shown(strange)} is no body of this drive{nearest(strange, known)}{_within_set(strange, known)}"
+        else f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
+        + _within_set(strange, known)
         if strange is not None
         else f"{shown(first)} was given twice; name two bodies of {', '.join(dict.fromkeys(known))}"
     )
