@@ -18,7 +18,7 @@ from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
 from pitchpoint.analyses.running import creeping_speed, from_rest, has_spread
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.schema import LossMap
-from pitchpoint.doubts import Doubt, doubts_of
+from pitchpoint.doubts import Doubt, doubts_of, in_percent
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.store import dataset
@@ -51,6 +51,9 @@ LIGHT = 0.25
 
 LIGHTER = 0.35
 """Part of the least load at which the error under lighter ones is measured, between two of the table."""
+
+COARSE = 0.1
+"""Largest error of the loss between nodes from which on a map is told to be coarse."""
 
 FALLS_SHORT = 1e-9
 """Part of a torque by which rounding may leave the largest that was computed behind that of the map."""
@@ -280,7 +283,7 @@ def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         axes,
         title="loss map of the output",
         travels=built.travels,
-        warnings=_told(built, stuck, unknown, parts),
+        warnings=[*_told(built, stuck, unknown, parts), *_coarse(built, errors)],
         solve=told(locked_or_lost(stuck, unknown)),
         note=f"{BOTH_FLANKS} {BETWEEN}",
         speed_ratio=ratio,
@@ -535,6 +538,22 @@ def celsius(degrees: np.ndarray) -> np.ndarray:
         [40.0, 60.0]
     """
     return np.round(units.convert(degrees, "degC", "temperature"), 9)
+
+
+def _coarse(built: Ready, errors: Mapping[str, np.ndarray]) -> Iterator[Doubt]:
+    """That nodes of the map are far from each other, where loss between them is off."""
+    most, mean = errors[ERRORS[0]], errors["mean_interpolation_error"]
+    for law, worst, moved in zip(built.laws, most.tolist(), mean.tolist(), strict=True):
+        if worst > COARSE:
+            yield Doubt(
+                f"{law.title}: between its nodes the map of the output is off by up to {in_percent(worst)}, "
+                f"{in_percent(moved)} in the mean, of the loss; more temperatures and speeds in [loss_map] "
+                "bring it nearer.",
+                "coarse map",
+                worst,
+                moves=moved,
+                brief=f"{law.name}: map off by up to {in_percent(worst)} of the loss between nodes.",
+            )
 
 
 def _told(built: Ready, stuck: Values, lost: Values, parts: Sequence[xr.Dataset]) -> list[str]:

@@ -51,7 +51,10 @@ def back_driving_figure(outcome: Outcome, law: str) -> KeyFigure:
         return KeyFigure(_NEARLY_LOCKED, _NAME, words, at)
     if not np.isfinite(value):
         return KeyFigure(_MOVES, _NAME, "undefined", "no power")
-    words = "efficiency with the output driving; friction does not lock it"
+    torque = show.quantity(
+        "mean_input_torque", float(data["mean_input_torque"].values[position, 0]), of=data
+    )
+    words = f"efficiency with the output driving by {torque}; friction does not lock it"
     would = f"; {_would(data, position)}" if np.isfinite(_limit(data, position)) else ""
     return KeyFigure(_MOVES, _NAME, show.quantity("mean_efficiency", value), f"{words}{would}")
 

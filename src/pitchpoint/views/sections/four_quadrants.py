@@ -99,7 +99,7 @@ def _errors(outcome: Outcome) -> str:
 def _rows(outcome: Outcome) -> list[dict[str, str]]:
     """Torques that hold each load from zero on, by law, at the temperature next to that of operation."""
     data = outcome.parts[OF_OUTPUT.part]
-    there = data.sel(temperature=data.attrs["degree"], method="nearest")
+    there = _nearest_of(data)
     there = there.isel(output_torque=there["output_torque"].values >= 0.0)
     return [
         {
@@ -112,6 +112,16 @@ def _rows(outcome: Outcome) -> list[dict[str, str]]:
     ]
 
 
+def _nearest_of(data: xr.Dataset) -> xr.Dataset:
+    """The map at its temperature next to that of operation."""
+    return data.sel(temperature=data.attrs["degree"], method="nearest")
+
+
+def _degree(outcome: Outcome) -> str:
+    there = _nearest_of(outcome.parts[OF_OUTPUT.part])
+    return show.quantity("temperature", float(there["temperature"]), of=there)
+
+
 def _word(data: xr.Dataset, name: str, at: tuple[int, int]) -> str:
     """A torque, with the ends of its band where it has one."""
     names = [name, *(one for one in HOLDING_BANDS.get(name, ()) if one in data)]
@@ -122,12 +132,13 @@ def _word(data: xr.Dataset, name: str, at: tuple[int, int]) -> str:
 
 def _held(outcome: Outcome) -> Iterator[Block]:
     rows = _rows(outcome)
-    yield Table([*rows[0]], [[*row.values()] for row in rows], caption="Torques that hold a load")
+    caption = f"Torques that hold a load at {_degree(outcome)}"
+    yield Table([*rows[0]], [[*row.values()] for row in rows], caption=caption)
 
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:
     if HOLDING[0] in outcome.parts.get(OF_OUTPUT.part, ()):
-        yield Printed("Held at rest", _rows(outcome), _errors(outcome))
+        yield Printed(f"Held at rest at {_degree(outcome)}", _rows(outcome), _errors(outcome))
 
 
 def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
