@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pitchpoint.analyses import caveats
+from pitchpoint.analyses import caveats, four_quadrants
 from pitchpoint.analyses.cycle import _reasons
 from pitchpoint.cases.build import _roughness
 from pitchpoint.cases.laws import FRICTION
@@ -99,6 +99,17 @@ def test_friction_of_a_thin_film_is_beside_that_of_boundary_lubrication() -> Non
         assert not caveats.boundary_warning(case("none", steel, steel), law, run)
     nylon = in_use("PA66")
     assert not caveats.boundary_warning(case("none", steel, nylon), ISO, cycle(lambda_ratio=0.25))
+
+
+def test_a_map_with_far_nodes_is_doubtful() -> None:
+    two: Any = SimpleNamespace(laws=(ISO, XU))
+    errors = {
+        "interpolation_error": np.array([0.23, 0.04]),
+        "mean_interpolation_error": np.array([0.03, 0.01]),
+    }
+    (told,) = four_quadrants._coarse(two, errors)
+    assert "off by up to 23 %, 3 % in the mean" in told and ISO.title in told
+    assert told.moves == pytest.approx(0.03)
 
 
 def test_flanks_without_roughness_have_a_film_without_limit() -> None:
