@@ -71,6 +71,19 @@ def test_fzg_c_distance_follows_from_its_profile_shifts():
     assert float(mesh.centre_distance) * 1e3 == pytest.approx(91.5, abs=5e-3)
 
 
+def test_derivatives_of_tips_at_the_reference_distance_are_those_towards_backlash():
+    mesh = pair((18, 36), 3e-3, centre_distance=0.081)
+
+    def tips(shift):
+        moved = dataclasses.replace(mesh, profile_shift=shift)
+        return moved.clearance_keeping_tip_alteration
+
+    with_backlash = [float(tips(jnp.array([s, 0.0]))) for s in (0.0, -1e-3)]
+    np.testing.assert_allclose(with_backlash, 0.0, atol=1e-15)
+    np.testing.assert_array_equal(jax.grad(tips)(jnp.zeros(2)), 0.0)
+    np.testing.assert_allclose(jax.grad(tips)(jnp.array([0.1, 0.0])), -1.0)
+
+
 def test_points_of_contact_of_tian_2024():
     points, _, base_pitch, ratio, _ = lengths(pair((18, 36), 3e-3))
     A, B, C, D, E = np.asarray(points) * 1e3

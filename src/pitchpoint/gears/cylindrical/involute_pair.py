@@ -2,7 +2,7 @@
 
 import dataclasses
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import ClassVar, Final, Self
 
 import equinox as eqx
 import numpy as np
@@ -36,6 +36,9 @@ from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.roots import hypot, root
 
 __all__ = ["InvolutePair", "LineOfAction", "zero_backlash_centre_distance"]
+
+TOUCHING: Final = 1e-12
+"""Tip alteration that is none but for rounding [modules]."""
 
 
 def zero_backlash_centre_distance(
@@ -304,7 +307,9 @@ class InvolutePair(InvoluteMesh):
         """Tip alteration coefficient k that keeps the rack's tip clearance; never lengthens (ISO 21771)."""
         reference = jnp.sum(self.teeth) * self.module / (2.0 * jnp.cos(self.helix_angle))
         change = (self.line.distance - reference) / self.module - jnp.sum(self.profile_shift)
-        return jnp.minimum(change, 0.0)
+        # Where flanks touch at the reference centre distance, derivatives are those towards backlash: the
+        # other side of this kink has no gears, and a minimum takes the mean of both.
+        return jnp.where(change < -TOUCHING, change, 0.0)
 
     @property
     def backlash(self) -> Float[Array, ""]:
