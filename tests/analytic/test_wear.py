@@ -8,6 +8,7 @@ from typing import Any
 import equinox as eqx
 import numpy as np
 import pytest
+from vdi_2736_wear import mean_wear_depth
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.build import Built
@@ -24,7 +25,8 @@ from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.runs.run import load_case
-from pitchpoint.wear import film_share, vdi_2736
+from pitchpoint.sizing.three_k import mesh_efficiency
+from pitchpoint.wear import film_share
 from pitchpoint.wear.gradients import march_sensitivities
 from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_turn
 from pitchpoint.wear.laws import archard_1953
@@ -193,13 +195,12 @@ def test_the_mean_depth_is_that_of_the_guideline_for_plastics():
     parts = np.array([place - tips[0], tips[1] - place])
     z1, z2 = (abs(float(z)) for z in mesh.teeth)
     recess, approach = parts[1] / pitch, parts[0] / pitch
-    factor = vdi_2736.loss_factor(
-        teeth_1=z1, teeth_2=z2, contact_ratio_1=recess, contact_ratio_2=approach
-    )
+    teeth, parts = (np.array(z1), np.array(z2)), (np.array(recess), np.array(approach))
+    factor = 1.0 - mesh_efficiency(teeth, parts, 1.0)
     torque = float(built.operation.load) * z1 / z2
     ends = np.asarray(mesh.active_flanks)[0]
     length = abs(ends[1] ** 2 - ends[0] ** 2) / (2.0 * float(mesh.base_radii[0]))
-    expected = vdi_2736.mean_wear_depth(
+    expected = mean_wear_depth(
         torque=torque,
         turns=1.0,
         loss_factor=factor,

@@ -7,7 +7,7 @@ from functools import partial
 from math import cos, isfinite, pi
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, GetJsonSchemaHandler, model_validator
+from pydantic import ConfigDict, Field, GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
@@ -206,6 +206,11 @@ class PlanetaryGears(Table):
     with the second gears. With `teeth` of a ring as well, second gears and their ring make a 3K set: sun and
     both rings are turned, loaded and held, and the carrier bears the planets alone.
     """
+
+    # A table without its family is of a pair: schemas say so too.
+    model_config = ConfigDict(
+        json_schema_extra=lambda schema: schema["required"].insert(0, "family")
+    )
 
     explored: ClassVar[tuple[str, float]] = ("profile_shift.2", 0.2)
     members: ClassVar[tuple[str, ...]] = BODIES
