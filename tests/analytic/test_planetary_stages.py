@@ -423,7 +423,7 @@ def test_planets_of_sets_in_a_row_share_as_those_of_each_set_by_itself():
     assert factors[1] > 1.1 and factors[3] > 1.1
     assert whole["mesh_load_factor"].values == pytest.approx(factors, rel=1e-9)
     remarks = json.loads(whole.attrs["remarks"])
-    assert [text[:8] for text in remarks if "By the deviations" in text] == ["Stage 2:", "Stage 3:"]
+    assert [text[:8] for text in remarks if "by the deviations" in text] == ["Stage 2:", "Stage 3:"]
 
 
 @pytest.mark.whole
