@@ -6,6 +6,8 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import partial
 from typing import Any, Final
 
+from pitchpoint.registry import enumerated
+
 __all__ = [
     "BRIEF",
     "DOUBT_FIELDS",
@@ -292,8 +294,7 @@ def _stages(sentence: str, numbers: list[str]) -> str:
     """Sentence on the first of some stages, as one on all of them."""
     if len(numbers) == 1:
         return sentence
-    listed = f"{', '.join(numbers[:-1])} and {numbers[-1]}"
-    return _STAGE.sub(listed, sentence).replace("tage ", "tages ", 1)
+    return _STAGE.sub(enumerated(numbers), sentence).replace("tage ", "tages ", 1)
 
 
 def _gears(sentence: str, numbers: list[str]) -> str:

@@ -17,6 +17,7 @@ __all__ = [
     "Registry",
     "alike",
     "code_at",
+    "enumerated",
     "known_as",
     "letters",
     "listed",
@@ -232,6 +233,17 @@ def listed(names: Iterable[str]) -> str:
     every = [*names]
     more = f" and {len(every) - _MOST} more" if len(every) > _MOST else ""
     return ", ".join(map(shorten, every[:_MOST])) + more
+
+
+def enumerated(names: Iterable[object]) -> str:
+    """All names in a sentence, at least one.
+
+    Example:
+        >>> enumerated([1]), enumerated([1, 2, 3])
+        ('1', '1, 2 and 3')
+    """
+    *first, last = map(str, names)
+    return " and ".join(filter(None, [", ".join(first), last]))
 
 
 def letters(name: str) -> str:

@@ -100,7 +100,7 @@ __all__ = [
     "TEETH_ALONE",
     "Built",
     "MemberMotion",
-    "Period",
+    "MeshPeriod",
     "build",
     "check_alone",
     "covered",
@@ -145,7 +145,7 @@ UNSETTLED = Doubt(
 NO_PLASTIC = "No gear is of plastic: the tooth temperature changes nothing."
 
 
-class Period(NamedTuple):
+class MeshPeriod(NamedTuple):
     """After what a stage is as it was.
 
     Attributes:
@@ -509,11 +509,11 @@ class Built:
         return (tuple(MemberMotion(coordinate.body, rate) for coordinate, rate in each),)
 
     @property
-    def period(self) -> Period:
+    def period(self) -> MeshPeriod:
         """After what the mesh is as it was."""
         words, backwards = way(self.design.mesh), self.nominal["onward"] < 0.0
         against = words.against.format(self.driver) if backwards else ""
-        return Period(float(self.nominal["period"]), words.pitch, against)
+        return MeshPeriod(float(self.nominal["period"]), words.pitch, against)
 
     def periods_per_turn(self, end: End) -> float:
         """Mesh periods in a turn of the driver or of the loaded member."""

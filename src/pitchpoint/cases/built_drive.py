@@ -15,7 +15,7 @@ from pitchpoint.cases.build import (
     TEETH_ALONE,
     Built,
     MemberMotion,
-    Period,
+    MeshPeriod,
     covered,
     held_by,
     operation_at,
@@ -585,9 +585,9 @@ class BuiltTrain(BuiltDrive):
         return 0.0
 
     @property
-    def period(self) -> Period:
+    def period(self) -> MeshPeriod:
         """After what the train is as it was."""
-        return Period(float(self.design.period), TRAIN_PERIOD)
+        return MeshPeriod(float(self.design.period), TRAIN_PERIOD)
 
     def periods_per_turn(self, end: End) -> float:
         """Mesh periods in a turn of the input or of the output."""

@@ -299,11 +299,16 @@ class PlanetaryGears(Table):
         """True if the ring meshes with second gears of the planets, and there is no other ring."""
         return len(self.teeth) == 2 and self.second is not None
 
+    @property
+    def three_k(self) -> bool:
+        """True if second gears of the planets mesh with a second ring."""
+        return self.second is not None and not self.stepped
+
     @model_validator(mode="after")
     def _whole(self) -> "PlanetaryGears":
         given = {*self.model_fields_set}
         self._check_lengths()
-        if self.second is not None and not self.stepped and "output" not in given:
+        if self.three_k and "output" not in given:
             return self.model_copy(update={"output": SECOND})._checked(given)
         return self._checked(given)
 
@@ -323,13 +328,12 @@ class PlanetaryGears(Table):
     def _checked(self, given: set[str]) -> "PlanetaryGears":
         """The set; InputError unless its bodies have three different parts, and rings are around planets."""
         roles = {"input": self.input, "output": self.output, "held": self.held}
-        three_k = self.second is not None and not self.stepped
-        ends = ("sun", "ring", SECOND) if three_k else BODIES
+        ends = ("sun", "ring", SECOND) if self.three_k else BODIES
         missing = [body for body in ends if body not in roles.values()]
         if missing:
             wrong = [name for name in roles if name in given]
             told = ", ".join(f"{name} = {body}" for name, body in roles.items())
-            of_two = "; of a 3K set the carrier bears planets alone" if three_k else ""
+            of_two = "; of a 3K set the carrier bears planets alone" if self.three_k else ""
             raise InputError(
                 f"{told}: input, output and held are three different ones of {', '.join(ends)}; "
                 f"none of them is the {missing[0]} here{of_two}",

@@ -1,7 +1,9 @@
 """Where a result was run, and the period of its mesh."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
+from typing import Any
 
 import numpy as np
 
@@ -93,16 +95,18 @@ def operating_point(outcome: Outcome) -> OperatingPoint:
 def member_names(outcome: Outcome, stage: Label) -> dict[str, str]:
     """Members of a stage, "gear 1" say, and the bodies of a train that they are; else themselves."""
     known = next(one for one in outcome.manifest["stages"] if one["number"] == stage)
-    bodies = str(known["bodies"]).split(" and ")
-    members = [str(member) for member in known["members"]]
-    return dict(zip(members, bodies if len(bodies) == len(members) else members, strict=True))
+    return dict(zip(map(str, known["members"]), _by_bodies(known), strict=True))
 
 
 def named_members(outcome: Outcome) -> list[str]:
     """Members of a mesh by the bodies of a train that they are, "sun" say; else by themselves."""
-    manifest = outcome.manifest
-    members = [str(member) for member in manifest["members"]]
-    bodies = str(manifest.get("bodies", "")).split(" and ")
+    return _by_bodies(outcome.manifest)
+
+
+def _by_bodies(record: Mapping[str, Any]) -> list[str]:
+    """Members of a mesh, or of a stage, by the bodies of its record as far as these are as many."""
+    members = [str(member) for member in record["members"]]
+    bodies = str(record.get("bodies", "")).split(" and ")
     return bodies if len(bodies) == len(members) else members
 
 

@@ -9,7 +9,7 @@ from math import isfinite, nan
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from pitchpoint.programs import surroundings
-from pitchpoint.registry import Deferred, code_at
+from pitchpoint.registry import Deferred, code_at, enumerated
 from pitchpoint.results.by_stage import Label, of_stage, stages_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
@@ -680,11 +680,7 @@ def _of_stages(name: str, figures: Sequence[KeyFigure]) -> KeyFigure:
     if len(stages) < 2:
         return figures[0]
     few = len(stages) < 4 and all(stage.isdigit() for stage in stages)
-    told = (
-        f"stages {', '.join(stages[:-1])} and {stages[-1]}"
-        if few
-        else f"{len(stages)} meshes alike"
-    )
+    told = f"stages {enumerated(stages)}" if few else f"{len(stages)} meshes alike"
     return replace(figures[0], name=f"{name}, {told}")
 
 

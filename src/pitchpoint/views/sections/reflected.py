@@ -1,11 +1,12 @@
 """What a drive of several meshes is at its ends: backlash at the output, masses, reflected inertia."""
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
 
+from pitchpoint.registry import enumerated
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Table, by_variant
@@ -48,12 +49,6 @@ def _carriers(data: xr.Dataset) -> str:
     return " and ".join(json.loads(data.attrs["carriers"]))
 
 
-def _listed(names: Sequence[object]) -> str:
-    """Names as a sentence has them: "1, 2 and 3"."""
-    *first, last = map(str, names)
-    return " and ".join(filter(None, [", ".join(first), last]))
-
-
 def _of_planets(data: xr.Dataset) -> Iterator[str]:
     """What is not known of a train."""
     if _carriers(data):
@@ -66,14 +61,14 @@ def _of_backlash(data: xr.Dataset) -> Iterator[str]:
     """Stages without tolerances, or without a backlash by their teeth."""
     unknown = json.loads(data.attrs["without_backlash"])
     if unknown:
-        listed = _listed(unknown)
+        listed = enumerated(unknown)
         yield (
             f"No backlash at the output: that of stage {listed} does not follow from the thickness of teeth; "
             "what plays without load stands under torsion."
         )
     numbers = json.loads(data.attrs["without_tolerances"])
     if numbers and "output_backlash" in data:
-        listed = _listed(numbers)
+        listed = enumerated(numbers)
         yield (
             f"Stage{'s' if len(numbers) > 1 else ''} {listed} without tolerances in [gears.inspection]: the "
             "nominal backlash counts."
