@@ -576,6 +576,39 @@ def export(
         typer.echo(visible(str(path)))
 
 
+@app.command()
+def duty(
+    result: Result,
+    cycle: Annotated[
+        Path,
+        typer.Argument(
+            metavar="CYCLE",
+            help="Comma separated values with heads such as time [s], torque [N m], speed [rpm], "
+            "and temperature [degC] where it changes.",
+        ),
+    ],
+    variant: Annotated[str | None, typer.Option("--variant", help="Of the result.")] = None,
+    law: Annotated[str, typer.Option("--law", help="Of friction; the first one by default.")] = "",
+    json_: AsJson = False,
+) -> None:
+    """Energy, torques and loss of a drive over a duty cycle of its output.
+
+    Torque is that of the output on its load, positive along positive speeds. The result is one of a run with
+    --set loss_map.quadrants=4. Motor, heat and life of bearings are added from Python, see `docs duty`.
+    """
+    from pitchpoint.duty_cycle.of_result import duty as over_cycle
+    from pitchpoint.runs.run import open_result
+    from pitchpoint.views.duty_cycle import duty_screen
+
+    data = over_cycle(open_result(result), cycle, variant=variant, law=law)
+    if json_:
+        _emit({name: data[name].values.tolist() for name in data if data[name].dims != ("time",)})
+        return
+    console = _console()
+    for line in duty_screen(data, console.width):
+        console.print(_plain_line(line.text), style=_STYLES[line.style], soft_wrap=True)
+
+
 @app.command("open")
 def open_(
     result: Result,

@@ -669,3 +669,36 @@ def test_speeds_that_make_no_map(added: str, told: str) -> None:
     with pytest.raises(InputError, match=told):
         variant(PAIR + added).built({})
     variant(PAIR + added.replace("3000", "5").replace('"0 ', '"9 ')).built({})
+
+
+def test_a_duty_cycle_is_told_by_the_map(
+    folder: Path,
+    moving: tuple[Ready, Outcome],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    path = tmp_path / "cycle.csv"
+    head = "duration [s], torque [N m], speed [rpm], temperature [degC]\n"
+    path.write_text(head + "2, 20, 60, 40\n1, 20, -60, 50\n3, 10, 0, 50\n")
+    assert command("duty", folder, path) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) <= 12 and max(map(len, lines)) <= 80
+    assert command("duty", folder, path, "--json", "--law", "frictionless") == 0
+    told = json.loads(capsys.readouterr().out)
+    table = table_of(moving[1].parts[FOUR_QUADRANTS.name])
+    speed = 2.0 * np.pi
+    lost = [
+        table.at(20.0, sign * speed, degree, "frictionless").loss
+        for sign, degree in ((1, 40), (-1, 50))
+    ]
+    assert told["lost_energy"] == pytest.approx(2.0 * lost[0] + lost[1], rel=1e-9)
+    assert told["output_energy"] == pytest.approx(2.0 * 20.0 * speed, rel=1e-12)
+    assert told["returned_energy"] == pytest.approx(20.0 * speed, rel=1e-12)
+    path.write_text(head + "2, 20, 60, 400\n")
+    assert command("duty", folder, path) == 2
+    assert (
+        "cycle.csv: temperature: 673.15 K, which are 400 degC, is no temperature"
+        in capsys.readouterr().err
+    )

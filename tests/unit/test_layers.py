@@ -47,6 +47,7 @@ FLOW = (
     {"analyses"},
     {"runs"},
     {"sizing"},
+    {"duty_cycle"},
     {"views"},
     {"notebook"},
     {"exports"},

@@ -633,6 +633,41 @@ VARIABLES: dict[str, Variable] = {
     ),
     "light_load_error": percent("largest error of the loss below the least load of the map", ""),
     "creeping_error": percent("largest error of the loss at a tenth of the lowest speed", ""),
+    "duration": Variable("duration of the cycle", "t", "s", "s", "time"),
+    "input_speed": Variable("input speed", "n_in", "rad/s", "rpm", "rotational speed"),
+    "motor_loss": power("power loss of the motor", "P_motor"),
+    "output_energy": energy("energy that the output gives its load", "W_out"),
+    "returned_energy": energy("energy that the load gives back to the output", "W_back"),
+    "lost_energy": energy("energy lost in the drive", "W_loss"),
+    "input_energy": energy("energy that the driver gives", "W_in"),
+    "recovered_energy": energy("energy that comes back to the driver", "W_rec"),
+    "rotor_energy": energy("energy left in the rotor at the end of the cycle", "W_rotor"),
+    "motor_lost_energy": energy("energy lost in the motor", "W_motor"),
+    "electrical_energy": energy("electrical energy taken", "W_el"),
+    "electrical_recovered_energy": energy("electrical energy given back", "W_el rec"),
+    "rms_output_torque": torque("root mean square of the output torque over time", "T_out rms"),
+    "peak_output_torque": torque("largest output torque, either way", "T_out max"),
+    "peak_output_speed": Variable(
+        "largest output speed, either way", "n_out max", "rad/s", "rpm", "rotational speed"
+    ),
+    "mean_output_speed": Variable(
+        "mean size of the output speed", "n_out mean", "rad/s", "rpm", "rotational speed"
+    ),
+    "mean_torque_of_balls": torque(
+        "output torque of equal life of ball bearings, mean over revolutions", "T_m3"
+    ),
+    "mean_torque_of_rollers": torque(
+        "output torque of equal life of roller bearings, mean over revolutions", "T_m10/3"
+    ),
+    "rms_input_torque": torque("root mean square of the input torque over time", "T_in rms"),
+    "peak_input_torque": torque("largest input torque, either way", "T_in max"),
+    "peak_input_power": power("largest power of the driver, either way", "P_in max"),
+    "quadrant_time": Variable("time by quadrant", "t", "s", "s", "time"),
+    "quadrant_output_energy": energy("energy of the output by quadrant", "W_out"),
+    "quadrant_input_energy": energy("energy of the driver by quadrant", "W_in"),
+    "quadrant_lost_energy": energy("energy lost in the drive by quadrant", "W_loss"),
+    "system_life": Variable("life of all bearings together", "L", "s", "h", "time"),
+    "body_temperature": Variable("temperature of the body", "θ", "K", "degC", "temperature"),
     "temperature": Variable("oil temperature", "θ", "K", "degC", "temperature"),
 }
 

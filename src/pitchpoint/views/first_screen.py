@@ -30,7 +30,7 @@ from pitchpoint.views.section import (
 )
 from pitchpoint.views.sections.studies import is_swept, swept_place
 
-__all__ = ["FEW_LINES", "Line", "beside_each_other", "first_screen", "swept_beside"]
+__all__ = ["FEW_LINES", "Line", "aligned", "beside_each_other", "first_screen", "swept_beside"]
 
 FEW_LINES = 12
 """Lines of a first screen."""
@@ -95,7 +95,7 @@ def first_screen(
     head += [Line(show.first_clauses(at, width))] if at else []
     room = max(room - len(titles), 0)
     known = stages_together(key_figures(in_order(), outcome)) if len(outcomes) == 1 else []
-    figures = _aligned(known[:room], width)
+    figures = aligned(known[:room], width)
     fails, doubtful = (
         [line for line in doubts if line.style == style] for style in ("fails", "doubt")
     )
@@ -241,8 +241,13 @@ def _few(names: Sequence[str], variants: int) -> str:
     return names[0] if len(names) == 1 else f"{len(names)} of {variants} variants"
 
 
-def _aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
-    """Names, values, and what goes with them."""
+def aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:
+    """Lines of figures: names, values, and what goes with them as far as a line holds it.
+
+    Args:
+        figures: in order.
+        width: of the screen [characters].
+    """
     if not figures:
         return []
     names = [show.one_line(figure.name) for figure in figures]

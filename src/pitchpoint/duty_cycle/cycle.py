@@ -1,0 +1,184 @@
+"""A duty cycle as a dataset: courses, energies, means, life and temperatures."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from pitchpoint.duty_cycle.energy import DriverCourse, driver_course, energies, mean_load
+from pitchpoint.duty_cycle.heat import ThermalNetwork
+from pitchpoint.duty_cycle.history import LoadHistory
+from pitchpoint.duty_cycle.life import BALL, ROLLER, RatedLife, system_life
+from pitchpoint.duty_cycle.motor import Motor
+from pitchpoint.efficiency.loss_table import LossTable
+from pitchpoint.errors import InputError
+from pitchpoint.results.store import dataset
+from pitchpoint.results.variable import End
+
+__all__ = ["Heating", "duty_dataset"]
+
+Floats = NDArray[np.float64]
+
+QUADRANTS = ("I", "II", "III", "IV", "rest")
+"""Quadrants of speed and torque of the output; the driver drives in I and III, the load in II and IV."""
+
+
+@dataclass(frozen=True)
+class Heating:
+    """Where losses go as heat.
+
+    Attributes:
+        network: of bodies and resistances.
+        gears: body that the loss of the drive heats and whose temperature is that of the oil.
+        motor: body that the loss of the motor heats and whose temperature is that of its winding; that of
+            the gears where empty.
+
+    Raises:
+        InputError: the network has no such body.
+    """
+
+    network: ThermalNetwork
+    gears: str
+    motor: str = ""
+
+    def __post_init__(self) -> None:
+        for name, body in (("gears", self.gears), ("motor", self.motor or self.gears)):
+            if body not in self.network.capacities:
+                known = ", ".join(self.network.bodies)
+                raise InputError(f"the network has no body {body!r}, but {known}", key=name)
+
+    def _into(self, driver: DriverCourse) -> Floats:
+        """Heat into each body, shape (n, b) [W]."""
+        heat = np.zeros((driver.loss.size, len(self.network.bodies)))
+        heat[:, self.place(self.gears)] += driver.loss
+        heat[:, self.place(self.motor or self.gears)] += driver.motor_loss
+        return heat
+
+    def place(self, body: str) -> int:
+        """Where arrays have a body."""
+        return self.network.bodies.index(body)
+
+    def periodic(
+        self, table: LossTable, history: LoadHistory, law: str, motor: Motor | None
+    ) -> tuple[Floats, Floats]:
+        """Temperatures of the bodies in a cycle that repeats.
+
+        Args:
+            table: loss map, with whose nearest temperatures it goes on beyond its own on the way.
+            history: of the output; its temperatures do not count.
+            law: of friction.
+            motor: of the drive, or None.
+
+        Returns:
+            Temperatures at its begin, shape (b,), and in the middle of each sample, shape (n, b) [K].
+
+        Raises:
+            ConvergenceError: losses grow faster with the temperature than heat leaves.
+        """
+
+        def heat(degrees: Floats) -> Floats:
+            warm = history.at_temperature(degrees[:, self.place(self.gears)])
+            winding = degrees[:, self.place(self.motor or self.gears)]
+            return self._into(
+                driver_course(
+                    table, warm, law=law, motor=motor, winding_temperature=winding, inside=False
+                )
+            )
+
+        return self.network.periodic_with(history.duration, heat)
+
+
+def duty_dataset(
+    table: LossTable,
+    history: LoadHistory,
+    *,
+    law: str = "",
+    motor: Motor | None = None,
+    lives: Mapping[str, RatedLife] | None = None,
+    heating: Heating | None = None,
+    travels: bool = False,
+    **attributes: Any,
+) -> xr.Dataset:
+    """Energies, means, life and temperatures of a drive over a cycle that repeats.
+
+    Args:
+        table: loss map of the drive.
+        history: of its output.
+        law: of friction, the first one of the map by default.
+        motor: of the drive, none by default.
+        lives: of bearings by name.
+        heating: resistances that give the temperatures; those of the history by default.
+        travels: the output travels.
+        attributes: of the dataset beside.
+
+    Returns:
+        Courses over `time`, energies and means as single numbers, energies over `quadrant`, lives over
+        `bearing`, temperatures over `time` and `body`.
+
+    Raises:
+        InputError: samples beyond the map or the limits of the motor, or where friction locks the drive.
+        ConvergenceError: there is no periodic temperature.
+    """
+    winding: Floats | None = None
+    extra: dict[str, tuple[tuple[str, ...], Any]] = {}
+    ends: tuple[End, ...] = ("loaded",) if travels else ()
+    coordinates: dict[str, Any] = {"time": history.time, "quadrant": [*QUADRANTS]}
+    if heating is not None:
+        _, degrees = heating.periodic(table, history, law, motor)
+        history = history.at_temperature(degrees[:, heating.place(heating.gears)])
+        winding = degrees[:, heating.place(heating.motor or heating.gears)]
+        extra["body_temperature"] = (("time", "body"), degrees)
+        coordinates["body"] = [*heating.network.bodies]
+    driver = driver_course(table, history, law=law, motor=motor, winding_temperature=winding)
+    if lives:
+        each = {name: rated.life(history) for name, rated in lives.items()}
+        extra["bearing_life"] = (("bearing",), [*each.values()])
+        extra["system_life"] = ((), system_life(each.values()))
+        coordinates["bearing"] = [*each]
+    numbers = energies(history, driver)
+    numbers["mean_torque_of_balls"] = mean_load(history, BALL)
+    numbers["mean_torque_of_rollers"] = mean_load(history, ROLLER)
+    return dataset(
+        {
+            "output_torque": (("time",), history.torque),
+            "output_speed": (("time",), history.speed),
+            "temperature": (("time",), history.temperature),
+            "input_torque": (("time",), driver.torque),
+            "input_speed": (("time",), driver.speed),
+            "loss": (("time",), driver.loss),
+            "motor_loss": (("time",), driver.motor_loss),
+            **{name: ((), value) for name, value in numbers.items()},
+            **_by_quadrant(history, driver),
+            **extra,
+        },
+        coordinates,
+        travels=ends,
+        title="duty cycle",
+        law=law or next(iter(table.loss_torques)),
+        **attributes,
+    )
+
+
+def _by_quadrant(history: LoadHistory, driver: DriverCourse) -> dict[str, Any]:
+    """Time and energies by quadrant of the output."""
+    speed, torque = history.speed, history.torque
+    inside = [
+        (speed > 0.0) & (torque >= 0.0),
+        (speed < 0.0) & (torque > 0.0),
+        (speed < 0.0) & (torque <= 0.0),
+        (speed > 0.0) & (torque < 0.0),
+        speed == 0.0,
+    ]
+    rows = {
+        "quadrant_time": np.ones_like(speed),
+        "quadrant_output_energy": history.power,
+        "quadrant_input_energy": driver.power,
+        "quadrant_lost_energy": driver.loss,
+    }
+    return {
+        name: (("quadrant",), [float(history.duration[at] @ power[at]) for at in inside])
+        for name, power in rows.items()
+    }

@@ -1,0 +1,210 @@
+"""Power, energy and means of a drive over a load history, by its loss map."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pitchpoint.duty_cycle.history import LoadHistory
+from pitchpoint.duty_cycle.motor import Motor
+from pitchpoint.efficiency.loss_table import LossTable
+from pitchpoint.errors import InputError
+
+__all__ = ["DriverCourse", "demand_inside", "driver_course", "energies", "mean_load"]
+
+Floats = NDArray[np.float64]
+
+_ZERO = 273.15
+
+
+class DriverCourse(NamedTuple):
+    """What the driver of a drive gives and the drive loses, sample by sample, shape (n,) each.
+
+    Attributes:
+        speed: of the driver [rad/s].
+        torque: of the driver on the drive, with what speeds a rotor up; at rest the least that holds the
+            load, 0 where friction holds it [N m].
+        power: of the driver on the drive, negative where the load drives it [W].
+        loss: of the drive [W].
+        motor_loss: of the motor, zero without one [W].
+    """
+
+    speed: Floats
+    torque: Floats
+    power: Floats
+    loss: Floats
+    motor_loss: Floats
+
+
+def driver_course(
+    table: LossTable,
+    history: LoadHistory,
+    *,
+    law: str = "",
+    motor: Motor | None = None,
+    winding_temperature: Floats | float | None = None,
+    inside: bool = True,
+) -> DriverCourse:
+    """Torque of the driver and losses at every sample.
+
+    Args:
+        table: loss map of the drive.
+        history: of its output.
+        law: of friction, the first one of the map by default.
+        motor: whose rotor is sped up and whose losses count; none by default.
+        winding_temperature: of the motor, that of the oil by default, shape (n,) or () [K].
+        inside: all samples have to lie in the map; beyond it the torque that is lost is that of its edge.
+
+    Raises:
+        InputError: samples beyond the map, where friction locks the drive against the load that is to drive
+            it, or above the limits of the motor.
+    """
+    if inside:
+        demand_inside(table, history)
+    degrees = history.temperature - _ZERO
+    point = table.at_many(history.torque, history.speed, degrees, law)
+    _demand_free(np.asarray(point.locked), history)
+    moving = history.speed != 0.0
+    steady = np.where(moving, point.input_torque, 0.0)
+    steady[~moving] = _holding(table, history.torque[~moving], degrees[~moving], law)
+    speed = history.speed / table.speed_ratio
+    rotor = 0.0 if motor is None else motor.inertia
+    torque = steady + rotor * history.acceleration / table.speed_ratio
+    heat = 0.0 * speed
+    if motor is not None:
+        _demand_limits(motor, torque, speed, history)
+        warm = history.temperature if winding_temperature is None else winding_temperature
+        heat = motor.copper_loss(torque, warm) + motor.iron_losses(speed)
+    return DriverCourse(speed, torque, torque * speed, np.asarray(point.loss), heat)
+
+
+def _holding(table: LossTable, torques: Floats, degrees: Floats, law: str) -> Floats:
+    """Torque of least size that holds each load at rest; of equal loads once."""
+    loads, places = np.unique(np.stack([torques, degrees]), axis=1, return_inverse=True)
+    holding = []
+    for load, degree in loads.T.tolist():
+        rest = table.at_rest(load, degree, law)
+        low, high = (-np.inf if np.isnan(rest.lowest) else rest.lowest), rest.highest
+        holding.append(min(max(0.0, low), np.inf if np.isnan(high) else high))
+    return np.array(holding)[places.ravel()] if holding else torques
+
+
+def demand_inside(table: LossTable, history: LoadHistory) -> None:
+    """InputError unless all samples lie in a map, with what lies outside by how much.
+
+    Args:
+        table: the map.
+        history: of its output.
+    """
+    along = np.where(history.speed >= 0.0, 1.0, -1.0) * history.torque
+    torque, speed, _ = table.units
+    rows = (
+        ("torque", along, table.torques, torque, "loss_map.torque"),
+        ("speed", np.abs(history.speed), table.speeds, speed, "loss_map.speed"),
+        (
+            "temperature",
+            history.temperature - _ZERO,
+            table.temperatures,
+            "degC",
+            "loss_map.temperature",
+        ),
+    )
+    for name, values, axis, unit, key in rows:
+        room = 1e-9 * (axis[-1] - axis[0])  # of converted units
+        beyond = (values < axis[0] - room) | (values > axis[-1] + room)
+        if beyond.any():
+            at = int(np.argmax(beyond))
+            raise InputError(
+                f"{np.count_nonzero(beyond)} of {values.size} samples lie beyond the loss map, the first at "
+                f"{history.time[at]:.6g} s with {values[at]:.6g} {unit}; the map has {axis[0]:.6g} to "
+                f"{axis[-1]:.6g} {unit}; run the case with a wider {key}",
+                key=name,
+            )
+
+
+def _demand_free(locked: NDArray[np.bool_], history: LoadHistory) -> None:
+    if not locked.any():
+        return
+    at = int(np.argmax(locked))
+    raise InputError(
+        f"at {np.count_nonzero(locked)} of {locked.size} samples, the first at {history.time[at]:.6g} s, the "
+        "load is to drive and friction locks the drive against it: what its driver has to add there is not "
+        "in the loss map",
+        key="torque",
+    )
+
+
+def _demand_limits(motor: Motor, torque: Floats, speed: Floats, history: LoadHistory) -> None:
+    for name, values, most, unit in (
+        ("largest_torque", torque, motor.largest_torque, "N m"),
+        ("largest_speed", speed, motor.largest_speed, "rad/s"),
+    ):
+        at = int(np.argmax(np.abs(values)))
+        if abs(values[at]) > most:
+            raise InputError(
+                f"the duty cycle asks the motor for {abs(values[at]):.6g} {unit} at "
+                f"{history.time[at]:.6g} s, and {most:.6g} {unit} is the most that it has",
+                key=f"motor.{name}",
+            )
+
+
+def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
+    """Energies [J] and means over the cycle.
+
+    Args:
+        history: of the output.
+        driver: at the same samples.
+
+    Returns:
+        By name. Power balances at each sample but for what speeds the rotor up, which a cycle gives back:
+        input_energy - recovered_energy = output_energy - returned_energy + lost_energy + rotor_energy.
+    """
+    seconds = history.duration
+    out, given = history.power, driver.power
+    total = float(seconds.sum())
+
+    def whole(power: Floats) -> float:
+        return float(seconds @ power)
+
+    def rms(values: Floats) -> float:
+        return float(np.sqrt(seconds @ values**2 / total))
+
+    electrical = given + driver.motor_loss
+    return {
+        "duration": total,
+        "output_energy": whole(np.maximum(out, 0.0)),
+        "returned_energy": whole(np.maximum(-out, 0.0)),
+        "lost_energy": whole(driver.loss),
+        "input_energy": whole(np.maximum(given, 0.0)),
+        "recovered_energy": whole(np.maximum(-given, 0.0)),
+        "rotor_energy": whole(given - out - driver.loss),
+        "motor_lost_energy": whole(driver.motor_loss),
+        "electrical_energy": whole(np.maximum(electrical, 0.0)),
+        "electrical_recovered_energy": whole(np.maximum(-electrical, 0.0)),
+        "mean_loss": whole(driver.loss) / total,
+        "rms_output_torque": rms(history.torque),
+        "peak_output_torque": float(np.abs(history.torque).max()),
+        "peak_output_speed": float(np.abs(history.speed).max()),
+        "mean_output_speed": whole(np.abs(history.speed)) / total,
+        "rms_input_torque": rms(driver.torque),
+        "peak_input_torque": float(np.abs(driver.torque).max()),
+        "peak_input_power": float(np.abs(given).max()),
+    }
+
+
+def mean_load(history: LoadHistory, exponent: float) -> float:
+    """Constant load that uses up as much life over the same way, (sum n t |T|^p / sum n t)^(1/p) [N m or N].
+
+    Args:
+        history: of the output; what stands still uses up nothing.
+        exponent: p of the life, 3 of ball bearings, 10/3 of roller bearings [1].
+
+    Returns:
+        The load; NaN where nothing moves.
+
+    Source: ISO 281:2007 with Miner's rule; means over revolutions, not over time, in which heat goes.
+    """
+    way = history.duration * np.abs(history.speed)
+    if not way.sum() > 0.0:
+        return float("nan")
+    return float((way @ np.abs(history.torque) ** exponent / way.sum()) ** (1.0 / exponent))

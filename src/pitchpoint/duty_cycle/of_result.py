@@ -1,0 +1,115 @@
+"""The duty cycle of a result, by the loss map that it holds."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from pitchpoint.analyses.four_quadrants import table_of
+from pitchpoint.analyses.registry import FOUR_QUADRANTS
+from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
+from pitchpoint.duty_cycle.history import (
+    LoadHistory,
+    history_of_table,
+    load_history,
+    read_history,
+)
+from pitchpoint.duty_cycle.life import RatedLife
+from pitchpoint.duty_cycle.motor import Motor
+from pitchpoint.errors import InputError
+from pitchpoint.runs.run import Outcome
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["duty"]
+
+
+def duty(
+    result: Mapping[str, Outcome],
+    time: "ArrayLike | Mapping[str, ArrayLike] | pd.DataFrame | str | Path",
+    torque: ArrayLike | None = None,
+    speed: ArrayLike | None = None,
+    temperature: ArrayLike | None = None,
+    *,
+    variant: str | None = None,
+    law: str = "",
+    motor: Motor | None = None,
+    lives: Mapping[str, RatedLife] | None = None,
+    heating: Heating | None = None,
+) -> xr.Dataset:
+    """What a drive takes, loses and bears over a duty cycle of its output, by its loss map.
+
+    Args:
+        result: of a case with `loss_map.quadrants = 4`.
+        time: of the samples [s]; or a table or a file of comma separated values with all columns, whose heads
+            have units: time or duration, torque, speed, and temperature where it changes.
+        torque: of the output on its load, positive along positive speeds, shape (n,) or () [N m or N].
+        speed: of the output, shape (n,) or () [rad/s or m/s].
+        temperature: of the oil, that of the case by default, shape (n,) or () [K].
+        variant: of the result, the first one by default.
+        law: of friction, the first one of the map by default.
+        motor: by value; none by default.
+        lives: of bearings and wave generators by name, as catalogues rate them.
+        heating: thermal resistances, from which the temperatures follow.
+
+    Returns:
+        A dataset, see `duty_dataset`.
+
+    Raises:
+        InputError: the result has no map in four quadrants, the load is no history or lies beyond the map.
+        ConvergenceError: the drive has no periodic temperature.
+
+    Example:
+        >>> import pitchpoint as pp
+        >>> result = pp.run("drive.toml", changes={"loss_map.quadrants": 4})  # doctest: +SKIP
+        >>> pp.duty(result, [0.0, 1.0, 3.0], [20.0, 60.0, -10.0], 2.0).lost_energy  # doctest: +SKIP
+    """
+    outcome = _outcome(result, variant)
+    data = outcome.parts[FOUR_QUADRANTS.name]
+    travels = data["output_torque"].attrs["units"] == "N"
+    usual = float(data.attrs["degree"]) if temperature is None else temperature
+    if torque is None and speed is None:
+        history = _of_columns(time, usual, travels)
+    elif torque is None or speed is None:
+        raise InputError(f"{'torque' if torque is None else 'speed'} of the output is missing")
+    else:
+        history = load_history(time, torque, speed, usual)  # type: ignore[arg-type]
+    return duty_dataset(
+        table_of(data),
+        history,
+        law=law,
+        motor=motor,
+        lives=lives,
+        heating=heating,
+        travels=travels,
+        case=str(outcome.manifest["case"]),
+        variant=str(outcome.manifest["variant"]),
+        fingerprint=str(data.attrs["fingerprint"]),
+    )
+
+
+def _outcome(result: Mapping[str, Outcome], variant: str | None) -> Outcome:
+    """That of a variant, with the map; InputError without."""
+    name = next(iter(result)) if variant is None else variant
+    if name not in result:
+        raise InputError(f"there is no variant {name!r}, but {', '.join(result)}", key="variant")
+    outcome = result[name]
+    if FOUR_QUADRANTS.name not in outcome.parts:
+        case = outcome.manifest["case"]
+        why = outcome.manifest["lacks"].get(FOUR_QUADRANTS.name)
+        raise InputError(
+            f"the result has no {FOUR_QUADRANTS.title}: "
+            + (why or f"run {case} with --set loss_map.quadrants=4, which computes it")
+        )
+    return outcome
+
+
+def _of_columns(columns: Any, temperature: Any, travels: bool) -> LoadHistory:
+    if isinstance(columns, str | Path):
+        return read_history(Path(columns), temperature, travels=travels)
+    if hasattr(columns, "keys"):
+        return history_of_table(columns, temperature, travels=travels)
+    raise InputError("torque and speed of the output are missing; or give a table with all columns")

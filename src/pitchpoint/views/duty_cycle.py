@@ -1,0 +1,73 @@
+"""The first screen of a duty cycle."""
+
+from collections.abc import Iterator
+
+import xarray as xr
+
+from pitchpoint.views import show
+from pitchpoint.views.first_screen import Line, aligned
+from pitchpoint.views.section import KeyFigure
+
+__all__ = ["duty_screen"]
+
+
+def duty_screen(data: xr.Dataset, width: int) -> list[Line]:
+    """What the cycle takes, loses and asks of the driver, in a dozen lines.
+
+    Args:
+        data: see `duty_dataset`.
+        width: of the screen [characters].
+    """
+    count = data.sizes["time"]
+    title = f"{data.attrs['case']} ({data.attrs['variant']}), friction {data.attrs['law']}"
+    low, high = (float(end(data["temperature"])) for end in (xr.DataArray.min, xr.DataArray.max))
+    degrees = show.span("temperature", "temperature", (low, high), data)
+    cycle = f"duty cycle of {_value(data, 'duration')}, {count} samples, oil {degrees}"
+    return [
+        Line(title, "title"),
+        Line(show.first_clauses(cycle, width)),
+        *aligned([*_figures(data)], width),
+    ]
+
+
+def _figures(data: xr.Dataset) -> Iterator[KeyFigure]:
+    def of(name: str) -> str:
+        return _value(data, name)
+
+    quadrants = dict(
+        zip(data["quadrant"].values.tolist(), data["quadrant_time"].values, strict=True)
+    )
+    total = float(data["duration"])
+    rows = (
+        ("Energy in", "input_energy", f"{of('recovered_energy')} comes back to the driver"),
+        ("Energy out", "output_energy", f"{of('returned_energy')} comes back from the load"),
+        ("Energy lost", "lost_energy", f"{of('mean_loss')} in the mean"),
+        (
+            "Output torque",
+            "rms_output_torque",
+            f"rms over time, largest {of('peak_output_torque')}",
+        ),
+        ("Output speed", "mean_output_speed", f"in the mean, largest {of('peak_output_speed')}"),
+        ("Input torque", "rms_input_torque", f"rms over time, largest {of('peak_input_torque')}"),
+        ("Input power", "peak_input_power", "largest, either way"),
+        (
+            "Bearing torque",
+            "mean_torque_of_balls",
+            f"mean over turns, of rollers {of('mean_torque_of_rollers')}",
+        ),
+    )
+    for order, (name, variable, detail) in enumerate(rows):
+        yield KeyFigure(order, name, of(variable), detail)
+    shares = [
+        f"{words} {show.number(100.0 * seconds / total, 3)} %"
+        for words, seconds in (
+            ("driven", quadrants["I"] + quadrants["III"]),
+            ("back-driven", quadrants["II"] + quadrants["IV"]),
+            ("at rest", quadrants["rest"]),
+        )
+    ]
+    yield KeyFigure(len(rows), "Time", _value(data, "duration"), ", ".join(shares))
+
+
+def _value(data: xr.Dataset, name: str) -> str:
+    return show.quantity(name, float(data[name]), of=data)

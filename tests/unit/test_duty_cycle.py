@@ -1,0 +1,304 @@
+"""Duty cycles by hand: energies of a loss map, means, lives, resistances."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.integrate import solve_ivp
+
+from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
+from pitchpoint.duty_cycle.energy import driver_course, energies, mean_load
+from pitchpoint.duty_cycle.heat import ThermalNetwork
+from pitchpoint.duty_cycle.history import (
+    LoadHistory,
+    history_of_table,
+    load_history,
+    load_steps,
+    read_history,
+)
+from pitchpoint.duty_cycle.life import BALL, ROLLER, SCATTER, RatedLife, system_life
+from pitchpoint.duty_cycle.motor import COPPER, Motor
+from pitchpoint.efficiency.loss_table import LOCKED, LossTable
+from pitchpoint.errors import ConvergenceError, InputError
+
+WARM = 313.15
+RATIO = 0.02
+COLD_LOSS, WARM_LOSS = 3.0, 2.0
+
+
+def table(back: float = 1.0) -> LossTable:
+    """Loses 2 N m at 40 degC and 3 at 20 beside a tenth of the load, at any speed."""
+    torques, speeds, degrees = (-50.0, 0.0, 50.0), (0.0, 1.0, 10.0), (20.0, 40.0)
+    lost = [
+        [[(0.1 * abs(load) + base) * (back if load < 0.0 else 1.0) for base in (3.0, 2.0)]] * 3
+        for load in torques
+    ]
+    return LossTable(torques, speeds, degrees, {"own": lost}, RATIO)
+
+
+def history() -> LoadHistory:
+    return load_steps([2.0, 1.0, 3.0, 4.0], [30.0, 40.0, -20.0, 10.0], [2.0, -4.0, 5.0, 0.0], WARM)
+
+
+def test_energies_are_those_of_the_map_by_hand() -> None:
+    lift, lower, brake = (2.0 * 30.0 * 2.0, 1.0 * 40.0 * 4.0, 3.0 * 20.0 * 5.0)
+    lost = [2.0 * 5.0 * 2.0, 1.0 * 6.0 * 4.0, 3.0 * 4.0 * 5.0]
+    of = energies(history(), driver_course(table(), history()))
+    assert of["output_energy"] == pytest.approx(lift, rel=1e-12)
+    assert of["returned_energy"] == pytest.approx(lower + brake, rel=1e-12)
+    assert of["lost_energy"] == pytest.approx(sum(lost), rel=1e-12)
+    assert of["input_energy"] == pytest.approx(lift + lost[0], rel=1e-12)
+    assert of["recovered_energy"] == pytest.approx(lower + brake - sum(lost[1:]), rel=1e-12)
+    assert of["mean_loss"] == pytest.approx(sum(lost) / 10.0, rel=1e-12)
+
+
+def test_at_rest_the_driver_holds_with_the_least_torque_of_the_band() -> None:
+    course = driver_course(table(), load_steps([1.0] * 3, [10.0, -10.0, 1.0], 0.0, WARM))
+    # 10 N m, less what friction of 2 + 1 N m holds, at the driver; 1 N m is held by friction alone.
+    np.testing.assert_allclose(course.torque, [7.0 * RATIO, -7.0 * RATIO, 0.0], rtol=1e-12)
+    assert (course.loss == 0.0).all()
+
+
+def test_power_balances_with_a_rotor_that_is_sped_up() -> None:
+    time = np.linspace(0.0, 2.0, 4001)
+    speed = 3.0 * np.sin(np.pi * time) ** 2
+    motor = Motor(torque_constant=0.1, resistance=0.5, inertia=1e-4)
+    moved = load_history(time, 20.0, speed, WARM)
+    course = driver_course(table(), moved, motor=motor)
+    kinetic = 0.5 * 1e-4 * (course.speed[1000] ** 2 - course.speed[0] ** 2)
+    half = load_history(time[:1001], 20.0, speed[:1001], WARM)
+    of = energies(half, driver_course(table(), half, motor=motor))
+    assert of["rotor_energy"] == pytest.approx(kinetic, rel=1e-5)
+    assert energies(moved, course)["rotor_energy"] == pytest.approx(0.0, abs=1e-9 * kinetic)
+
+
+def test_motor_losses_are_those_of_its_current_and_speed() -> None:
+    motor = Motor(torque_constant=0.1, resistance=0.5, iron_loss=0.01, iron_exponent=1.5)
+    steps = load_steps([1.0], [30.0], [2.0], WARM)
+    course = driver_course(table(), steps, motor=motor, winding_temperature=353.15)
+    current, speed = 35.0 * RATIO / 0.1, 2.0 / RATIO
+    by_hand = 0.5 * (1.0 + 60.0 * COPPER) * current**2 + 0.01 * speed**1.5
+    assert course.motor_loss[0] == pytest.approx(by_hand, rel=1e-12)
+
+
+def test_mean_torques_and_lives_agree_by_two_roads() -> None:
+    speeds, torques, times = (
+        [50.0, 200.0, 80.0, 0.0],
+        [60.0, 20.0, -45.0, 30.0],
+        [0.3, 2.0, 0.3, 1.5],
+    )
+    cycle = load_steps(times, torques, speeds, WARM)
+    assert mean_load(cycle, BALL) == pytest.approx(26.98558, abs=5e-6)
+    cycles = RatedLife(torque=40.0, revolutions=1e8).life(cycle) / sum(times)
+    assert cycles == pytest.approx(4661224.7556, abs=1e-4)
+    for exponent in (BALL, ROLLER):  # Miner: the part of its life that each step uses up
+        turns = [time * speed / (2.0 * np.pi) for time, speed in zip(times, speeds, strict=True)]
+        lives = [1e8 * (40.0 / abs(torque)) ** exponent for torque in torques]
+        damage = sum(part / life for part, life in zip(turns, lives, strict=True))
+        rated = RatedLife(torque=40.0, revolutions=1e8, exponent=exponent)
+        assert rated.life(cycle) == pytest.approx(sum(times) / damage, rel=1e-12)
+    # Heat goes with the mean square over time, which is another number.
+    slow = cycle._replace(speed=cycle.speed / 50.0, torque=cycle.torque / 2.0)
+    of = energies(slow, driver_course(table(), slow))
+    assert of["rms_output_torque"] == pytest.approx(30.594 / 2.0, abs=5e-4)
+
+
+def test_parts_that_fail_alone_fail_sooner_together() -> None:
+    assert system_life([20.0, 35.0, 12.0], SCATTER[BALL]) == pytest.approx(6.83, abs=5e-3)
+    assert system_life([12.0, math.inf]) == pytest.approx(12.0)
+
+
+NETWORK = ThermalNetwork(
+    {"gears": 120.0, "housing": 800.0},
+    {("gears", "housing"): 0.6, ("housing", "ambient"): 1.5},
+)
+
+
+def test_temperatures_of_two_bodies_follow_their_equations() -> None:
+    heat = np.array([15.0, 6.0])
+    np.testing.assert_allclose(NETWORK.steady([15.0, 6.0]) - 293.15, [40.5, 31.5], rtol=1e-12)
+    np.testing.assert_allclose(NETWORK.time_constants, [1389.83, 62.17], atol=5e-3)
+
+    def rates(_: float, at: np.ndarray) -> list[float]:
+        between, out = (at[0] - at[1]) / 0.6, (at[1] - 293.15) / 1.5
+        return [(heat[0] - between) / 120.0, (heat[1] + between - out) / 800.0]
+
+    start = np.array([293.15, 303.15])
+    stepped = solve_ivp(rates, (0.0, 7200.0), start, method="DOP853", rtol=1e-11, atol=1e-9)
+    course = NETWORK.course(start, np.full(72, 100.0), np.tile(heat, (72, 1)))
+    np.testing.assert_allclose(course[-1], stepped.y[:, -1], rtol=1e-9)
+    # Steps of any length: what decays below the last bit, and what hardly decays.
+    uneven = np.array([1e-3, 6e6, 7200.0 - 1e-3])
+    again = NETWORK.course(start, uneven, np.array([heat, [0.0, 0.0], heat]))
+    cold = NETWORK.course(np.full(2, 293.15), uneven[2:], heat[None])
+    np.testing.assert_allclose(again[-1], cold[-1], rtol=1e-12)
+
+
+def test_a_cycle_comes_back_to_its_periodic_temperatures() -> None:
+    durations, heat = np.array([30.0, 200.0, 70.0]), np.array([[90.0, 0.0], [2.0, 1.0], [0.0, 9.0]])
+    begin = NETWORK.periodic(durations, heat)
+    np.testing.assert_allclose(NETWORK.course(begin, durations, heat)[-1], begin, rtol=1e-12)
+    many = NETWORK.course(np.full(2, 293.15), np.tile(durations, 200), np.tile(heat, (200, 1)))
+    np.testing.assert_allclose(many[-1], begin, rtol=1e-6)
+
+
+@pytest.mark.parametrize(("loss", "degrees"), [(20.0, 73.850), (60.0, 300.1), (120.0, None)])
+def test_copper_that_warms_up_settles_or_runs_away(loss: float, degrees: float | None) -> None:
+    winding = ThermalNetwork({"winding": 100.0}, {("winding", "ambient"): 1.0 / 0.45})
+
+    def heat(temperature: np.ndarray) -> np.ndarray:
+        return loss * (1.0 + COPPER * (temperature - 293.15))
+
+    if degrees is None:
+        with pytest.raises(ConvergenceError, match="no steady temperature"):
+            winding.steady_with(heat)
+        return
+    closed = loss / (0.45 - COPPER * loss)
+    assert winding.steady_with(heat)[0] - 293.15 == pytest.approx(closed, rel=1e-9)
+    assert winding.steady_with(heat)[0] - 273.15 == pytest.approx(degrees, abs=6e-2)
+
+
+def test_oil_has_the_temperature_that_its_own_loss_gives() -> None:
+    drive = ThermalNetwork({"drive": 1e9}, {("drive", "ambient"): 0.8}, ambient=293.15)
+    data = duty_dataset(table(), history(), heating=Heating(drive, "drive"))
+    rise = float(data["temperature"][0]) - 293.15
+    # 3 N m at 20 degC, 1 less at 20 K more, beside a tenth of the load, over the way of 2 s, 1 s and 3 s.
+    way, loaded = np.array([4.0, 4.0, 15.0]), np.array([30.0, 40.0, 20.0])
+    mean = float((way * (3.0 - 0.05 * rise + 0.1 * loaded)).sum()) / 10.0
+    assert rise == pytest.approx(0.8 * mean, rel=1e-7)
+    assert float(data["mean_loss"]) == pytest.approx(mean, rel=1e-7)
+
+
+def test_quadrants_add_up_to_the_whole() -> None:
+    data = duty_dataset(
+        table(), history(), lives={"a": RatedLife(40.0, 1e8), "b": RatedLife(40.0, 1e8)}
+    )
+    assert data["quadrant_time"].values.tolist() == [2.0, 1.0, 0.0, 3.0, 4.0]
+    assert float(data["quadrant_lost_energy"].sum()) == pytest.approx(float(data["lost_energy"]))
+    together = float(data["bearing_life"][0]) / 2.0 ** (1.0 / SCATTER[BALL])
+    assert float(data["system_life"]) == pytest.approx(together, rel=1e-12)
+
+
+def test_tables_and_files_have_units_in_their_heads(tmp_path: Path) -> None:
+    rows = pd.DataFrame(
+        {"time [ms]": [0, 500, 2000], "Torque [N m]": [1, 2, 3], "speed [rpm]": [0, 30, 60]}
+    )
+    warm = rows.assign(**{"temperature [degC]": [40.0, 40.0, 41.5]})
+    of = history_of_table(warm, 300.0)
+    np.testing.assert_allclose(of.time, [0.0, 0.5, 2.0])
+    np.testing.assert_allclose(of.speed, [0.0, np.pi, 2.0 * np.pi])
+    np.testing.assert_allclose(of.temperature, [313.15, 313.15, 314.65])
+    for name, text in (
+        ("plain.csv", warm.to_csv(index=False)),
+        ("marked.csv", "\ufeff" + warm.to_csv(index=False)),
+        ("comma.csv", warm.to_csv(index=False, sep=";", decimal=",")),
+        ("tabs.csv", warm.to_csv(index=False, sep="\t")),
+    ):
+        path = tmp_path / name
+        path.write_text(text, "utf-8")
+        np.testing.assert_allclose(read_history(path, 300.0).temperature, of.temperature)
+    assert (history_of_table(rows, 300.0).temperature == 300.0).all()
+
+
+@pytest.mark.parametrize(
+    ("columns", "says"),
+    [
+        ({"time": [0, 1], "torque": [1, 1]}, "speed: a duty cycle has a column"),
+        ({"torque": [1, 1], "speed": [1, 1]}, "either time .s. or duration .s., and has none"),
+        ({"time": [0, 1], "duration": [1, 1], "torque": 1, "speed": 1}, "and has both"),
+        (
+            {"time": [0, 1], "torque [lb]": [1, 1], "speed": [1, 1]},
+            "'lb' in 'torque .lb.' is no unit",
+        ),
+        ({"time": [0, 1], "torque": [1, 1], "velocity": [1, 1]}, "'velocity' is no column"),
+        (
+            {"time": [0, 1], "torque": [1, 1], "Torque [N m]": [1, 1], "speed": 1},
+            "two columns for torque",
+        ),
+        ({"time": [1, 0], "torque": [1, 1], "speed": [1, 1]}, "time ascends"),
+        ({"time": [0, 0], "torque": [1, 1], "speed": [1, 1]}, "time ascends"),
+        ({"time": [0], "torque": [1], "speed": [1]}, "at least two samples"),
+        ({"time": [0, 1], "torque": [1, math.nan], "speed": [1, 1]}, "torque: sample 2 is nan"),
+        ({"time": [0, 1], "torque": [1, 1], "speed": ["a", "b"]}, "speed: is not made of numbers"),
+        (
+            {"time": [0, 1], "torque": [1, 1, 1], "speed": [1, 1]},
+            "torque: has 3 samples where time has 2",
+        ),
+        (
+            {"time": [0, 1], "torque": 1, "speed": 1, "temperature": 40.0},
+            "40 K, which are -233.15 degC, .* plain numbers are in K",
+        ),
+        ({"duration": [-1, 1], "torque": 1, "speed": 1}, "durations are not negative"),
+        ({"duration": [0, 0], "torque": 1, "speed": 1}, "one at least is above 0"),
+    ],
+)
+def test_what_is_no_duty_cycle_is_told(columns: dict[str, object], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        history_of_table(columns, WARM)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("torque", "speed", "degrees", "says"),
+    [
+        (60.0, 1.0, WARM, r"torque: 2 of 2 samples .* 60 N m; the map has -50 to 50 N m"),
+        (1.0, -11.0, WARM, r"speed: 2 of 2 samples .* 11 rad/s"),
+        (1.0, 1.0, 353.15, r"temperature: 2 of 2 samples .* 80 degC"),
+    ],
+)
+def test_loads_beyond_the_map_are_told(
+    torque: float, speed: float, degrees: float, says: str
+) -> None:
+    with pytest.raises(InputError, match=says):
+        driver_course(table(), load_history([0.0, 1.0], torque, speed, degrees))
+
+
+def test_a_load_that_friction_locks_is_told() -> None:
+    locked = table()._replace(
+        loss_torques={"own": [[[LOCKED] * 2] * 3, *table().loss_torques["own"][1:]]}
+    )
+    with pytest.raises(
+        InputError, match="at 1 of 2 samples, the first at 1 s, the load is to drive"
+    ):
+        driver_course(locked, load_history([0.0, 1.0], [10.0, -10.0], 1.0, WARM))
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"resistance": 0.0}, "motor.resistance: 0.0 was given; it is above 0"),
+        ({"torque_constant": math.nan}, "motor.torque_constant"),
+        ({"inertia": -1.0}, "motor.inertia: -1.0 was given; it is not negative"),
+        ({"iron_exponent": 3.0}, "allowed is 1 to 2"),
+    ],
+)
+def test_a_motor_without_its_constants_is_told(change: dict[str, float], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        Motor(**{"torque_constant": 0.1, "resistance": 0.5, **change})
+
+
+def test_a_motor_that_is_too_small_is_told() -> None:
+    weak = Motor(torque_constant=0.1, resistance=0.5, largest_torque=0.5)
+    with pytest.raises(
+        InputError, match=r"asks the motor for 0.7 N m at 1 s, and 0.5 N m is the most"
+    ):
+        driver_course(table(), load_steps([2.0, 1.0], [30.0, 10.0], 1.0, WARM), motor=weak)
+
+
+@pytest.mark.parametrize(
+    ("capacities", "resistances", "says"),
+    [
+        ({}, {}, "needs one body"),
+        ({"a": 0.0}, {("a", "ambient"): 1.0}, "0.0 was given for a"),
+        ({"a": 1.0}, {("a", "b"): 1.0}, "between two of a, ambient"),
+        ({"a": 1.0}, {("a", "a"): 1.0}, "between two of a, ambient"),
+        ({"a": 1.0}, {("a", "ambient"): -1.0}, "-1.0 was given between a and ambient"),
+        ({"a": 1.0, "b": 1.0}, {("a", "ambient"): 1.0}, "no way for the heat from b"),
+    ],
+)
+def test_networks_without_a_way_out_are_told(
+    capacities: dict[str, float], resistances: dict[tuple[str, str], float], says: str
+) -> None:
+    with pytest.raises(InputError, match=says):
+        ThermalNetwork(capacities, resistances)
