@@ -22,7 +22,7 @@ _LAZY: dict[str, str] = {
     "study": "pitchpoint.runs.study",
     "three_k_sets": "pitchpoint.sizing.three_k",
     "three_k_tables": "pitchpoint.sizing.three_k",
-    "duty": "pitchpoint.duty_cycle.of_result",
+    "duty": "pitchpoint.notebook.duty_cycle",
     "Motor": "pitchpoint.duty_cycle.motor",
     "RatedLife": "pitchpoint.duty_cycle.life",
     "ThermalNetwork": "pitchpoint.duty_cycle.heat",

@@ -589,6 +589,9 @@ def duty(
     ],
     variant: Annotated[str | None, typer.Option("--variant", help="Of the result.")] = None,
     law: Annotated[str, typer.Option("--law", help="Of friction; the first one by default.")] = "",
+    teeth: Annotated[
+        bool, typer.Option("--teeth", help="With damage and life of the teeth by ISO 6336.")
+    ] = False,
     json_: AsJson = False,
 ) -> None:
     """Energy, torques and loss of a drive over a duty cycle of its output.
@@ -596,11 +599,11 @@ def duty(
     Torque is that of the output on its load, positive along positive speeds. The result is one of a run with
     --set loss_map.quadrants=4. Motor, heat and life of bearings are added from Python, see `docs duty`.
     """
-    from pitchpoint.duty_cycle.of_result import duty as over_cycle
-    from pitchpoint.runs.run import open_result
+    from pitchpoint.notebook.duty_cycle import duty as over_cycle
+    from pitchpoint.notebook.result import open_result
     from pitchpoint.views.duty_cycle import duty_screen
 
-    data = over_cycle(open_result(result), cycle, variant=variant, law=law)
+    data = over_cycle(open_result(result), cycle, variant=variant, law=law, teeth=teeth)
     if json_:
         _emit({name: data[name].values.tolist() for name in data if data[name].dims != ("time",)})
         return

@@ -15,6 +15,8 @@ from pitchpoint.analyses.figures import RATING
 from pitchpoint.analyses.strength import STRENGTH as ANALYSIS
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.variant import Variant
+from pitchpoint.duty_cycle.history import load_steps
+from pitchpoint.duty_cycle.tooth_life import tooth_life
 from pitchpoint.errors import InputError
 from pitchpoint.gears.families import sample_of
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
@@ -535,3 +537,33 @@ def test_a_drive_has_the_extremes_of_its_rated_stages() -> None:
         np.testing.assert_allclose(values, expected, rtol=1e-12)
     assert [*ratings_of([built("spur_and_strain_wave")], 1)] == [*RATING]
     assert ratings_of([built("torus")], 1) == {}
+
+
+@pytest.mark.parametrize(("load", "roots"), [(240.0, False), (560.0, True)])
+def test_teeth_last_as_long_as_the_life_at_which_their_safety_is_one(
+    load: float, roots: bool
+) -> None:
+    text = (PAIR + RATED).replace('"50 N m"', f'"{load} N m"')
+    output = SPEED * 23.0 / 61.0
+    two = (load_steps([7.0, 3.0], [load, load], [output, -output], 333.15), 1.0)
+    back = (load_steps([1.0], [-load], output, 333.15), -1.0)
+    with pp.double_precision():
+        built = Variant(tomllib.loads(text), "pair.toml", "default").built({})
+        for history, side in (two, back):
+            damage = tooth_life(built, history)
+            working = damage["flank_life" if side > 0.0 else "back_flank_life"]
+            other = damage["back_flank_life" if side > 0.0 else "flank_life"]
+            assert np.isinf(other).all() and np.isfinite(working).all()
+            assert np.isfinite(damage["root_life"]).any() == roots
+            for name, lives in (("flank", working), ("root", damage["root_life"])):
+                for gear, life in enumerate(lives.values[0]):
+                    if np.isinf(life):
+                        continue
+                    rated = text.replace("[strength]", f'[strength]\nlife = "{float(life)!r} s"')
+                    (job,) = [
+                        job
+                        for job in jobs(Variant(tomllib.loads(rated), "pair.toml", "default"), {})
+                        if job.name == "strength"
+                    ]
+                    safety = job.compute(job.pieces[0])[f"{name}_safety"].values[gear]
+                    assert safety == pytest.approx(1.0, rel=1e-9)

@@ -20,6 +20,7 @@ from pitchpoint.duty_cycle.history import (
 )
 from pitchpoint.duty_cycle.life import BALL, ROLLER, SCATTER, RatedLife, system_life
 from pitchpoint.duty_cycle.motor import COPPER, Motor
+from pitchpoint.duty_cycle.tooth_life import cycles_to_failure, load_classes
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.errors import ConvergenceError, InputError
 
@@ -302,3 +303,33 @@ def test_networks_without_a_way_out_are_told(
 ) -> None:
     with pytest.raises(InputError, match=says):
         ThermalNetwork(capacities, resistances)
+
+
+def test_lines_of_endurance_give_the_cycles_that_teeth_bear() -> None:
+    cycles, limits = np.array([1e5, 5e7, 1e10]), np.array([1600.0, 1000.0, 850.0])
+    number = [
+        cycles_to_failure(np.array(stress), cycles, limits)
+        for stress in (1700.0, 1600.0, 1000.0, 900.0, 850.0, 840.0)
+    ]
+    slope = math.log(1e10 / 5e7) / math.log(1000.0 / 850.0)
+    by_hand = [0.0, 1e5, 5e7, 5e7 * (1000.0 / 900.0) ** slope, 1e10, math.inf]
+    np.testing.assert_allclose(number, by_hand, rtol=1e-12)
+
+
+def test_a_collective_keeps_way_and_mean_loads_of_a_history() -> None:
+    few = load_classes(
+        load_steps([1.0, 2.0, 3.0, 1.0], [5.0, -5.0, 5.0, 0.0], [2.0, -1.0, 2.0, 2.0], WARM)
+    )
+    assert sorted(zip(*few, strict=True)) == [(-5.0, 1.0, 2.0), (5.0, 2.0, 8.0)]
+    time = np.linspace(0.0, 10.0, 4001)
+    waves = load_history(time, 30.0 * np.sin(time), 2.0 + np.cos(3.0 * time), WARM)
+    many = load_classes(waves)
+    assert many.way.size <= 2 * 48 * 6
+    way = waves.duration * waves.speed
+    for side in (-1.0, 1.0):
+        counts, here = side * waves.torque > 0.03, side * many.torque > 0.0
+        for power in (4.0, 6.6, 8.0, 8.7):
+            asked = way[counts] @ np.abs(waves.torque[counts]) ** power
+            assert many.way[here] @ np.abs(many.torque[here]) ** power == pytest.approx(
+                asked, rel=3e-3
+            )

@@ -29,7 +29,7 @@ from pitchpoint.strength.load_factors import MOST_RESONANCE
 from pitchpoint.strength.rating import ROWS, ratings
 from pitchpoint.strength.root import THINNEST_RIM, THINNEST_RING
 
-__all__ = ["STRENGTH", "ratings_of"]
+__all__ = ["STRENGTH", "rated_rows", "rating_inputs", "ratings_of"]
 
 _MAIN = (
     "tangential_force",
@@ -192,13 +192,27 @@ def _sharing_by(built: Built, factor: float) -> Built:
     return replace(built, case=built.case.model_copy(update={"strength": changed}))
 
 
+def rating_inputs(built: Ready) -> list[tuple[Label, tuple[Any, ...]]]:
+    """Meshes of a drive that are rated with their labels, each as `rated` takes it.
+
+    Args:
+        built: the drive.
+    """
+    return [(label, _asked(one)) for label, one in _with_sharing(built)[0]]
+
+
+def rated_rows(alike: Sequence[Any]) -> Numbers:
+    """Ratings of many rows as `rated` takes them, of gears of one kind, by name along an axis in front.
+
+    Args:
+        alike: the rows.
+    """
+    return in_chunks(lambda rows: ratings(_bare(rows[0]), *rows[1:]), alike, size=ROWS)
+
+
 def _ratings(pairs: Sequence[Built]) -> list[Numbers]:
     """Ratings of pairs, together as far as their gears are of one kind."""
-
-    def of(alike: Sequence[Any]) -> Numbers:
-        return in_chunks(lambda rows: ratings(_bare(rows[0]), *rows[1:]), alike, size=ROWS)
-
-    found = in_groups(of, [_asked(one) for one in pairs])
+    found = in_groups(rated_rows, [_asked(one) for one in pairs])
     return [{name: values[row] for name, values in found.items()} for row in range(len(pairs))]
 
 

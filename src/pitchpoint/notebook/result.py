@@ -198,8 +198,11 @@ class Result(Mapping[str, Outcome]):
         variant: str | None = None,
     ) -> "pd.DataFrame":
         """Derivatives of a main figure by the keys of the case file, see `gradients`."""
-        case = self._origins[variant or next(iter(self))]()
-        return gradients(case, of, by, law=law, friction=self._friction)
+        return gradients(self.case(variant), of, by, law=law, friction=self._friction)
+
+    def case(self, variant: str | None = None) -> Case:
+        """The case of a variant, of the first one by default; KeyError where there is no such variant."""
+        return self._origins[variant or next(iter(self))]()
 
     def write_report(self, path: str | Path, *, units: UnitsByKind | None = None) -> None:
         """Write the report, one HTML file; `units` as in `summary`."""

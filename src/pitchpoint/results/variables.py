@@ -667,6 +667,12 @@ VARIABLES: dict[str, Variable] = {
     "quadrant_input_energy": energy("energy of the driver by quadrant", "W_in"),
     "quadrant_lost_energy": energy("energy lost in the drive by quadrant", "W_loss"),
     "system_life": Variable("life of all bearings together", "L", "s", "h", "time"),
+    "flank_damage": Variable("damage of the working flank in one cycle", "D_H", "1"),
+    "back_flank_damage": Variable("damage of the back flank in one cycle", "D_H", "1"),
+    "root_damage": Variable("damage of the root in one cycle", "D_F", "1"),
+    "flank_life": Variable("life of the working flank", "L_H", "s", "h", "time"),
+    "back_flank_life": Variable("life of the back flank", "L_H", "s", "h", "time"),
+    "root_life": Variable("life of the root", "L_F", "s", "h", "time"),
     "body_temperature": Variable("temperature of the body", "θ", "K", "degC", "temperature"),
     "temperature": Variable("oil temperature", "θ", "K", "degC", "temperature"),
 }

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+import numpy as np
 import xarray as xr
 
 from pitchpoint.views import show
@@ -66,8 +67,49 @@ def _figures(data: xr.Dataset) -> Iterator[KeyFigure]:
             ("at rest", quadrants["rest"]),
         )
     ]
+    if "root_life" in data:
+        yield _of_teeth(data)
     yield KeyFigure(len(rows), "Time", _value(data, "duration"), ", ".join(shares))
 
 
+def _of_teeth(data: xr.Dataset) -> KeyFigure:
+    """Least life of teeth and whose it is; a word where all endure."""
+    parts = {"flank": "flank_life", "back flank": "back_flank_life", "root": "root_life"}
+    lives = {
+        (words, *place): float(data[name].values[at])
+        for words, name in parts.items()
+        for at, place in _places(data)
+        if not np.isnan(data[name].values[at])
+    }
+    if not lives:
+        return KeyFigure(
+            90, "Life of teeth", "not known", "ISO 6336 has no lines of these materials"
+        )
+    (part, mesh, gear), least = min(lives.items(), key=lambda item: item[1])
+    if np.isinf(least):
+        return KeyFigure(
+            90, "Life of teeth", "no end", "all teeth endure the cycle (ISO 6336, Miner)"
+        )
+    of = f", mesh {mesh}" if data.sizes["mesh"] > 1 else ""
+    value = show.quantity("root_life", least)
+    return KeyFigure(90, "Life of teeth", value, f"{part} of {gear}{of} first (ISO 6336, Miner)")
+
+
+def _places(data: xr.Dataset) -> Iterator[tuple[tuple[int, int], tuple[str, str]]]:
+    """Indices of meshes and gears with their labels."""
+    meshes, gears = (data[name].values.tolist() for name in ("mesh", "gear"))
+    for row, mesh in enumerate(meshes):
+        for column, gear in enumerate(gears):
+            yield (row, column), (mesh, gear)
+
+
+_LARGER = {"J": ((1e6, "MJ"), (1e3, "kJ")), "s": ((3600.0, "h"), (60.0, "min"))}
+"""Units in which large energies and times stand, the largest first."""
+
+
 def _value(data: xr.Dataset, name: str) -> str:
-    return show.quantity(name, float(data[name]), of=data)
+    value, unit = float(data[name]), data[name].attrs["units"]
+    for size, larger in _LARGER.get(unit, ()):
+        if abs(value) >= 10.0 * size:
+            return f"{show.number(value / size)} {larger}"
+    return show.quantity(name, value, of=data)

@@ -18,7 +18,9 @@ from pitchpoint.duty_cycle.history import (
 )
 from pitchpoint.duty_cycle.life import RatedLife
 from pitchpoint.duty_cycle.motor import Motor
+from pitchpoint.duty_cycle.tooth_life import tooth_life
 from pitchpoint.errors import InputError
+from pitchpoint.notebook.result import Result
 from pitchpoint.runs.run import Outcome
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ __all__ = ["duty"]
 
 
 def duty(
-    result: Mapping[str, Outcome],
+    result: Result,
     time: "ArrayLike | Mapping[str, ArrayLike] | pd.DataFrame | str | Path",
     torque: ArrayLike | None = None,
     speed: ArrayLike | None = None,
@@ -39,6 +41,7 @@ def duty(
     motor: Motor | None = None,
     lives: Mapping[str, RatedLife] | None = None,
     heating: Heating | None = None,
+    teeth: bool = False,
 ) -> xr.Dataset:
     """What a drive takes, loses and bears over a duty cycle of its output, by its loss map.
 
@@ -54,6 +57,7 @@ def duty(
         motor: by value; none by default.
         lives: of bearings and wave generators by name, as catalogues rate them.
         heating: thermal resistances, from which the temperatures follow.
+        teeth: with damage and life of the teeth by ISO 6336, see `tooth_life`.
 
     Returns:
         A dataset, see `duty_dataset`.
@@ -77,7 +81,7 @@ def duty(
         raise InputError(f"{'torque' if torque is None else 'speed'} of the output is missing")
     else:
         history = load_history(time, torque, speed, usual)  # type: ignore[arg-type]
-    return duty_dataset(
+    cycle = duty_dataset(
         table_of(data),
         history,
         law=law,
@@ -89,14 +93,18 @@ def duty(
         variant=str(outcome.manifest["variant"]),
         fingerprint=str(data.attrs["fingerprint"]),
     )
+    if not teeth:
+        return cycle
+    (held,) = result.case(variant).held
+    return cycle.merge(tooth_life(held.built({}), history))
 
 
-def _outcome(result: Mapping[str, Outcome], variant: str | None) -> Outcome:
+def _outcome(result: Result, variant: str | None) -> Outcome:
     """That of a variant, with the map; InputError without."""
     name = next(iter(result)) if variant is None else variant
     if name not in result:
         raise InputError(f"there is no variant {name!r}, but {', '.join(result)}", key="variant")
-    outcome = result[name]
+    outcome: Outcome = result[name]
     if FOUR_QUADRANTS.name not in outcome.parts:
         case = outcome.manifest["case"]
         why = outcome.manifest["lacks"].get(FOUR_QUADRANTS.name)
