@@ -9,8 +9,9 @@ import pytest
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.drag import Drag
-from pitchpoint.efficiency.drive import Stage, chained, drive_cycle
+from pitchpoint.efficiency.drive import chained, drive_cycle
 from pitchpoint.efficiency.drive_summary import mean_friction_of_drive
+from pitchpoint.efficiency.mesh_link import MeshLink
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, extremes
 from pitchpoint.efficiency.registry import BEARING_LOSS
 from pitchpoint.efficiency.running_torque import torques_at_rest_of_drive
@@ -40,14 +41,14 @@ def design(teeth, module, **options):
 
 @cache
 def stage_1():
-    return Stage(design((23, 61), 2e-3), (0, 1))
+    return MeshLink(design((23, 61), 2e-3), (0, 1))
 
 
 @cache
 def stage_2():
     """Gear 2 turns clockwise, and so does gear 3 on its shaft: it pushes with its right flanks."""
     made = design((19, 70), 3e-3, right_flank=True)
-    return Stage(made, (1, 2), place=jnp.asarray(0.06))
+    return MeshLink(made, (1, 2), place=jnp.asarray(0.06))
 
 
 def models(mu, sharing="equal", compliance="beam_hertz"):
@@ -59,7 +60,7 @@ def models(mu, sharing="equal", compliance="beam_hertz"):
 
 @eqx.filter_jit
 def answers(drive, point, mu):
-    laws = [models(mu)] * len(drive.stages)
+    laws = [models(mu)] * len(drive.links)
     found = drive_cycle(drive, point, laws, nodes=4, few=None)
     lost = [jnp.squeeze(one.loss) for one in found.states]
     return {
@@ -165,7 +166,7 @@ def test_bearings_of_the_middle_shaft_bear_both_meshes(turn):
 
 def test_the_output_drives_backwards():
     back = both().driven_backwards()
-    assert back.links == ((2, 1), (1, 0))
+    assert back.ends == ((2, 1), (1, 0))
     point = Operation(*map(jnp.asarray, (300.0 / RATIO, 150.0 / RATIO, 330.0)))
     smooth = solved(back, 0.0, point)
     np.testing.assert_allclose(smooth["input"], 300.0, rtol=1e-12)
@@ -192,7 +193,7 @@ def test_stages_that_do_not_follow_each_other():
         InputError, match="stage 2 is driven by shaft 3, and the stage before it loads"
     ):
         chained([stage_1(), dataclasses.replace(stage_2(), shafts=(2, 3))])
-    wrong = Stage(design((19, 70), 3e-3), (1, 2))
+    wrong = MeshLink(design((19, 70), 3e-3), (1, 2))
     with pytest.raises(
         InputError, match="stage 2 turns its first shaft against the stage before it"
     ):
@@ -251,7 +252,7 @@ def every_figure(drive, few):
 @pytest.mark.parametrize("drag", [[], BEARINGS], ids=["alone", "bearings"])
 def test_few_loads_stand_for_all_meetings_of_three_stages(drag):
     drag = [dataclasses.replace(one, between=jnp.append(one.between, 0.0)) for one in drag]
-    third = Stage(design((17, 55), 4e-3), (2, 3), place=jnp.asarray(0.12), turn=jnp.asarray(1.0))
+    third = MeshLink(design((17, 55), 4e-3), (2, 3), place=jnp.asarray(0.12), turn=jnp.asarray(1.0))
     drive = chained([stage_1(), stage_2(), third], drag)
     few, every = (jax.tree.map(np.asarray, every_figure(drive, few)) for few in (5, None))
     assert few["count"] < every["count"] / (2 if drag else 6)

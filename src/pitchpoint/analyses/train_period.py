@@ -9,9 +9,8 @@ from pitchpoint.cases.built_drive import BuiltTrain
 from pitchpoint.drive.kinematics import Ends
 from pitchpoint.drive.thrusts import axial_loads
 from pitchpoint.drive.torques import train_torques
-from pitchpoint.efficiency.drive import NODES_OF_TRAINS
 from pitchpoint.efficiency.quasi_static import power_ratio
-from pitchpoint.efficiency.train_cycle import train_cycle
+from pitchpoint.efficiency.train_cycle import NODES_OF_TRAINS, train_cycle
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of

@@ -27,6 +27,7 @@ from pitchpoint.cases.schema import (
     Loss,
     Oil,
     Operating,
+    StageTable,
     Surface,
     bearings_of,
 )
@@ -91,6 +92,7 @@ from pitchpoint.status import Code, Status
 
 if TYPE_CHECKING:
     from pitchpoint.cases.strength import Rated
+    from pitchpoint.efficiency.mesh_link import MeshLink
     from pitchpoint.lubrication.ehl.model import FilmModel
 
 __all__ = [
@@ -533,6 +535,12 @@ class Built:
             found[name] = first if drives else first + 1 if loaded else free
             free += not (drives or loaded)
         return found
+
+    def link(self, shafts: tuple[int, ...], table: StageTable) -> "MeshLink":
+        """The mesh as a link of a drive, see `on_shafts`, where the table of its stage places it."""
+        from pitchpoint.efficiency.mesh_link import MeshLink  # which one mesh alone is not
+
+        return MeshLink(self.design, shafts, array(table.turn), array(table.place))
 
     @property
     def inner_bearing(self) -> frozenset[str]:

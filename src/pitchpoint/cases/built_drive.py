@@ -21,7 +21,7 @@ from pitchpoint.cases.build import (
     operation_at,
 )
 from pitchpoint.cases.document import STAGES, Document
-from pitchpoint.cases.schema import DriveCase
+from pitchpoint.cases.schema import DriveCase, StageTable
 from pitchpoint.doubts import in_stage
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Drive
@@ -34,6 +34,7 @@ from pitchpoint.results.variable import End
 
 if TYPE_CHECKING:
     from pitchpoint.efficiency.train import Train, TrainMesh
+    from pitchpoint.efficiency.train_state import TrainLink
 
 __all__ = [
     "MEETINGS",
@@ -241,12 +242,12 @@ class BuiltDrive:
     @property
     def driver(self) -> str:
         """Name of the shaft that drives."""
-        return f"shaft {self.design.links[0][0] + 1}"
+        return f"shaft {self.design.ends[0][0] + 1}"
 
     @property
     def loaded(self) -> str:
         """Name of the shaft that carries the load."""
-        return f"shaft {self.design.links[-1][1] + 1}"
+        return f"shaft {self.design.ends[-1][1] + 1}"
 
     @property
     def transmits(self) -> bool:
@@ -307,17 +308,17 @@ class BuiltDrive:
     @property
     def drags(self) -> tuple[Drag, ...]:
         """Places beside the teeth where power is lost: of the drive, then of its stages."""
-        stages = (drag for one in self.design.stages for drag in one.design.drag)
-        return (*self.design.drag, *stages)
+        inside = (drag for link in self.design.links for drag in link.design.drag)
+        return (*self.design.drag, *inside)
 
     def held_otherwise(self, way: float) -> "BuiltDrive":
         """The drive with what holds it at rest at one end of its spread, see `Built.held_otherwise`."""
         drag = held_by(self.design.drag, self.case.losses, way)
-        stages = []
-        for stage, built in zip(self.design.stages, self.stages, strict=True):
-            held = held_by(stage.design.drag, built.case.losses, way)
-            stages.append(replace(stage, design=replace(stage.design, drag=held)))
-        return replace(self, design=replace(self.design, drag=drag, stages=tuple(stages)))
+        links = []
+        for link, built in zip(self.design.links, self.stages, strict=True):
+            held = held_by(link.design.drag, built.case.losses, way)
+            links.append(replace(link, design=replace(link.design, drag=held)))
+        return replace(self, design=replace(self.design, drag=drag, links=tuple(links)))
 
     @staticmethod
     def figures_of(
@@ -425,15 +426,15 @@ class BuiltDrive:
         load = {"torque": None, "force": None, stages[-1].carried.kind: point.load * step}
         changed = point.model_copy(update={**load, "speed": point.speed * step})
         turned = self.design.driven_backwards()
-        each = zip(turned.stages, stages, strict=True)
-        warm = [replace(place, design=one.design) for place, one in each]
+        each = zip(turned.links, stages, strict=True)
+        warm = [replace(link, design=one.design) for link, one in each]
         return replace(
             self,
             case=self.case.model_copy(update={"operation": changed}),
             stages=stages,
             numbers=self.numbers[::-1],
             documents=self.documents[::-1],
-            design=replace(turned, stages=tuple(warm)),
+            design=replace(turned, links=tuple(warm)),
             operation=operation_at(changed),
         )
 
@@ -597,6 +598,12 @@ class BuiltTrain(BuiltDrive):
     def on_shafts(self, first: int, _: int) -> dict[str, int]:
         """Shaft of a drive for each of its ends, see `Built.on_shafts`."""
         return {self.driver: first, self.loaded: first + 1}
+
+    def link(self, shafts: tuple[int, ...], _: StageTable) -> "TrainLink":
+        """The train as a link of a drive, see `Built.link`; it has no place along its shafts."""
+        from pitchpoint.efficiency.train_state import TrainLink
+
+        return TrainLink(self.design, shafts)
 
     @property
     def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:

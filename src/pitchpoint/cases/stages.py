@@ -10,7 +10,6 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from pitchpoint._jax import array
 from pitchpoint.cases.build import (
     Built,
     build,
@@ -36,7 +35,7 @@ from pitchpoint.cases.schema import (
     with_meshes,
 )
 from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
-from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
+from pitchpoint.efficiency.drive import Drive, chained, owner
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.planetary import in_words_of_set
@@ -402,29 +401,28 @@ def _drive(case: DriveCase, built: Sequence[Built | BuiltTrain]) -> Drive:
     """The stages on their shafts, with what brakes these."""
     count = len(built) + 1
     held = 0
-    stages, inner = [], set()
+    links, inner = [], set()
     for first, (one, table) in enumerate(zip(built, case.stages.values(), strict=True)):
         names = one.on_shafts(first, count + held)
         held += len(names) - 2
-        shafts = tuple(names.values())
-        stages.append(Stage(one.design, shafts, array(table.turn), array(table.place)))
+        links.append(one.link(tuple(names.values()), table))
         inner.add(frozenset(f"shaft {names[body] + 1}" for body in one.inner_bearing))
     still = [f"held {number}" for number in range(held)]
     bodies = (*case.bodies, *still)
     placed = drags(case.losses, bodies, inner - {frozenset()})
     for (name, loss), drag in zip(case.losses.items(), placed, strict=True):
         try:
-            overcome_by = stages[owner(drag, stages)]
+            overcome_by = links[owner(drag, links)]
         except InputError as error:
             raise error.at(key=f"losses.{name}.between") from None
         placed_along = {"position", "locating"} & loss.model_fields_set
-        if placed_along and overcome_by.train is not None:
+        if placed_along and not overcome_by.presses_bearings:
             raise InputError(
                 "was given; a planetary set presses the bearings of its shafts by what does not cancel "
                 "around them: one bearing stands for all of such a shaft, without a place",
                 key=f"losses.{name}.{min(placed_along)}",
             )
-    return chained(stages, placed)
+    return chained(links, placed)
 
 
 def _few_meetings(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:

@@ -1,7 +1,7 @@
-"""Drives of stages on common shafts, from the input to the output: the quasi-static state."""
+"""Drives of links on common shafts, from the input to the output: the quasi-static state."""
 
+import abc
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -9,46 +9,39 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import demand_double, jax, jnp
+from pitchpoint._jax import demand_double, jnp
 from pitchpoint.brief import brief
-from pitchpoint.drive.kinematics import HOUSING
-from pitchpoint.efficiency.drag import Drag, bearing_loads
+from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.meetings import FEW, Meetings, meetings, unmet
 from pitchpoint.efficiency.quasi_static import (
-    Design,
     Engagement,
     Models,
     Operation,
     State,
-    cycle_nodes,
     extremes,
     power_ratio,
-    state,
 )
 from pitchpoint.errors import InputError
-from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.programs import program
 from pitchpoint.status import Status
 
 if TYPE_CHECKING:
-    from pitchpoint.efficiency.train import Train
     from pitchpoint.efficiency.train_state import TrainState
 
 __all__ = [
     "MET",
-    "NODES_OF_TRAINS",
     "Drive",
     "DriveCycle",
-    "NextStage",
-    "Stage",
-    "StageModels",
-    "braked",
-    "braked_train",
+    "DriveLink",
+    "LinkModels",
+    "LinkPlace",
+    "Locking",
+    "UnderLoad",
     "chained",
     "drive_cycle",
     "felt",
+    "overcome",
     "owner",
 ]
 
@@ -56,97 +49,119 @@ Each = Float[Array, "*#b"]
 Met = Float[Array, "*#b load behind node"]
 Values = Float[Array, "..."]
 
-StageModels = Models | tuple[Models, ...]
-"""Laws of a stage, of a train those of each mesh."""
+LinkModels = Models | tuple[Models, ...]
+"""Laws of a link, of a train those of each mesh."""
+
+Locking = tuple[Array, Array, Array]
+"""Levers of a train, its largest friction, and where no forces were found [point node]."""
 
 MET = (-3, -2, -1)
-"""Axes of the states of a stage along which loads and phases meet."""
-
-NODES_OF_TRAINS = 6
-"""Nodes in each segment between events of a train, of which planets out of phase make many."""
+"""Axes of the states of a link along which loads and phases meet."""
 
 
-class Stage(eqx.Module):
-    """One mesh at its place in a drive, or meshes that turn together, as a planetary set.
+class UnderLoad(NamedTuple):
+    """A link under its loads: see `DriveCycle`."""
+
+    state: "State | TrainState"
+    pressed: tuple[Values, ...]
+    weight: Float[Array, " node"]
+    nodes: int
+
+
+class LinkPlace(NamedTuple):
+    """Where a link is in a drive, counted from zero.
+
+    Attributes:
+        behind: states of the link behind it, a mesh whose teeth load the bearings of the same shaft too;
+            None where no bearing feels them.
+        meetings: loads of the link, which go with the phase of that one.
+    """
+
+    drive: "Drive"
+    number: int
+    behind: Any = None
+    meetings: Meetings | None = None
+
+
+class DriveLink(eqx.Module):
+    """What joins two shafts of a drive: one mesh, or the meshes of a train, which turn together.
 
     Attributes:
         design: mesh, materials, oil, surfaces, and what brakes its bodies against each other, or a train;
             what brakes the shafts is the drive's.
-        shafts: of the drive, one for each coordinate of the mesh, of a train those that drive it and that it
-            loads; static.
-        turn: angle about the shafts of the frame of the mesh against that of the drive [rad].
-        place: of the middle of the face along the shafts [m].
+        shafts: of the drive, one for each body on a shaft; static.
+        presses_bearings: True if its teeth press the bearings of its shafts, each at its place.
     """
 
-    design: "Design | Train"
-    shafts: tuple[int, ...] = eqx.field(static=True)
-    turn: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.zeros(()))
-    place: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.zeros(()))
+    design: eqx.AbstractVar[Any]
+    shafts: eqx.AbstractVar[tuple[int, ...]]
+    presses_bearings: eqx.AbstractClassVar[bool]
 
     @property
-    def train(self) -> "Train | None":
-        """The meshes that turn together; None of one mesh."""
-        return None if isinstance(self.design, Design) else self.design
+    @abc.abstractmethod
+    def bodies(self) -> int:
+        """How many of its bodies are on shafts of the drive."""
 
     @property
-    def alone(self) -> Design:
-        """The design of the only mesh; there is none where several turn together."""
-        assert isinstance(self.design, Design)
-        return self.design
-
-    @property
-    def mesh(self) -> Mesh:
-        """The only mesh."""
-        return self.alone.mesh
-
-    @property
+    @abc.abstractmethod
     def ends(self) -> tuple[int, int]:
-        """Shaft that drives the stage, and the one that it loads."""
-        if self.train is not None:
-            return self.shafts[0], self.shafts[1]
-        first, last = (
-            self.shafts[int(np.argmax(on))] for on in (self.mesh.driver, self.mesh.loaded)
-        )
-        return first, last
+        """Shaft that drives it, and the one that it loads."""
 
     @property
+    @abc.abstractmethod
     def step(self) -> Float[Array, ""]:
-        """Speed of the shaft that the stage loads for a unit speed of its driver, not negative."""
-        if self.train is not None:
-            return jnp.abs(1.0 / self.train.ratio)
-        return jnp.abs(self.mesh.loaded @ self.mesh.motion)
+        """Speed of the shaft that it loads for a unit speed of its driver, not negative."""
 
     @property
+    @abc.abstractmethod
     def touching(self) -> bool:
-        """True if what the stage does is smooth between events, since its rigid flanks all touch."""
-        return self.train is not None or touching(self.mesh)
+        """True if what it does is smooth between events, since its rigid flanks all touch."""
 
-    def driven_backwards(self) -> "Stage":
-        """The same stage with its output driving; the same flanks touch."""
-        if self.train is not None:
-            return replace(self, design=self.train.driven_backwards(), shafts=self.shafts[::-1])
-        mesh = self.mesh.driven_by(self.shafts.index(self.ends[1]))
-        return replace(self, design=replace(self.alone, mesh=mesh))
+    @abc.abstractmethod
+    def senses(self, before: float) -> tuple[float, float]:
+        """Senses in which both shafts turn, where the link before it turns the first one so; zero for any."""
+
+    @abc.abstractmethod
+    def driven_backwards(self) -> "DriveLink":
+        """The same link with its output driving; the same flanks touch."""
+
+    @abc.abstractmethod
+    def under_load(
+        self, place: LinkPlace, point: Operation, models: Any, nodes: int, known: Engagement | None
+    ) -> UnderLoad:
+        """Its states under its loads [*b load behind 1], see `drive_cycle`."""
+
+    @abc.abstractmethod
+    def at_rest(self, place: LinkPlace, point: Operation, models: Any) -> tuple[Array, Array]:
+        """Mean and largest torque that starts it with the losses that it overcomes [N m]."""
+
+    @abc.abstractmethod
+    def memory(self, models: Any, nodes: int) -> tuple[float, int]:
+        """Memory for its states under one load [B], and how many phases may be felt in front of it."""
+
+    @abc.abstractmethod
+    def locking(self, state: Any) -> Locking | None:
+        """What locks it where its forces do so together; None where each contact tells by itself."""
 
 
 class Drive(eqx.Module):
-    """Stages one after the other, each driven by the shaft that the one before it loads.
+    """Links one after the other, each driven by the shaft that the one before it loads.
 
     Attributes:
-        stages: from the input to the output.
-        drag: places where a shaft is braked against the housing, or against another of its stage;
+        links: from the input to the output.
+        drag: places where a shaft is braked against the housing, or against another of its link;
             `between` and `seat.coordinate` count shafts, places of bearings along them are those of the
             drive.
-        links: for each stage the shaft that drives it and the one that it loads; static.
-        owners: for each place the stage that overcomes it: the one that loads the shaft, the first one for
+        ends: for each link the shaft that drives it and the one that it loads; static.
+        owners: for each place the link that overcomes it: the one that loads the shaft, the first one for
             the input; of a shaft between a train and one mesh that mesh, whose teeth press its bearings;
             static.
         braked: for each place the shafts that it brakes; static.
     """
 
-    stages: tuple[Stage, ...]
+    links: tuple[DriveLink, ...]
     drag: tuple[Drag, ...]
-    links: tuple[tuple[int, int], ...] = eqx.field(static=True)
+    ends: tuple[tuple[int, int], ...] = eqx.field(static=True)
     owners: tuple[int, ...] = eqx.field(static=True)
     braked: tuple[tuple[int, ...], ...] = eqx.field(static=True)
 
@@ -154,90 +169,110 @@ class Drive(eqx.Module):
         return brief(self)
 
     @property
-    def ratios(self) -> Float[Array, " stage"]:
-        """Speed of each stage's driver over that of the drive's input, not negative.
+    def ratios(self) -> Float[Array, " link"]:
+        """Speed of each link's driver over that of the drive's input, not negative.
 
-        From kinematics: the ratios of stages one behind the other multiply.
+        From kinematics: the ratios of links one behind the other multiply.
         """
-        return jnp.cumprod(jnp.stack([jnp.ones(()), *(stage.step for stage in self.stages)]))
+        return jnp.cumprod(jnp.stack([jnp.ones(()), *(link.step for link in self.links)]))
 
     def driven_backwards(self) -> "Drive":
         """The same drive with its output driving; the same flanks touch."""
-        return chained([stage.driven_backwards() for stage in self.stages[::-1]], self.drag)
+        return chained([link.driven_backwards() for link in self.links[::-1]], self.drag)
 
 
-def chained(stages: Sequence[Stage], drag: Sequence[Drag] = ()) -> Drive:
-    """A drive of stages that follow each other.
+def chained(links: Sequence[DriveLink], drag: Sequence[Drag] = ()) -> Drive:
+    """A drive of links that follow each other.
 
     Args:
-        stages: from the input to the output.
+        links: from the input to the output.
         drag: see `Drive`.
 
     Raises:
-        InputError: a stage is not driven by the shaft that the one before it loads, or turns it the
-            other way; a loss between shafts that no stage has in common.
+        InputError: a link is not driven by the shaft that the one before it loads, or turns it the
+            other way; a loss between shafts that no link has in common.
     """
-    if not stages:
+    if not links:
         raise InputError("a drive needs at least one stage")
-    for number, stage in enumerate(stages, 1):
-        count = 2 if stage.train is not None else len(stage.mesh.coordinates)
-        if len(set(stage.shafts)) != count:
+    for number, link in enumerate(links, 1):
+        if len(set(link.shafts)) != link.bodies:
             raise InputError(
-                f"stage {number} has {count} bodies that move, and shafts = {stage.shafts} names "
-                f"{len(set(stage.shafts))} of the drive"
+                f"stage {number} has {link.bodies} bodies that move, and shafts = {link.shafts} names "
+                f"{len(set(link.shafts))} of the drive"
             )
-    links = [stage.ends for stage in stages]
-    for number, (before, behind) in enumerate(pairwise(links), 2):
+    ends = [link.ends for link in links]
+    for number, (before, behind) in enumerate(pairwise(ends), 2):
         if behind[0] != before[1]:
             raise InputError(
                 f"stage {number} is driven by shaft {behind[0] + 1}, and the stage before it loads shaft "
                 f"{before[1] + 1}"
             )
-    _check_senses(stages)
-    owners = tuple(owner(one, stages) for one in drag)
-    braked = tuple(_braked_shafts(one) for one in drag)
-    return Drive(tuple(stages), tuple(drag), tuple(links), owners, braked)
+    _check_senses(links)
+    owners = tuple(owner(place, links) for place in drag)
+    braked = tuple(_braked_shafts(place) for place in drag)
+    return Drive(tuple(links), tuple(drag), tuple(ends), owners, braked)
 
 
-def _check_senses(stages: Sequence[Stage]) -> None:
+def _check_senses(links: Sequence[DriveLink]) -> None:
     """InputError if a mesh turns its first shaft the other way; a train may turn either way."""
     sense = 0.0
-    for number, stage in enumerate(stages, 1):
-        if stage.train is not None:
-            sense *= float(jnp.sign(stage.train.ratio))
-            continue
-        mesh = stage.mesh
-        if sense * float(mesh.motion @ mesh.driver) < 0.0:
+    for number, link in enumerate(links, 1):
+        first, last = link.senses(sense)
+        if sense * first < 0.0:
             raise InputError(
                 f"stage {number} turns its first shaft against the stage before it; the other flanks of its "
                 'gears do not, gears.flank = "right"'
             )
-        sense = float(jnp.sign(mesh.motion @ mesh.loaded))
+        sense = last
 
 
 def _braked_shafts(drag: Drag) -> tuple[int, ...]:
     return tuple(int(shaft) for shaft in np.flatnonzero(np.asarray(drag.between)))
 
 
-def owner(drag: Drag, stages: Sequence[Stage]) -> int:
-    """Number of the stage that overcomes a loss, see `Drive.owners`.
+def owner(drag: Drag, links: Sequence[DriveLink]) -> int:
+    """Number of the link that overcomes a loss, see `Drive.owners`.
 
     Args:
         drag: where it arises, in the shafts of the drive.
-        stages: from the input to the output.
+        links: from the input to the output.
 
     Raises:
-        InputError: it is between shafts that no stage has in common.
+        InputError: it is between shafts that no link has in common.
 
     From the order of the balances, which goes from the output to the input.
     """
     shafts = {*_braked_shafts(drag)}
-    having = [number for number, stage in enumerate(stages) if shafts <= {*stage.shafts}]
+    having = [number for number, link in enumerate(links) if shafts <= {*link.shafts}]
     if not having:
         raise InputError("is between shafts that no stage of the drive has in common")
-    having = [number for number in having if stages[number].train is None] or having
-    loading = [number for number in having if stages[number].ends[1] in shafts]
+    having = [number for number in having if links[number].presses_bearings] or having
+    loading = [number for number in having if links[number].ends[1] in shafts]
     return (loading or having)[0]
+
+
+def overcome(drive: Drive, number: int) -> list[int]:
+    """Places of a drive whose losses a link overcomes, by their numbers."""
+    return [place for place, link in enumerate(drive.owners) if link == number]
+
+
+def felt(drive: Drive, number: int, place: int | None = None) -> bool:
+    """True if bearings that a link overcomes feel the teeth of the link behind it too; none do of trains.
+
+    Args:
+        drive: of which.
+        number: of the link.
+        place: a bearing of the drive; by default any that the link overcomes.
+    """
+    if place is None:
+        return any(felt(drive, number, one) for one in overcome(drive, number))
+    seat = drive.drag[place].seat
+    return (
+        isinstance(seat, Bearing)
+        and number + 1 < len(drive.links)
+        and all(link.presses_bearings for link in drive.links[number : number + 2])
+        and seat.coordinate == drive.ends[number][1]
+    )
 
 
 class DriveCycle(eqx.Module):
@@ -248,15 +283,15 @@ class DriveCycle(eqx.Module):
     meeting of phases.
 
     Attributes:
-        states: of the stages from the input to the output, batch axes `*b load behind node`: loads, phases of
-            the stage behind as far as they are kept, see `Meetings`, and nodes of the own period.
-        pressed: for each stage the loads on the bearings of the places that it overcomes: those of the
+        states: of the links from the input to the output, batch axes `*b load behind node`: loads, phases of
+            the link behind as far as they are kept, see `Meetings`, and nodes of the own period.
+        pressed: for each link the loads on the bearings of the places that it overcomes: those of the
             drive in order, then its own [N].
-        weights: of the nodes of each stage; they sum to one.
-        meetings: loads of each stage, and how often they are.
+        weights: of the nodes of each link; they sum to one.
+        meetings: loads of each link, and how often they are.
         speed: of the input [rad/s].
-        nodes: static, for each stage nodes in each segment between events.
-        smooth: static, for each stage True if its states are smooth between events.
+        nodes: static, for each link nodes in each segment between events.
+        smooth: static, for each link True if its states are smooth between events.
     """
 
     states: "tuple[State | TrainState, ...]"
@@ -267,24 +302,24 @@ class DriveCycle(eqx.Module):
     nodes: tuple[int, ...] = eqx.field(static=True)
     smooth: tuple[bool, ...] = eqx.field(static=True)
 
-    def mean(self, values: Values, stage: int = 0) -> Each:
-        """Mean over the periods of a stage and of those behind it.
+    def mean(self, values: Values, link: int = 0) -> Each:
+        """Mean over the periods of a link and of those behind it.
 
         Args:
-            values: of that stage, see `states`.
-            stage: counted from zero.
+            values: of that link, see `states`.
+            link: counted from zero.
         """
-        return jnp.sum(self._under_loads(values, stage) * self.meetings[stage].weight, (-2, -1))
+        return jnp.sum(self._under_loads(values, link) * self.meetings[link].weight, (-2, -1))
 
-    def _under_loads(self, values: Values, stage: int) -> Float[Array, "*b load behind"]:
-        """Mean over the own period of a stage."""
-        every = self.states[stage].input_torque
+    def _under_loads(self, values: Values, link: int) -> Float[Array, "*b load behind"]:
+        """Mean over the own period of a link."""
+        every = self.states[link].input_torque
         values = jnp.broadcast_to(values, jnp.broadcast_shapes(values.shape, every.shape))
-        return values @ self.weights[stage]
+        return values @ self.weights[link]
 
     @property
     def input_torque(self) -> Float[Array, "*#b load behind node"]:
-        """Torque at the input under every load of the first stage at every phase of it [N m]."""
+        """Torque at the input under every load of the first link at every phase of it [N m]."""
         return self.states[0].input_torque
 
     @property
@@ -296,9 +331,9 @@ class DriveCycle(eqx.Module):
         """Smallest and largest value over all meetings of phases, between the nodes too.
 
         Args:
-            values: of the first stage, see `states`.
+            values: of the first link, see `states`.
 
-        From the extremes over the phase of one stage after the other, see `quasi_static.extremes`: a stage
+        From the extremes over the phase of one link after the other, see `quasi_static.extremes`: a link
         takes most where the one behind it does, since more load is not carried by less torque.
         """
         phases = slice(2 if self.meetings[0].kept else 1)
@@ -315,7 +350,7 @@ class DriveCycle(eqx.Module):
 
     @property
     def efficiency(self) -> Float[Array, "*#b load behind node"]:
-        """Power out over power in at every state of the first stage; NaN where no power is transmitted.
+        """Power out over power in at every state of the first link; NaN where no power is transmitted.
 
         From the balance of power there.
         """
@@ -323,8 +358,8 @@ class DriveCycle(eqx.Module):
         return power_ratio(power_out, self.states[0].input_power)
 
     @property
-    def mean_losses(self) -> Float[Array, "stage *#b"]:
-        """Mean power lost in each stage and beside its teeth [W]."""
+    def mean_losses(self) -> Float[Array, "link *#b"]:
+        """Mean power lost in each link and beside its teeth [W]."""
         return jnp.stack([self.mean(one.loss, k) for k, one in enumerate(self.states)])
 
     @property
@@ -355,10 +390,10 @@ class DriveCycle(eqx.Module):
         return power_ratio(self.mean_output_power, self.mean(self.states[0].input_power))
 
     @property
-    def stage_efficiencies(self) -> Float[Array, "stage *#b"]:
-        """Energy out over energy in of each stage with its shaft; their product is that of the drive.
+    def link_efficiencies(self) -> Float[Array, "link *#b"]:
+        """Energy out over energy in of each link with its shaft; their product is that of the drive.
 
-        From the balance of energy of each stage.
+        From the balance of energy of each link.
         """
         return jnp.stack(
             [
@@ -401,57 +436,55 @@ def _extremes(
 def drive_cycle(
     drive: Drive,
     operation: Operation,
-    models: Sequence[StageModels],
+    models: Sequence[LinkModels],
     nodes: int = 12,
     engaged: Engagement | None = None,
     few: int | None = FEW,
 ) -> DriveCycle:
     """States of all meshes of a drive, from its output to its input.
 
-    The torque that a stage and the losses of its shaft ask for is the load of the stage before it.
+    The torque that a link and the losses of its shaft ask for is the load of the link before it.
 
     Args:
         drive: see `chained`.
         operation: load at the output, speed of the input, temperature of the oil [*b].
-        models: laws of each stage, of a train those of each mesh.
+        models: laws of each link, of a train those of each mesh.
         nodes: Gauss-Lobatto nodes in each segment of each period; a train has `NODES_OF_TRAINS`.
-        engaged: contacts and shares of the last stage at so many nodes, where all loads at the output are
+        engaged: contacts and shares of the last link at so many nodes, where all loads at the output are
             one and they are known already.
-        few: odd number of loads of a stage that stand for all meetings of phases behind it; None for each
-            meeting by itself, of which there are as many as the product of the nodes of all stages.
+        few: odd number of loads of a link that stand for all meetings of phases behind it; None for each
+            meeting by itself, of which there are as many as the product of the nodes of all links.
 
     From the balance of torques on every shaft, see `balance`.
     """
     demand_double()
-    if len(models) != len(drive.stages):
-        raise InputError(f"{len(models)} models were given for {len(drive.stages)} stages")
+    if len(models) != len(drive.links):
+        raise InputError(f"{len(models)} models were given for {len(drive.links)} stages")
     states: "list[State | TrainState]" = []
     pressed: list[tuple[Values, ...]] = []
     weights: list[Float[Array, " node"]] = []
+    counts: list[int] = []
     every = [unmet(operation.load)]
-    ratios, smooth = drive.ratios, tuple(stage.touching for stage in drive.stages)
-    counts = tuple(nodes if stage.train is None else NODES_OF_TRAINS for stage in drive.stages)
-    for number in reversed(range(len(drive.stages))):
+    ratios, smooth = drive.ratios, tuple(link.touching for link in drive.links)
+    for number in reversed(range(len(drive.links))):
         known, engaged = engaged, None
-        laws: Any = models[number]
         point = Operation(
             load=every[0].load[..., None],
             speed=(operation.speed * ratios[number])[..., None, None, None],
             temperature=operation.temperature[..., None, None, None],
         )
-        behind = NextStage(states[0], every[0]) if every[0].kept else None
-        if drive.stages[number].train is None:
-            found = _mesh_under_load(drive, number, point, laws, nodes, behind, known)
-        else:
-            found = _train_under_load(drive, number, point, laws)
+        behind = (states[0], every[0]) if every[0].kept else ()
+        place = LinkPlace(drive, number, *behind)
+        found = drive.links[number].under_load(place, point, models[number], nodes, known)
         states.insert(0, found.state)
         pressed.insert(0, found.pressed)
         weights.insert(0, found.weight)
+        counts.insert(0, found.nodes)
         load = found.state.input_torque
         if number > 0:
             often = every[0].weight[..., None] * found.weight
-            kept, phases = felt(drive, number - 1), slice(number, number + 1 + every[0].kept)
-            of_phases = counts[phases], smooth[phases]
+            kept, felt_too = felt(drive, number - 1), 1 + every[0].kept
+            of_phases = counts[:felt_too], smooth[number : number + felt_too]
             if kept:
                 of_phases = of_phases[0][1:], of_phases[1][1:]
                 ends = _extremes(jnp.moveaxis(load, -1, -3), *of_phases, axes=2)
@@ -459,150 +492,11 @@ def drive_cycle(
                 ends = _extremes(load[..., None, :, :, :], *of_phases)
             every.insert(0, meetings(load, often, ends, kept=kept, few=few))
     return DriveCycle(
-        tuple(states), tuple(pressed), tuple(weights), tuple(every), operation.speed, counts, smooth
+        tuple(states),
+        tuple(pressed),
+        tuple(weights),
+        tuple(every),
+        operation.speed,
+        tuple(counts),
+        smooth,
     )
-
-
-class _UnderLoad(NamedTuple):
-    """A stage under its loads: see `DriveCycle`."""
-
-    state: "State | TrainState"
-    pressed: tuple[Values, ...]
-    weight: Float[Array, " node"]
-
-
-def _mesh_under_load(
-    drive: Drive,
-    number: int,
-    point: Operation,
-    laws: Models,
-    nodes: int,
-    behind: "NextStage | None",
-    known: Engagement | None,
-) -> _UnderLoad:
-    """A stage of one mesh under its loads [*b load behind 1]."""
-    design = drive.stages[number].alone
-    if known is None:
-        phase, weight = cycle_nodes(design.mesh, laws.sharing, nodes)
-    else:
-        phase, weight = known.phase, known.weight
-    drag = braked(drive, number, behind)
-    found = state(replace(design, drag=drag), point, phase, laws, engaged=known)
-    loads = bearing_loads(drag, design.mesh, found.contacts, found.balance.load)
-    return _UnderLoad(found, tuple(loads), weight)
-
-
-def _train_under_load(
-    drive: Drive, number: int, point: Operation, laws: tuple[Models, ...]
-) -> _UnderLoad:
-    """A stage of meshes that turn together under its loads [*b load behind 1]."""
-    # Only now: a pair or a chain of pairs does not load what trains take.
-    from pitchpoint.efficiency.train_state import train_state
-
-    at_loads = jax.tree.map(lambda leaf: leaf[..., 0], point)
-    found, weight = train_state(braked_train(drive, number), at_loads, laws, NODES_OF_TRAINS)
-    return _UnderLoad(found, found.pressed, weight)
-
-
-class NextStage(NamedTuple):
-    """The stage behind another one, whose teeth load the bearings of the same shaft.
-
-    Attributes:
-        state: of it, which is one mesh: a `State`.
-        meetings: loads of the stage before it, which go with its phase.
-    """
-
-    state: Any
-    meetings: Meetings
-
-
-def braked(drive: Drive, number: int, behind: NextStage | None = None) -> tuple[Drag, ...]:
-    """Losses of the drive that a stage overcomes, in its coordinates, then its own.
-
-    Args:
-        drive: of which.
-        number: of the stage.
-        behind: the stage behind it, which loads the bearings of the same shaft; it does not without.
-
-    From `Drive.owners`.
-    """
-    stage = drive.stages[number]
-    found = []
-    for drag in _overcome(drive, number):
-        seat = drag.seat
-        if isinstance(seat, Bearing):
-            beside = None
-            if behind is not None and _common(drive, number, seat):
-                beside = _beside(seat, stage, drive.stages[number + 1], behind)
-            seat = replace(_seated(seat, stage), beside=beside)
-        between = jnp.stack([drag.between[one] for one in stage.shafts])
-        found.append(replace(drag, between=between, seat=seat))
-    return (*found, *stage.alone.drag)
-
-
-def braked_train(drive: Drive, number: int) -> "Train":
-    """The train of a stage with the losses of the drive that it overcomes before its own.
-
-    Args:
-        drive: of which.
-        number: of the stage.
-
-    From `Drive.owners`; the shafts are the bodies at its ends.
-    """
-    stage = drive.stages[number]
-    assert stage.train is not None
-    names = dict(zip(stage.shafts, (stage.train.turned, stage.train.loaded), strict=True))
-    drags, pairs = [], []
-    for place, drag in enumerate(drive.drag):
-        if drive.owners[place] != number:
-            continue
-        shafts = drive.braked[place]
-        first, second = *(names[shaft] for shaft in shafts), *[HOUSING] * (2 - len(shafts))
-        sides = drag.between[shafts[0]] * jnp.array([1.0, -1.0])
-        drags.append(replace(drag, between=sides, seat=None))
-        pairs.append((first, second))
-    return replace(
-        stage.train,
-        drag=(*drags, *stage.train.drag),
-        braked=(*pairs, *stage.train.braked),
-    )
-
-
-def _overcome(drive: Drive, number: int) -> list[Drag]:
-    """Losses of the drive that a stage overcomes."""
-    every = zip(drive.owners, drive.drag, strict=True)
-    return [drag for owner, drag in every if owner == number]
-
-
-def _common(drive: Drive, number: int, seat: Bearing) -> bool:
-    """True if a bearing sits on the shaft that a stage has in common with the one behind it."""
-    return (
-        number + 1 < len(drive.stages)
-        and drive.stages[number + 1].train is None
-        and seat.coordinate == drive.links[number][1]
-    )
-
-
-def felt(drive: Drive, number: int) -> bool:
-    """True if bearings that a stage overcomes feel the teeth of the stage behind it; none do of trains."""
-    if drive.stages[number].train is not None:
-        return False
-    seats = [drag.seat for drag in _overcome(drive, number)]
-    return any(isinstance(seat, Bearing) and _common(drive, number, seat) for seat in seats)
-
-
-def _seated(seat: Bearing, stage: Stage) -> Bearing:
-    """A bearing of the drive as the mesh of a stage sees it."""
-    other = None if seat.other is None else seat.other - stage.place
-    coordinate = stage.shafts.index(seat.coordinate)
-    return replace(seat, coordinate=coordinate, place=seat.place - stage.place, other=other)
-
-
-def _beside(seat: Bearing, stage: Stage, after: Stage, behind: NextStage) -> Float[Array, "3 *#b"]:
-    """Load on a bearing by the stage behind, in the frame of a stage [N]."""
-    state = behind.state
-    borne = _seated(seat, after).borne(after.mesh, state.contacts, state.balance.load)
-    x, y, z = behind.meetings.following(borne)
-    angle = after.turn - stage.turn
-    cosine, sine = jnp.cos(angle), jnp.sin(angle)
-    return jnp.stack([cosine * x - sine * y, sine * x + cosine * y, z])[..., None]

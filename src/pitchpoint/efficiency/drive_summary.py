@@ -1,30 +1,32 @@
-"""Figures of drives of several stages over all meetings of their phases, by one program for many points."""
+"""Figures of drives of several links over all meetings of their phases, by one program for many points."""
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import equinox as eqx
 import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.efficiency.drive import MET, Drive, DriveCycle, StageModels, drive_cycle, felt
+from pitchpoint.efficiency.drive import (
+    MET,
+    Drive,
+    DriveCycle,
+    LinkModels,
+    Locking,
+    drive_cycle,
+    felt,
+)
 from pitchpoint.efficiency.meetings import FEW, Meetings, among_few, few_between
 from pitchpoint.efficiency.quasi_static import (
     Engagement,
     Operation,
     State,
-    cycle_nodes,
 )
 from pitchpoint.efficiency.rows import CHUNK, NODES
 from pitchpoint.efficiency.summary import engaged, mean_friction
 from pitchpoint.errors import InputError
-from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.pairs import touching
-from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.programs import program
-from pitchpoint.status import Code
 
 if TYPE_CHECKING:
     from pitchpoint.efficiency.train_state import TrainState
@@ -34,36 +36,30 @@ __all__ = ["drive_figures", "drive_nodes", "mean_friction_of_drive", "together"]
 MOST_BYTES = 4e8
 """Memory that the states of one chunk of points may take [B]."""
 
-OF_A_MEETING = 680.0
-"""Memory for each meeting of phases where few contacts take less [B], as the compiler tells."""
-
-OF_A_LANE = {True: 17.0, False: 34.0}
-"""Memory for each contact at a meeting [B]: of rigid flanks that all touch, and of others."""
-
 Point = tuple[Drive, Operation]
 
 
-def drive_nodes(stages: int) -> int:
-    """Nodes in each segment of each period; those of several stages meet.
+def drive_nodes(links: int) -> int:
+    """Nodes in each segment of each period; those of several links meet.
 
     Example:
         >>> drive_nodes(1), drive_nodes(2), drive_nodes(3)
         (24, 12, 12)
     """
-    return NODES if stages == 1 else NODES // 2
+    return NODES if links == 1 else NODES // 2
 
 
-def together(drive: Drive, models: Sequence[StageModels]) -> int:
+def together(drive: Drive, models: Sequence[LinkModels]) -> int:
     """Points that are computed together, so that memory suffices.
 
     Args:
         drive: any.
-        models: laws of each stage.
+        models: laws of each link.
 
     Raises:
         InputError: a single point takes too much memory.
     """
-    needed = _memory(drive, models, drive_nodes(len(drive.stages)))
+    needed = _memory(drive, models, drive_nodes(len(drive.links)))
     if needed > MOST_BYTES:
         raise InputError(
             f"the meetings of the phases of these stages would take {needed / 1e9:.2g} GB of memory, and "
@@ -74,40 +70,26 @@ def together(drive: Drive, models: Sequence[StageModels]) -> int:
     return min(CHUNK, int(MOST_BYTES // needed))
 
 
-def _memory(drive: Drive, models: Sequence[StageModels], nodes: int) -> float:
+def _memory(drive: Drive, models: Sequence[LinkModels], nodes: int) -> float:
     """Memory for the states of a drive at one operating point [B], from that of compiled programs."""
     loads, needed = 1, 0.0
-    for number in reversed(range(len(drive.stages))):
-        laws: Any = models[number]
-        train = drive.stages[number].train
-        if train is not None:
-            from pitchpoint.efficiency.train_summary import train_memory
-
-            needed += loads * train_memory(train, laws)
-            loads = FEW  # which no bearing feels
-            continue
-        mesh = drive.stages[number].mesh
-        lanes, phases = eqx.filter_eval_shape(_sizes, mesh, laws.sharing, nodes)
-        needed += loads * phases.size * max(OF_A_MEETING, OF_A_LANE[touching(mesh)] * lanes.size)
-        loads = FEW if not felt(drive, number - 1) else phases.size * min(loads, FEW)
+    for number in reversed(range(len(drive.links))):
+        each, phases = drive.links[number].memory(models[number], nodes)
+        needed += loads * each
+        loads = phases * min(loads, FEW) if felt(drive, number - 1) else FEW
     return needed
-
-
-def _sizes(mesh: Mesh, sharing: LoadSharing, nodes: int) -> tuple[Array, Array]:
-    """Contacts at one phase, and phases of the period, of which the shapes count."""
-    return mesh.contacts(jnp.zeros(())).weight, cycle_nodes(mesh, sharing, nodes)[0]
 
 
 def drive_figures(
     points: Sequence[Point],
-    models: Sequence[StageModels],
+    models: Sequence[LinkModels],
     progress: Callable[[int], None] | None = None,
 ) -> dict[str, np.ndarray]:
     """Figures of many points, each quantity [point], [point, place] or [point, stage].
 
     Args:
         points: drives and operating points of equal static structure.
-        models: laws of each stage.
+        models: laws of each link.
         progress: told the number of finished points after each chunk.
 
     From the states of `drive_cycle`, means and extremes over all meetings of their phases.
@@ -126,14 +108,14 @@ def drive_figures(
 
 
 def _of_one_drive(
-    points: Sequence[Point], models: Sequence[StageModels]
+    points: Sequence[Point], models: Sequence[LinkModels]
 ) -> Iterator[tuple[Drive, list[Operation]]]:
     """Neighbours that differ by their operating point alone: one program computes them together."""
     before: list[np.ndarray] = []
     group, number = [], 0
     for drive, operation in points:
         fixed = [*map(np.asarray, jax.tree.leaves(drive))]
-        if not drive.stages[-1].touching:
+        if not drive.links[-1].touching:
             fixed.append(np.asarray(operation.load))  # its shares are those of one load
         number += not (before and all(map(np.array_equal, before, fixed)))
         before = fixed
@@ -144,15 +126,14 @@ def _of_one_drive(
 
 
 def _chunk(
-    drive: Drive, operations: Sequence[Operation], models: Sequence[StageModels], size: int
+    drive: Drive, operations: Sequence[Operation], models: Sequence[LinkModels], size: int
 ) -> dict[str, np.ndarray]:
     """Figures of a few operating points of one drive, filled up by repetition."""
     filled = [*operations, *([operations[-1]] * (size - len(operations)))]
     stacked: Operation = jax.tree.map(lambda *v: array(np.stack(v)), *filled)
-    last, nodes, known = drive.stages[-1], drive_nodes(len(drive.stages)), None
-    if last.train is None:
-        laws: Any = models[-1]
-        known = engaged(last.alone, operations[0], laws, nodes)
+    last, nodes = drive.links[-1], drive_nodes(len(drive.links))
+    laws: Any = models[-1]
+    known = None if last.touching else engaged(last.design, operations[0], laws, nodes)
     found, trains = jax.device_get(_figures(drive, stacked, tuple(models), nodes, known))
     for train in trains:
         found |= _with_train(found, *train)
@@ -183,30 +164,19 @@ def _with_train(
 def _figures(
     drive: Drive,
     operation: Operation,
-    models: tuple[StageModels, ...],
+    models: tuple[LinkModels, ...],
     nodes: int,
     known: Engagement | None,
-) -> tuple[dict[str, Array], list[tuple[Array, Array, Array]]]:
+) -> tuple[dict[str, Array], list[Locking]]:
     found = drive_cycle.function(drive, operation, models, nodes, known)
     points = operation.load.shape
-    every = {**_of_drive(found), **_of_stages(drive, found), **_of_places(drive, found)}
+    every = {**_of_drive(found), **_of_links(drive, found), **_of_places(drive, found)}
     figures = {
         name: jnp.broadcast_to(values, (*points, *values.shape[len(points) :]))
         for name, values in every.items()
     }
-    trains = zip(drive.stages, found.states, strict=True)
-    return figures, [_locking(one) for stage, one in trains if stage.train is not None]
-
-
-def _locking(one: Any) -> tuple[Array, Array, Array]:
-    """Levers of a train, its largest friction, and where no forces were found [point node]."""
-    lost = one.status.code == int(Code.NOT_CONVERGED)
-    count = len(one.input_torque.shape) - len(MET)
-    levers, friction, lost = (
-        values.reshape(*values.shape[:count], -1, *values.shape[count + len(MET) :])
-        for values in (one.levers, one.largest_friction, lost)
-    )
-    return levers, friction, lost
+    each = [link.locking(one) for link, one in zip(drive.links, found.states, strict=True)]
+    return figures, [train for train in each if train is not None]
 
 
 def _of_drive(found: DriveCycle) -> dict[str, Array]:
@@ -239,7 +209,7 @@ def _of_drive(found: DriveCycle) -> dict[str, Array]:
 
 
 def mean_friction_of_drive(found: DriveCycle) -> Array:
-    """Friction coefficient weighted with the load of the contacts of all stages [point].
+    """Friction coefficient weighted with the load of the contacts of all links [point].
 
     Args:
         found: states of a drive.
@@ -247,15 +217,15 @@ def mean_friction_of_drive(found: DriveCycle) -> Array:
     forces = _Forces.none(found.states[-1])
     every = [*zip(found.states, found.weights, strict=True)]
     for (one, weight), met in zip(every[:0:-1], found.meetings[-2::-1], strict=True):
-        forces = forces.with_stage(one, weight).met(met)
-    whole = forces.with_stage(*every[0])
+        forces = forces.with_link(one, weight).met(met)
+    whole = forces.with_link(*every[0])
     loaded = whole.normal > 0.0
     mean = jnp.where(loaded, whole.rubbing / jnp.where(loaded, whole.normal, 1.0), 0.0)
     return jnp.sum(mean, axis=(0, *MET))
 
 
 class _Forces(NamedTuple):
-    """Sums of the forces in the stages behind that go with each load, see `few_between` [sum *b load behind].
+    """Sums of the forces in the links behind that go with each load, see `few_between` [sum *b load behind].
 
     Attributes:
         normal: of the contacts [N].
@@ -269,18 +239,18 @@ class _Forces(NamedTuple):
 
     @classmethod
     def none(cls, last: "State | TrainState") -> "_Forces":
-        """Without any stage."""
+        """Without any link."""
         zero = jnp.zeros((1, *last.input_torque.shape[:-1]))
         return cls(zero, zero + 1.0, zero)
 
-    def with_stage(self, one: "State | TrainState", weight: Array) -> "_Forces":
-        """With those of a stage at every node of it, along a last axis."""
+    def with_link(self, one: "State | TrainState", weight: Array) -> "_Forces":
+        """With those of a link at every node of it, along a last axis."""
         normal, often, rubbing = (values[..., None] for values in self)
         rubbing = (rubbing + often * one.friction_force) * weight
         return _Forces(normal + one.normal_force, often * weight, rubbing)
 
     def met(self, loads: Meetings) -> "_Forces":
-        """The same by the loads of the next stage, and few sums of normal forces."""
+        """The same by the loads of the next link, and few sums of normal forces."""
         low, high = (end(self.normal, axis=(0, -3, -2)) for end in (jnp.min, jnp.max))
         if not loads.kept:
             low, high = jnp.min(low, axis=-1, keepdims=True), jnp.max(high, axis=-1, keepdims=True)
@@ -294,18 +264,18 @@ class _Forces(NamedTuple):
 def _worst(
     found: DriveCycle, reduce: Callable[..., Array], values: Callable[[Any], Array]
 ) -> Array:
-    """Worst value of all stages and meetings [point]."""
+    """Worst value of all links and meetings [point]."""
     each = [reduce(_met(one, values(one)), axis=MET) for one in found.states]
     return reduce(jnp.stack(each), axis=0)
 
 
 def _met(state: "State | TrainState", values: Array) -> Array:
-    """Values of a stage at every meeting of phases."""
+    """Values of a link at every meeting of phases."""
     return jnp.broadcast_to(values, state.input_torque.shape)
 
 
 def _nearest_to_jamming(found: DriveCycle) -> tuple[Array, Array]:
-    """Friction coefficient where a stage is nearest to locking, and the one at which it locks there."""
+    """Friction coefficient where a link is nearest to locking, and the one at which it locks there."""
     ends: list[tuple[Array, Array]] = []
     for one in found.states:
         acting, limit = (
@@ -319,8 +289,8 @@ def _nearest_to_jamming(found: DriveCycle) -> tuple[Array, Array]:
     return first, second
 
 
-def _of_stages(drive: Drive, found: DriveCycle) -> dict[str, Array]:
-    """Figures of each stage [point, stage]."""
+def _of_links(drive: Drive, found: DriveCycle) -> dict[str, Array]:
+    """Figures of each link [point, stage]."""
     every = list(enumerate(found.states))
     torque = [found.mean(one.input_torque, k) for k, one in every]
     speed = [found.speed * ratio for ratio in drive.ratios[:-1]]
@@ -331,7 +301,7 @@ def _of_stages(drive: Drive, found: DriveCycle) -> dict[str, Array]:
         for name, values in {
             "stage_loss": [*found.mean_losses],
             "stage_drag_loss": drag,
-            "stage_efficiency": [*found.stage_efficiencies],
+            "stage_efficiency": [*found.link_efficiencies],
             "stage_friction": friction,
             "stage_input_torque": torque,
             "stage_speed": speed,
@@ -340,7 +310,7 @@ def _of_stages(drive: Drive, found: DriveCycle) -> dict[str, Array]:
 
 
 def _of_places(drive: Drive, found: DriveCycle) -> dict[str, Array]:
-    """Mean load on the bearing of each place [point, place]: those of the drive, then of its stages."""
+    """Mean load on the bearing of each place [point, place]: those of the drive, then of its links."""
     of_drive: dict[int, Array] = {}
     own: list[Array] = []
     for k, loads in enumerate(found.pressed):

@@ -1,4 +1,4 @@
-"""Phases of stages one behind the other, by the few loads that a stage carries through all of them."""
+"""Phases of links one behind the other, by the few loads that a link carries through all of them."""
 
 from functools import cache
 
@@ -11,7 +11,7 @@ from pitchpoint._jax import jnp
 __all__ = ["FEW", "Meetings", "among_few", "few_between", "meetings", "unmet"]
 
 FEW = 5
-"""Loads that stand for all that a stage carries while phases of the stages behind it meet."""
+"""Loads that stand for all that a link carries while phases of the links behind it meet."""
 
 Each = Float[Array, "*#b"]
 Ends = Float[Array, "*#b its_phase"]
@@ -19,20 +19,20 @@ States = Float[Array, "*#b its_load its_behind its_node"]
 
 
 class Meetings(eqx.Module):
-    """Loads that a stage carries while the phases of all stages behind it meet.
+    """Loads that a link carries while the phases of all links behind it meet.
 
-    The stages behind act on a stage by the torque that they ask for, and where bearings of a common shaft
-    feel the teeth of two stages by the forces on these. What a stage does is smooth in its load, which
+    The links behind act on a link by the torque that they ask for, and where bearings of a common shaft
+    feel the teeth of two links by the forces on these. What a link does is smooth in its load, which
     varies little: a polynomial through few loads gives it, and so every mean is a sum over them. Forces on
-    bearings go with the phase of the stage behind, which is kept where they are felt.
+    bearings go with the phase of the link behind, which is kept where they are felt.
 
     Attributes:
-        load: that the stage carries [N m or N]; along the last axis with the phase of the stage behind where
+        load: that the link carries [N m or N]; along the last axis with the phase of the link behind where
             it is kept, along the one before from the lowest to the highest.
         weight: of each in means; they sum to one.
         coarse: the same with every second load alone, to tell how far a mean is off.
-        part: of every state of the stage behind in the weight of every load.
-        between: of few states of the stage behind in what else it asks for under every load; None where no
+        part: of every state of the link behind in the weight of every load.
+        between: of few states of the link behind in what else it asks for under every load; None where no
             phase is kept.
     """
 
@@ -44,22 +44,22 @@ class Meetings(eqx.Module):
 
     @property
     def kept(self) -> bool:
-        """True if the loads go with the phase of the stage behind."""
+        """True if the loads go with the phase of the link behind."""
         return self.between is not None
 
     def summed(
         self, values: Float[Array, "... its_load its_behind its_node"]
     ) -> Float[Array, "... load behind"]:
-        """Sum of values of the stage behind, each with its part in the loads of this one.
+        """Sum of values of the link behind, each with its part in the loads of this one.
 
         Args:
-            values: of the states of the stage behind, with their weights in them.
+            values: of the states of the link behind, with their weights in them.
         """
         found = _summed(self.part, values)
         return found if self.kept else jnp.sum(found, axis=-1, keepdims=True)
 
     def following(self, values: Float[Array, "... its_load its_behind its_node"]) -> Array:
-        """Values of the stage behind under the loads of this one, where its phase is kept."""
+        """Values of the link behind under the loads of this one, where its phase is kept."""
         assert self.between is not None
         return _summed(self.between, values)
 
@@ -69,7 +69,7 @@ def _summed(part: Array, values: Array) -> Array:
 
 
 def unmet(load: Each) -> Meetings:
-    """The one load of a stage with none behind it.
+    """The one load of a link with none behind it.
 
     Args:
         load: that it carries [N m or N].
@@ -86,14 +86,14 @@ def meetings(
     kept: bool = False,
     few: int | None = FEW,
 ) -> Meetings:
-    """Loads of a stage from the states of the one behind it.
+    """Loads of a link from the states of the one behind it.
 
     Args:
-        torque: that the stage behind asks for [N m or N].
+        torque: that the link behind asks for [N m or N].
         often: weight of each of its states; they sum to one.
         ends: lowest and highest torque that it asks for, at each of its phases where these are kept, else
             along an axis of length one.
-        kept: True to keep the phase of the stage behind.
+        kept: True to keep the phase of the link behind.
         few: odd number of loads that stand for all others; None for all of them.
     """
     count = torque.shape[-3] * torque.shape[-2]

@@ -2,14 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
-from typing import Any
 
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import array, jnp
+from pitchpoint._jax import jnp
 from pitchpoint.efficiency.drag import at_rest
-from pitchpoint.efficiency.drive import Drive, StageModels, braked, braked_train
+from pitchpoint.efficiency.drive import Drive, LinkModels, LinkPlace
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
 from pitchpoint.programs import program
 
@@ -74,39 +72,28 @@ def torques_at_rest(
 
 
 def torques_at_rest_of_drive(
-    drive: Drive, operation: Operation, models: Sequence[StageModels]
+    drive: Drive, operation: Operation, models: Sequence[LinkModels]
 ) -> tuple[Each, Each]:
-    """The same of a drive of several meshes, at its input [N m].
+    """The same of a drive of several links, at its input [N m].
 
-    What starts a stage is the load of the one before it, by the means of all stages or with each at its worst
-    phase. Bearings of a shaft feel the teeth of the stage that overcomes them, not those of the stage behind,
+    What starts a link is the load of the one before it, by the means of all links or with each at its worst
+    phase. Bearings of a shaft feel the teeth of the link that overcomes them, not those of the link behind,
     which carry little then.
 
     Args:
         drive: see `chained`; for back-driving `drive.driven_backwards()`.
         operation: operating points [*b], see `torques_at_rest`; their load is that of the output.
-        models: laws of each stage.
+        models: laws of each link.
 
     Returns:
-        Both torques, shape [*b]; NaN where friction holds a stage whatever the torque.
+        Both torques, shape [*b]; NaN where friction holds a link whatever the torque.
 
-    From the torques of the stages, from the output to the input.
+    From the torques of the links, from the output to the input.
     """
     mean, largest, ratios = operation.load, operation.load, drive.ratios
-    for number in reversed(range(len(drive.stages))):
+    for number, link in reversed([*enumerate(drive.links)]):
         point = replace(operation, speed=operation.speed * ratios[number])
-        of_stage = partial(_at_rest_of_stage, drive, number, models[number])
-        mean = of_stage(replace(point, load=mean))[0]
-        largest = of_stage(replace(point, load=largest))[1]
+        place, laws = LinkPlace(drive, number), models[number]
+        mean = link.at_rest(place, replace(point, load=mean), laws)[0]
+        largest = link.at_rest(place, replace(point, load=largest), laws)[1]
     return mean, largest
-
-
-def _at_rest_of_stage(drive: Drive, number: int, laws: Any, point: Operation) -> tuple[Each, Each]:
-    """What starts a stage, with the losses of the drive that it overcomes."""
-    stage = drive.stages[number]
-    if stage.train is None:
-        return torques_at_rest(replace(stage.alone, drag=braked(drive, number)), point, laws)
-    from pitchpoint.efficiency.train_summary import torques_at_rest_of_train
-
-    each = torques_at_rest_of_train(braked_train(drive, number), point, laws)
-    return array(each[0]), array(each[1])

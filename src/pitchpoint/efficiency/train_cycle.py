@@ -22,7 +22,7 @@ from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
 
-__all__ = ["MeshState", "TrainCycle", "train_cycle"]
+__all__ = ["NODES_OF_TRAINS", "MeshState", "TrainCycle", "train_cycle"]
 
 Nodes = Float[Array, " node"]
 Copies = Float[Array, "copy node"]
@@ -31,6 +31,9 @@ Forces = Float[Array, "node force"]
 Arms = Float[Array, "node row force"]
 Vectors = Float[Array, "3 copy node"]
 OfPlanets = Float[Array, "_ node"]
+
+NODES_OF_TRAINS = 6
+"""Nodes in each segment between events of a train, of which planets out of phase make many."""
 
 MOST_STEPS = 60
 """Steps of the search for forces. Friction hangs weakly on them, so that a step leaves a few per cent of the
@@ -172,7 +175,7 @@ class TrainCycle(eqx.Module):
 
 @program
 def train_cycle(
-    train: Train, operation: Operation, models: Sequence[Models], nodes: int = 6
+    train: Train, operation: Operation, models: Sequence[Models], nodes: int = NODES_OF_TRAINS
 ) -> TrainCycle:
     """States of a train over its period, integrated segment by segment between the events of all meshes.
 

@@ -1,17 +1,22 @@
-"""A gear train as one stage of a drive: its states under all loads that the stages behind it make."""
+"""A gear train as a link of a drive: its states under all loads that the links behind it make."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import ClassVar
 
 import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jax, jnp
-from pitchpoint.efficiency.quasi_static import Models, Operation
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.drive.kinematics import HOUSING
+from pitchpoint.efficiency.drive import MET, DriveLink, LinkPlace, Locking, UnderLoad, overcome
+from pitchpoint.efficiency.quasi_static import Engagement, Models, Operation
 from pitchpoint.efficiency.train import Train
-from pitchpoint.efficiency.train_cycle import TrainCycle, train_cycle
+from pitchpoint.efficiency.train_cycle import NODES_OF_TRAINS, TrainCycle, train_cycle
+from pitchpoint.efficiency.train_summary import torques_at_rest_of_train, train_memory
 from pitchpoint.status import Code, Status
 
-__all__ = ["TrainState", "train_state"]
+__all__ = ["TrainLink", "TrainState", "train_state"]
 
 Each = Float[Array, "*b"]
 
@@ -102,3 +107,93 @@ def _state(found: TrainCycle) -> TrainState:
         jnp.moveaxis(found.levers, 0, 1),
         found.status,
     )
+
+
+class TrainLink(DriveLink):
+    """A train at its place in a drive, which the bodies at its ends join to two shafts.
+
+    Attributes:
+        design: the train.
+        shafts: the one that drives it and the one that it loads; static.
+    """
+
+    design: Train
+    shafts: tuple[int, ...] = eqx.field(static=True)
+
+    presses_bearings: ClassVar[bool] = False
+
+    @property
+    def bodies(self) -> int:
+        """See `DriveLink`."""
+        return 2
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """See `DriveLink`."""
+        first, last = self.shafts
+        return first, last
+
+    @property
+    def step(self) -> Float[Array, ""]:
+        """See `DriveLink`."""
+        return jnp.abs(1.0 / self.design.ratio)
+
+    @property
+    def touching(self) -> bool:
+        """See `DriveLink`."""
+        return True
+
+    def senses(self, before: float) -> tuple[float, float]:
+        """See `DriveLink`."""
+        return before, before * float(jnp.sign(self.design.ratio))
+
+    def driven_backwards(self) -> "TrainLink":
+        """See `DriveLink`."""
+        return TrainLink(self.design.driven_backwards(), self.shafts[::-1])
+
+    def under_load(
+        self,
+        place: LinkPlace,
+        point: Operation,
+        models: tuple[Models, ...],
+        nodes: int,
+        known: Engagement | None,
+    ) -> UnderLoad:
+        """See `DriveLink`; a train has nodes of its own."""
+        at_loads = jax.tree.map(lambda leaf: leaf[..., 0], point)
+        found, weight = train_state(self._braked(place), at_loads, models, NODES_OF_TRAINS)
+        return UnderLoad(found, found.pressed, weight, NODES_OF_TRAINS)
+
+    def at_rest(
+        self, place: LinkPlace, point: Operation, models: tuple[Models, ...]
+    ) -> tuple[Array, Array]:
+        """See `DriveLink`."""
+        mean, largest = torques_at_rest_of_train(self._braked(place), point, models)
+        return array(mean), array(largest)
+
+    def memory(self, models: tuple[Models, ...], nodes: int) -> tuple[float, int]:
+        """See `DriveLink`."""
+        return train_memory(self.design, models), 0
+
+    def locking(self, state: TrainState) -> Locking:
+        """See `DriveLink`."""
+        lost = state.status.code == int(Code.NOT_CONVERGED)
+        count = len(state.input_torque.shape) - len(MET)
+        levers, friction, lost = (
+            values.reshape(*values.shape[:count], -1, *values.shape[count + len(MET) :])
+            for values in (state.levers, state.largest_friction, lost)
+        )
+        return levers, friction, lost
+
+    def _braked(self, place: LinkPlace) -> Train:
+        """The train with the losses of the drive that it overcomes before its own."""
+        train, drive = self.design, place.drive
+        names = dict(zip(self.shafts, (train.turned, train.loaded), strict=True))
+        drags, pairs = [], []
+        for number in overcome(drive, place.number):
+            drag, shafts = drive.drag[number], drive.braked[number]
+            first, second = *(names[shaft] for shaft in shafts), *[HOUSING] * (2 - len(shafts))
+            sides = drag.between[shafts[0]] * jnp.array([1.0, -1.0])
+            drags.append(replace(drag, between=sides, seat=None))
+            pairs.append((first, second))
+        return replace(train, drag=(*drags, *train.drag), braked=(*pairs, *train.braked))

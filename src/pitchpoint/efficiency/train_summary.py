@@ -10,12 +10,11 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.efficiency.drag import at_rest
-from pitchpoint.efficiency.drive import NODES_OF_TRAINS
 from pitchpoint.efficiency.quasi_static import Models, Operation, events_of, power_ratio
 from pitchpoint.efficiency.rows import CHUNK
 from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.efficiency.train import Train
-from pitchpoint.efficiency.train_cycle import MeshState, TrainCycle, train_cycle
+from pitchpoint.efficiency.train_cycle import NODES_OF_TRAINS, MeshState, TrainCycle, train_cycle
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.registry import LoadSharing

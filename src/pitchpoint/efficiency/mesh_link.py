@@ -1,0 +1,154 @@
+"""One mesh as a link of a drive, and what its shafts and their bearings put on it."""
+
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.efficiency.drag import Drag, bearing_loads
+from pitchpoint.efficiency.drive import DriveLink, LinkPlace, UnderLoad, felt, overcome
+from pitchpoint.efficiency.quasi_static import (
+    Design,
+    Engagement,
+    Models,
+    Operation,
+    State,
+    cycle_nodes,
+    state,
+)
+from pitchpoint.efficiency.running_torque import torques_at_rest
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.pairs import touching
+from pitchpoint.loading.reactions import Bearing
+from pitchpoint.loading.registry import LoadSharing
+
+__all__ = ["MeshLink"]
+
+OF_A_MEETING = 680.0
+"""Memory for each meeting of phases where few contacts take less [B], as the compiler tells."""
+
+OF_A_LANE = {True: 17.0, False: 34.0}
+"""Memory for each contact at a meeting [B]: of rigid flanks that all touch, and of others."""
+
+
+class MeshLink(DriveLink):
+    """One mesh at its place in a drive.
+
+    Attributes:
+        design: mesh, materials, oil, surfaces, and what brakes its bodies against each other.
+        shafts: one for each coordinate of the mesh; static.
+        turn: angle about the shafts of the frame of the mesh against that of the drive [rad].
+        place: of the middle of the face along the shafts [m].
+    """
+
+    design: Design
+    shafts: tuple[int, ...] = eqx.field(static=True)
+    turn: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.zeros(()))
+    place: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.zeros(()))
+
+    presses_bearings: ClassVar[bool] = True
+
+    @property
+    def bodies(self) -> int:
+        """See `DriveLink`."""
+        return len(self.design.mesh.coordinates)
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """See `DriveLink`."""
+        mesh = self.design.mesh
+        first, last = (self.shafts[int(np.argmax(on))] for on in (mesh.driver, mesh.loaded))
+        return first, last
+
+    @property
+    def step(self) -> Float[Array, ""]:
+        """See `DriveLink`."""
+        return jnp.abs(self.design.mesh.loaded @ self.design.mesh.motion)
+
+    @property
+    def touching(self) -> bool:
+        """See `DriveLink`."""
+        return touching(self.design.mesh)
+
+    def senses(self, before: float) -> tuple[float, float]:
+        """See `DriveLink`."""
+        mesh = self.design.mesh
+        first, last = (float(jnp.sign(mesh.motion @ end)) for end in (mesh.driver, mesh.loaded))
+        return first, last
+
+    def driven_backwards(self) -> "MeshLink":
+        """See `DriveLink`."""
+        mesh = self.design.mesh.driven_by(self.shafts.index(self.ends[1]))
+        return replace(self, design=replace(self.design, mesh=mesh))
+
+    def under_load(
+        self,
+        place: LinkPlace,
+        point: Operation,
+        models: Models,
+        nodes: int,
+        known: Engagement | None,
+    ) -> UnderLoad:
+        """See `DriveLink`."""
+        mesh = self.design.mesh
+        if known is None:
+            phase, weight = cycle_nodes(mesh, models.sharing, nodes)
+        else:
+            phase, weight = known.phase, known.weight
+        drag = self._braked(place)
+        found = state(replace(self.design, drag=drag), point, phase, models, engaged=known)
+        loads = bearing_loads(drag, mesh, found.contacts, found.balance.load)
+        return UnderLoad(found, tuple(loads), weight, nodes)
+
+    def at_rest(self, place: LinkPlace, point: Operation, models: Models) -> tuple[Array, Array]:
+        """See `DriveLink`."""
+        return torques_at_rest(replace(self.design, drag=self._braked(place)), point, models)
+
+    def memory(self, models: Models, nodes: int) -> tuple[float, int]:
+        """See `DriveLink`."""
+        lanes, phases = eqx.filter_eval_shape(_sizes, self.design.mesh, models.sharing, nodes)
+        each = max(OF_A_MEETING, OF_A_LANE[self.touching] * lanes.size)
+        return phases.size * each, phases.size
+
+    def locking(self, state: State) -> None:
+        """See `DriveLink`."""
+        return None
+
+    def _braked(self, place: LinkPlace) -> tuple[Drag, ...]:
+        """Losses of the drive that it overcomes, in its coordinates, then its own."""
+        found = []
+        for number in overcome(place.drive, place.number):
+            drag = place.drive.drag[number]
+            seat = drag.seat
+            if isinstance(seat, Bearing):
+                beside = self._beside(seat, place) if felt(*place[:2], number) else None
+                seat = replace(self._seated(seat), beside=beside)
+            between = jnp.stack([drag.between[shaft] for shaft in self.shafts])
+            found.append(replace(drag, between=between, seat=seat))
+        return (*found, *self.design.drag)
+
+    def _seated(self, seat: Bearing) -> Bearing:
+        """A bearing of the drive as the mesh sees it."""
+        other = None if seat.other is None else seat.other - self.place
+        coordinate = self.shafts.index(seat.coordinate)
+        return replace(seat, coordinate=coordinate, place=seat.place - self.place, other=other)
+
+    def _beside(self, seat: Bearing, place: LinkPlace) -> Float[Array, "3 *#b"] | None:
+        """Load on a bearing by the link behind, in the frame of this one [N]."""
+        if place.meetings is None:
+            return None
+        after: Any = place.drive.links[place.number + 1]
+        state = place.behind
+        borne = after._seated(seat).borne(after.design.mesh, state.contacts, state.balance.load)
+        x, y, z = place.meetings.following(borne)
+        angle = after.turn - self.turn
+        cosine, sine = jnp.cos(angle), jnp.sin(angle)
+        return jnp.stack([cosine * x - sine * y, sine * x + cosine * y, z])[..., None]
+
+
+def _sizes(mesh: Mesh, sharing: LoadSharing, nodes: int) -> tuple[Array, Array]:
+    """Contacts at one phase, and phases of the period, of which the shapes count."""
+    return mesh.contacts(jnp.zeros(())).weight, cycle_nodes(mesh, sharing, nodes)[0]
