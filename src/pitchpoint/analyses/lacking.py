@@ -104,26 +104,24 @@ def without_train(built: Ready) -> str | None:
 
 def no_pins(built: Ready) -> str | None:
     """Why nothing is computed of how planets share a load; of stages where no set has it."""
-    if built.trains and not built.planets:
-        each = {
-            n: no_pins(one)
-            for n, one in zip(built.numbers, built.stages, strict=True)
-            if one.trains
-        }
-        if None in each.values():
-            return None
-        first = next(iter(each.values()))
-        asked = {n: why for n, why in each.items() if why and not isinstance(why, Unasked)}
-        return next((f"stage {number}: {why}" for number, why in asked.items()), first)
-    if not built.planets:
+    each = {number: _no_pins(train) for number, train in built.trains.items()}
+    if not each:
         return Unasked("it has no planets")
-    (alone,) = built.trains
-    if not _out_of_place(alone):
+    if None in each.values():
+        return None
+    asked = {n: why for n, why in each.items() if why and not isinstance(why, Unasked)}
+    told = (f"stage {number}: {why}" if number else why for number, why in asked.items())
+    return next(told, next(iter(each.values())))
+
+
+def _no_pins(built: BuiltTrain) -> str | None:
+    """The same of one set."""
+    if not _out_of_place(built):
         return Unasked("pin_errors, pin_tolerance and the like of a planetary set ask for it")
-    on_planets = [one for one in alone.design.meshes if one.carrier != HOUSING]
+    on_planets = [one for one in built.design.meshes if one.carrier != HOUSING]
     if built.case.operation.load == 0.0:
         return "planets share no load where there is none"
-    if alone.planets < 2 or len(on_planets) != 2:
+    if built.planets < 2 or len(on_planets) != 2:
         return "planets that share a load by their pins are several, each in two meshes"
     return None
 

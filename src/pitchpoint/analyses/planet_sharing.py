@@ -17,7 +17,7 @@ from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.kinematics import HOUSING, Ends
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.loading.planets import PinEquivalents, path_stiffness, planet_forces
-from pitchpoint.results.by_stage import by_stage
+from pitchpoint.results.by_stage import Label, by_stage
 from pitchpoint.results.store import dataset
 
 __all__ = ["Sharing", "shared", "sharing_of"]
@@ -144,16 +144,10 @@ def sharing_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
     Args:
         built: a set, or stages with sets among them.
     """
-    if built.planets:
-        return _sharing_of_set(built.trains[0])
-    stages = zip(built.numbers, built.stages, strict=True)
-    return by_stage(
-        {
-            n: _sharing_of_set(one.trains[0])
-            for n, one in stages
-            if one.trains and no_pins(one) is None
-        }
-    )
+    each: dict[Label, xr.Dataset] = {
+        number: _sharing_of_set(one) for number, one in built.trains.items() if no_pins(one) is None
+    }
+    return each[0] if 0 in each else by_stage(each)
 
 
 def _sharing_of_set(built: BuiltTrain) -> xr.Dataset:

@@ -86,19 +86,19 @@ def _unrated(built: Ready) -> str | None:
 
 def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """The rating of a pair, or of those stages of a drive that are pairs of cylindrical gears."""
-    stages, on_sharing = _with_sharing(built)
-    each = _ratings([one for _, one in stages])
+    rated, on_sharing = _with_sharing(built)
+    each = _ratings([one for _, one in rated])
     several = bool(built.numbers)
     values = each[0]
     labels: dict[str, list[Any]] = {"gear": ["gear 1", "gear 2"]}
     if several:
         values = {name: np.stack([found[name] for found in each]) for name in each[0]}
-        labels = {"stage": alike_labels([label for label, _ in stages]), **labels}
+        labels = {"stage": alike_labels([label for label, _ in rated]), **labels}
     dims = {name: tuple(labels)[: np.ndim(found)] for name, found in values.items()}
     extremes = _extremes(each)
 
     def told(of: Callable[[Built, Numbers], Iterable[str]]) -> list[str]:
-        pairs = zip(stages, each, strict=True)
+        pairs = zip(rated, each, strict=True)
         every = [(label, text) for (label, one), found in pairs for text in of(one, found)]
         return [in_stage(label, text) if several else text for label, text in every]
 
@@ -107,7 +107,7 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         | {name: ((), found) for name, found in extremes.items()},
         labels,
         title="strength",
-        method=_method([one for _, one in stages]),
+        method=_method([one for _, one in rated]),
         assumed=told(lambda one, _: _assumed(one)),
         withheld=told(lambda one, found: [*one.rated.withheld, *_bounds(one, found)]),
         remarks=[*told(lambda one, _: [*_remarks(one)]), *built.on_strength, *on_sharing],
@@ -133,47 +133,40 @@ def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
 
     A factor that the case gives stays. So does that of the standard where pins alone make less of it.
     """
-    stages = _rated(built)
-    if built.trains and not built.planets:
-        return _with_sharing_of_sets(built, stages)
-    if not built.planets:
-        return stages, []
+    shared: dict[Built, Built] = {}
+    told: list[str] = []
+    for number, train in built.trains.items():
+        more, sentences = _shared(train)
+        shared |= more
+        told += [in_stage(number, text) if number else text for text in sentences]
+    return [(label, shared.get(one, one)) for label, one in _rated(built)], told
+
+
+def _shared(built: BuiltTrain) -> tuple[dict[Built, Built], list[str]]:
+    """Rated meshes of a set that take more by its pins, each with what it is then, and sentences on it."""
     from pitchpoint.analyses.planet_sharing import PERCENTILES, shared  # few cases ask for it
 
     lacks = no_pins(built)
     if lacks is not None:
         out_of_place = not isinstance(lacks, Unasked)
-        return stages, [f"Pins out of place are not in K_γ: {lacks}."] * out_of_place
-    (train,) = built.trains
-    sharing = shared(train)
+        return {}, [f"Pins out of place are not in K_γ: {lacks}."] * out_of_place
+    sharing = shared(built)
     factor = sharing.rated_factor
-    rated = [
-        (number, _sharing_by(one, factor) if _open_sharing(train, number) else one)
-        for number, one in stages
-    ]
+    more = {
+        one: _sharing_by(one, factor)
+        for number, one in _rated(built)
+        if _open_sharing(built, number)
+    }
     within = "" if sharing.drawn is None else f" in {PERCENTILES[-1]:g} % of sets by tolerance"
     bears = (
         f"By the deviations of the set a planet bears up to {factor:.3g} of an equal share{within}"
     )
-    if any(one is not before for (_, one), (_, before) in zip(rated, stages, strict=True)):
-        return rated, [f"{bears}: K_γ is that."]
-    return rated, [
+    if any(one is not before for before, one in more.items()):
+        return more, [f"{bears}: K_γ is that."]
+    return {}, [
         f"{bears}; K_γ stays that of the standard or of [strength], which stand for weight, friction and "
         "what else is not among them."
     ]
-
-
-def _with_sharing_of_sets(
-    built: Ready, stages: Sequence[tuple[Label, Built]]
-) -> tuple[list[tuple[Label, Built]], list[str]]:
-    """The same of a drive with planetary sets among its stages, each with its own factor."""
-    found: list[Built] = []
-    told: list[str] = []
-    for number, one in zip(built.numbers, built.stages, strict=True):
-        each, sentences = _with_sharing(one)
-        found += [mesh for _, mesh in each]
-        told += [in_stage(number, text) for text in sentences]
-    return [(label, mesh) for (label, _), mesh in zip(stages, found, strict=True)], told
 
 
 def _open_sharing(built: BuiltTrain, number: Label) -> bool:

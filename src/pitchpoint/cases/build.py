@@ -219,7 +219,7 @@ class Built:
     stages: ClassVar[tuple[()]] = ()
     documents: ClassVar[tuple[()]] = ()
     stage_bodies: ClassVar[tuple[()]] = ()
-    trains: ClassVar[tuple[()]] = ()
+    trains: ClassVar[Mapping[int, Any]] = {}
     planets: ClassVar[int] = 0
     on_strength: ClassVar[tuple[()]] = ()
     on_load_factors: ClassVar[tuple[()]] = ()

@@ -120,7 +120,7 @@ class BuiltDrive:
             *(
                 (number, text)
                 for number, one in zip(self.numbers, self.stages, strict=True)
-                for train in one.trains
+                for train in one.trains.values()
                 for text in train.told
             ),
             *((label, text) for label, mesh in of_meshes for text in mesh.warnings),
@@ -219,9 +219,10 @@ class BuiltDrive:
         return found
 
     @property
-    def trains(self) -> "tuple[BuiltTrain, ...]":
-        """Sets of meshes that turn together: those among its stages, in the order of the power."""
-        return tuple(train for one in self.stages for train in one.trains)
+    def trains(self) -> "dict[int, BuiltTrain]":
+        """Sets of meshes that turn together, by number of the stage, in the order of the power."""
+        each = zip(self.numbers, self.stages, strict=True)
+        return {number: train for number, one in each for train in one.trains.values()}
 
     @property
     def planets(self) -> int:
@@ -470,9 +471,9 @@ class BuiltTrain(BuiltDrive):
         return TRAIN_PERIOD
 
     @property
-    def trains(self) -> "tuple[BuiltTrain, ...]":
-        """Sets of meshes that turn together: itself."""
-        return (self,)
+    def trains(self) -> "dict[int, BuiltTrain]":
+        """Sets of meshes that turn together: itself, which is no stage."""
+        return {0: self}
 
     @property
     def planets(self) -> int:

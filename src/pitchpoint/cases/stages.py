@@ -451,7 +451,7 @@ def _few_meetings(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
 def _on_sets(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
     """Planetary sets of which not all is computed that a file of them alone has."""
     for number, one in enumerate(built, 1):
-        for point in (train.case.operation for train in one.trains):
+        for point in (train.case.operation for train in one.trains.values()):
             yield Doubt(
                 f"Stage {number} is a planetary set: its state over a period is not computed here. A file of "
                 f"this set alone has it, with torque "
