@@ -482,3 +482,18 @@ def test_a_wrong_set_in_a_row_is_told_with_its_key(stage, more, key, told):
     first = caught.value.every[0] if isinstance(caught.value, CollectedInputError) else caught.value
     assert first.key.startswith(key)
     assert told in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("stages", "tables"),
+    [
+        ([PAIR, SETS[0]], ["stages.2.losses"]),
+        (SETS, ["stages.1.losses or stages.2.losses"]),
+        ([PAIR, PAIR], []),
+    ],
+)
+def test_losses_of_planets_belong_into_the_stage_that_is_a_set(stages, tables):
+    with pytest.raises(InputError, match='"planet" is no body of this drive') as caught:
+        drive(*stages, losses={"needles": NEEDLES})
+    told = str(caught.value).partition("losses within a set stand in its stage, ")[2]
+    assert told.splitlines()[:1] == tables

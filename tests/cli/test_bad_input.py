@@ -1004,7 +1004,7 @@ def bad_stages() -> Iterator[Bad]:
             "planet",
             ("losses",),
             {"oil": {"between": ["planet", "carrier"], **seal}},
-            ("losses within a set stand in its stage, stages.1.losses",),
+            ('"planet" is no body of this drive',),
             "losses.oil.between",
         ),
         (

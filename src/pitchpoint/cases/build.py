@@ -827,7 +827,7 @@ def _left_out(built: Built) -> list[str]:
     """What a model leaves out, or changes nothing of."""
     heats = built.case.models.tooth_temperature != "isothermal"
     idle = heats and not any(used.plastic for used in built.solids)
-    return [*without_bearing(built), *[NO_PLASTIC] * idle]
+    return [*without_bearing(built.places, lacks_bearing=built.lacks_bearing), *[NO_PLASTIC] * idle]
 
 
 def covered(places: Sequence[str], *, lacks_bearing: bool) -> dict[str, str]:
@@ -846,9 +846,9 @@ def covered(places: Sequence[str], *, lacks_bearing: bool) -> dict[str, str]:
     return {"covers": some, **lacks} if lacks_bearing else {}
 
 
-def without_bearing(built: Any) -> list[str]:
+def without_bearing(places: Sequence[str], *, lacks_bearing: bool) -> list[str]:
     """Sentence on a drive, of one mesh or several, whose inner bearing loses nothing."""
-    return [BEARING_FREE if built.places else TEETH_ALONE] * built.lacks_bearing
+    return [BEARING_FREE if places else TEETH_ALONE] * lacks_bearing
 
 
 def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:

@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from pydantic import BaseModel
 
 from pitchpoint._jax import array
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import Ready
+from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
 from pitchpoint.cases.height_maps import MEMBERS, digest_of
 from pitchpoint.cases.loss_sets import SET, marks_of
@@ -137,7 +137,11 @@ def input_rows(
         studies: beside those of the case.
     """
     every = {**built.case.studies, **(studies or {})}
-    own = _of_drive(built, document) if built.numbers else _of_mesh(built.meshes[0], document)
+    own = (
+        _of_drive(cast(BuiltDrive, built), document)
+        if built.numbers
+        else _of_mesh(built.meshes[0], document)
+    )
     return [
         *own,
         *(row for name, study in every.items() for row in _of_study(name, study, document)),
@@ -182,7 +186,7 @@ def _mark(found: Followed) -> Provenance:
     return Provenance(found.status, note=found.note)
 
 
-def _of_drive(built: Any, document: Document) -> Iterator[Row]:
+def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
     """Rows of the stages, then those of the tables that they share."""
     short = built.case.gears is not None  # for which the stages stand
     document = with_meshes(document)
@@ -208,7 +212,7 @@ def _of_drive(built: Any, document: Document) -> Iterator[Row]:
             yield from (row for row in _rows(built.case, document, table) if row["value"] != "")
 
 
-def _models(built: Any, document: Document) -> Iterator[Row]:
+def _models(built: BuiltDrive, document: Document) -> Iterator[Row]:
     """Rows of the models, once where no stage has its own."""
     whole = {row["key"]: row for row in _rows(built.case, document, "models") if row["given"]}
     each = [

@@ -1797,7 +1797,8 @@ class DriveCase(Table):
             turning = self.bodies[: len(self.bodies) - travels]
             wrong.tried(_check_load, self, self.last)
             wrong.tried(_check_quadrants, self)
-            wrong.tried(_check_losses, self.losses, turning, self.bodies)
+            sets = [n for n, one in self.stages.items() if isinstance(one.gears, PlanetaryGears)]
+            wrong.tried(_check_losses, self.losses, turning, self.bodies, sets)
         if self.operation.driver:
             told = (
                 "that is the input of the train, a key beside its held and output"
@@ -2097,18 +2098,23 @@ def _check_driver(case: Case) -> None:
 
 
 def _check_losses(
-    losses: Mapping[str, Loss], turning: Sequence[str], bodies: Sequence[str]
+    losses: Mapping[str, Loss],
+    turning: Sequence[str],
+    bodies: Sequence[str],
+    sets: Sequence[str] = (),
 ) -> None:
     """InputError if losses arise between bodies that do not turn, or bearings have no span."""
     wrong = Complaints()
     for name, loss in losses.items():
-        wrong.under(f"losses.{name}").tried(_check_bodies, loss, turning, bodies)
+        wrong.under(f"losses.{name}").tried(_check_bodies, loss, turning, bodies, sets)
     for body in turning:
         wrong.tried(_check_span, body, bearings_of(losses, body))
     wrong.demand_none()
 
 
-def _check_bodies(loss: Loss, turning: Sequence[str], bodies: Sequence[str]) -> None:
+def _check_bodies(
+    loss: Loss, turning: Sequence[str], bodies: Sequence[str], sets: Sequence[str]
+) -> None:
     """InputError if a loss arises between bodies that the drive does not have, or that travel."""
     known = (*turning, "housing")
     first, second = loss.between
@@ -2118,7 +2124,7 @@ def _check_bodies(loss: Loss, turning: Sequence[str], bodies: Sequence[str]) -> 
         f"{', '.join(known)}"
         if strange in bodies
         else f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
-        + _within_set(strange, known)
+        + _within_set(strange, sets)
         if strange is not None
         else f"{shown(first)} was given twice; name two bodies of {', '.join(dict.fromkeys(known))}"
     )
@@ -2126,10 +2132,10 @@ def _check_bodies(loss: Loss, turning: Sequence[str], bodies: Sequence[str]) -> 
         raise InputError(told, key="between")
 
 
-def _within_set(body: str, known: Sequence[str]) -> str:
-    """Where losses at a body of a planetary set stand in a drive of stages, as a clause; else empty."""
-    of_stages = "shaft 2" in known and body in ("planet", *BODIES)
-    return "; losses within a set stand in its stage, stages.1.losses" if of_stages else ""
+def _within_set(body: str, sets: Sequence[str]) -> str:
+    """Where losses at a body of planetary sets stand that are stages of these numbers, as a clause."""
+    tables = [f"stages.{number}.losses" for number in sets if body in ("planet", *BODIES)]
+    return f"; losses within a set stand in its stage, {' or '.join(tables)}" if tables else ""
 
 
 def _check_span(body: str, bearings: Mapping[str, Loss]) -> None:

@@ -159,7 +159,8 @@ def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
     wrong.demand_none()
     made = _together(case, built, [one.document for one in alone])
     _check_map(made)
-    return replace(made, told=(*made.told, *without_bearing(made)))
+    bearing = without_bearing(made.places, lacks_bearing=made.lacks_bearing)
+    return replace(made, told=(*made.told, *bearing))
 
 
 def _of_train(alone: Sequence[_Stage], document: Document) -> tuple[list[Case], list[Mesh]]:
