@@ -19,17 +19,22 @@ from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.pairs import way
+from pitchpoint.results.by_stage import by_stage
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import Figure, Panel, continued
 from pitchpoint.views.path import path_of
+from pitchpoint.views.registry import STIFFNESS, WEAR
 from pitchpoint.views.report import render
+from pitchpoint.views.section import Page, Table
 from pitchpoint.views.sections.design_chart import design_charts
+from pitchpoint.views.sections.joint import joint_panel
 from pitchpoint.views.sections.path import along, loss_places
 from pitchpoint.views.sections.plane_of_action import PlaneOfAction, plane_of_action
 from pitchpoint.views.sections.sliding import sliding_figure
 from pitchpoint.views.sections.stiffness import stiffness_answer, stiffness_panels
 from pitchpoint.views.sections.vibration import (
+    VIBRATION,
     resonance_panels,
     vibration_answer,
     vibration_panels,
@@ -457,3 +462,111 @@ def test_long_lines_are_thinned_and_jumps_kept() -> None:
     gap = int(np.flatnonzero(np.isnan(shown_y))[0])
     assert (shown_y[gap - 1], shown_y[gap + 1]) == (1.0, 2.0)
     assert (shown_x[0], shown_x[-1]) == (0.0, 1.0)
+
+
+OF_STAGES = {
+    1: ("gear 1", np.pi / 2.0, 60.0 * np.pi, 6800.0, 120.0),
+    2: ("gear 3", np.pi / 10.0, 6.0 * np.pi, 680.0, 4400.0),
+}
+"""What drives each stage, the period of its mesh [rad], its speed [rad/s] and frequency [Hz], life [h]."""
+
+
+def joint(natural: float) -> xr.Dataset:
+    motor, speed = ["held", "free"], np.linspace(20.0, 800.0, 12)
+    return dataset(
+        {
+            "natural_frequency": (("motor",), [natural, 1.5 * natural]),
+            "wave_order": (("excitation",), [2.0]),
+            "critical_speed": (("motor", "excitation"), [[100.0], [150.0]]),
+            "torque_amplitude": (("motor", "excitation", "speed"), np.ones((2, 1, 12))),
+            "output_amplitude": (("motor", "excitation", "speed"), np.ones((2, 1, 12))),
+        },
+        {"motor": motor, "excitation": ["2 a turn"], "speed": speed},
+        title="joint",
+    )
+
+
+def wear(hours: float) -> xr.Dataset:
+    figures = {"final_cycles": 1e6, "life_hours": 3600.0 * hours, "severe_cycles": np.nan}
+    return dataset(
+        {name: ((), value) for name, value in figures.items()}
+        | {"deepest_wear": (("step", "gear"), [[1e-6, 2e-6]])},
+        {"gear": ["gear 1", "gear 2"]},
+        title="wear",
+        end="turns",
+        driver="gear 1",
+        members=["gear 1", "gear 2"],
+    )
+
+
+@pytest.fixture(scope="module")
+def stages(whole: Outcome) -> Outcome:
+    """A drive of two stages: the second has a motion, frequencies, damping and a life of its own."""
+    parts = {
+        "vibration": {
+            number: vibration().assign(
+                natural_frequency=("torque", [0.9 * natural, natural]),
+                **{
+                    name: ("torque", [1.0, 1.0])
+                    for name in ("mean_stiffness", "stiffness_variation")
+                },
+            )
+            for number, (*_, natural, _) in OF_STAGES.items()
+        },
+        "resonance": {
+            1: resonance(),
+            2: resonance().assign_coords(speed=np.linspace(20.0, 800.0, 12)),
+        },
+        "stiffness": {1: stiffness(), 2: stiffness().assign(mean_stiffness=((), 0.977e6))},
+        "joint": {number: joint(natural) for number, (*_, natural, _) in OF_STAGES.items()},
+        "wear": {number: wear(hours) for number, (*_, hours) in OF_STAGES.items()},
+    }
+    alike = {"bodies": "", "loaded": "", "motion": [1.0], "load": 5.355, "travels": []}
+    each = [
+        {"number": number, "driver": driver, "period": period, "speed": speed, **alike}
+        for number, (driver, period, speed, *_) in OF_STAGES.items()
+    ]
+    shared = [one for one in whole.manifest["inputs"] if one["table"] != "dynamics"]
+    (ratio,) = (one for one in whole.manifest["inputs"] if one["table"] == "dynamics")
+    path = f"{ratio['table']}.{ratio['key']}"
+    inputs = [
+        {**ratio, "table": "stages", "key": f"{number}.{path}", "value": 0.05 * number}
+        for number in OF_STAGES
+    ] + shared
+    manifest = {**whole.manifest, "stages": each, "inputs": inputs}
+    return Outcome(manifest, {name: by_stage(own) for name, own in parts.items()})
+
+
+@pytest.mark.parametrize("number", OF_STAGES)
+def test_a_stage_is_told_by_its_own_motion(stages: Outcome, number: int) -> None:
+    driver, period, _, natural, hours = OF_STAGES[number]
+    sections = VIBRATION, STIFFNESS, WEAR
+    facts = {one.name: one for section in sections for one in section.answers(stages)}
+    own = facts[f"Natural frequency, stage {number}"]
+    assert own.value.split() == [f"{natural:.0f}", "Hz"]
+    met = f"{natural * period * 30.0 / np.pi:.0f}"
+    assert " ".join(own.detail.split()) == f"that of the mesh at {met} rpm of {driver}"
+    assert f"({hours:.0f} h)" in " ".join(facts[f"Wear depth, stage {number}"].detail.split())
+    stiff = facts[f"Mesh stiffness, stage {number}"].value
+    assert stiff.split()[0] == {1: "3.977", 2: "0.977"}[number]
+    printed = {one.title: one.rows for one in VIBRATION.prints(stages)}[f"Stage {number}"]
+    assert f"{natural:.0f}" in printed[-1].values()
+
+
+@pytest.mark.parametrize("number", OF_STAGES)
+def test_figures_of_a_stage_are_those_of_its_own_motion(stages: Outcome, number: int) -> None:
+    """Its table and damping, the speeds at which it is excited, and the frequencies of Campbell's diagram."""
+    _, period, _, natural, _ = OF_STAGES[number]
+    page = Page({"default": stages}, {})
+    (tabs,) = VIBRATION.shows(page)
+    blocks = tabs.each[f"stage {number}"]
+    rows = {row[0]: row[1:] for one in blocks if isinstance(one, Table) for row in one.rows}
+    assert rows["natural frequency f_n"][-1].split()[0] == f"{natural:.0f}"
+    assert rows["damping ratio ξ"] == ({1: "0.05", 2: "0.1"}[number],) * 2
+    marks = {1: ("f_n/2", 2.0), 2: ("f_n", 1.0)}[number]
+    met = natural * period * 30.0 / np.pi / marks[1]
+    shapes = blocks[-1].figures[0].layout["shapes"]
+    assert met in [pytest.approx(one["x0"], rel=1e-3) for one in shapes]
+    drawn = {title: one for _, title, one in page.each("joint")}[f"stage {number}"]
+    levels = joint_panel("joint", "", drawn).figures[-1].data[-2:]
+    assert [level["y"][0] for level in levels] == pytest.approx([natural, 1.5 * natural])
