@@ -3,6 +3,7 @@
 import equinox as eqx
 import numpy as np
 import pytest
+from harmonic_balance import harmonic_balance
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
@@ -10,7 +11,6 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.energy import energies
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.dynamics.harmonic_balance import harmonic_balance
 from pitchpoint.dynamics.integration import by_steps
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.series import by_series
