@@ -30,6 +30,8 @@ from pitchpoint.views.show import number
 if TYPE_CHECKING:
     import pandas as pd
 
+    from pitchpoint.runs.joint_model import JointModel
+
 __all__ = ["Result", "open_result", "run"]
 
 _LONGEST_TITLE = 70
@@ -189,6 +191,27 @@ class Result(Mapping[str, Outcome]):
         frame.attrs["units"] = every
         return frame
 
+    def joint_model(
+        self, *, law: str | None = None, rotor_inertia: Any = None, variant: str | None = None
+    ) -> "JointModel":
+        """The drive as a joint of a robot, for simulators, see `JointModel`.
+
+        It rests on the loss map of the output, which `loss_map.quadrants = 4` asks for. `result.joint` is
+        something else, the torsional vibration of a case that asks for it.
+
+        Args:
+            law: of friction, by name; the first one by default.
+            rotor_inertia: of the motor about its own axis, "0.3 kg cm2" or a number [kg m2].
+            variant: the first one by default.
+
+        Raises:
+            InputError: there is no such map, law or variant.
+        """
+        from pitchpoint.runs.joint_model import joint_model
+
+        outcome = self._outcome(variant)
+        return joint_model(outcome, law=law, rotor_inertia=rotor_inertia)
+
     def gradients(
         self,
         of: str = "mean_loss",
@@ -220,11 +243,14 @@ class Result(Mapping[str, Outcome]):
             cases = {name: runs.own_law(one, self._friction) for name, one in cases.items()}
         runs.keep(self, cases, Path(folder), studies=self._studies, overwrite=overwrite)
 
-    def _part(self, part: str, variant: str | None) -> xr.Dataset:
+    def _outcome(self, variant: str | None) -> Outcome:
         name = variant or next(iter(self))
         if name not in self:
             raise InputError(f"{shown(name)} is not a variant of this result{nearest(name, self)}")
-        outcome = self._outcomes[name]
+        return self._outcomes[name]
+
+    def _part(self, part: str, variant: str | None) -> xr.Dataset:
+        outcome = self._outcome(variant)
         if part not in outcome.parts:
             why = outcome.manifest.get("lacks", {}).get(part, "")
             told = f": {why}" if why else nearest(part, outcome.parts)

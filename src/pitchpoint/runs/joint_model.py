@@ -1,0 +1,565 @@
+"""A drive as a joint of a robot: what a simulator has to know of it, at its output, from a result alone."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint import units
+from pitchpoint.analyses.four_quadrants import celsius, table_of
+from pitchpoint.analyses.registry import FOUR_QUADRANTS
+from pitchpoint.efficiency.friction_fit import (
+    FrictionFit,
+    LawError,
+    LossLaw,
+    MapRange,
+    fit_friction,
+    law_errors,
+    loss_nodes,
+)
+from pitchpoint.efficiency.loss_table import LossTable, Rest
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import Quantity, shown
+from pitchpoint.registry import nearest
+from pitchpoint.runs.run import Outcome
+
+__all__ = ["AngleWaves", "JointModel", "WindUpTable", "joint_model", "part_of_map"]
+
+LEAST_WAVE = 0.01
+"""Part of the largest wave of an error from which on one counts."""
+
+MOST_WAVES = 32
+"""Waves that are handed over, the largest ones."""
+
+
+class WindUpTable(NamedTuple):
+    """How far the output turns under torque with the driver held.
+
+    Attributes:
+        torque: of the output, ascending from zero [torque].
+        wind_up: [torque] [rad or m].
+        stiffness: slope of torque over wind-up [torque] [N m/rad or N/m].
+        at_load: that slope at the load of operation [N m/rad or N/m].
+        covers: what yields, in words.
+    """
+
+    torque: np.ndarray
+    wind_up: np.ndarray
+    stiffness: np.ndarray
+    at_load: float
+    covers: str
+
+
+class AngleWaves(NamedTuple):
+    """Sum over waves of amplitude cos(order angle + phase).
+
+    Attributes:
+        order: waves in one turn of the angle [wave].
+        amplitude: [wave], in the unit of what they are waves of.
+        phase: at the angle zero [wave] [rad].
+        angle: of what, in words.
+    """
+
+    order: np.ndarray
+    amplitude: np.ndarray
+    phase: np.ndarray
+    angle: str
+
+
+@dataclass(frozen=True)
+class JointModel:
+    """What a simulator has to know of a drive; all at its output, from the record of a result.
+
+    Attributes:
+        title, case, variant, version, digest: where it comes from.
+        driver, output: names of the members at the ends.
+        ratio: speed of the driver over that of the output, with its sign [1, rad/m or m/rad].
+        slides: True where the output travels instead of turning.
+        table: loss torque over torque, speed and temperature, see `LossTable`.
+        law: of friction, by name.
+        load: torque of operation at the output [torque].
+        speed: of operation at the output [speed].
+        temperature: of operation [degC].
+        inertia: of all bodies of the drive at the output, without the motor [kg m2 or kg].
+        rotor_inertia: of the motor at the driver, which somebody gave [kg m2 or kg].
+        wind_up: torque over wind-up.
+        hysteresis: width of the loop of wind-up without torque, by friction of the teeth [rad or m].
+        lost_motion: at 4 % of the rated torque either way, as in catalogues [rad or m].
+        backlash: free travel of the output, the driver held; by case of the tolerances [rad or m].
+        kinematic_error: waves of the output's position by deviations of the teeth [rad or m].
+        transmission_error: of the teeth under the load of operation, peak to peak [rad or m].
+        torque_ripple: of the driver at the operating point, peak to peak [torque of the driver].
+        limits: largest torque and speed of the output in the map, by name.
+        lacks: why an attribute is None, in a sentence, by its name.
+        warnings: of the result.
+
+    Example:
+        >>> from pitchpoint.efficiency.loss_table import LossTable
+        >>> from pitchpoint.runs.joint_model import JointModel
+        >>> lost = {"law": (((1.0,), (1.0,)), ((0.5,), (0.5,)), ((1.0,), (1.0,)))}
+        >>> table = LossTable((-10.0, 0.0, 10.0), (0.0, 4.0), (40.0,), lost, 0.02)
+        >>> joint = JointModel.plain(table, ratio=-50.0, rotor_inertia=2e-5)
+        >>> joint.driver_torque(10.0, 2.0), joint.loss_torque(10.0, 2.0)
+        (0.22, 1.0)
+        >>> round(joint.armature, 9), joint.wind_up is None
+        (0.05, True)
+    """
+
+    title: str
+    case: str
+    variant: str
+    version: str
+    digest: str
+    driver: str
+    output: str
+    ratio: float
+    slides: bool
+    table: LossTable
+    law: str
+    load: float
+    speed: float
+    temperature: float
+    inertia: float | None
+    rotor_inertia: float | None
+    wind_up: WindUpTable | None
+    hysteresis: float | None
+    lost_motion: float | None
+    backlash: Mapping[str, float] | None
+    kinematic_error: AngleWaves | None
+    transmission_error: float | None
+    torque_ripple: float | None
+    limits: Mapping[str, float]
+    lacks: Mapping[str, str]
+    warnings: tuple[str, ...] = ()
+
+    @classmethod
+    def plain(cls, table: LossTable, **known: Any) -> "JointModel":
+        """A joint of a loss map and what else is known.
+
+        Args:
+            table: the map.
+            known: attributes by name.
+        """
+        law = next(iter(table.loss_torques))
+        texts = dict.fromkeys(("title", "case", "variant", "version", "digest"), "")
+        ends = {"driver": "motor", "output": "output", "slides": False}
+        point = {
+            "load": table.torques[-1],
+            "speed": table.speeds[-1],
+            "temperature": table.temperatures[0],
+        }
+        maybe = dict.fromkeys(_MAYBE)
+        limits = {"largest_torque": table.torques[-1], "largest_speed": table.speeds[-1]}
+        lacks = {
+            name: f"no {name.replace('_', ' ')} was given" for name in _MAYBE if name not in known
+        }
+        rest = {"ratio": 1.0 / table.speed_ratio, "table": table, "law": law, "limits": limits}
+        made: dict[str, Any] = {**texts, **ends, **point, **maybe, **rest, "lacks": lacks}
+        return cls(**(made | known))
+
+    def __repr__(self) -> str:
+        return f"JointModel({self.title!r})\n" + "\n".join(f"  {line}" for line in self.lines())
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of `torque` and `speed` of the output, `driver` torque, `travel` and `inertia`."""
+        torque, speed, driver = self.table.units
+        travel = "m" if self.slides else "rad"
+        inertia = "kg" if self.slides else "kg m2"
+        return {
+            "torque": torque,
+            "speed": speed,
+            "driver": driver,
+            "travel": travel,
+            "inertia": inertia,
+        }
+
+    @property
+    def armature(self) -> float:
+        """Inertia of drive and rotor at the output; what is not known of it counts as zero [kg m2 or kg]."""
+        return (self.inertia or 0.0) + (self.rotor_inertia or 0.0) * self.ratio**2
+
+    def loss_torque(self, torque: Any, speed: Any, temperature: Any = None) -> Any:
+        """Torque of the output that is lost in motion.
+
+        Args:
+            torque: of the output on its load, of either sign.
+            speed: of the output, of either sign, not zero.
+            temperature: [degC]; that of operation by default.
+
+        Returns:
+            Numbers or arrays; NaN where friction locks the drive, and at rest.
+        """
+        point = self._at(torque, speed, temperature)
+        lost = point.loss / np.abs(np.where(np.asarray(speed) == 0.0, np.nan, speed))
+        return lost.item() if lost.ndim == 0 else lost
+
+    def driver_torque(self, torque: Any, speed: Any, temperature: Any = None) -> Any:
+        """Torque of the driver in motion; arguments as in `loss_torque`."""
+        found = np.asarray(self._at(torque, speed, temperature).input_torque)
+        return found.item() if found.ndim == 0 else found
+
+    def holding_band(self, torque: float = 0.0, temperature: float | None = None) -> Rest:
+        """Torques of the driver between which the drive stands with a load; without one those that start it.
+
+        Args:
+            torque: of the output on its load.
+            temperature: [degC]; that of operation by default.
+        """
+        return self.table.at_rest(torque, self._degree(temperature), self.law)
+
+    def fit(
+        self,
+        *,
+        temperature: float | None = None,
+        within: MapRange | None = None,
+        stribeck: bool = False,
+    ) -> FrictionFit:
+        """Constant, proportional and viscous friction nearest to the map, see `fit_friction`.
+
+        Args:
+            temperature: [degC]; that of operation by default.
+            within: part of the map that counts; all of it by default.
+            stribeck: True for a part that falls with speed too.
+        """
+        at = self._degree(temperature)
+        nodes = loss_nodes(self.table, self.law, within=within, temperature=at)
+        return fit_friction(nodes.torque, nodes.speed, nodes.lost, stribeck=stribeck)
+
+    def errors(self, law: LossLaw, within: MapRange | None = None) -> list[LawError]:
+        """How far the torque of the driver by a law of loss is off the map, see `law_errors`.
+
+        Args:
+            law: lost torque over torque along the motion, speed and temperature [degC].
+            within: part of the map that counts; all of it by default.
+        """
+        return law_errors(self.table, loss_nodes(self.table, self.law, within=within), law)
+
+    def lines(self) -> list[str]:
+        """What is known of it, a line each."""
+        return [*_told(self)]
+
+    def _degree(self, temperature: Any) -> Any:
+        return self.temperature if temperature is None else temperature
+
+    def _at(self, torque: Any, speed: Any, temperature: Any) -> Any:
+        return self.table.at_many(torque, speed, self._degree(temperature), self.law)
+
+
+_MAYBE = (
+    "inertia",
+    "rotor_inertia",
+    "wind_up",
+    "hysteresis",
+    "lost_motion",
+    "backlash",
+    "kinematic_error",
+    "transmission_error",
+    "torque_ripple",
+)
+
+
+def _told(joint: JointModel) -> Any:
+    unit = joint.units
+    yield f"{joint.driver} drives {joint.output}, ratio {joint.ratio:.6g}, friction {joint.law}"
+    rest = joint.holding_band()
+    yield (
+        f"map to {joint.limits['largest_torque']:.4g} {unit['torque']} and "
+        f"{joint.limits['largest_speed']:.4g} {unit['speed']}, {joint.table.temperatures[0]:g} to "
+        f"{joint.table.temperatures[-1]:g} degC; starts without load at {rest.highest:.4g} {unit['driver']}"
+    )
+    yield f"armature {joint.armature:.4g} {unit['inertia']}"
+    if joint.wind_up is not None:
+        slope = f"{joint.wind_up.at_load:.4g} {unit['torque']}/{unit['travel']}"
+        yield f"stiffness {slope} at the load of operation"
+    yield from (f"{name}: {why}" for name, why in joint.lacks.items())
+
+
+def joint_model(
+    outcome: Outcome, *, law: str | None = None, rotor_inertia: Any = None
+) -> JointModel:
+    """The joint that a result describes; nothing is computed anew but its table.
+
+    Args:
+        outcome: with the loss map of the output.
+        law: of friction, by name; the first one of the case by default.
+        rotor_inertia: of the motor, about its own axis: "0.3 kg cm2", or a number [kg m2].
+
+    Raises:
+        InputError: the result has no such map, the map no such law, or the inertia is no such quantity.
+    """
+    data = _map_of(outcome)
+    table, record = table_of(data), outcome.manifest
+    name = _law_of(table, law)
+    ratio, speed = _ratio(record), float(data["output_speed"].max())
+    travels = [*map(str, record["travels"])]
+    found, lacks = _parts(outcome, name, ratio, float(data.attrs["load"]))
+    rotor = _read(rotor_inertia, "kg" if "driver" in travels else "kg m2", "rotor_inertia")
+    if rotor is None:
+        lacks["rotor_inertia"] = "that of the motor was not given (rotor_inertia)"
+    return JointModel(
+        title=str(record["title"]),
+        case=str(record["case"]),
+        variant=str(record["variant"]),
+        version=str(data.attrs["version"]),
+        digest=str(data.attrs["fingerprint"]),
+        driver=str(record["driver"]),
+        output=str(record["loaded"]),
+        ratio=ratio,
+        slides="loaded" in travels,
+        table=table,
+        law=name,
+        load=float(data.attrs["load"]),
+        speed=_operating_speed(record, speed, ratio),
+        temperature=float(celsius(np.asarray(float(data.attrs["degree"])))),
+        rotor_inertia=rotor,
+        limits={"largest_torque": table.torques[-1], "largest_speed": speed},
+        lacks=lacks,
+        warnings=tuple(map(str, record["warnings"])),
+        **found,
+    )
+
+
+def part_of_map(
+    joint: JointModel, torque: str | None = None, speed: str | None = None
+) -> MapRange | None:
+    """Part of a map that somebody names, at the temperature of operation.
+
+    Args:
+        joint: of the map.
+        torque, speed: least and largest amount at the output, "1 N m:20 N m".
+
+    Returns:
+        None where neither is given.
+
+    Raises:
+        InputError: no two quantities in their order, or beyond the map.
+    """
+    if torque is None and speed is None:
+        return None
+    torques, speeds = (
+        _between(text, unit, axis, key)
+        for text, unit, axis, key in (
+            (torque, joint.units["torque"], (0.0, joint.table.torques[-1]), "--torque-range"),
+            (
+                speed,
+                joint.units["speed"],
+                (joint.table.speeds[1], joint.table.speeds[-1]),
+                "--speed-range",
+            ),
+        )
+    )
+    return MapRange(torques, speeds, (joint.temperature, joint.temperature))
+
+
+def _between(
+    text: str | None, unit: str, axis: tuple[float, float], key: str
+) -> tuple[float, float]:
+    """The two ends of a range within an axis."""
+    if text is None:
+        return axis
+    ends = [_read(part.strip(), unit, key) or 0.0 for part in text.split(":")]
+    if len(ends) != 2 or not ends[0] < ends[1]:
+        raise InputError(
+            f'{shown(text)} is no range; write "LEAST:LARGEST", each with its unit', key=key
+        )
+    if ends[1] > axis[1] * (1.0 + 1e-9):
+        raise InputError(
+            f"{shown(text)} goes beyond the map, which ends at {axis[1]:.6g} {unit}", key=key
+        )
+    return max(ends[0], axis[0]), min(ends[1], axis[1])
+
+
+def _read(value: Any, unit: str, key: str) -> float | None:
+    """A quantity of somebody's in SI; None where there is none."""
+    if value is None:
+        return None
+    kind = units.kind_of(unit)
+    text = value if isinstance(value, str) else f"{value} {unit}"
+    try:
+        return Quantity(kind, 0.0, math.inf, unit).read(text)
+    except InputError as error:
+        raise error.at(key=key) from None
+
+
+def _map_of(outcome: Outcome) -> xr.Dataset:
+    """The loss map of the output; InputError, and how it is had, unless there is one."""
+    name = FOUR_QUADRANTS.name
+    if name in outcome.parts:
+        return outcome.parts[name]
+    why = outcome.manifest["lacks"].get(name)
+    how = f"run {outcome.manifest['case']} with --set loss_map.quadrants=4, which computes it"
+    told = f"the result has no {FOUR_QUADRANTS.title}, on which a joint rests"
+    raise InputError(f"{told}: {why}" if why else f"{told}; {how}")
+
+
+def _law_of(table: LossTable, law: str | None) -> str:
+    names = [*table.loss_torques]
+    if law is None or law in names:
+        return law or names[0]
+    told = f"{shown(law)} is not a friction law of this result{nearest(law, names)}"
+    raise InputError(told, key="law")
+
+
+def _rates(record: Mapping[str, Any]) -> dict[str, float]:
+    """Rate of each member for a unit of the driver."""
+    return dict(zip(record["members"], map(float, record["motion"]), strict=True))
+
+
+def _ratio(record: Mapping[str, Any]) -> float:
+    """Speed of the driver over that of the output, with its sign."""
+    rates = _rates(record)
+    return rates[record["driver"]] / rates[record["loaded"]]
+
+
+def _operating_speed(record: Mapping[str, Any], largest: float, ratio: float) -> float:
+    """Of the output at the operating point; that of the map where the record has none."""
+    asked = {row["key"]: row["value"] for row in record["inputs"] if row["table"] == "operation"}
+    speed = asked.get("speed")
+    return abs(float(speed) / ratio) if isinstance(speed, float | int) else largest
+
+
+def _parts(
+    outcome: Outcome, law: str, ratio: float, load: float
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """What the record has beside the map, and why it has not what is None."""
+    found: dict[str, Any] = {}
+    lacks: dict[str, str] = {}
+    told = outcome.manifest["lacks"]
+    for name, (parts, read, usual) in _READERS.items():
+        there = [outcome.parts[part] for part in parts if part in outcome.parts]
+        value = next(
+            (v for v in (read(one, outcome, law, load) for one in there) if v is not None), None
+        )
+        found[name] = value
+        if value is None:
+            whys = (told[part] for part in parts if part in told)
+            lacks[name] = usual if there else next(whys, usual)
+    return found, lacks
+
+
+def _inertia(data: xr.Dataset, outcome: Outcome, _: str, __: float) -> float | None:
+    """Of all bodies at the output; of a drive whose output travels without its mass."""
+    if "reflected_inertia" in data and "output" in data["end"].values:
+        return _known(data["reflected_inertia"].sel(end="output"))
+    record = outcome.manifest
+    name = "body_inertia" if "body_inertia" in data else "disc_inertia"
+    if name not in data or data[name].ndim != 1:
+        return None
+    rates = _rates(record)
+    turning = [
+        one for one in rates if not (one == record["loaded"] and "loaded" in record["travels"])
+    ]
+    each = dict(zip(rates, data[name].values, strict=False))
+    sums = sum(each[one] * rates[one] ** 2 for one in turning if rates[one] and one in each)
+    return _known(sums / rates[record["loaded"]] ** 2)
+
+
+def _known(value: Any) -> float | None:
+    number = float(value)
+    return number if math.isfinite(number) else None
+
+
+def _wind_up(data: xr.Dataset, _: Outcome, __: str, load: float) -> WindUpTable | None:
+    torque, turned, slope = (
+        data[name].values for name in ("torque", "wind_up", "tangent_torsional_stiffness")
+    )
+    known = np.isfinite(torque) & np.isfinite(turned) & np.isfinite(slope)
+    if known.sum() < 2:
+        return None
+    torque, turned, slope = (one[known] for one in (torque, turned, slope))
+    covers = str(data["torsional_stiffness"].attrs.get("covers", ""))
+    return WindUpTable(torque, turned, slope, float(np.interp(load, torque, slope)), covers)
+
+
+def _of_law(name: str) -> Any:
+    def read(data: xr.Dataset, _: Outcome, law: str, __: float) -> float | None:
+        if name not in data:
+            return None
+        one = data[name]
+        return _known(one.sel(law=law).values.ravel()[0]) if "law" in one.dims else _known(one)
+
+    return read
+
+
+def _backlash(data: xr.Dataset, outcome: Outcome, _: str, __: float) -> dict[str, float] | None:
+    """By case of the tolerances, or by the rigid teeth alone; nothing below rounding."""
+    record = outcome.manifest
+    if "output_backlash" in data:
+        each = data["output_backlash"]
+    elif "backlash_angle" in data and data["backlash_angle"].dims == ("gear", "case"):
+        each = data["backlash_angle"].isel(gear=record["members"].index(record["loaded"]))
+    elif "kinematic_play" in data:
+        return {"nominal": max(float(data["kinematic_play"]), 0.0)}
+    else:
+        return None
+    return {
+        str(case): max(float(v), 0.0)
+        for case, v in zip(each["case"].values, each.values, strict=True)
+    }
+
+
+def _kinematic_error(data: xr.Dataset, _: Outcome, __: str, ___: float) -> AngleWaves | None:
+    """Waves of the error under load, by both members together, over a turn."""
+    if "curve" not in data.dims or data["kinematic_error"].ndim != 2:
+        return None
+    values = data["kinematic_error"].sel(curve="under load").values
+    if not np.isfinite(values).all():
+        return None
+    lines = 2.0 * np.fft.rfft(values)[1 : values.size // 2] / values.size
+    size = np.abs(lines)
+    largest = np.argsort(-size)[:MOST_WAVES]
+    kept = np.sort(largest[size[largest] >= LEAST_WAVE * size.max()])
+    return AngleWaves(kept + 1, size[kept], np.angle(lines[kept]), str(data.attrs["turn_angle"]))
+
+
+def _transmission_error(data: xr.Dataset, _: Outcome, __: str, load: float) -> float | None:
+    values = data["angular_transmission_error_range"].values
+    return _known(np.interp(load, data["torque"].values, values))
+
+
+_RIGID = 'the case does not ask how teeth yield; models.load_sharing = "from_stiffness" does'
+_OF_CATALOGUES = "a strain wave gear in a file of its own has it, other drives do not"
+
+_READERS: Mapping[str, tuple[tuple[str, ...], Any, str]] = {
+    "inertia": (
+        ("reflected", "bodies", "inspection"),
+        _inertia,
+        "that of a body of the drive is not known",
+    ),
+    "wind_up": (
+        ("torsion",),
+        _wind_up,
+        _RIGID,
+    ),
+    "hysteresis": (("torsion",), _of_law("hysteresis_loss"), _OF_CATALOGUES),
+    "lost_motion": (
+        ("torsion",),
+        _of_law("catalogue_lost_motion"),
+        _OF_CATALOGUES,
+    ),
+    "backlash": (
+        ("reflected", "inspection", "torsion"),
+        _backlash,
+        "no part of the result has the play of the teeth",
+    ),
+    "kinematic_error": (
+        ("kinematic_error",),
+        _kinematic_error,
+        "a pair whose teeth have deviations has it, this case does not",
+    ),
+    "transmission_error": (
+        ("torsion",),
+        _transmission_error,
+        _RIGID,
+    ),
+    "torque_ripple": (
+        ("operation",),
+        _of_law("torque_ripple"),
+        "the result has no operating point",
+    ),
+}
+"""By attribute: the parts that may have it, how it is read, and what is told where none has."""

@@ -1,0 +1,103 @@
+"""Results of drives whose loss torque is a law that somebody writes down, without a computation."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.four_quadrants import both
+from pitchpoint.runs.run import Outcome
+
+Lost = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+"""Torque that is lost over torque along the motion, speed and temperature [degC]; below 0 where it locks."""
+
+RATIO = -50.0
+TITLE = 'A "joint" <b>&amp; */ -- %s\\ {x}\n\' é'
+
+
+def plain(torque: np.ndarray, speed: np.ndarray, degree: np.ndarray) -> np.ndarray:
+    """Constant, with the load, viscous; thinner in warm oil."""
+    share = np.where(torque < 0.0, 0.12, 0.10)
+    return np.asarray((2.0 + share * abs(torque) + 3.0 * speed) * (1.0 - 0.002 * (degree - 40.0)))
+
+
+def locking(torque: np.ndarray, speed: np.ndarray, degree: np.ndarray) -> np.ndarray:
+    """One that loads cannot turn."""
+    return np.where(torque < 0.0, -1.0, 2.0 + 0.6 * abs(torque) + 0.0 * speed + 0.0 * degree)
+
+
+def made_joint(
+    lost: Lost = plain, *, slides: bool = False, more: dict[str, xr.Dataset] | None = None
+) -> Outcome:
+    """A result with the loss map of a law.
+
+    Args:
+        lost: the law.
+        slides: True for an output that travels.
+        more: further parts.
+    """
+    loads, speeds = np.array([0.0, 2.0, 10.0, 30.0, 60.0]), np.array([0.0, 0.01, 0.1, 1.0, 4.0])
+    degrees, ratio = np.array([20.0, 40.0, 60.0]), 1.0 / abs(RATIO)
+    torque, speed, degree = np.meshgrid(both(loads), both(speeds), degrees, indexing="ij")
+    way = np.where(speed < 0.0, -1.0, 1.0)
+    away = lost(way * torque, abs(speed), degree)
+    locked = (away < 0.0) & (speed != 0.0)
+    loss = np.where(locked, np.nan, away * abs(speed))
+    held, warm = np.meshgrid(both(loads), degrees, indexing="ij")
+    on, off = (lost(sign * held, 0.0 * held, warm) for sign in (1.0, -1.0))
+    dims, rest = (
+        ("law", "output_torque", "output_speed", "temperature"),
+        ("law", "output_torque", "temperature"),
+    )
+    values: dict[str, Any] = {
+        "mean_loss": (dims, loss[None], {"units": "W"}),
+        "locked": (dims, locked[None]),
+        "mean_input_torque": (dims, 0.0 * loss[None], {"units": "N m"}),
+        "largest_holding_torque": (rest, np.where(on < 0.0, np.nan, held + on)[None] * ratio),
+        "least_holding_torque": (rest, np.where(off < 0.0, np.nan, held - off)[None] * ratio),
+        "self_locking": (rest, (off < 0.0)[None]),
+    }
+    for name in (
+        "interpolation_error",
+        "mean_interpolation_error",
+        "light_load_error",
+        "creeping_error",
+    ):
+        values[name] = ("law", [0.0])
+    torque_unit, speed_unit = ("N", "m/s") if slides else ("N m", "rad/s")
+    axes = {
+        "law": ["made"],
+        "output_torque": ("output_torque", both(loads), {"units": torque_unit}),
+        "output_speed": ("output_speed", both(speeds), {"units": speed_unit}),
+        "temperature": ("temperature", degrees + 273.15, {"units": "K"}),
+    }
+    attrs = {
+        "speed_ratio": ratio,
+        "load": 20.0,
+        "degree": 313.15,
+        "version": "0.1.0",
+        "note": "Made.",
+    }
+    data = xr.Dataset(values, axes, {**attrs, "fingerprint": "0123456789abcdef"})
+    parts = {"four_quadrants": data, **(more or {})}
+    return Outcome(record(slides) | {"parts": [*parts]}, parts)
+
+
+def record(slides: bool) -> dict[str, Any]:
+    """What exports read of a manifest."""
+    row = {"table": "operation", "key": "speed", "value": 100.0, "kind": "rotational speed"}
+    return {
+        "case": "made.toml",
+        "variant": "default",
+        "title": TITLE,
+        "driver": "wave generator",
+        "loaded": "flexspline",
+        "members": ["wave generator", "flexspline", "circular spline"],
+        "motion": [1.0, 1.0 / RATIO, 0.0],
+        "travels": ["loaded"] if slides else [],
+        "inputs": [row],
+        "warnings": [],
+        "lacks": {"torsion": "the teeth are rigid"},
+        "surroundings": {"pitchpoint": "0.1.0"},
+    }

@@ -1,0 +1,123 @@
+"""The joint that stands behind all exports to simulators, from the record of a result."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from made_joints import RATIO, locking, made_joint, plain
+
+from pitchpoint.errors import InputError
+from pitchpoint.runs.joint_model import joint_model, part_of_map
+
+TORQUES = np.array([0.0, 20.0, 40.0])
+
+
+def torsion() -> xr.Dataset:
+    turned = TORQUES / 1000.0
+    return xr.Dataset(
+        {
+            "wind_up": ("torque", turned),
+            "tangent_torsional_stiffness": ("torque", np.array([900.0, 1000.0, 1100.0])),
+            "torsional_stiffness": ("torque", np.full(3, 1000.0), {"covers": "teeth"}),
+            "angular_transmission_error_range": ("torque", 1e-5 * TORQUES),
+            "kinematic_play": ((), 2e-4),
+            "hysteresis_loss": ("law", [3e-5]),
+        },
+        {"torque": ("torque", TORQUES), "law": ["made"]},
+    )
+
+
+def error() -> xr.Dataset:
+    angle = np.arange(64) * 2.0 * np.pi / 64
+    waves = 2e-4 * np.cos(2.0 * angle + 0.5) + 5e-5 * np.sin(7.0 * angle) + 1e-7 * np.cos(angle)
+    return xr.Dataset(
+        {"kinematic_error": (("curve", "state"), np.stack([0.0 * waves, waves]))},
+        {"curve": ["geometry", "under load"]},
+        {"turn_angle": "wave generator against circular spline"},
+    )
+
+
+def test_torques_are_those_of_the_map_in_all_quadrants() -> None:
+    joint = joint_model(made_joint())
+    assert joint.ratio == pytest.approx(RATIO)
+    assert joint.speed == pytest.approx(100.0 / 50.0)
+    for torque, speed in ((30.0, 1.0), (30.0, -1.0), (-30.0, 4.0), (-10.0, -0.1)):
+        way = np.sign(speed)
+        lost = float(plain(np.array(way * torque), np.array(abs(speed)), np.array(40.0)))
+        assert joint.loss_torque(torque, speed) == pytest.approx(lost, rel=1e-12)
+        assert joint.driver_torque(torque, speed) == pytest.approx((torque + way * lost) / 50.0)
+    rest = joint.holding_band(30.0, 60.0)
+    assert (rest.lowest, rest.highest) == pytest.approx(
+        ((30.0 - 5.6 * 0.96) / 50.0, (30.0 + 5.0 * 0.96) / 50.0)
+    )
+    assert joint.fit().driven_share == pytest.approx(0.12, rel=1e-2)  # of a map between its nodes
+
+
+def test_what_the_result_has_is_there_with_units_and_the_rest_has_a_reason() -> None:
+    joint = joint_model(made_joint(more={"torsion": torsion(), "kinematic_error": error()}))
+    assert joint.wind_up is not None and joint.kinematic_error is not None
+    assert (joint.wind_up.at_load, joint.wind_up.covers) == (1000.0, "teeth")
+    assert (joint.hysteresis, joint.transmission_error) == (3e-5, pytest.approx(2e-4))
+    assert joint.backlash == {"nominal": 2e-4}
+    order, amplitude, phase, angle = joint.kinematic_error
+    assert order.tolist() == [2, 7]
+    assert amplitude == pytest.approx([2e-4, 5e-5])
+    assert phase == pytest.approx([0.5, -np.pi / 2.0])
+    assert angle == "wave generator against circular spline"
+    assert joint.inertia is None and joint.armature == 0.0
+    assert joint.lacks["inertia"] == "that of a body of the drive is not known"
+    bare = joint_model(made_joint())
+    assert (bare.wind_up, bare.lacks["wind_up"]) == (None, "the teeth are rigid")
+    assert bare.lacks.keys() >= {"rotor_inertia", "backlash", "kinematic_error", "torque_ripple"}
+
+
+def test_inertia_is_that_at_the_output_with_the_rotor_by_value() -> None:
+    bodies = xr.Dataset({"reflected_inertia": ("end", [4e-5, 0.1])}, {"end": ["input", "output"]})
+    made = made_joint(more={"bodies": bodies})
+    joint = joint_model(made, rotor_inertia="0.2 kg cm2")
+    assert joint.armature == pytest.approx(0.1 + 2e-5 * 2500.0)
+    assert joint_model(made, rotor_inertia=2e-5).armature == pytest.approx(joint.armature)
+    pair = made_joint(more={"inspection": xr.Dataset({"disc_inertia": ("gear", [1e-4, 0.3])})})
+    pair.manifest["members"] = ["wave generator", "flexspline"]
+    pair.manifest["motion"] = [1.0, 1.0 / RATIO]
+    assert joint_model(pair).inertia == pytest.approx(0.3 + 1e-4 * 2500.0)
+    with pytest.raises(InputError, match="rotor_inertia") as refused:
+        joint_model(made, rotor_inertia="0.2 mm")
+    assert refused.value.key == "rotor_inertia"
+
+
+def test_a_joint_that_locks_has_no_number_where_the_load_drives() -> None:
+    joint = joint_model(made_joint(locking))
+    assert np.isnan(joint.loss_torque(-30.0, 1.0))
+    assert joint.holding_band(30.0).locked
+    drives, driven = joint.errors(lambda torque, speed, degree: 0.0 * torque)
+    assert driven.points == 0 < driven.locked
+    assert drives.locked == 0
+
+
+def test_ranges_that_somebody_names() -> None:
+    joint = joint_model(made_joint())
+    within = part_of_map(joint, "5 N m:30 N m", "10 rpm:30 rpm")
+    assert within is not None
+    assert within.torque == (5.0, 30.0)
+    assert within.speed == pytest.approx((np.pi / 3.0, np.pi))
+    assert within.temperature == (40.0, 40.0)
+    assert part_of_map(joint) is None
+    for told, texts in (
+        ("beyond the map, which ends at 60 N m", ("5 N m:90 N m", None)),
+        ("is no range", ("5 N m", None)),
+        ("is no range", ("30 N m:5 N m", None)),
+        ("beyond the map, which ends at 4 rad/s", (None, "1 rpm:900 rpm")),
+    ):
+        with pytest.raises(InputError, match=told):
+            part_of_map(joint, *texts)
+
+
+def test_a_result_without_the_map_says_how_to_get_it() -> None:
+    made = made_joint()
+    del made.parts["four_quadrants"]
+    with pytest.raises(InputError, match=r"run made\.toml with --set loss_map\.quadrants=4"):
+        joint_model(made)
+    with pytest.raises(
+        InputError, match=r"\"mad\" is not a friction law of this result; did you mean made\?"
+    ):
+        joint_model(made_joint(), law="mad")
