@@ -101,3 +101,33 @@ def record(slides: bool) -> dict[str, Any]:
         "lacks": {"torsion": "the teeth are rigid"},
         "surroundings": {"pitchpoint": "0.1.0"},
     }
+
+
+TORQUES = np.array([0.0, 20.0, 40.0])
+
+
+def torsion() -> xr.Dataset:
+    """Wind-up, with 1000 N m/rad at the load of operation."""
+    turned = TORQUES / 1000.0
+    return xr.Dataset(
+        {
+            "wind_up": ("torque", turned),
+            "tangent_torsional_stiffness": ("torque", np.array([900.0, 1000.0, 1100.0])),
+            "torsional_stiffness": ("torque", np.full(3, 1000.0), {"covers": "teeth"}),
+            "angular_transmission_error_range": ("torque", 1e-5 * TORQUES),
+            "kinematic_play": ((), 2e-4),
+            "hysteresis_loss": ("law", [3e-5]),
+        },
+        {"torque": ("torque", TORQUES), "law": ["made"]},
+    )
+
+
+def error() -> xr.Dataset:
+    """Kinematic error of the orders 2 and 7."""
+    angle = np.arange(64) * 2.0 * np.pi / 64
+    waves = 2e-4 * np.cos(2.0 * angle + 0.5) + 5e-5 * np.sin(7.0 * angle) + 1e-7 * np.cos(angle)
+    return xr.Dataset(
+        {"kinematic_error": (("curve", "state"), np.stack([0.0 * waves, waves]))},
+        {"curve": ["geometry", "under load"]},
+        {"turn_angle": "wave generator against circular spline"},
+    )

@@ -553,6 +553,45 @@ def export(
             "--evaluator", help="The loss map of the output as Python and C that need nothing."
         ),
     ] = False,
+    mujoco: Annotated[
+        bool,
+        typer.Option(
+            "--mujoco", help="A joint of MuJoCo: MJCF, and friction that follows the load."
+        ),
+    ] = False,
+    law: Annotated[
+        str | None,
+        typer.Option(
+            "--law", metavar="NAME", help="Friction law of a joint; the first by default."
+        ),
+    ] = None,
+    rotor_inertia: Annotated[
+        str | None,
+        typer.Option(metavar="QUANTITY", help='Of the motor, for the armature: "0.3 kg cm2".'),
+    ] = None,
+    load: Annotated[
+        str | None,
+        typer.Option(
+            metavar="QUANTITY", help="At which a friction without load is right; of operation."
+        ),
+    ] = None,
+    temperature: Annotated[
+        str | None,
+        typer.Option(metavar="QUANTITY", help="Of the oil in a joint; that of operation."),
+    ] = None,
+    torque_range: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LEAST:LARGEST",
+            help='Torques of the output that friction is fitted to: "2 N m:20 N m".',
+        ),
+    ] = None,
+    speed_range: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LEAST:LARGEST", help='Speeds of the output likewise: "1 rpm:30 rpm".'
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Default: export in the result."),
@@ -563,17 +602,29 @@ def export(
     """Write a result for other programs.
 
     Tables come with a README.txt that says what is in them. An evaluator gives loss, efficiency and torque of
-    the driver at any torque and speed of the output; it is of a run with --set loss_map.quadrants=4.
+    the driver at any torque and speed of the output; it is of a run with --set loss_map.quadrants=4, as are
+    joints for simulators, which go into a folder of their own each, with a table of what is lost.
     """
-    from pitchpoint.exports.files import export as exported
     from pitchpoint.runs.run import open_result
 
     asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx, "evaluator": evaluator}
     formats = [name for name, wanted in asked.items() if wanted]
-    chosen = _units(units) if units else None
-    folder = output or Path(result) / "export"
-    for path in exported(open_result(result), folder, formats, si=si, units=chosen):
-        typer.echo(visible(str(path)))
+    targets = [name for name, wanted in {"mujoco": mujoco}.items() if wanted]
+    outcomes, folder = open_result(result), output or Path(result) / "export"
+    if formats or not targets:
+        from pitchpoint.exports.files import export as exported
+
+        chosen = _units(units) if units else None
+        for path in exported(outcomes, folder, formats, si=si, units=chosen):
+            typer.echo(visible(str(path)))
+    if targets:
+        from pitchpoint.exports.simulators import Asked, hand_over
+
+        wishes = Asked(law, rotor_inertia, load, temperature, torque_range, speed_range)
+        for name, handed in hand_over(outcomes, folder, targets, wishes).items():
+            typer.echo(visible(f"{name}:"))
+            for line in (*map(str, handed.paths), *handed.lost):
+                typer.echo(visible(line))
 
 
 @app.command()

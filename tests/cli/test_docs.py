@@ -96,6 +96,7 @@ PYTHON = {
     ("guide/python.md", "plot_in"),
     ("guide/python.md", "analyses="),
     ("guide/sizing.md", "def next_speed"),
+    ("guide/simulators.md", "renewed_friction"),
 }
 """Blocks of Python by page and by what they alone hold; each is run by a test."""
 
@@ -431,6 +432,9 @@ def test_pages_can_be_read_without_the_site(
         ("backlash_limit", ["reference/keys_wear"]),
         ("xu_2007", ["reference/models"]),
         ("min_lambda_ratio", ["reference/variables"]),
+        ("MuJoCo", ["guide/simulators"]),
+        ("armature", ["guide/simulators"]),
+        ("frictionloss", ["guide/simulators"]),
     ],
 )
 def test_words_are_searched(

@@ -635,9 +635,61 @@ def test_a_result_without_the_map(
     told = capsys.readouterr().err
     assert "the result has no loss map of the output" in told
     assert "--set loss_map.quadrants=4" in told
+    assert command("export", tmp_path / "other", "--mujoco") == 2
+    told = capsys.readouterr().err
+    assert "--mujoco: the result has no loss map of the output, on which a joint rests" in told
+    assert "--set loss_map.quadrants=4" in told
     assert (
         open_result(folder)["default"].parts["four_quadrants"].attrs["title"]
         == FOUR_QUADRANTS.title
+    )
+
+
+def test_a_joint_is_handed_over_with_what_is_lost_on_the_screen(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wishes = (
+        "--law",
+        "frictionless",
+        "--rotor-inertia",
+        "0.3 kg cm2",
+        "--torque-range",
+        "5 N m:20 N m",
+    )
+    assert command("export", folder, "--mujoco", "-o", tmp_path, *wishes) == 0
+    told = capsys.readouterr().out
+    files = {path.name for path in (tmp_path / "mujoco").iterdir()}
+    assert files == {"joint.xml", "joint_friction.py", "arm.xml"}
+    assert "What is lost: torque of the driver, this file against the loss map [N m]" in told
+    # Without friction on the teeth the seals alone are lost, at any load and speed.
+    rows = re.findall(r"^(?:the map|range) .*\) +(\S+) +(\S+) +\S+ % +\d+$", told, re.MULTILINE)
+    assert np.array(rows, float) == pytest.approx(np.zeros((4, 2)), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("wishes", "told"),
+    [
+        (
+            ("--law", "xu_2006"),
+            '"xu_2006" is not a friction law of this result; did you mean xu_2007?',
+        ),
+        (("--load", "900 N m"), '"900 N m" is beyond the map, which goes from 0 to 75'),
+        (("--temperature", "5 degC"), '"5 degC" is beyond the map, which goes from 40 to 60'),
+        (("--rotor-inertia", "3 mm"), '"3 mm" is a length, but a moment of inertia is needed'),
+        (("--speed-range", "9 rpm"), '"9 rpm" is no range'),
+    ],
+)
+def test_wishes_that_a_joint_cannot_fulfil(
+    folder: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    wishes: tuple[str, str],
+    told: str,
+) -> None:
+    assert command("export", folder, "--mujoco", "-o", tmp_path, *wishes) == 2
+    found = " ".join(capsys.readouterr().err.split())
+    assert told in found and wishes[0].removeprefix("--").replace("-", "_") in found.replace(
+        "-", "_"
     )
 
 

@@ -21,6 +21,9 @@ WAYS = {"I, III": "driver drives", "II, IV": "load drives"}
 STEPS = 17
 """Torques and speeds at which a law is compared in a range that somebody names."""
 
+ROUNDING = 1e-12
+"""Part of the largest torque below which an error is that of arithmetic."""
+
 SPEEDS = 40
 """Speeds of Stribeck that are tried before the nearest is made better."""
 
@@ -241,6 +244,7 @@ def law_errors(table: LossTable, nodes: MapNodes, law: LossLaw) -> list[LawError
     """
     off = np.abs(law(*nodes[:3]) - nodes.lost) * table.speed_ratio
     driving = np.abs(nodes.torque + nodes.lost) * table.speed_ratio
+    off = np.where(off > ROUNDING * table.torques[-1] * table.speed_ratio, off, 0.0 * off)
     found = []
     for quadrants, there in zip(WAYS, (nodes.torque >= 0.0, nodes.torque < 0.0), strict=True):
         known = there & np.isfinite(off)

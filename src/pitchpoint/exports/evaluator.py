@@ -17,7 +17,17 @@ from pitchpoint.errors import InputError
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["evaluator", "header", "module"]
+__all__ = [
+    "SIGNS",
+    "behind",
+    "demand_room",
+    "evaluator",
+    "header",
+    "inert",
+    "map_code",
+    "module",
+    "module_head",
+]
 
 MOST = 500_000
 """Losses that go into a file."""
@@ -71,7 +81,7 @@ def evaluator(outcome: Outcome, folder: Path) -> list[Path]:
     ):  # of another version, or another's hand
         told = f"the {FOUR_QUADRANTS.title} is not as this version writes it; run the case again"
         raise InputError(told, key="--evaluator") from None
-    _demand_room(table)
+    demand_room(table, "--evaluator")
     for name, text in texts.items():
         write_text(folder / name, text)
     return [folder / name for name in texts]
@@ -87,15 +97,15 @@ def _demand_map(outcome: Outcome) -> None:
         raise InputError(f"{told}: {why}" if why else f"{told}; {how}", key="--evaluator")
 
 
-def _demand_room(table: LossTable) -> None:
-    """InputError unless a table fits into a file of source."""
+def demand_room(table: LossTable, key: str) -> None:
+    """InputError at a key unless a table fits into a file of source."""
     axes = table.loss_torques, table.torques, table.speeds, table.temperatures
     points = math.prod(map(len, axes))
     if points > MOST:
         raise InputError(
             f"the table of the {FOUR_QUADRANTS.title} has {points} values, and {MOST} is the most for "
             "a file of source; take a lower loss_map.count",
-            key="--evaluator",
+            key=key,
         )
 
 
@@ -106,18 +116,6 @@ def module(outcome: Outcome, table: LossTable) -> str:
         outcome: with the map.
         table: made of it.
     """
-    source = files("pitchpoint.efficiency").joinpath("loss_table.py").read_text("utf-8")
-    first = ast.parse(source).body[0]
-    code = "".join(source.splitlines(keepends=True)[first.end_lineno :])
-    code = re.sub(
-        r"^__all__ = .*$",
-        '__all__ = ["ABOUT", "TABLE", "Point", "Rest", "at", "at_many", "at_rest"]',
-        code,
-        count=1,
-        flags=re.M,
-    )
-    about = ", ".join(f"{key!a}: {text!a}" for key, text in _origin(outcome).items())
-    fields = "".join(f"    {key}={_literal(one)},\n" for key, one in table._asdict().items())
     usage = [
         "    python loss_table.py --torque 5 --speed -3 --temperature 40",
         "    from loss_table import at",
@@ -125,22 +123,48 @@ def module(outcome: Outcome, table: LossTable) -> str:
         "    at_many([5.0, 6.0], [-3.0, 2.0], [40.0, 40.0]).input_torque  # with NumPy",
         "    at_rest(5.0, 40.0).highest",
     ]
-    paragraphs = ["\n".join(wrap(text, 100)) for text in _told(outcome, table)]
-    head = "\n\n".join(
-        [
-            *paragraphs,
-            "\n".join(usage),
-            "Python 3.10 or later; nothing else is needed but for arrays.",
-        ]
-    )
+    needs = "Python 3.10 or later; nothing else is needed but for arrays."
+    head = module_head([*_told(outcome, table), "\n".join(usage), needs])
+    names = ["ABOUT", "TABLE", "Point", "Rest", "at", "at_many", "at_rest"]
     return (
-        f'"""{head}\n"""\n{code}\n\n'
+        f"{head}{map_code(outcome, table, names)}\n"
+        'if __name__ == "__main__":\n    raise SystemExit(main(TABLE, __doc__))\n'
+    )
+
+
+def module_head(paragraphs: Iterable[str]) -> str:
+    """Docstring of a module that is exported; those that are indented are lines as they stand."""
+    wrapped = (one if one.startswith(" ") else "\n".join(wrap(one, 100)) for one in paragraphs)
+    return '"""' + "\n\n".join(wrapped) + '\n"""\n'
+
+
+def map_code(outcome: Outcome, table: LossTable, names: Sequence[str]) -> str:
+    """Code of a module that holds the map, without its docstring.
+
+    Args:
+        outcome: with the map.
+        table: made of it.
+        names: that the module is for.
+    """
+    source = files("pitchpoint.efficiency").joinpath("loss_table.py").read_text("utf-8")
+    code = behind(source, 1)
+    public = "".join(f'"{name}", ' for name in names).removesuffix(", ")
+    code = re.sub(r"^__all__ = .*$", f"__all__ = [{public}]", code, count=1, flags=re.M)
+    about = ", ".join(f"{key!a}: {text!a}" for key, text in _origin(outcome).items())
+    fields = "".join(f"    {key}={_literal(one)},\n" for key, one in table._asdict().items())
+    return (
+        f"{code}\n\n"
         f"ABOUT = {{{about}}}\n"
         f'"""Where the table comes from."""\n\n'
         f"TABLE = LossTable(\n{fields})\n"
-        "at, at_many, at_rest = TABLE.at, TABLE.at_many, TABLE.at_rest\n\n"
-        'if __name__ == "__main__":\n    raise SystemExit(main(TABLE, __doc__))\n'
+        "at, at_many, at_rest = TABLE.at, TABLE.at_many, TABLE.at_rest\n"
     )
+
+
+def behind(source: str, count: int) -> str:
+    """Source behind so many of its first statements."""
+    last = ast.parse(source).body[count - 1].end_lineno
+    return "".join(source.splitlines(keepends=True)[last:])
 
 
 def header(outcome: Outcome, table: LossTable) -> str:
@@ -162,7 +186,7 @@ def header(outcome: Outcome, table: LossTable) -> str:
         "\n * ".join(wrap(text, 100)) for text in (*_told(outcome, table), usage)
     )
     sizes = "".join(f"#define LOSS_TABLE_{n} {k}\n" for n, k in zip(names, shape, strict=True))
-    driver = _inert(table.units[-1])
+    driver = inert(table.units[-1])
     usual = {
         law: [[column[0] for column in values]] * 2 for law, values in table.loss_torques.items()
     }
@@ -196,7 +220,7 @@ def header(outcome: Outcome, table: LossTable) -> str:
 
 def _told(outcome: Outcome, table: LossTable) -> Iterable[str]:
     """What stands at the head of a file, made of signs that end no comment."""
-    return map(_inert, _head(outcome, table))
+    return map(inert, _head(outcome, table))
 
 
 def _head(outcome: Outcome, table: LossTable) -> Iterable[str]:
@@ -267,6 +291,6 @@ def _apart(values: Sequence[Any]) -> str:
     return "\n    " if rows else " "
 
 
-def _inert(text: str) -> str:
+def inert(text: str) -> str:
     """Text for a comment of C and of Python, whoever wrote it: nothing in it ends or continues a line."""
     return re.sub(r"[^A-Za-z0-9 _+.,;:()%/=<>'^-]", "_", text)

@@ -26,7 +26,7 @@ from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["AngleWaves", "JointModel", "WindUpTable", "joint_model", "part_of_map"]
+__all__ = ["AngleWaves", "JointModel", "WindUpTable", "joint_model", "part_of_map", "quantity_of"]
 
 LEAST_WAVE = 0.01
 """Part of the largest wave of an error from which on one counts."""
@@ -297,7 +297,7 @@ def joint_model(
     ratio, speed = _ratio(record), float(data["output_speed"].max())
     travels = [*map(str, record["travels"])]
     found, lacks = _parts(outcome, name, ratio, float(data.attrs["load"]))
-    rotor = _read(rotor_inertia, "kg" if "driver" in travels else "kg m2", "rotor_inertia")
+    rotor = quantity_of(rotor_inertia, "kg" if "driver" in travels else "kg m2", "rotor_inertia")
     if rotor is None:
         lacks["rotor_inertia"] = "that of the motor was not given (rotor_inertia)"
     return JointModel(
@@ -324,13 +324,17 @@ def joint_model(
 
 
 def part_of_map(
-    joint: JointModel, torque: str | None = None, speed: str | None = None
+    joint: JointModel,
+    torque: str | None = None,
+    speed: str | None = None,
+    temperature: float | None = None,
 ) -> MapRange | None:
-    """Part of a map that somebody names, at the temperature of operation.
+    """Part of a map that somebody names, at one temperature.
 
     Args:
         joint: of the map.
         torque, speed: least and largest amount at the output, "1 N m:20 N m".
+        temperature: [degC]; that of operation by default.
 
     Returns:
         None where neither is given.
@@ -352,7 +356,8 @@ def part_of_map(
             ),
         )
     )
-    return MapRange(torques, speeds, (joint.temperature, joint.temperature))
+    degree = joint.temperature if temperature is None else temperature
+    return MapRange(torques, speeds, (degree, degree))
 
 
 def _between(
@@ -361,7 +366,7 @@ def _between(
     """The two ends of a range within an axis."""
     if text is None:
         return axis
-    ends = [_read(part.strip(), unit, key) or 0.0 for part in text.split(":")]
+    ends = [quantity_of(part.strip(), unit, key) or 0.0 for part in text.split(":")]
     if len(ends) != 2 or not ends[0] < ends[1]:
         raise InputError(
             f'{shown(text)} is no range; write "LEAST:LARGEST", each with its unit', key=key
@@ -373,14 +378,26 @@ def _between(
     return max(ends[0], axis[0]), min(ends[1], axis[1])
 
 
-def _read(value: Any, unit: str, key: str) -> float | None:
-    """A quantity of somebody's in SI; None where there is none."""
+def quantity_of(value: Any, unit: str, key: str) -> float | None:
+    """A quantity of somebody's in SI, not negative; None where there is none.
+
+    Args:
+        value: text with a unit, or a number in SI.
+        unit: SI unit of what it has to be.
+        key: at which it stands, for the sentence.
+
+    Raises:
+        InputError: it is no such quantity.
+
+    Example:
+        >>> quantity_of("0.3 kg cm2", "kg m2", "rotor_inertia")
+        3e-05
+    """
     if value is None:
         return None
-    kind = units.kind_of(unit)
     text = value if isinstance(value, str) else f"{value} {unit}"
     try:
-        return Quantity(kind, 0.0, math.inf, unit).read(text)
+        return Quantity(units.kind_of(unit), 0.0, math.inf, unit).read(text)
     except InputError as error:
         raise error.at(key=key) from None
 

@@ -1,0 +1,224 @@
+"""A drive for simulators: what all of them are told, and how far each is off the loss map."""
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from pitchpoint.efficiency.friction_fit import WAYS, FrictionFit, LawError, LossLaw, MapRange
+from pitchpoint.errors import InputError
+from pitchpoint.exports.evaluator import SIGNS, inert
+from pitchpoint.input.quantities import shown
+from pitchpoint.results.store import make_folder
+from pitchpoint.runs.joint_model import JointModel, joint_model, part_of_map, quantity_of
+from pitchpoint.runs.run import Outcome
+
+__all__ = [
+    "TARGETS",
+    "Asked",
+    "HandedOver",
+    "Simulated",
+    "hand_over",
+    "heading",
+    "lost_lines",
+    "xml_text",
+]
+
+TARGETS: Mapping[str, str] = {
+    "mujoco": "pitchpoint.exports.mujoco:write_mujoco",
+}
+"""Where each target of a hand-over is written, by the name of its folder and option."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What somebody wants of a hand-over, as it was written.
+
+    Attributes:
+        law: of friction, by name.
+        rotor_inertia: of the motor about its own axis.
+        load: of the output at which friction that knows no load is right.
+        temperature: of the oil, where it knows none.
+        torque_range, speed_range: of the output, "LEAST:LARGEST", to which friction is fitted.
+    """
+
+    law: str | None = None
+    rotor_inertia: str | None = None
+    load: str | None = None
+    temperature: str | None = None
+    torque_range: str | None = None
+    speed_range: str | None = None
+
+
+class Simulated(NamedTuple):
+    """What a writer is given.
+
+    Attributes:
+        outcome: the result.
+        joint: of it.
+        load: at which friction without load is right [torque of the output].
+        temperature: [degC].
+        within: part of the map that counts, or None for all of it.
+    """
+
+    outcome: Outcome
+    joint: JointModel
+    load: float
+    temperature: float
+    within: MapRange | None
+
+    @property
+    def fit(self) -> FrictionFit:
+        """Friction with constant, load and speed nearest to the map."""
+        return self.joint.fit(temperature=self.temperature, within=self.within)
+
+    @property
+    def name(self) -> str:
+        """Of the joint, made of letters, digits and underlines: that of the case."""
+        plain = re.sub(r"\W+", "_", Path(self.joint.case).stem, flags=re.ASCII).strip("_")
+        return plain if plain[:1].isalpha() else f"drive_{plain}".rstrip("_")
+
+
+class HandedOver(NamedTuple):
+    """Files of a target, and the lines that say what is lost in them."""
+
+    paths: list[Path]
+    lost: list[str]
+
+
+Writer = Callable[[Simulated, Path], HandedOver]
+
+
+def hand_over(
+    outcomes: Mapping[str, Outcome],
+    folder: Path,
+    targets: Iterable[str],
+    asked: Asked | None = None,
+) -> dict[str, HandedOver]:
+    """Write the joint of a result for simulators, each into a folder of its name.
+
+    Args:
+        outcomes: by variant; each of several has a folder of its own.
+        folder: where those go.
+        targets: of `TARGETS`.
+        asked: what is wanted; what the case says by default.
+
+    Returns:
+        Files and what is lost in them, by target, before it the variant of several.
+
+    Raises:
+        InputError: the result has no loss map of the output, what is asked for is not in it, or the folder
+            cannot be written to.
+    """
+    written = {}
+    for name, outcome in outcomes.items():
+        several = len(outcomes) > 1
+        for target in targets:
+            place = (folder / name if several else folder) / target
+            given = _simulated(outcome, asked or Asked(), f"--{target}")
+            make_folder(place)
+            written[f"{name}: {target}" if several else target] = _writer(target)(given, place)
+    return written
+
+
+def _writer(target: str) -> Writer:
+    module, _, name = TARGETS[target].partition(":")
+    found: Writer = getattr(import_module(module), name)
+    return found
+
+
+def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
+    try:
+        joint = joint_model(outcome, law=asked.law, rotor_inertia=asked.rotor_inertia)
+    except (AttributeError, LookupError, TypeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise (error if error.key else error.at(key=key)) from None
+        told = "the loss map of the output is not as this version writes it; run the case again"
+        raise InputError(told, key=key) from None
+    load = quantity_of(asked.load, joint.units["torque"], "--load")
+    warm = quantity_of(asked.temperature, "K", "--temperature")
+    degree = joint.temperature if warm is None else round(warm - 273.15, 9)
+    for value, axis, of, text in (
+        (load or 0.0, joint.table.torques, "--load", asked.load),
+        (degree, joint.table.temperatures, "--temperature", asked.temperature),
+    ):
+        if not axis[0] <= value <= axis[-1]:
+            ends = f"{max(axis[0], 0.0):.6g} to {axis[-1]:.6g}"
+            raise InputError(f"{shown(text)} is beyond the map, which goes from {ends}", key=of)
+    within = part_of_map(joint, asked.torque_range, asked.speed_range, degree)
+    return Simulated(outcome, joint, joint.load if load is None else load, degree, within)
+
+
+def heading(given: Simulated, what: str) -> Iterator[str]:
+    """Paragraphs that stand at the head of every file: what it is, of which drive, and its signs."""
+    joint, unit = given.joint, given.joint.units
+    yield what
+    yield inert(
+        f"{joint.title}: {joint.driver} drives {joint.output}. Case {joint.case}, variant {joint.variant}, "
+        f"digest {joint.digest}, friction law {joint.law}, Pitchpoint {joint.version}."
+    )
+    turns = "the opposite way" if joint.ratio < 0.0 else "the same way"
+    yield SIGNS + (
+        f" The ratio is {abs(joint.ratio):.9g}; {inert(joint.driver)} itself turns {turns} as the output. "
+        f"Units: {unit['torque']}, {unit['speed']}, {unit['inertia']}, {unit['driver']} at the driver, degC."
+    )
+    yield inert(
+        f"The loss map goes to {joint.limits['largest_torque']:.6g} {unit['torque']} and "
+        f"{joint.limits['largest_speed']:.6g} {unit['speed']} of the output, and from "
+        f"{joint.table.temperatures[0]:g} to {joint.table.temperatures[-1]:g} degC."
+    )
+    yield "Not known of this drive: " + inert(
+        "; ".join(f"{name.replace('_', ' ')} ({why})" for name, why in joint.lacks.items()) + "."
+    )
+
+
+def lost_lines(given: Simulated, law: LossLaw, beside: str) -> list[str]:
+    """Table of what is lost: error of the torque of the driver, over the map and where somebody asked.
+
+    Args:
+        given: the joint.
+        law: lost torque of the target over torque along the motion, speed and temperature.
+        beside: what else the target leaves out, in a sentence.
+    """
+    joint, unit = given.joint, given.joint.units["driver"]
+    rows: list[tuple[str, LawError]] = [("the map", one) for one in joint.errors(law)]
+    if given.within is not None:
+        rows += [("range", one) for one in joint.errors(law, given.within)]
+    lines = [f"What is lost: torque of the driver, this file against the loss map [{unit}]"]
+    lines.append(f"{'in':8}{'quadrants':26}{'largest':>11}{'mean':>11}{'of most':>11}{'points':>8}")
+    lines += [_row(place, one) for place, one in rows]
+    if given.within is not None:
+        lines.append(_range_words(given))
+    locked = sum(one.locked for place, one in rows if place == "the map")
+    if locked:
+        lines.append(
+            f"Friction locks the drive at {locked} more points, where the map has no torque."
+        )
+    return [*lines, beside]
+
+
+def _row(place: str, error: LawError) -> str:
+    way = f"{error.quadrants} ({WAYS[error.quadrants]})"
+    if not error.points:
+        return f"{place:8}{way:26}{'none: friction locks the drive':>39}"
+    numbers = f"{error.largest:>11.4g}{error.mean:>11.4g}{100.0 * error.share:>9.3g} %"
+    return f"{place:8}{way:26}{numbers}{error.points:>8}"
+
+
+def _range_words(given: Simulated) -> str:
+    assert given.within is not None
+    (low, high), (slow, fast), (degree, _) = given.within
+    unit = given.joint.units
+    return (
+        f"The range: {low:.4g} to {high:.4g} {unit['torque']}, {slow:.4g} to {fast:.4g} {unit['speed']}, "
+        f"{degree:.4g} degC."
+    )
+
+
+def xml_text(text: Any) -> str:
+    """Text for a comment of XML, in which two hyphens may not stand side by side."""
+    return re.sub(
+        r"-(?=-)", "- ", str(text).replace("&", "and").replace("<", "(").replace(">", ")")
+    ).rstrip("-")
