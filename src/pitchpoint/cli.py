@@ -559,6 +559,15 @@ def export(
             "--mujoco", help="A joint of MuJoCo: MJCF, and friction that follows the load."
         ),
     ] = False,
+    urdf: Annotated[
+        bool, typer.Option("--urdf", help="A joint of URDF: friction, damping, limits.")
+    ] = False,
+    ros2_control: Annotated[
+        bool, typer.Option("--ros2-control", help="A transmission of ros2_control: its ratio.")
+    ] = False,
+    isaac: Annotated[
+        bool, typer.Option("--isaac", help="Friction and armature for Isaac Lab on PhysX.")
+    ] = False,
     law: Annotated[
         str | None,
         typer.Option(
@@ -609,7 +618,8 @@ def export(
 
     asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx, "evaluator": evaluator}
     formats = [name for name, wanted in asked.items() if wanted]
-    targets = [name for name, wanted in {"mujoco": mujoco}.items() if wanted]
+    joints = {"mujoco": mujoco, "urdf": urdf, "ros2_control": ros2_control, "isaac": isaac}
+    targets = [name for name, wanted in joints.items() if wanted]
     outcomes, folder = open_result(result), output or Path(result) / "export"
     if formats or not targets:
         from pitchpoint.exports.files import export as exported

@@ -433,6 +433,7 @@ def test_pages_can_be_read_without_the_site(
         ("xu_2007", ["reference/models"]),
         ("min_lambda_ratio", ["reference/variables"]),
         ("MuJoCo", ["guide/simulators"]),
+        ("URDF", ["guide/simulators"]),
         ("armature", ["guide/simulators"]),
         ("frictionloss", ["guide/simulators"]),
     ],

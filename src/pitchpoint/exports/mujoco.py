@@ -4,20 +4,22 @@ import math
 import re
 from importlib.resources import files
 from pathlib import Path
-from textwrap import fill
 
-import numpy as np
-
-from pitchpoint.efficiency.friction_fit import FrictionFit, fit_friction, loss_nodes
+from pitchpoint.efficiency.friction_fit import FrictionFit
 from pitchpoint.exports.evaluator import behind, demand_room, inert, map_code, module_head
 from pitchpoint.exports.mujoco_joint import HOLDS
-from pitchpoint.exports.simulators import HandedOver, Simulated, heading, lost_lines, xml_text
+from pitchpoint.exports.simulators import (
+    HandedOver,
+    Simulated,
+    friction_at_load,
+    heading,
+    lost_lines,
+    most_torque,
+    xml_comment,
+)
 from pitchpoint.results.store import write_text
 
-__all__ = ["friction_at_load", "write_mujoco"]
-
-LOCKED_SHARE = 1.05
-"""Friction over the load that holds it where friction locks the drive."""
+__all__ = ["write_mujoco"]
 
 GRAVITY = 9.81
 
@@ -52,31 +54,6 @@ def write_mujoco(given: Simulated, folder: Path) -> HandedOver:
     return HandedOver([folder / name for name in texts], lost)
 
 
-def friction_at_load(given: Simulated) -> FrictionFit:
-    """Constant and viscous friction nearest to the map at one load, whichever end drives.
-
-    Where friction locks the drive against the load, the constant holds it instead.
-    """
-    joint, within = given.joint, given.within
-    nodes = loss_nodes(joint.table, joint.law, within=within, temperature=given.temperature)
-    speeds = np.unique(nodes.speed)
-    torque, speed = (
-        v.ravel() for v in np.meshgrid([-given.load, given.load], speeds, indexing="ij")
-    )
-    lost = np.asarray(joint.loss_torque(torque, speed, given.temperature))
-    stuck = np.isnan(lost)
-    alone = np.asarray(joint.loss_torque(0.0 * torque, speed, given.temperature))
-    lost = np.where(stuck, LOCKED_SHARE * given.load + np.nan_to_num(alone), lost)
-    if stuck.any():
-        return FrictionFit(float(lost[stuck].max()), 0.0, 0.0, 0.0)
-    return fit_friction(np.zeros(torque.size), speed, lost)
-
-
-def _comment(paragraphs: list[str]) -> str:
-    lines = (one if "\n" in one else fill(one, 100, break_long_words=False) for one in paragraphs)
-    return "<!--\n" + xml_text("\n\n".join(lines)) + "\n-->\n"
-
-
 def _fragment(given: Simulated, fit: FrictionFit, lost: list[str]) -> str:
     joint, name = given.joint, given.name
     unit = joint.units
@@ -94,12 +71,12 @@ def _fragment(given: Simulated, fit: FrictionFit, lost: list[str]) -> str:
         "\n".join(lost),
     ]
     return (
-        f"{_comment(head)}<mujoco>\n  <default>\n"
+        f"{xml_comment(head)}<mujoco>\n  <default>\n"
         f'    <default class="{name}">\n'
-        f'      <joint type="{_type(given)}" armature="{joint.armature:.9g}" damping="{fit.viscous:.9g}" '
+        f'      <joint type="{_kind(given)}" armature="{joint.armature:.9g}" damping="{fit.viscous:.9g}" '
         f'frictionloss="{fit.constant:.9g}"\n        {_solver()}/>\n'
         f'      <motor gear="{abs(joint.ratio):.12g}" ctrllimited="true" '
-        f'ctrlrange="-{_most(given):.6g} {_most(given):.6g}"/>\n'
+        f'ctrlrange="-{most_torque(given):.6g} {most_torque(given):.6g}"/>\n'
         f"{_spring(given)}    </default>\n  </default>\n</mujoco>\n"
     )
 
@@ -109,18 +86,8 @@ def _solver() -> str:
     return f'solreffriction="{ref}" solimpfriction="{imp}"'
 
 
-def _type(given: Simulated) -> str:
+def _kind(given: Simulated) -> str:
     return "slide" if given.joint.slides else "hinge"
-
-
-def _most(given: Simulated) -> float:
-    """Largest torque of the driver on the map."""
-    table = given.joint.table
-    lost = (
-        table.lost(table.torques[-1], one, given.temperature, given.joint.law)
-        for one in table.speeds
-    )
-    return (table.torques[-1] + max(0.0, *lost)) * table.speed_ratio
 
 
 def _spring(given: Simulated) -> str:
@@ -130,7 +97,7 @@ def _spring(given: Simulated) -> str:
         return ""
     return (
         f'      <default class="{given.name}_spring">\n'
-        f'        <joint type="{_type(given)}" stiffness="{curve.at_load:.9g}" armature="0" damping="0" '
+        f'        <joint type="{_kind(given)}" stiffness="{curve.at_load:.9g}" armature="0" damping="0" '
         'frictionloss="0"/>\n      </default>\n'
     )
 
@@ -143,7 +110,7 @@ def _mass(given: Simulated) -> float:
 
 def _head_of_arm(given: Simulated, step: str) -> str:
     return (
-        f"{_comment(['An arm on this drive, to try it by python joint_friction.py.'])}"
+        f"{xml_comment(['An arm on this drive, to try it by python joint_friction.py.'])}"
         f'<mujoco model="{given.name}">\n  <compiler angle="radian"/>\n'
         f'  <option timestep="{step}" gravity="0 0 -{GRAVITY}" integrator="implicitfast"/>\n'
         '  <include file="joint.xml"/>\n'
@@ -172,7 +139,7 @@ def _arm_with_spring(given: Simulated) -> str:
     """Rotor and drive, play where there is some, the spring of the wind-up, the load."""
     axis, weight = _weight(given)
     light = f'<inertial pos="0 0 0" mass="{1e-6 * _mass(given):.3g}" diaginertia="1e-6 1e-6 1e-6"/>'
-    kind = _type(given)
+    kind = _kind(given)
     play = _play(given, axis, kind)
     return (
         f"{_head_of_arm(given, '0.0001')}  <worldbody>\n    <body>\n"

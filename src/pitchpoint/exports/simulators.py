@@ -1,13 +1,25 @@
 """A drive for simulators: what all of them are told, and how far each is off the loss map."""
 
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any, NamedTuple
+from textwrap import fill, wrap
+from typing import NamedTuple
 
-from pitchpoint.efficiency.friction_fit import WAYS, FrictionFit, LawError, LossLaw, MapRange
+import numpy as np
+
+from pitchpoint.efficiency.friction_fit import (
+    WAYS,
+    FrictionFit,
+    LawError,
+    LossLaw,
+    MapRange,
+    fit_friction,
+    loss_nodes,
+)
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import SIGNS, inert
 from pitchpoint.input.quantities import shown
@@ -20,16 +32,26 @@ __all__ = [
     "Asked",
     "HandedOver",
     "Simulated",
+    "friction_at_load",
     "hand_over",
     "heading",
+    "holding_friction",
     "lost_lines",
-    "xml_text",
+    "most_torque",
+    "xml_comment",
 ]
 
 TARGETS: Mapping[str, str] = {
     "mujoco": "pitchpoint.exports.mujoco:write_mujoco",
+    "urdf": "pitchpoint.exports.urdf:write_urdf",
+    "ros2_control": "pitchpoint.exports.ros2_control:write_ros2_control",
+    "isaac": "pitchpoint.exports.isaac:write_isaac",
 }
 """Where each target of a hand-over is written, by the name of its folder and option."""
+
+
+LOCKED_SHARE = 1.05
+"""Friction over the load that holds it where friction locks the drive, of which the map has no number."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +139,7 @@ def hand_over(
         several = len(outcomes) > 1
         for target in targets:
             place = (folder / name if several else folder) / target
-            given = _simulated(outcome, asked or Asked(), f"--{target}")
+            given = _simulated(outcome, asked or Asked(), "--" + target.replace("_", "-"))
             make_folder(place)
             written[f"{name}: {target}" if several else target] = _writer(target)(given, place)
     return written
@@ -159,9 +181,9 @@ def heading(given: Simulated, what: str) -> Iterator[str]:
         f"{joint.title}: {joint.driver} drives {joint.output}. Case {joint.case}, variant {joint.variant}, "
         f"digest {joint.digest}, friction law {joint.law}, Pitchpoint {joint.version}."
     )
-    turns = "the opposite way" if joint.ratio < 0.0 else "the same way"
+    turns = "against" if joint.ratio < 0.0 else "with"
     yield SIGNS + (
-        f" The ratio is {abs(joint.ratio):.9g}; {inert(joint.driver)} itself turns {turns} as the output. "
+        f" The ratio is {abs(joint.ratio):.9g}; {inert(joint.driver)} itself turns {turns} the output. "
         f"Units: {unit['torque']}, {unit['speed']}, {unit['inertia']}, {unit['driver']} at the driver, degC."
     )
     yield inert(
@@ -196,7 +218,7 @@ def lost_lines(given: Simulated, law: LossLaw, beside: str) -> list[str]:
         lines.append(
             f"Friction locks the drive at {locked} more points, where the map has no torque."
         )
-    return [*lines, beside]
+    return [*lines, *wrap(beside, 78)]
 
 
 def _row(place: str, error: LawError) -> str:
@@ -217,8 +239,52 @@ def _range_words(given: Simulated) -> str:
     )
 
 
-def xml_text(text: Any) -> str:
-    """Text for a comment of XML, in which two hyphens may not stand side by side."""
-    return re.sub(
-        r"-(?=-)", "- ", str(text).replace("&", "and").replace("<", "(").replace(">", ")")
-    ).rstrip("-")
+def friction_at_load(given: Simulated) -> FrictionFit:
+    """Constant and viscous friction nearest to the map at one load, whichever end drives.
+
+    Where friction locks the drive against the load, the constant holds it instead.
+    """
+    joint, within = given.joint, given.within
+    nodes = loss_nodes(joint.table, joint.law, within=within, temperature=given.temperature)
+    speeds = np.unique(nodes.speed)
+    torque, speed = (
+        v.ravel() for v in np.meshgrid([-given.load, given.load], speeds, indexing="ij")
+    )
+    lost = np.asarray(joint.loss_torque(torque, speed, given.temperature))
+    stuck = np.isnan(lost)
+    alone = np.asarray(joint.loss_torque(0.0 * torque, speed, given.temperature))
+    lost = np.where(stuck, LOCKED_SHARE * given.load + np.nan_to_num(alone), lost)
+    if stuck.any():
+        return FrictionFit(float(lost[stuck].max()), 0.0, 0.0, 0.0)
+    return fit_friction(np.zeros(torque.size), speed, lost)
+
+
+def holding_friction(given: Simulated, moving: float) -> float:
+    """Friction at rest under the load: the mean of what starts the output on and back [torque of the output].
+
+    Args:
+        given: the joint.
+        moving: friction in motion, below which it is not, as simulators ask.
+    """
+    joint, ratio = given.joint, given.joint.table.speed_ratio
+    rest = joint.holding_band(given.load, given.temperature)
+    both = [rest.highest / ratio - given.load, given.load - rest.lowest / ratio]
+    known = [one for one in both if math.isfinite(one)]
+    stuck = [LOCKED_SHARE * given.load] if len(known) < 2 else []
+    return max(moving, sum(known) / max(len(known), 1), *stuck)
+
+
+def most_torque(given: Simulated) -> float:
+    """Largest torque of the driver on the map [torque of the driver]."""
+    table = given.joint.table
+    lost = (
+        table.lost(table.torques[-1], n, given.temperature, given.joint.law) for n in table.speeds
+    )
+    return (table.torques[-1] + max(0.0, *lost)) * table.speed_ratio
+
+
+def xml_comment(paragraphs: Iterable[str]) -> str:
+    """Paragraphs as a comment of XML, in which two hyphens may not stand side by side."""
+    lines = (one if "\n" in one else fill(one, 100, break_long_words=False) for one in paragraphs)
+    text = "\n\n".join(lines).translate({38: "and", 60: "(", 62: ")"})
+    return "<!--\n" + re.sub(r"-(?=-)", "- ", text).rstrip("-") + "\n-->\n"

@@ -1,0 +1,122 @@
+"""Joints for simulators: every target of every kind of drive, with what is lost in it."""
+
+import re
+import runpy
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from made_joints import TITLE, locking, made_joint, plain, torsion
+
+from pitchpoint.exports.simulators import TARGETS, Asked, HandedOver, hand_over
+from pitchpoint.runs.joint_model import joint_model
+from pitchpoint.runs.run import Outcome
+
+WISHES = Asked(torque_range="5 N m:25 N m", speed_range="2 rpm:20 rpm")
+
+
+def handed(made: Outcome, folder: Path, target: str, wishes: Asked | None = None) -> HandedOver:
+    return hand_over({"default": made}, folder, [target], wishes)[target]
+
+
+def rows(lines: list[str]) -> np.ndarray:
+    """Largest and mean error and number of points of each row of a table."""
+    found = re.findall(
+        r"^(?:the map|range) .*\) +(\S+) +(\S+) +\S+ % +(\d+)$", "\n".join(lines), re.MULTILINE
+    )
+    return np.array(found, float)
+
+
+def same(lines: list[str], law: Callable[..., np.ndarray]) -> None:
+    """The table is that of a law of loss, over the whole map."""
+    errors = joint_model(made_joint()).errors(law)
+    expected = [(one.largest, one.mean, one.points) for one in errors]
+    np.testing.assert_allclose(rows(lines)[:2], expected, rtol=1e-3)
+
+
+def constant(friction: float, viscous: float) -> Callable[..., np.ndarray]:
+    return lambda torque, speed, degree: friction + viscous * speed
+
+
+@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("kind", ["plain", "locking", "slides", "several"])
+def test_every_target_takes_every_drive(target: str, kind: str, tmp_path: Path) -> None:
+    law = locking if kind == "locking" else plain
+    made = made_joint(
+        law, slides=kind == "slides", more={"torsion": torsion()} if kind == "plain" else None
+    )
+    outcomes = {"a": made, "b": made} if kind == "several" else {"default": made}
+    written = hand_over(outcomes, tmp_path, [target])
+    assert len(written) == len(outcomes)
+    for name, files in written.items():
+        assert all(path.is_file() for path in files.paths)
+        assert {path.parent.name for path in files.paths} == {target}
+        assert all(len(line) <= 80 for line in files.lost)
+        assert kind != "several" or name in (f"a: {target}", f"b: {target}")
+        for path in files.paths:
+            if path.suffix in (".xml", ".urdf"):
+                values = [v for one in ElementTree.parse(path).iter() for v in one.attrib.values()]
+                assert not {"nan", "inf", "None"} & {
+                    word for value in values for word in value.split()
+                }
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_what_somebody_typed_ends_no_remark(target: str, tmp_path: Path) -> None:
+    made = made_joint()
+    made.manifest["members"][0] = "a -- b <c>&"
+    made.manifest |= {"case": '--> 1 end; */ """ \'', "driver": "a -- b <c>&", "warnings": [TITLE]}
+    for path in handed(made, tmp_path, target).paths:
+        text = path.read_text("utf-8")
+        if path.suffix in (".xml", ".urdf"):
+            root = ElementTree.fromstring(text)
+            names = [one.get("name") or one.get("class") or "x" for one in root.iter()]
+            assert all(re.fullmatch(r"[A-Za-z]\w*", name) for name in names)
+        elif path.suffix == ".py":
+            compile(text, path.name, "exec")
+
+
+def test_a_joint_of_urdf_has_the_friction_that_its_table_is_of(tmp_path: Path) -> None:
+    (path,), lost = handed(made_joint(), tmp_path, "urdf", WISHES)
+    joint = ElementTree.parse(path).find("joint")
+    assert joint is not None
+    found = [joint.find(name) for name in ("dynamics", "limit")]
+    dynamics, limit = ({} if one is None else one.attrib for one in found)
+    same(lost, constant(float(dynamics["friction"]), float(dynamics["damping"])))
+    assert (limit["effort"], limit["velocity"], joint.get("type")) == ("60", "4", "revolute")
+    assert "armature" in path.read_text("utf-8")
+    (slide,), _ = handed(made_joint(slides=True), tmp_path, "urdf")
+    assert 'type="prismatic"' in slide.read_text("utf-8")
+
+
+def test_mujoco_reads_the_joint_of_urdf(tmp_path: Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    (path,), _ = handed(made_joint(), tmp_path, "urdf", WISHES)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    same_numbers = re.search(r'damping="(\S+)" friction="(\S+)"', path.read_text("utf-8"))
+    assert same_numbers is not None
+    found = float(model.dof_damping[0]), float(model.dof_frictionloss[0])
+    assert found == pytest.approx([float(one) for one in same_numbers.groups()])
+
+
+def test_friction_of_isaac_starts_the_joint_as_the_map_does(tmp_path: Path) -> None:
+    """At 20 N m it starts with 2 + 2 N m on and 2 + 2.4 N m back."""
+    (path,), lost = handed(made_joint(), tmp_path, "isaac", Asked(rotor_inertia="2 kg cm2"))
+    made = runpy.run_path(str(path))
+    values = made["ACTUATOR"]
+    assert values["armature"] == pytest.approx(2e-4 * 2500.0)
+    assert values["friction"] == pytest.approx(max(4.2, values["dynamic_friction"]))
+    same(lost, constant(values["dynamic_friction"], values["viscous_friction"]))
+    assert made["MAP_ENDS"] == {"effort": 60, "velocity": 4} and made["RATIO"] == -50.0
+    worm = runpy.run_path(str(handed(made_joint(locking), tmp_path, "isaac").paths[0]))["ACTUATOR"]
+    assert worm["friction"] >= 20.0
+
+
+def test_a_transmission_of_ros2_control_has_the_ratio_and_no_loss(tmp_path: Path) -> None:
+    (path,), lost = handed(made_joint(), tmp_path, "ros2_control")
+    root = ElementTree.parse(path).getroot()
+    assert root.findtext("plugin") == "transmission_interface/SimpleTransmission"
+    assert float(root.findtext("joint/mechanical_reduction") or 0.0) == -50.0
+    same(lost, constant(0.0, 0.0))
