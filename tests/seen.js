@@ -126,6 +126,22 @@
       const parts = [...one.getClientRects()].filter((part) => part.height > 1);
       if (shown(one) && new Set(parts.map(page)).size > 1) faults.push("parted by the end of a page: " + name(one));
     }
+    const ends = (one, last) => page([...one.getClientRects()].filter((part) => part.height > 1).at(last ? -1 : 0));
+    const after = (one) => {
+      let next = one.nextElementSibling;
+      while (next && !shown(next)) next = next.nextElementSibling;
+      return next && ([...next.querySelectorAll("figure, tr, p, li, dd, svg")].find(shown) ?? next);
+    };
+    for (const one of main.querySelectorAll("h2, h3, h4, summary, .legend, .marks, .figures")) {
+      const above = one.matches(".figures") ? one.previousElementSibling?.closest("p, h3, h4") : one;
+      const below = one.matches(".figures") ? one.querySelector("figure") : after(one);
+      if (above && below && shown(above) && shown(below) && ends(above, true) !== ends(below)) faults.push("left behind at the end of a page: " + name(above));
+    }
+    for (const rows of [...main.querySelectorAll("tbody")].map((body) => [...body.rows].filter(shown))) {
+      for (const [one, other] of [rows.slice(0, 2), rows.slice(-2).reverse()]) {
+        if (other && ends(one) !== ends(other)) faults.push("a row alone beside the end of a page: " + name(one));
+      }
+    }
     [main, summed].forEach((one, k) => { if (one) one.style.cssText = styles[k]; });
   }
   return [...new Set(faults)];

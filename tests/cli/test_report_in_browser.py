@@ -189,16 +189,44 @@ def test_figures_stay_whole_and_with_what_is_above_them_wherever_a_page_ends(
     chromium.open(tmp_path / "panel.html", PAPER[0])
     chromium.call("Emulation.setEmulatedMedia", media="print")
 
-    def faults(rule: str) -> set[str]:
-        chromium.run(f"document.querySelectorAll('style')[1].textContent = '{rule}'")
-        found = set()
-        for above in range(600, 1000, 25):
-            chromium.run(f"document.querySelector('.above').style.height = '{above}px'")
-            found.update(faults_shown(chromium, *PAPER))
-        return found
+    assert faults_wherever_a_page_ends(chromium, "") == set()
+    for rule in (
+        ".legend { display: flex !important; }",
+        "h3, p { break-after: auto !important; }",
+    ):
+        found = faults_wherever_a_page_ends(chromium, rule)
+        assert any("left behind at the end of a page" in one for one in found), rule
+    chromium.call("Emulation.setEmulatedMedia", media="")
+    chromium.window = None
 
-    assert faults("") == set()
-    assert any("end of a page" in one for one in faults(".legend { display: flex !important; }"))
+
+def faults_wherever_a_page_ends(page: Browser, rule: str) -> set[str]:
+    """On paper, for what stands under `.above` and a rule in the second style of the page."""
+    page.run(f"document.querySelectorAll('style')[1].textContent = '{rule}'")
+    found = set()
+    for above in range(600, 1000, 25):
+        page.run(f"document.querySelector('.above').style.height = '{above}px'")
+        found.update(faults_shown(page, *PAPER))
+    return found
+
+
+def test_no_row_of_a_table_is_alone_on_a_page(chromium: Browser, tmp_path: Path) -> None:
+    tables = "".join(
+        f"<h3>{rows} keys</h3><table><thead><tr><th>Key</thead><tbody>{'<tr><td>1 mm</tr>' * rows}</table>"
+        for rows in (1, 2, 3, 5)
+    )
+    style = (Path(views.__file__).parent / "templates" / "style.css").read_text("utf-8")
+    marks = f"<p class=marks>{'<span>printed stands in the source</span> ' * 9}</p>"
+    body = f"<div class=above></div><h2>Inputs</h2>{marks}{tables}"
+    page = f"<style>{style}</style><style></style><main><section>{body}</section></main>"
+    (tmp_path / "rows.html").write_text(f"<html data-drawn=all>{page}</html>", "utf-8")
+    chromium.open(tmp_path / "rows.html", PAPER[0])
+    chromium.call("Emulation.setEmulatedMedia", media="print")
+    assert faults_wherever_a_page_ends(chromium, "") == set()
+    found = faults_wherever_a_page_ends(chromium, "tr { break-before: auto !important; }")
+    assert any("a row alone" in one for one in found)
+    found = faults_wherever_a_page_ends(chromium, ".marks { display: flex !important; }")
+    assert any("left behind" in one for one in found)
     chromium.call("Emulation.setEmulatedMedia", media="")
     chromium.window = None
 
