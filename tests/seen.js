@@ -40,11 +40,13 @@
     }
   }
 
-  // Units on another line than their numbers; values of tiles are narrow.
+  // Units on another line than their numbers, numbers on another than their symbol; values of tiles are narrow.
   for (const one of document.querySelectorAll("p, dd, li, td, th, figcaption, caption, summary")) {
     if (!shown(one) || one.closest(".spoken, .plot")) continue;
+    const raw = one.textContent.match(/\d (deg[CF]?|um|urad|mm2|mm3)\b|\d x \d/);
+    if (raw && !one.closest("code") && !one.querySelector("pre, code")) faults.push(`"${raw[0]}" is not as printed: ${name(one)}`);
     const texts = document.createTreeWalker(one, NodeFilter.SHOW_TEXT);
-    while (texts.nextNode()) for (const { 0: pair, index } of texts.currentNode.data.matchAll(/\d[ \u00a0]([%°µ]|([kMG]?(N|Pa|W|g|Hz)|[mkc]?m|m?s|rpm|arcmin)(?![\w-]))/g)) {
+    while (texts.nextNode()) for (const { 0: pair, index } of texts.currentNode.data.matchAll(/\d[ \u00a0]([%°µ]|([kMG]?(N|Pa|W|g|Hz)|[mkc]?m|m?s|rpm|arcmin)(?![\w-]))|(?<![^\s(])[^\s="]{1,7} = [−-]?\d/g)) {
       if (texts.currentNode.parentElement.closest("strong, .big, option")) continue;
       const lines = [index, index + pair.length - 1].map((at) => {
         word.setStart(texts.currentNode, at);

@@ -116,6 +116,8 @@ _SPOILED = {
     '" on "': "Plotly.relayout('along_loss', {'yaxis.tickfont.size': 60})",
     "is broken": "document.querySelector('#models thead th').style.cssText = 'display: block; width: 30px'",
     "is parted": "document.querySelector('#sources').innerHTML += '<p style=width:3em>It is 123 µm</p>'",
+    '"μ = 1" is parted': "document.querySelector('#sources').innerHTML += '<p style=width:3em>At μ = 1'",
+    "not as printed": "document.querySelector('#sources').innerHTML += '<p>Oil at 20 degC'",
     "told from its ground": "document.querySelector('#along_loss .xtitle').style.fill = '#fafafa'",
 }
 

@@ -211,11 +211,14 @@ _PRINTED = (
     (re.compile(r"(?<=\d)e-0*(?=\d)"), "e\u2212"),
     (re.compile(r"(?<=\d)e\+0*(?=\d)"), "e"),
     (re.compile(r"(?<=\d)[ \u00a0](?:deg\b|°(?![CF]))"), "°"),
+    (re.compile(r"(?<=\d)[ \u00a0]degC\b"), "\u00a0°C"),
+    (re.compile(r"(?<=\d) x (?=\d)"), "\u00a0×\u00a0"),
+    (re.compile(r"(>|(?<![^\s(>])[^\s<>=\"]{1,7}) = (?=[\u2212-]?\d)"), "\\1\u00a0=\u00a0"),
     (re.compile(r"((?:[\dKgN][ \u00a0]|/)[kcm]?m)2(?!\w)"), r"\1²"),
     (re.compile(rf"(?<=\d) (?={_UNIT})"), "\u00a0"),
     (re.compile(r"((?<=\d\u00a0N)|(?<=\d\u00a0kN)) (?=m(?![a-zA-Z]))"), "\u00a0"),
 )
-"""Minus, powers of ten, degrees, squares, and the space between a number and its unit."""
+"""Minus, powers of ten, degrees, products, squares; symbols, numbers and units that stay on one line."""
 
 _IN_UNIT = re.compile(r"(?<=[Ng]) (?=[cm]?m(?![a-z]))")
 """A space within the unit of a torque, a stiffness against rotation or an inertia."""
