@@ -150,7 +150,7 @@ def test_errors_by_the_grid_are_estimated_from_half_as_many_cells():
     assert fine.ended.grid_minimum > COARSE
     (told,) = (one for one in fine.warnings if one.kind == "grid")
     nodes, cells = map(
-        int, re.findall(r"(\d+) nodes and (\d+) cells bring that below 3 %", told)[0]
+        int, re.findall(r"(\d+) nodes and (\d+) cells should bring that below 3 %", told)[0]
     )
     named = solve_patch(ball(), nodes=nodes, cells=cells)
     assert named.solved and not any(one.kind == "grid" for one in named.warnings)

@@ -19,7 +19,7 @@ from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.columns import fitted
-from pitchpoint.views.film_courses import film_key_figure
+from pitchpoint.views.film_courses import answered, film_key_figure
 from pitchpoint.views.first_screen import (
     FEW_LINES,
     _aligned,
@@ -108,6 +108,22 @@ def test_films_that_are_solved_stand_before_what_follows_from_the_speeds_of_a_ri
     ]
     assert place["largest Hertz pressure"] < solved < place["mean friction coefficient"]
     assert place["mean input torque"] < place["entrainment velocity"]
+
+
+def test_what_the_grid_makes_a_film_off_stands_beside_its_value() -> None:
+    known = {"smallest_film": 6.8126e-8, "smallest_lambda": 0.09, "largest_asperity_share": 0.5}
+    counts = {"solved_contacts": 12, "loaded_contacts": 12, "mean_film_loss": np.nan}
+    data = xr.Dataset(
+        {**known, **counts}, attrs={"choices": '{"thermal": "isothermal"}', "assumed": ""}
+    )
+    errors = {"largest_central_film_error": 0.0234, "largest_minimum_film_error": 0.0751}
+    lines = {**errors, "largest_minimum_film_error": np.nan}, errors
+    unknown, told = (film_key_figure("Films solved", answered(data.assign(one))) for one in lines)
+    assert (unknown.value, told.value) == ("0.06813 µm", "0.06813 µm ±7.5 %")
+    both = answered(data.assign({**errors, "smallest_central_film": 9e-8}))
+    assert both.startswith(
+        "0.09 µm ±2.3 % at least in the middle of a contact, 0.06813 µm ±7.5 % anywhere"
+    )
 
 
 def test_a_short_detail_is_whole() -> None:

@@ -10,7 +10,7 @@ import xarray as xr
 
 from pitchpoint.analyses.films import film_notes
 from pitchpoint.doubts import in_percent
-from pitchpoint.lubrication.ehl.registry import COARSE, ISOTHERMAL
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -107,7 +107,7 @@ def answered(data: xr.Dataset) -> str:
     if int(data["solved_contacts"]) == 0:
         return _none(data)
     words = (
-        f"{_least(data)}{_by_grid(data)}, {told(data, 'smallest_lambda')} of Rq{_near_ends(data)}; "
+        f"{_least(data)}, {told(data, 'smallest_lambda')} of Rq{_near_ends(data)}; "
         f"asperities carry up to {told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
     )
     words += _spread(data)
@@ -154,22 +154,19 @@ def _in_series(data: xr.Dataset) -> str:
 
 
 def _least(data: xr.Dataset) -> str:
-    """Thinnest films, in words."""
-    least = told(data, "smallest_film")
+    """Thinnest films with what the grid may make them off, in words."""
+    least = f"{told(data, 'smallest_film')}{_by_grid(data, 'minimum')}"
     below_zero = ": mean planes overlap" if float(data["smallest_film"]) < 0.0 else ""
     if not np.isfinite(float(data.get("smallest_central_film", np.nan))):
         return f"{least} at least{below_zero}"
-    middle = told(data, "smallest_central_film")
+    middle = f"{told(data, 'smallest_central_film')}{_by_grid(data, 'central')}"
     return f"{middle} at least in the middle of a contact, {least} anywhere{below_zero}"
 
 
-def _by_grid(data: xr.Dataset) -> str:
-    """How far off the grid makes smallest films, in words; empty where that is little, or not known."""
-    if not float(data.get("largest_minimum_film_error", np.nan)) > COARSE:
-        return ""
-    return (
-        f" (the grid may make smallest films up to {told(data, 'largest_minimum_film_error')} off)"
-    )
+def _by_grid(data: xr.Dataset, which: str) -> str:
+    """How far off the grid makes films of a kind at most, beside their value; empty where it is not known."""
+    error = float(data.get(f"largest_{which}_film_error", np.nan))
+    return f" ±{in_percent(error)}" if np.isfinite(error) else ""
 
 
 def _near_ends(data: xr.Dataset) -> str:
