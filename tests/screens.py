@@ -11,9 +11,10 @@ NUMBER = re.compile(r"\d(?:[\d.,e−+-]*[\de])?")
 REPORT = Path("results/pair/report.html")
 
 
-def screen(outcomes: Mapping[str, Outcome], width: int = 80) -> list[str]:
+def screen(outcomes: Mapping[str, Outcome], width: int = 80, *, tables: bool = True) -> list[str]:
     """Its lines."""
-    return [line.text.replace("\u00a0", " ") for line in first_screen(outcomes, REPORT, width)]
+    lines = first_screen(outcomes, REPORT, width, tables=tables)
+    return [line.text.replace("\u00a0", " ") for line in lines]
 
 
 def faults_of_the_screen(outcomes: Mapping[str, Outcome], width: int = 80) -> Iterator[str]:
@@ -26,6 +27,6 @@ def faults_of_the_screen(outcomes: Mapping[str, Outcome], width: int = 80) -> It
         if len(line) > width:
             yield f"{len(line)} characters: {line}"
         # Wider lines leave room for more of a kind.
-        counted = line.endswith("in the report.") or re.search(r"; \d+ more$", line)
+        counted = line.endswith("in the report.") or re.search(r"[;,] \d+ more$", line)
         if not counted and (cut := {*NUMBER.findall(line)} - whole):
             yield f"{', '.join(cut)} is a part of a number: {line}"

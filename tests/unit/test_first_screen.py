@@ -134,6 +134,36 @@ def test_a_short_detail_is_whole() -> None:
     ]
 
 
+def test_what_a_case_asks_for_by_a_key_of_its_own_stands_before_what_follows(
+    pair: dict[str, Outcome],
+) -> None:
+    inspected = {"table": "stages", "key": "0.gears.inspection.tooth_thickness", "value": 1.0}
+
+    def names(status: str) -> list[str]:
+        rows = [*pair["default"].manifest["inputs"], {**inspected, "status": status}]
+        asked = doubting(pair["default"], inputs=rows)
+        return [figure.name for figure in key_figures(in_order(), asked)]
+
+    usual, asked = names("default"), names("given")
+    assert usual.index("Stress of roots") < usual.index("Backlash")
+    assert asked.index("Loss") < asked.index("Backlash") < asked.index("Stress of flanks")
+
+
+def test_figures_that_do_not_fit_in_are_named_with_what_shows_them(
+    pair: dict[str, Outcome],
+) -> None:
+    told = [f"Gear {place} is thin, and nothing says why that should be so." for place in "abc"]
+    doubtful = {"default": doubting(pair["default"], warnings=told)}
+    names = [figure.name for figure in key_figures(in_order(), doubtful["default"])]
+    lines = shown(doubtful)
+    left_out = names[sum(line.startswith(tuple(names)) for line in lines) :]
+    assert lines[-2] == f"By --full: {', '.join(left_out).lower()}"
+    assert left_out == ["Film ratio", "Back-driving", "Hertz pressure"]
+    every = screen(doubtful, tables=False)
+    assert all(any(line.startswith(name) for line in every) for name in names)
+    assert not any(line.startswith("By --full") for line in [*every, *shown(pair)])
+
+
 def test_a_law_in_the_place_of_that_of_the_case_is_told() -> None:
     """At this speed the film is too thin for the only law of the case, and one of the library answers."""
     only = {"models.friction": "xu_2007", "operation.speed": "600 rpm", "roughness.ra": "0.8 um"}

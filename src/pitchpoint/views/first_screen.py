@@ -76,7 +76,7 @@ def first_screen(
         outcomes: by variant.
         report: the page that holds everything else.
         width: of the screen, in characters; no line is longer, and no number cut.
-        tables: False to leave out of which sections there are tables, where they stand above.
+        tables: False below the tables of all sections: then every figure stands here.
     """
     outcome = next(iter(outcomes.values()))
     title = _title(outcome, len(outcomes))
@@ -93,9 +93,10 @@ def first_screen(
     titles = titles if len(titles) <= min(room, 2) else [show.first_clauses(title, width)]
     head = [Line(text, "title") for text in titles]
     head += [Line(show.first_clauses(at, width))] if at else []
-    room = max(room - len(titles), 0)
     known = stages_together(key_figures(in_order(), outcome)) if len(outcomes) == 1 else []
-    figures = aligned(known[:room], width)
+    figures = (
+        _fitting(known, max(room - len(titles), 0), width) if tables else aligned(known, width)
+    )
     fails, doubtful = (
         [line for line in doubts if line.style == style] for style in ("fails", "doubt")
     )
@@ -239,6 +240,24 @@ def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
 def _few(names: Sequence[str], variants: int) -> str:
     """Some of the variants by name where that is short, else how many they are."""
     return names[0] if len(names) == 1 else f"{len(names)} of {variants} variants"
+
+
+def _fitting(figures: Sequence[KeyFigure], room: int, width: int) -> list[Line]:
+    """Figures on so many lines; where there are more, the last line names them."""
+    if len(figures) <= room or room == 0:
+        return aligned(figures[:room], width)
+    return [*aligned(figures[: room - 1], width), Line(_left_out(figures[room - 1 :], width))]
+
+
+def _left_out(figures: Sequence[KeyFigure], width: int) -> str:
+    """Figures that have no line of their own, as many by name as a line holds, and what shows them."""
+    names = [show.one_line(f"{figure.name[:1].lower()}{figure.name[1:]}") for figure in figures]
+    for count in range(len(names), 0, -1):
+        rest = [f"{len(names) - count} more"] if count < len(names) else []
+        text = f"By --full: {', '.join([*names[:count], *rest])}"
+        if len(text) <= width:
+            return text
+    return f"{len(names)} more by --full"
 
 
 def aligned(figures: Sequence[KeyFigure], width: int) -> list[Line]:

@@ -213,6 +213,7 @@ class KeyFigure:
         beside: the value where that of other variants stands in the next column, with what it cannot do
             without; the value alone where it is empty.
         rank: of several stages only that with the least one is shown; all of them where it is not finite.
+        asked_by: keys of a case file that ask for it, by the beginnings of their parts: "gears.deviations".
     """
 
     order: float
@@ -221,6 +222,7 @@ class KeyFigure:
     detail: str = ""
     beside: str = ""
     rank: float = nan
+    asked_by: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
@@ -653,9 +655,25 @@ def told_of_variants(
 
 
 def key_figures(sections: "Iterable[Section]", outcome: Outcome) -> list[KeyFigure]:
-    """What sections answer of an outcome, in the order of the figures."""
+    """What sections answer of an outcome, in the order of the figures; what its case asks for comes first."""
     each = (figure for section in sections for figure in section.answers(outcome))
-    return sorted(each, key=lambda figure: figure.order)
+    keys = [
+        f".{row['table']}.{row['key']}"
+        for row in outcome.manifest["inputs"]
+        if row["status"] == "given"
+    ]
+    return sorted((_as_asked(figure, keys) for figure in each), key=lambda figure: figure.order)
+
+
+_ASKED = 38.0
+"""Order from which on that stands which a case asks for by a key of its own, in the order of the rest."""
+
+
+def _as_asked(figure: KeyFigure, keys: Sequence[str]) -> KeyFigure:
+    """A figure at the place of what a case asks for, if a key does."""
+    asked = any(f".{part}" in key for key in keys for part in figure.asked_by)
+    order = _ASKED + 1e-3 * figure.order
+    return replace(figure, order=order) if asked and figure.order > order else figure
 
 
 def stages_together(figures: "Iterable[KeyFigure]") -> list[KeyFigure]:

@@ -9,7 +9,10 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Table, by_variant
 
-__all__ = ["bodies_blocks", "bodies_facts", "bodies_printed"]
+__all__ = ["INERTIA", "bodies_blocks", "bodies_facts", "bodies_printed"]
+
+INERTIA = "dynamics.inertia", "gears.bore_diameter"
+"""Keys of a case that ask for moments of inertia."""
 
 _TITLES = {"body_mass": "mass m", "body_inertia": "moment of inertia J"}
 
@@ -40,10 +43,12 @@ def bodies_facts(outcome: Outcome) -> Iterator[KeyFigure]:
             for value in data["reflected_inertia"].values
         )
         detail = "; ".join([f"{at_output} at the output", *members])
-        yield KeyFigure(75.0, "Inertia at the input", at_input, detail)
+        yield KeyFigure(75.0, "Inertia at the input", at_input, detail, asked_by=INERTIA)
     elif inertias:
         (member, inertia), *_ = inertias
-        yield KeyFigure(75.0, "Inertia", inertia, "; ".join([member, *members[1:]]))
+        yield KeyFigure(
+            75.0, "Inertia", inertia, "; ".join([member, *members[1:]]), asked_by=INERTIA
+        )
 
 
 def bodies_printed(outcome: Outcome) -> Iterator[Printed]:

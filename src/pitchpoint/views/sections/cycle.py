@@ -277,7 +277,8 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         value = show.number(least) if least >= _NO_FILM else f"below {_NO_FILM:g}"
         law = show.pretty(input_words(outcome, "models", "film_thickness"))
         detail = f"thinnest film by {law} over composite Rq"
-        yield KeyFigure(76.5, "Film ratio", value, detail, rank=least)
+        asked_by = "models.film_thickness", "models.asperity_load"
+        yield KeyFigure(76.5, "Film ratio", value, detail, rank=least, asked_by=asked_by)
     if "asperity_load_ratio" in data:
         share = data["asperity_load_ratio"].values[0]
         value = show.quantity("asperity_load_ratio", float(np.max(share)))

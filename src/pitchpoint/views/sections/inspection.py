@@ -173,6 +173,7 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
         "Backlash by tolerances" if several else "Backlash",
         f"{' to '.join(on_circle[1:])} {show.unit_of('backlash_on_circle')}",
         f"{_of_allowances(data)}on the pitch circles; {', '.join(turns)}",
+        asked_by=("gears.inspection",),
     )
 
 

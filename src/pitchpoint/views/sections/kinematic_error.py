@@ -193,7 +193,10 @@ def error_blocks(page: Page) -> Iterator[Block]:
 
 def error_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """Peak to peak of the kinematic error."""
-    yield key_figure(73.0, "Kinematic error", kinematic_error_answer(outcome), " peak to peak")
+    words = kinematic_error_answer(outcome)
+    figure = key_figure(73.0, "Kinematic error", words, " peak to peak")
+    detail = figure.detail.replace("peak to peak ", "peak to peak; ", 1)
+    yield replace(figure, detail=detail, asked_by=("gears.deviations",))
 
 
 def error_printed(outcome: Outcome) -> Iterable[Printed]:

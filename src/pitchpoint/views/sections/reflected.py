@@ -10,6 +10,7 @@ from pitchpoint.registry import enumerated
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Table, by_variant
+from pitchpoint.views.sections.bodies import INERTIA
 
 __all__ = ["reflected_blocks", "reflected_facts", "reflected_printed"]
 
@@ -89,6 +90,7 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
             f"{value} {unit}",
             "by tolerances, the input held" if _by_tolerances(data) else _of_nominal(nominal),
             "" if _by_tolerances(data) else f"{value} {unit} nominal",
+            asked_by=("gears.inspection",),
         )
     inertias = zip(data["end"].values, data["reflected_inertia"].values, strict=True)
     known = [
@@ -100,7 +102,8 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         more = "".join(f"{inertia} at the {name}; " for name, inertia in others)
         mass = show.quantity("drive_mass", float(data["drive_mass"]))
         without = f", without the {_carriers(data)}" if _carriers(data) else ""
-        yield KeyFigure(75.0, f"Inertia at the {end}", value, f"{more}gears {mass}{without}")
+        detail = f"{more}gears {mass}{without}"
+        yield KeyFigure(75.0, f"Inertia at the {end}", value, detail, asked_by=INERTIA)
     if '"from_stiffness" do' in outcome.manifest["lacks"].get("torsion", ""):
         how = 'load_sharing = "from_stiffness" has it'
         yield KeyFigure(79.5, "Torsional stiffness", "not asked", how)

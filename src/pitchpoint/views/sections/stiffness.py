@@ -1,6 +1,7 @@
 """Stiffness of the mesh: of each pair and of all together, beside the standard's estimate."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -194,4 +195,5 @@ def stiffness_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """Stiffness of the mesh, and how much it varies."""
     other = _of_publication(outcome.manifest.get("source", ""))
     title = "Mesh stiffness of the library, not of the motion" if other else "Mesh stiffness"
-    yield key_figure(72.0, title, stiffness_answer(outcome), " in the mean")
+    figure = key_figure(72.0, title, stiffness_answer(outcome), " in the mean")
+    yield replace(figure, asked_by=("models.tooth_compliance", "models.line_stiffness"))

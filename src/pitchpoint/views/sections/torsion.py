@@ -469,12 +469,13 @@ def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     rigid = _rigid(data)
     detail = figure.detail.replace(f"; {rigid} are not in it", "")
     each = (slopes, f"without {rigid}" if rigid else "", detail)
-    yield replace(figure, detail="; ".join(filter(None, each)))
+    yield replace(figure, detail="; ".join(filter(None, each)), asked_by=("gears.yielding",))
     if "catalogue_lost_motion" in data:
         values = data["catalogue_lost_motion"].values
         shown = dict.fromkeys(show.quantity("catalogue_lost_motion", float(v)) for v in values)
         detail = "at ±4 % of torque, tooth friction alone"
-        yield KeyFigure(71.0, "Lost motion", " and ".join(shown), detail)
+        asked_by = "gears.yielding", "gears.backlash", "gears.wave_generator.bearing.play"
+        yield KeyFigure(71.0, "Lost motion", " and ".join(shown), detail, asked_by=asked_by)
 
 
 def _rigid(data: xr.Dataset) -> str:
