@@ -7,6 +7,8 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,7 @@ import xarray as xr
 from pitchpoint import cli
 from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.analysis import silent
-from pitchpoint.analyses.figures import HOLDING_BANDS, standstill_figures
+from pitchpoint.analyses.figures import HOLDING_BANDS, held_at_operation, standstill_figures
 from pitchpoint.analyses.four_quadrants import (
     loss_of_output,
     quadrant_axes,
@@ -34,6 +36,8 @@ from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import header, module
 from pitchpoint.runs.run import Outcome, describe, keep, load_case, open_result
+from pitchpoint.views import show
+from pitchpoint.views.sections.beside import BESIDE
 from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -98,6 +102,11 @@ def folder(moving: tuple[Ready, Outcome], tmp_path_factory: pytest.TempPathFacto
     return made
 
 
+def beside_torques_at_rest(outcome: Outcome, running: xr.Dataset) -> Iterator[str]:
+    """What stands beside torques without load and from rest on a first screen."""
+    yield from (one.detail for one in BESIDE.answer(replace(outcome, parts={"running": running})))
+
+
 def test_a_torque_that_holds_hardly_anything_is_told_as_none_is(
     moving: tuple[Ready, Outcome],
 ) -> None:
@@ -105,9 +114,19 @@ def test_a_torque_that_holds_hardly_anything_is_told_as_none_is(
     for held in ('breakaway_torque = "1e-6 N m"\n', ""):
         losses = MOVING.replace('breakaway_torque = "1 N m"\nbreakaway_spread = 2.0\n', held)
         built = variant(PAIR + losses).built({})
-        (told,) = json.loads(RUNNING.compute(built, {}, silent).attrs["warnings"])
+        running = RUNNING.compute(built, {}, silent)
+        (told,) = json.loads(running.attrs["warnings"])
         # 0.1 N m and 2 N m over the ratio of 10, at rest as in slow motion
         assert "A torque to start of 0.3 N m beside 0.3 N m in slow motion is too low" in told
+        assert [*beside_torques_at_rest(moving[1], running)] == [
+            "at 1500\u00a0rpm",
+            *["too low, drives take up to many times as much; no breakaway in [losses]"] * 2,
+        ]
+        every = moving[1].parts["four_quadrants"]
+        bare = every.drop_vars([end for ends in HOLDING_BANDS.values() for end in ends])
+        doubted = replace(moving[1], parts={"running": running, "four_quadrants": bare})
+        (figure,) = FOUR_QUADRANTS_SECTION.answer(doubted)
+        assert figure.detail.startswith("too narrow: no breakaway in [losses]; for ")
 
 
 def test_the_input_of_a_drive_that_runs_backwards_is_the_member_that_is_loaded() -> None:
@@ -352,7 +371,11 @@ def test_both_ends_of_what_holds_a_load_have_the_band_that_was_given(
         assert (every[ends[0]] < every[name]).all()
         assert (every[name] < every[ends[1]]).all()
     (told,) = (one for one in FOUR_QUADRANTS_SECTION.answer(moving[1]))
-    assert told.detail.startswith("at least ")
+    held = next(iter(held_at_operation(every).values()))
+    off = show.number(
+        100.0 * (held["largest_holding_torque_high"] / held["largest_holding_torque"] - 1.0), 2
+    )
+    assert told.detail.startswith(f"ends ±{off} % of the larger; at least ")
     assert told.detail.endswith(" by breakaway_spread")
 
 

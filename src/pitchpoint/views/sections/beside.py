@@ -34,7 +34,14 @@ from pitchpoint.views.point import operating_point
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Section, reason
 
-__all__ = ["BESIDE", "drag_panel", "loss_split", "running_rows", "starting_answer"]
+__all__ = [
+    "BESIDE",
+    "drag_panel",
+    "loss_split",
+    "running_rows",
+    "starting_answer",
+    "starts_doubtfully",
+]
 
 _TEETH = Key("in the teeth", PALETTE[5], "")
 _BESIDE = Key("beside the teeth", "#9aa5ad", "")
@@ -268,6 +275,9 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield from [Paragraph(show.pretty(told), "note")] if told else []
 
 
+_TOO_LOW = "too low, drives take up to many times as much; no breakaway in [losses]"
+"""Beside a torque from rest of which nothing says what holds it there."""
+
 _FROM_REST, _DOUBTED = 70.1, 79.6
 """Place of what starts a drive either way, for which a joint is chosen: before its lost motion.
 
@@ -275,18 +285,24 @@ Where nothing was said of what holds bearings at rest, behind all that is known.
 """
 
 
+def starts_doubtfully(data: xr.Dataset) -> bool:
+    """True where torques from rest are hardly more than those of slow motion, see `running_part`."""
+    return any("starting_torque" in doubt.about for doubt in doubts_of(data.attrs))
+
+
 def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     """Torque without load and torques from rest, under the first law."""
     data = outcome.parts.get("running")
     if data is not None:
-        doubted = any("starting_torque" in doubt.about for doubt in doubts_of(data.attrs))
+        doubted = starts_doubtfully(data)
         from_rest = _DOUBTED if doubted else _FROM_REST
         for place, (name, value) in enumerate(starting_answer(outcome, laws(data)[0])):
             brief, _, speed = name.partition(" at ")
             told, _, band = value.partition(", ")
-            detail = f"at {speed}" if speed else band
+            detail = f"at {speed}" if speed else band or _TOO_LOW * doubted
             order = 76.0 if speed else from_rest + 0.1 * place
-            yield KeyFigure(order, brief.capitalize(), told, detail)
+            asked_by = () if speed else ("breakaway",)
+            yield KeyFigure(order, brief.capitalize(), told, detail, asked_by=asked_by)
 
 
 BESIDE = Section(

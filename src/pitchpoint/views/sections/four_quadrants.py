@@ -13,6 +13,7 @@ from pitchpoint.analyses.figures import (
     error_words,
     held_at_operation,
 )
+from pitchpoint.doubts import in_percent
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import laws
@@ -28,6 +29,7 @@ from pitchpoint.views.section import (
     Table,
     by_variant,
 )
+from pitchpoint.views.sections.beside import starts_doubtfully
 from pitchpoint.views.sections.loss_map import Chart, map_panel
 
 __all__ = ["FOUR_QUADRANTS"]
@@ -156,8 +158,20 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     else:
         low = shown(HOLDING[0], ends[0], data)
         words = f"{low} to {show.quantity(HOLDING[1], ends[1], of=data)}"
-        detail = _of_band(held, data, load) or f"for {load} at rest; {_without(ends[0])}"
+        alone = f"for {load} at rest; {_without(ends[0])}"
+        band = _of_band(held, data, load)
+        detail = band or (f"{_TOO_NARROW}; {alone}" if _doubted(outcome) else alone)
     yield KeyFigure(36.0, "Holding torque", words, detail)
+
+
+_TOO_NARROW = "too narrow: no breakaway in [losses]"
+"""Beside torques that hold a load of which nothing says what holds the drive at rest."""
+
+
+def _doubted(outcome: Outcome) -> bool:
+    """True where torques from rest are doubtful: nothing but friction of teeth and bearings holds there."""
+    running = outcome.parts.get("running")
+    return running is not None and starts_doubtfully(running)
 
 
 def _without(least: float) -> str:
@@ -174,8 +188,15 @@ def _of_band(held: dict[str, Any], data: xr.Dataset, load: str) -> str:
         for ends in ((least, largest), (widest, most))
     )
     return (
-        f"at least {narrow} for {load}; {_without(held[least])}; at most {wide} by breakaway_spread"
+        f"ends ±{in_percent(_apart(held))} of the larger; at least {narrow} for {load}; "
+        f"{_without(held[least])}; at most {wide} by breakaway_spread"
     )
+
+
+def _apart(held: dict[str, Any]) -> float:
+    """How far the spread moves the torques that hold, over the larger of them."""
+    moved = (abs(held[end] - held[name]) for name, ends in HOLDING_BANDS.items() for end in ends)
+    return float(max(moved) / max(abs(held[name]) for name in HOLDING_BANDS))
 
 
 FOUR_QUADRANTS = Section(
