@@ -836,7 +836,11 @@ def _show_found(found: list[dict[str, str]], as_json: bool) -> None:
         _emit(found)
         return
     width = max(len(one["page"]) for one in found)
+    lacking = ""
     for one in found:
+        if one.get("without", "") != lacking:
+            first, lacking = not lacking, one["without"]
+            typer.echo(visible(f"{'No page has all of these words. ' * first}Without {lacking}:"))
         line = first_clauses(one["line"], max(_console().width - width - 2, _LEAST))
         typer.echo(f"{one['page']:<{width}}  {line}")
 

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from pitchpoint.errors import InputError, shorten
@@ -65,13 +65,15 @@ def _chosen(name: str) -> str | None:
 def search_pages(words: str) -> list[dict[str, str]]:
     """Lines that have all of some words, the nearest first: titles, headings, rows of a table, others.
 
-    Where no line has them all, pages that have them are listed with their titles.
+    Where no line has them all, pages that have them are listed with their titles; where no page has them, those
+    that have most of them.
 
     Args:
         words: of any case, with spaces between them; those without a letter or a figure do not count.
 
     Returns:
-        At most `MOST` places, two of one page at most: the page, and its line without marks.
+        At most `MOST` places, two of one page at most: the page, its line without marks, and the words that
+        it lacks, if any.
     """
     wanted = [word for word in words.lower().split() if any(map(str.isalnum, word))]
     if not wanted:
@@ -88,7 +90,23 @@ def search_pages(words: str) -> list[dict[str, str]]:
         many[name] += 1
         if many[name] <= _OF_A_PAGE and len(kept) < MOST:
             kept.append({"page": name, "line": line})
-    return kept
+    return kept or _with_most(dict.fromkeys(wanted))
+
+
+def _with_most(wanted: Iterable[str]) -> list[dict[str, str]]:
+    """Pages with most of some words, those that name these most often first; none without any."""
+    texts = {name: page(name).lower() for name in names()}
+    counts = {name: {word: text.count(word) for word in wanted} for name, text in texts.items()}
+    most = max((sum(map(bool, each.values())) for each in counts.values()), default=0)
+    nearest = [
+        name for name, each in counts.items() if most and sum(map(bool, each.values())) == most
+    ]
+    lacks = {name: [word for word, many in counts[name].items() if not many] for name in nearest}
+    nearest.sort(key=lambda name: (lacks[name], -min(filter(None, counts[name].values()))))
+    return [
+        {"page": name, "line": title(name), "without": ", ".join(lacks[name])}
+        for name in nearest[:MOST]
+    ]
 
 
 def _has(text: str, words: Sequence[str]) -> bool:

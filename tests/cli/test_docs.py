@@ -467,6 +467,18 @@ def test_words_that_no_line_has_together_are_looked_for_in_pages(
     assert any(line.startswith("guide/targets ") for line in lines)
 
 
+def test_words_that_no_page_has_together_name_the_word_that_is_missing(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    first, *lines = printed(monkeypatch, capsys, "backlash", "zzzzq", "tolerances").splitlines()
+    assert first == "No page has all of these words. Without zzzzq:"
+    assert any(line.startswith("guide/sizing ") for line in lines) and len(lines) <= pages.MOST
+    found = json.loads(printed(monkeypatch, capsys, "backlash", "zzzzq", "tolerances", "--json"))
+    assert {one["without"] for one in found} == {"zzzzq"}
+    assert "nor is it on one" in printed(monkeypatch, capsys, "zzzzq", "qzzzz")
+
+
 def test_a_page_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = io.StringIO()
     monkeypatch.setattr(screen, "isatty", lambda: True)
