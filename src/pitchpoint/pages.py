@@ -65,8 +65,8 @@ def _chosen(name: str) -> str | None:
 def search_pages(words: str) -> list[dict[str, str]]:
     """Lines that have all of some words, the nearest first: titles, headings, rows of a table, others.
 
-    Where no line has them all, pages that have them are listed with their titles; where no page has them, those
-    that have most of them.
+    Where no line has them all, pages that have them are listed with their titles; where no page has them,
+    those that have most of them.
 
     Args:
         words: of any case, with spaces between them; those without a letter or a figure do not count.

@@ -310,6 +310,16 @@ def test_printed_numbers_of_variants_take_a_line_each_where_there_is_no_room(
     assert "Missed: loss" in lines
 
 
+def test_rows_that_are_missed_beyond_two_lines_are_counted_with_the_command_that_lists_them(
+    pair: dict[str, Outcome],
+) -> None:
+    row = Row("", "Table 1", 1.0, 2.0, "W", 0.1, "predicted", "miss", "").as_json()
+    rows = [row | {"quantity": f"efficiency by Method {k} at the pitch point"} for k in range(9)]
+    lines = shown({"default": doubting(pair["default"], rows=rows)})
+    (first,) = (k for k, line in enumerate(lines) if line.startswith("Missed: "))
+    assert lines[first + 1].endswith("and 7 more: pitchpoint compare pair_23_61.toml")
+
+
 def test_key_figures_are_named_once(pair: dict[str, Outcome]) -> None:
     names = [figure.name for figure in key_figures(in_order(), pair["default"])]
     assert len({*names}) == len(names)

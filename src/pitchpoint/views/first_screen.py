@@ -1,5 +1,6 @@
 """The first screen of a run: what fails or is doubtful, then figures that answer, in a dozen short lines."""
 
+import shlex
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -294,7 +295,9 @@ def _rows_met(outcomes: Mapping[str, Outcome]) -> Iterator[str]:
 
 
 def _missed(outcomes: Mapping[str, Outcome], width: int) -> Iterator[str]:
-    """Which printed numbers are missed, as many as two lines hold; nothing where none is."""
+    """Which printed numbers are missed, as many as two lines hold, and what shows them all."""
+    case = next(iter(outcomes.values())).manifest["case"]
+    command = f"pitchpoint compare {shlex.quote(case)}"
     names = dict.fromkeys(
         row.quantity
         for outcome in outcomes.values()
@@ -302,8 +305,8 @@ def _missed(outcomes: Mapping[str, Outcome], width: int) -> Iterator[str]:
         if row.verdict == "miss" and row.kind != "reference"
     )
     for count in range(len(names), 0, -1):
-        rest = f"; {len(names) - count} more" if count < len(names) else ""
-        text = f"Missed: {'; '.join([*names][:count])}{rest}"
+        rest = f"and {len(names) - count} more: {command}".replace(" ", "\u00a0")
+        text = f"Missed: {'; '.join([*names][:count])}{f'; {rest}' if count < len(names) else ''}"
         if len(_folded(text, width)) <= 2:
             yield text
             return

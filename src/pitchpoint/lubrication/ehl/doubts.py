@@ -69,9 +69,9 @@ WIDE: Final = 0.1
 
 FALLS: Final = 0.35
 """Part of an error by the grid that twice as many nodes leave of lines without ends. They converge with
-second order, smallest films less evenly: of the 50 estimates above 3 % on 65 and 129 nodes of the contacts
-that `tests/long/errors_of_grids.py` draws by seed 21, half fall to less than 0.28. Nodes that are named by it
-were too few for one of them and more than were needed for 12; by 0.5 for none and for 21."""
+second order, smallest films less evenly: of the 106 estimates above 3 % on 65 and 129 nodes of the contacts
+that `tests/long/errors_of_grids.py` draws by seeds 21 and 22, half fall to less than 0.28. Nodes that are
+named by it were too few for 2 of them and more than were needed for 33; by 0.5 for none and for 50."""
 
 GRID: Final = "grid"
 """Kind of the sentence on films that the grid makes wrong."""
