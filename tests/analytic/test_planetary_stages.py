@@ -497,3 +497,26 @@ def test_losses_of_planets_belong_into_the_stage_that_is_a_set(stages, tables):
         drive(*stages, losses={"needles": NEEDLES})
     told = str(caught.value).partition("losses within a set stand in its stage, ")[2]
     assert told.splitlines()[:1] == tables
+
+
+def test_second_gears_with_as_many_teeth_as_the_first_are_gears_of_their_own():
+    """Other shifts than the first have, teeth that one mate loads, a name of their own."""
+    second = {
+        "teeth": [36, 90],
+        "face_width": "10 mm",
+        "profile_shift": [0.1, "from centre distance"],
+    }
+    built = alone(stepped(second=second), 60.0, SPEED)
+    factors = [one.case.strength.mean_stress_factor for one in built.meshes]
+    assert factors == [(1.0, 1.0), (1.0, 1.0)]
+    names = [member.body for mesh in built.member_motions for member in mesh]
+    assert names == ["sun", "planet, gear 1 of 36 teeth", "planet, gear 2 of 36 teeth", "ring"]
+    same = load_case({"gears": SETS[0], **TABLES, "operation": operation(60.0, SPEED)})
+    assert [one.case.strength.mean_stress_factor for one in same.meshes] == [(1.0, 0.7), (0.7, 1.0)]
+
+
+def test_an_output_that_stands_still_is_told_with_the_table_of_the_set():
+    """Two rings alike on planets alike turn alike."""
+    with pytest.raises(InputError) as caught:
+        alone(three_k(teeth=[36, 90]), 60.0, SPEED)
+    assert caught.value.key == "gears"

@@ -610,11 +610,18 @@ class BuiltTrain(BuiltDrive):
     def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:
         """Motion of the members of each mesh; planets move about their axis and with it."""
         rates = dict(zip(self.case.bodies, self.motion, strict=True))
-        teeth = {(body, count) for place in self.design.meshes for body, count in place.link.gears}
+        gears = {gear for place in self.design.meshes for gear in place.link.gears}
 
-        def moving(mesh: Built, place: "TrainMesh", body: str, count: float) -> MemberMotion:
-            gears = sum(name == body for name, _ in teeth)
-            name = body if gears == 1 else f"{body}, {count:.0f} teeth"
+        def named(body: str, teeth: float, number: int) -> str:
+            others = {gear for gear in gears if gear[0] == body} - {(body, teeth, number)}
+            alike = any(gear[1] == teeth for gear in others)
+            told = f"gear {number} of " * alike + f"{teeth:.0f} teeth"
+            return f"{body}, {told}" if others else body
+
+        def moving(
+            mesh: Built, place: "TrainMesh", body: str, count: float, number: int
+        ) -> MemberMotion:
+            name = named(body, count, number)
             rate = rates.get(body, 0.0)
             if body not in self.design.planets:
                 return MemberMotion(name, rate)
@@ -622,7 +629,7 @@ class BuiltTrain(BuiltDrive):
             return MemberMotion(name, rate, place.copies, orbit, place.carrier)
 
         return tuple(
-            tuple(moving(mesh, place, body, count) for body, count in place.link.gears)
+            tuple(moving(mesh, place, *gear) for gear in place.link.gears)
             for mesh, place in zip(self.stages, self.design.meshes, strict=True)
         )
 

@@ -25,10 +25,11 @@ __all__ = ["about_trains", "rates_of", "train_of", "turning_together"]
 
 def _links(case: DriveCase, train: TrainTable, meshes: Sequence[Mesh]) -> list[Link]:
     """Meshes with their bodies; the axes of those of planets sit on the carrier."""
-    each = zip(meshes, case.stages.values(), strict=True)
+    gears = case.gears.planet_gears if case.gears else (1,) * len(meshes)
+    each = zip(meshes, case.stages.values(), gears, strict=True)
     return [
-        Link(mesh, stage.bodies, train.carrier if train.planet in stage.bodies else HOUSING)
-        for mesh, stage in each
+        Link(mesh, stage.bodies, train.carrier if train.planet in stage.bodies else HOUSING, gear)
+        for mesh, stage, gear in each
     ]
 
 
@@ -170,9 +171,10 @@ def _check_planets(case: DriveCase, built: Sequence[Built]) -> None:
     """InputError where planets are not the same gears in all meshes, or have two centre distances."""
     train = case.train
     assert train is not None
-    known: dict[float, tuple[str, dict[str, Any]]] = {}
+    links = _links(case, train, [one.design.mesh for one in built])
+    known: dict[tuple[str, float, int], tuple[str, dict[str, Any]]] = {}
     distance: tuple[str, float] | None = None
-    for (number, stage), one in zip(case.stages.items(), built, strict=True):
+    for (number, stage), one, link in zip(case.stages.items(), built, links, strict=True):
         if train.planet not in stage.bodies:
             continue
         mesh: Any = one.design.mesh
@@ -188,7 +190,7 @@ def _check_planets(case: DriveCase, built: Sequence[Built]) -> None:
             )
         teeth = abs(float(mesh.teeth[member]))
         gear = _of_gear(one, member)
-        before, other = known.setdefault(teeth, (number, gear))
+        before, other = known.setdefault(link.gears[member], (number, gear))
         different = next((key for key, value in gear.items() if value != other[key]), None)
         if different is not None:
             raise InputError(

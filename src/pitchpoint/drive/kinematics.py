@@ -30,11 +30,13 @@ class Link(eqx.Module):
         bodies: of the drive, one for each coordinate of the mesh; static.
         carrier: body on which the axes of the mesh sit, as that of planets; its rate counts from the
             housing, those of the mesh count from it; static.
+        planet_gear: which gear of the planets it is that meshes, of those that they have; static.
     """
 
     mesh: Mesh
     bodies: tuple[str, ...] = eqx.field(static=True)
     carrier: str = eqx.field(static=True, default=HOUSING)
+    planet_gear: int = eqx.field(static=True, default=1)
 
     def __repr__(self) -> str:
         return brief(self)
@@ -59,10 +61,11 @@ class Link(eqx.Module):
             )
 
     @property
-    def gears(self) -> tuple[tuple[str, float], ...]:
-        """Both gears of a cylindrical pair, each by its body and its teeth."""
+    def gears(self) -> tuple[tuple[str, float, int], ...]:
+        """Both gears of a cylindrical pair: body, teeth, and which gear of the planets meshes."""
         pair: Any = self.mesh
-        return tuple(zip(self.bodies, np.abs(pair.teeth).tolist(), strict=True))
+        first, second = zip(self.bodies, np.abs(pair.teeth).tolist(), strict=True)
+        return (*first, self.planet_gear), (*second, self.planet_gear)
 
     @property
     def relation(self) -> dict[str, float]:

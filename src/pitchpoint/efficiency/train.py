@@ -34,7 +34,7 @@ class TrainMesh(eqx.Module):
         phases: of the copies where the train starts [periods].
         carried: torque or force on the driven coordinate of the mesh for a unit load of the train, without
             friction, on all copies together.
-        bodies, carrier: see `Link`; static.
+        bodies, carrier, planet_gear: see `Link`; static.
         periods: of the mesh in one period of the train; static.
     """
 
@@ -44,11 +44,12 @@ class TrainMesh(eqx.Module):
     bodies: tuple[str, ...] = eqx.field(static=True)
     carrier: str = eqx.field(static=True)
     periods: int = eqx.field(static=True)
+    planet_gear: int = eqx.field(static=True)
 
     @property
     def link(self) -> Link:
         """The mesh with the bodies that it joins."""
-        return Link(self.design.mesh, self.bodies, self.carrier)
+        return Link(self.design.mesh, self.bodies, self.carrier, self.planet_gear)
 
     @property
     def copies(self) -> int:
@@ -210,6 +211,7 @@ def gear_train(
                 link.bodies,
                 link.carrier,
                 periods,
+                link.planet_gear,
             )
         )
     return Train(

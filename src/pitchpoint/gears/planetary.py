@@ -304,6 +304,12 @@ class PlanetaryGears(Table):
         """True if second gears of the planets mesh with a second ring."""
         return self.second is not None and not self.stepped
 
+    @property
+    def planet_gears(self) -> tuple[int, ...]:
+        """Which gear of the planets is in each of its meshes."""
+        first = (1,) if self.stepped else (1, 1)
+        return (*first, 2) if self.second is not None else first
+
     @model_validator(mode="after")
     def _whole(self) -> "PlanetaryGears":
         given = {*self.model_fields_set}
@@ -515,7 +521,7 @@ def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:
     """
     table, _, inside = (error.key or "").partition(".")
     if table == "train":
-        return error.at(key=f"gears.{inside}")
+        return error.at(key=".".join(filter(None, ("gears", inside))))
     number, _, key = inside.partition(".")
     if table == "stages" and number == ("2" if gears.stepped else "3"):
         words = "in the mesh of the second gear of the planets (gear 1) and its ring (gear 2)"
