@@ -16,6 +16,7 @@ from pitchpoint.cases.loss_sets import SET, SET_TOLD
 from pitchpoint.cases.schema import (
     Case,
     DriveCase,
+    DriveMaterials,
     StageTable,
     TrainTable,
     quantity_of,
@@ -60,6 +61,7 @@ def _keys_by_table() -> dict[str, list[str]]:
     pages["file"] += _of_table("A file of several stages", DriveCase)
     pages["file"] += _of_table("`[[stages]]`", StageTable)
     pages["file"] += _of_table("`[train]`", TrainTable)
+    pages["materials"] += _of_table("`[materials]` of planetary sets and stages", DriveMaterials)
     tables = _tables("gears (planetary)", PlanetaryGears)
     first, *others = (part for path, model in tables for part in _of_table(f"`[{path}]`", model))
     pages["gears_planetary"] = [first[1:], *others]

@@ -520,3 +520,64 @@ def test_an_output_that_stands_still_is_told_with_the_table_of_the_set():
     with pytest.raises(InputError) as caught:
         alone(three_k(teeth=[36, 90]), 60.0, SPEED)
     assert caught.value.key == "gears"
+
+
+IRON = {"young": "170 GPa", "poisson": 0.28, "density": "7200 kg/m^3", "hardness": "250 HB"}
+BRONZE = {"young": "110 GPa", "poisson": 0.34}
+OF_GEARS = {"sun": "steel", "planet": BRONZE, "ring": IRON}
+
+
+LIMITS = {"sigma_hlim": "600 MPa", "sigma_flim": "200 MPa", "treatment": "through_hardened"}
+
+
+def contact_stresses(**tree):
+    point = {"operation": operation(60.0, SPEED), "strength": LIMITS}
+    return of(load_case({**tree, **TABLES, **point}), "strength")["contact_stress"].values
+
+
+@pytest.mark.parametrize(("gears", "last"), [(SETS[0], "ring"), (three_k(), "second_ring")])
+def test_gears_of_a_set_have_materials_of_their_own(gears, last):
+    """The same as of the meshes, each with its two; a set in a row takes those of the drive."""
+    materials = {**OF_GEARS, last: IRON}
+    built = alone(gears, 60.0, SPEED, materials=materials)
+    pairs = [["sun", "planet"], ["planet", "ring"], ["planet", "second_ring"]]
+    meshes = [
+        {**mesh, "materials": {"gear_1": materials[first], "gear_2": materials[second]}}
+        for (first, second), mesh in zip(pairs, built.case.gears.meshes(), strict=False)
+    ]
+    spelt_out = contact_stresses(stages=meshes, train=built.case.gears.train())
+    steel = contact_stresses(gears=gears)
+    found = contact_stresses(gears=gears, materials=materials)
+    np.testing.assert_allclose(found, spelt_out, rtol=1e-12)
+    assert (found < 0.95 * steel).all()
+    row = drive(PAIR, gears, materials={"gear_2": IRON, **materials})
+    for mine, other in zip(row.meshes[1:], built.meshes, strict=True):
+        assert [one.record.young.value for one in mine.solids] == [
+            one.record.young.value for one in other.solids
+        ]
+    assert row.meshes[0].solids[1].record.young.value == pytest.approx(170e9)
+
+
+@pytest.mark.parametrize(
+    ("materials", "key", "told"),
+    [
+        (
+            {"sun": "steel", "second_ring": "steel"},
+            "second_ring",
+            "gears of this set are sun, planet, ring",
+        ),
+        ({"sun": "steel", "gear_2": "steel"}, "gear_2", "gears of this set are sun, planet, ring"),
+        ({"planets": "steel"}, "planets", "those of its sun, planet and ring"),
+        ({"sun": "stele"}, "sun", "did you mean steel"),
+    ],
+)
+def test_materials_of_other_gears_are_told_with_their_key(materials, key, told):
+    with pytest.raises(InputError) as caught:
+        alone(SETS[0], 60.0, SPEED, materials=materials)
+    assert told in str(caught.value)
+    assert f"materials.{key}:" in str(caught.value)
+
+
+def test_gears_of_sets_have_no_materials_where_there_is_none():
+    with pytest.raises(InputError, match=r"materials.sun: .* use gear_1 and gear_2"):
+        drive(PAIR, PAIR, materials={"sun": "steel"})

@@ -494,6 +494,10 @@ PLANETARY = {
     **{key: BASE[key] for key in ("lubricant", "roughness")},
     "operation": {"torque": "60 N m", "speed": "3000 rpm", "temperature": "60 degC"},
 }
+OF_SET = {
+    **PLANETARY,
+    "materials": {name: {"young": "206 GPa", "poisson": 0.3} for name in ("sun", "planet", "ring")},
+}
 SECOND = {"teeth": [34, 88], "face_width": "10 mm", "module": "1 mm", "tip_alteration": [0, 0]}
 THREE_K = {
     **PLANETARY,
@@ -536,6 +540,7 @@ BASES = {
     "rig": RIG,
     "worn": WORN,
     "planetary": PLANETARY,
+    "materials of a set": OF_SET,
     "3K": THREE_K,
     "train": TRAIN,
 }
@@ -555,6 +560,7 @@ WALKS = [
     ("rig", schema.HeightTables, ("film", "heights")),
     ("worn", schema.WornTable, ("worn",)),
     ("planetary", planetary.PlanetaryGears, ("gears",)),
+    ("materials of a set", schema.DriveMaterials, ("materials",)),
     ("3K", planetary.SecondGears, ("gears", "second")),
     ("train", schema.TrainTable, ("train",)),
 ]

@@ -277,6 +277,36 @@ class Materials(Table):
     """Material of gear 2, by name or by value."""
 
 
+class DriveMaterials(Materials):
+    """Materials of gears 1 and 2 of meshes, or of the gears of planetary sets, by name or by value.
+
+    Where a set has one of its own, those that are left out are steel, and gear_1 and gear_2 are not its.
+    """
+
+    sun: SolidValues | SolidName | None = None
+    """Material of the sun of a planetary set; as gears 1 and 2 unless a gear of the set has its own."""
+    planet: SolidValues | SolidName | None = None
+    """Material of the planets, of all their gears; see sun."""
+    ring: SolidValues | SolidName | None = None
+    """Material of the ring; see sun."""
+    second_ring: SolidValues | SolidName | None = None
+    """Material of the second ring of a 3K set; see sun."""
+
+    @property
+    def of_set(self) -> set[str]:
+        """Keys that were given of gears of planetary sets."""
+        return of_set(self.model_fields_set)
+
+
+OF_SET = ("sun", "planet", "ring", "second_ring")
+"""Keys of [materials] for gears of planetary sets."""
+
+
+def of_set(keys: Iterable[str]) -> set[str]:
+    """Keys of [materials] that are of gears of planetary sets."""
+    return {*keys} & {*OF_SET}
+
+
 class Oil(Table):
     """An oil of the catalogue, by value, or a catalogue oil with some values of one's own.
 
@@ -1624,7 +1654,7 @@ class StageTable(Table):
     """Member that the stage before drives; the first one that is not fixed unless given."""
     bodies: Annotated[tuple[BodyName, ...], Field(max_length=3)] = ()
     """Bodies of a [train] that its members are, in their order; a stage of a chain has none."""
-    materials: Materials = Materials()
+    materials: DriveMaterials = DriveMaterials()
     """Materials of its gears; those of the drive unless given."""
     lubricant: Oil | None = None
     """Oil of the stage; that of the drive unless given."""
@@ -1745,7 +1775,7 @@ class DriveCase(Table):
     """Meshes and planetary sets from the input to the output, each a table [[stages]]; at most 5."""
     train: TrainTable | None = None
     """Bodies of a train whose meshes turn together; stages follow each other unless given."""
-    materials: Materials = Materials()
+    materials: DriveMaterials = DriveMaterials()
     """Materials of both gears; steel unless given."""
     lubricant: Oil
     """Oil, or base oil of a grease, by name or by value."""
@@ -1792,6 +1822,7 @@ class DriveCase(Table):
         wrong.tried(_check_passing, self.stages)
         wrong.tried(_check_sets, self.stages)
         wrong.tried(_check_train, self)
+        wrong.tried(_check_materials, self)
         if not wrong:  # what the drive carries, and what turns, follows from its stages
             travels = self.last.load == "force"
             turning = self.bodies[: len(self.bodies) - travels]
@@ -1963,6 +1994,20 @@ def _check_sets(stages: Mapping[str, StageTable]) -> None:
             for key, told in _OF_NO_SET.items():
                 if key in stage.model_fields_set:
                     wrong.add(InputError(told, key=f"stages.{number}.{key}"))
+    wrong.demand_none()
+
+
+def _check_materials(case: DriveCase) -> None:
+    """InputError for materials of gears of planetary sets where there is no set."""
+    sets = [number for number, one in case.stages.items() if isinstance(one.gears, PlanetaryGears)]
+    wrong = Complaints()
+    tables = {f"stages.{number}.": one for number, one in case.stages.items() if number not in sets}
+    if not sets and case.gears is None:
+        tables[""] = case
+    for place, table in tables.items():
+        for key in sorted(table.materials.of_set):
+            told = "is the material of a gear of a planetary set, which this is not; use gear_1 and gear_2"
+            wrong.add(InputError(told, key=f"{place}materials.{key}"))
     wrong.demand_none()
 
 
@@ -2266,11 +2311,50 @@ def with_meshes(document: Document) -> Document:
                 key=key,
             )
     gears = planetary_of(document)
-    stages = {str(number): one for number, one in enumerate(gears.meshes(), 1)}
+    stages = {
+        str(number): one for number, one in enumerate(_with_materials(gears.meshes(), document), 1)
+    }
     return replace(
         document,
         tree={**tree, STAGES: stages, "train": _Followed(gears.train())},
     )
+
+
+def _is_sound(materials: Mapping[str, Any]) -> bool:
+    """True unless the validation of the case will refuse a table of materials."""
+    try:
+        DriveMaterials.model_validate(materials)
+    except ValidationError:
+        return False
+    return True
+
+
+def _with_materials(meshes: list[dict[str, Any]], document: Document) -> list[dict[str, Any]]:
+    """Meshes of a set with the materials that its gears have; as they are where none has its own.
+
+    Raises:
+        InputError: gears that the set does not have, materials of gears 1 and 2 beside those of its own.
+    """
+    materials = document.tree.get("materials", {})
+    given = of_set(materials)
+    if not given or not _is_sound(materials):
+        return meshes
+    bodies = {body.replace(" ", "_") for mesh in meshes for body in mesh["bodies"]}
+    for key in materials:
+        if key in given - bodies or key in Materials.model_fields:
+            every = ", ".join(one for one in OF_SET if one in bodies)
+            told = f"the gears of this set are {every}; leave it out"
+            raise InputError(told, file=document.name, key=f"materials.{key}")
+    return [
+        {
+            **mesh,
+            "materials": {
+                f"gear_{number}": materials.get(body.replace(" ", "_"), "steel")
+                for number, body in enumerate(mesh["bodies"], 1)
+            },
+        }
+        for mesh in meshes
+    ]
 
 
 Whole = TypeVar("Whole", Case, DriveCase)

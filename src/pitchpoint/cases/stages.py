@@ -23,6 +23,7 @@ from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import (
+    OF_SET,
     SPEED,
     TEMPERATURE,
     UNRATED,
@@ -30,6 +31,7 @@ from pitchpoint.cases.schema import (
     DriveCase,
     Operating,
     is_planetary,
+    of_set,
     planetary_of,
     validate,
     with_meshes,
@@ -38,7 +40,7 @@ from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
 from pitchpoint.efficiency.drive import Drive, chained, owner
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.planetary import in_words_of_set
+from pitchpoint.gears.planetary import PlanetaryGears, in_words_of_set
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.lubrication.registry import ChosenLaws
 
@@ -211,6 +213,7 @@ def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
     tree: Tree = {key: stage.get(key, whole[key]) for key in _OF_STAGE if key in {*stage, *whole}}
     gears = case.stages[str(number)].gears
     shared = {key: whole.get(key, {}) for key in _SHARED if gears.rated or key != "strength"}
+    shared["materials"] = _materials(shared["materials"], stage.get("materials", {}), gears)
     both = {key: {**shared.get(key, {}), **stage.get(key, {})} for key in _SHARED}
     tree |= {key: table for key, table in both.items() if table}
     tree |= {
@@ -221,6 +224,12 @@ def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
     if "driver" in stage:
         tree["operation"]["driver"] = stage["driver"]
     return Document(document.name, tree, _marks(document.provenance, number, stage))
+
+
+def _materials(whole: Tree, stage: Tree, gears: Any) -> Tree:
+    """Materials of the drive that count for a stage: of the gears of a set where it is one with its own."""
+    own = of_set((*whole, *stage)) and isinstance(gears, PlanetaryGears)
+    return {key: value for key, value in whole.items() if (key in OF_SET) == bool(own)}
 
 
 def _marks(given: Mapping[str, Provenance], number: int, stage: Tree) -> dict[str, Provenance]:

@@ -9,7 +9,15 @@ import numpy as np
 
 from pitchpoint.cases.build import Built, drags
 from pitchpoint.cases.document import STAGES
-from pitchpoint.cases.schema import Case, DriveCase, Operating, StrengthTable, TrainTable
+from pitchpoint.cases.schema import (
+    Case,
+    DriveCase,
+    Operating,
+    SolidValues,
+    StrengthTable,
+    TrainTable,
+)
+from pitchpoint.cases.solids import BY_VALUE
 from pitchpoint.cases.strength import MESH_LOAD, of_planets
 from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.assembly import check_neighbours, equal_angles, planet_phases
@@ -19,6 +27,7 @@ from pitchpoint.efficiency.train import Train, gear_train, presses_other_flanks
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.materials.solids import SolidRecord
 
 __all__ = ["about_trains", "rates_of", "train_of", "turning_together"]
 
@@ -201,8 +210,8 @@ def _check_planets(case: DriveCase, built: Sequence[Built]) -> None:
 
 
 _IN_SETS = (
-    ". Of a set gear 1 is sun and planet, gear 2 planet and ring: give both the same, or write the meshes as "
-    "[[stages]], each with materials and roughness of its own"
+    ". Of a set gear 1 is sun and planet, gear 2 planet and ring: give both the same; materials may be "
+    "those of sun, planet and ring"
 )
 
 
@@ -213,12 +222,24 @@ def _of_gear(built: Built, member: int) -> dict[str, Any]:
     numbers = {name.replace("_", " "): float(getattr(mesh, name)[member]) for name in _OF_A_GEAR}
     rq = (rough.rq_1, rough.rq_2)[member]
     return {
-        "material": built.solids[member].record.name,
+        "material": _material(built.solids[member].record),
         "roughness Rq": f"{1e6 * float(rq):.6g} µm",
         "module": f"{1e3 * float(mesh.module):.6g} mm",
         "helix angle": f"{np.degrees(float(mesh.helix_angle)):.6g} deg",
         **{name: f"{round(value, 9) + 0.0:.6g}" for name, value in numbers.items()},
     }
+
+
+def _material(record: SolidRecord) -> str:
+    """A material by its name, or by its values where it has none of its own."""
+    if record.title != BY_VALUE:
+        return record.name
+    given = {name: getattr(record, name) for name in SolidValues.model_fields}
+    return ", ".join(
+        f"{name.replace('_', ' ')} {value.value:.6g}"
+        for name, value in given.items()
+        if value is not None
+    )
 
 
 _WORN = Doubt(

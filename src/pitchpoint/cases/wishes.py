@@ -701,10 +701,10 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             "gear_1 and gear_2 are the gears in the order of their numbers of teeth in [gears]",
         ),
         Wish(
-            ("sun", "planet", "planets", "ring"),
-            (),
-            "of a set gear_1 is sun and planet, gear_2 planet and ring: give both the same, or write the "
-            "meshes as [[stages]] with a [train], each with materials of its own",
+            ("planets", "planet_gears"),
+            ("planet",),
+            "materials of a planetary set are those of its sun, planet and ring",
+            _renamed("planet"),
         ),
         Wish(
             ("material", "steel", "name", "both"),
