@@ -581,3 +581,19 @@ def test_materials_of_other_gears_are_told_with_their_key(materials, key, told):
 def test_gears_of_sets_have_no_materials_where_there_is_none():
     with pytest.raises(InputError, match=r"materials.sun: .* use gear_1 and gear_2"):
         drive(PAIR, PAIR, materials={"sun": "steel"})
+
+
+@pytest.mark.parametrize("text", ['["20 um", 0, 0]', '["20 um", "0", 0.0]'])
+def test_pins_in_their_place_need_no_unit(tmp_path, text):
+    tables = [
+        f"[gears]\nfamily = 'planetary'\nteeth = [24, 30, 84]\nmodule = '1 mm'\npin_errors = {text}",
+        "face_width = '12 mm'\n[lubricant]\nname = 'pao-vg-150'\n[roughness]\nra = '0.4 um'",
+        "[operation]\ntorque = '60 N m'\nspeed = '3000 rpm'\ntemperature = '60 degC'",
+    ]
+    (tmp_path / "case.toml").write_text("\n".join(tables))
+    assert load_case(tmp_path / "case.toml").case.train.pin_errors == (20e-6, 0.0, 0.0)
+    (tmp_path / "case.toml").write_text("\n".join(tables).replace('"20 um"', "20"))
+    with pytest.raises(
+        InputError, match=r'"20" has no unit where a length is needed; write "20 um"'
+    ):
+        load_case(tmp_path / "case.toml")

@@ -74,7 +74,17 @@ _OF_SHARING = (
 )
 """Keys of how planets share a load that the table [train] has too."""
 
-PIN_ERROR = Quantity("length", -1e-2, 1e-2, "um")
+
+@dataclass(frozen=True)
+class OfPins(Quantity):
+    """A length of which most of a list are zero, which needs no unit."""
+
+    def read(self, value: Any) -> float:
+        """SI value; see `Quantity.read`."""
+        return super().read(f"0 {self.unit}" if str(value).strip() in ("0", "0.0") else value)
+
+
+PIN_ERROR = OfPins("length", -1e-2, 1e-2, "um")
 PinErrors = Annotated[tuple[Annotated[float, PIN_ERROR], ...], Field(max_length=MOST_PLANETS)]
 
 _LISTS = ("teeth", "profile_shift", "addendum", "dedendum", "fillet_radius", "tip_alteration")
