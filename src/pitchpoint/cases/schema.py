@@ -2001,7 +2001,9 @@ def _check_materials(case: DriveCase) -> None:
     """InputError for materials of gears of planetary sets where there is no set."""
     sets = [number for number, one in case.stages.items() if isinstance(one.gears, PlanetaryGears)]
     wrong = Complaints()
-    tables = {f"stages.{number}.": one for number, one in case.stages.items() if number not in sets}
+    tables: dict[str, StageTable | DriveCase] = {
+        f"stages.{number}.": one for number, one in case.stages.items() if number not in sets
+    }
     if not sets and case.gears is None:
         tables[""] = case
     for place, table in tables.items():

@@ -106,7 +106,7 @@ def turning_together(
 
 
 def _strength(
-    one: Case, link: Link, meshings: Mapping[tuple[str, float], int], train: TrainTable
+    one: Case, link: Link, meshings: Mapping[tuple[str, float, int], int], train: TrainTable
 ) -> StrengthTable:
     """What the strength of a mesh depends on, with the planets that share its load."""
     on_planets = train.planet in link.bodies
