@@ -22,7 +22,7 @@ from pitchpoint.views.columns import fitted
 from pitchpoint.views.film_courses import answered, film_key_figure
 from pitchpoint.views.first_screen import (
     FEW_LINES,
-    _aligned,
+    aligned,
     beside_each_other,
     swept_beside,
 )
@@ -128,7 +128,7 @@ def test_what_the_grid_makes_a_film_off_stands_beside_its_value() -> None:
 
 def test_a_short_detail_is_whole() -> None:
     figures = [KeyFigure(0.0, "Inertia", "3.644 kg cm²", "pinion"), KeyFigure(1.0, "Loss", "2 W")]
-    assert [line.text for line in _aligned(figures, 80)] == [
+    assert [line.text for line in aligned(figures, 80)] == [
         "Inertia  3.644 kg cm²  pinion",
         "Loss     2 W",
     ]
