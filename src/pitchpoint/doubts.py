@@ -52,7 +52,7 @@ REMARKED: Final = 0.02
 """Rank of what hardly moves a number, but has to be known."""
 
 _FAILS = "Fails: "
-_STAGE = re.compile(r"(?<=^Stage )\d+(?=: )|(?<=^Fails: stage )\d+(?=: )")
+_STAGE = re.compile(r"(?:(?<=^Stage )|(?<=^Fails: stage ))\d+(?: \([^():]*\))?(?=: )")
 _GEAR = re.compile(r"(?<=\b[Gg]ear )\d\b")
 
 
@@ -236,6 +236,8 @@ def without_repeats(sentences: Iterable[str]) -> list[Doubt]:
     Example:
         >>> without_repeats(["Stage 1: K_A = 1.", "Stage 2: K_A = 1.", "Stage 2: Z_W = 1."])
         ['Stages 1 and 2: K_A = 1.', 'Stage 2: Z_W = 1.']
+        >>> without_repeats([f"Stage 1 ({mesh}): K_A = 1." for mesh in ("sun and planet", "planet and ring")])
+        ['Stages 1 (sun and planet) and 1 (planet and ring): K_A = 1.']
     """
     return _merged(_merged(sentences, _STAGE, _stages), _GEAR, _gears)
 
