@@ -19,7 +19,7 @@ from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.columns import fitted
-from pitchpoint.views.film_courses import answered, film_key_figure
+from pitchpoint.views.film_courses import answered, film_key_figure, place_of
 from pitchpoint.views.first_screen import (
     FEW_LINES,
     aligned,
@@ -28,7 +28,8 @@ from pitchpoint.views.first_screen import (
 )
 from pitchpoint.views.point import member_names
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import KeyFigure, Page, key_figures
+from pitchpoint.views.section import KeyFigure, Page, Table, key_figures
+from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.strength import strength_rows
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -124,6 +125,26 @@ def test_what_the_grid_makes_a_film_off_stands_beside_its_value() -> None:
     assert both.startswith(
         "0.09 µm ±2.3 % at least in the middle of a contact, 0.06813 µm ±7.5 % anywhere"
     )
+
+
+def test_a_contact_that_is_the_only_one_has_neither_phase_nor_pair() -> None:
+    film = xr.DataArray(np.ones((3, 1, 1)), dims=("phase", "pair", "line"))
+    rig = xr.Dataset({"minimum_film": film}, {"phase": [0.0, 0.3, 0.7]})
+    assert place_of(rig, 0, 0, 0) == "the only contact"
+    gears = xr.concat([rig, rig], "pair")
+    gears["minimum_film"] = gears["minimum_film"].transpose("phase", "pair", "line")
+    assert place_of(gears, 1, 1, 0) == "phase 0.300, pair II"
+
+
+def test_members_of_a_train_are_inspected_by_their_names(pair: dict[str, Outcome]) -> None:
+    train = replace(
+        pair["default"], manifest={**pair["default"].manifest, "bodies": "sun and planet"}
+    )
+    tables = [
+        one for one in INSPECTION.shows(Page({"default": train}, {})) if isinstance(one, Table)
+    ]
+    assert ["dimension", "sun", "planet"] in [[*table.head] for table in tables]
+    assert any("turn of planet, the other one held" in row[0] for row in tables[0].rows)
 
 
 def test_a_short_detail_is_whole() -> None:

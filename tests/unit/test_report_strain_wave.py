@@ -367,7 +367,7 @@ def test_page_speaks_of_the_drive(page: str) -> None:
         "2 W in the teeth, 3 W beside them",
         "speed ratio, wave generator to flexspline −20",
         "pairs carry in the mean",
-        f"Kinematic error {error} peak to peak under the operating torque",
+        f"Kinematic error {error} peak to peak, under the operating torque",
     ):
         assert told in text
     for told in ("base pitch", "gear 1", "gear 2", "Plane of action", "pitch point"):

@@ -498,11 +498,16 @@ def beneath(data: xr.Dataset) -> Iterator[Paragraph]:
 
 
 def place_of(data: xr.Dataset, phase: int, pair: int, part: int) -> str:
-    """Where a contact of the cycle is, in words."""
-    at = f"phase {float(data['phase'][phase]) % 1.0:.3f}, {pair_key(pair).label}"
-    many = data["minimum_film"].shape[-1]
+    """Where a contact of the cycle is, in words; bodies with one alone have neither phases nor pairs."""
+    _, pairs, many = data["minimum_film"].shape
     word = data["minimum_film"].dims[-1]
-    return f"{at}, {word} {part + 1} of {many}, counted along the face" if many > 1 else at
+    parts = [
+        f"phase {float(data['phase'][phase]) % 1.0:.3f}, {pair_key(pair).label}"
+        if pairs > 1
+        else "",
+        f"{word} {part + 1} of {many}, counted along the face" if many > 1 else "",
+    ]
+    return ", ".join(filter(None, parts)) or "the only contact"
 
 
 def _thinnest(data: xr.Dataset) -> str:

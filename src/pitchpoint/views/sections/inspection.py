@@ -9,6 +9,7 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
+from pitchpoint.views.point import named_members
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
     Block,
@@ -135,8 +136,14 @@ def _blocks(page: Page) -> Iterator[Block]:
     yield from by_variant(page, "inspection", _of_variant)
 
 
+def _of_members(outcome: Outcome) -> xr.Dataset:
+    """Inspection of the gears of a mesh, those of a train by the bodies that they are."""
+    data, names = outcome.parts["inspection"], named_members(outcome)
+    return data.assign_coords(gear=names) if len(names) == data.sizes["gear"] else data
+
+
 def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
-    data = outcome.parts["inspection"]
+    data = _of_members(outcome)
     gears = [str(name) for name in data["gear"].values]
     yield Paragraph(data.attrs["note"])
     yield Table(["backlash", *map(str, data["case"].values)], backlash_rows(data), compact=True)
@@ -157,7 +164,7 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
 
 def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
     """Backlash, its limits where tolerances are given."""
-    data = outcome.parts.get("inspection")
+    data = _of_members(outcome) if "inspection" in outcome.parts else None
     if data is None:
         return
     several = data.sizes["case"] > 1
@@ -187,7 +194,7 @@ def _of_allowances(data: xr.Dataset) -> str:
 
 def _printed(outcome: Outcome) -> Iterator[Printed]:
     """What is asked for alone: the screen is short."""
-    data = outcome.parts.get("inspection")
+    data = _of_members(outcome) if "inspection" in outcome.parts else None
     if data is None or not data.attrs["asked"]:
         return
     yield Printed(rows=[_on_screen(data, str(gear)) for gear in data["gear"].values])

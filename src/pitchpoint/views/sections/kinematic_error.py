@@ -195,7 +195,7 @@ def error_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """Peak to peak of the kinematic error."""
     words = kinematic_error_answer(outcome)
     figure = key_figure(73.0, "Kinematic error", words, " peak to peak")
-    detail = figure.detail.replace("peak to peak ", "peak to peak; ", 1)
+    detail = figure.detail.replace("peak to peak ", "peak to peak, ", 1)
     yield replace(figure, detail=detail, asked_by=("gears.deviations",))
 
 
