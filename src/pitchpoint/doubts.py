@@ -52,7 +52,7 @@ REMARKED: Final = 0.02
 """Rank of what hardly moves a number, but has to be known."""
 
 _FAILS = "Fails: "
-_STAGE = re.compile(r"(?:(?<=^Stage )|(?<=^Fails: stage ))\d+(?: \([^():]*\))?(?=: )")
+_STAGE = re.compile(r"(?:(?<=^Stage )|(?<=^Fails: stage ))\d+(?: \([^()]+\))?(?=: )")
 _GEAR = re.compile(r"(?<=\b[Gg]ear )\d\b")
 
 
@@ -236,8 +236,10 @@ def without_repeats(sentences: Iterable[str]) -> list[Doubt]:
     Example:
         >>> without_repeats(["Stage 1: K_A = 1.", "Stage 2: K_A = 1.", "Stage 2: Z_W = 1."])
         ['Stages 1 and 2: K_A = 1.', 'Stage 2: Z_W = 1.']
+        >>> without_repeats([f"Stage {n} (sun and planet): Z_W = 1." for n in (1, 2)])
+        ['Stages 1 and 2 (sun and planet): Z_W = 1.']
         >>> without_repeats([f"Stage 1 ({mesh}): K_A = 1." for mesh in ("sun and planet", "planet and ring")])
-        ['Stages 1 (sun and planet) and 1 (planet and ring): K_A = 1.']
+        ['Stage 1 (sun and planet; planet and ring): K_A = 1.']
     """
     return _merged(_merged(sentences, _STAGE, _stages), _GEAR, _gears)
 
@@ -296,7 +298,18 @@ def _stages(sentence: str, numbers: list[str]) -> str:
     """Sentence on the first of some stages, as one on all of them."""
     if len(numbers) == 1:
         return sentence
-    return _STAGE.sub(enumerated(numbers), sentence).replace("tage ", "tages ", 1)
+    stages, meshes = ([*dict.fromkeys(part)] for part in zip(*map(_parted, numbers), strict=True))
+    if len(stages) * len(meshes) > len(numbers):
+        stages, meshes = numbers, [""]
+    named = "; ".join(filter(None, meshes))
+    several = _STAGE.sub(f"{enumerated(stages)}{f' ({named})' if named else ''}", sentence)
+    return several.replace("tage ", "tages ", 1) if len(stages) > 1 else several
+
+
+def _parted(stage: str) -> tuple[str, str]:
+    """Number of a stage, and its mesh in brackets where it has several."""
+    number, _, mesh = stage.partition(" ")
+    return number, mesh.strip("()")
 
 
 def _gears(sentence: str, numbers: list[str]) -> str:
