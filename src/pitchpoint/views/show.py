@@ -42,6 +42,8 @@ _UNITS = {
     "kg/m3": "kg/m³",
     "kg/m3/K": "kg/(m³ K)",
     "N m": "N\u00a0m",
+    "kN m": "kN\u00a0m",
+    "mN m": "mN\u00a0m",
     "urad": "µrad",
     "us": "µs",
     "degF": "°F",
@@ -204,6 +206,8 @@ def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None)
     Example:
         >>> quantity("mean_efficiency", 0.99354), quantity("normal_backlash", 6e-15)
         ('99.35 %', '0 µm')
+        >>> print(*(quantity("mean_input_torque", torque) for torque in (1.007e6, 9.128e-4)), sep="; ")
+        1007 kN m; 0.9128 mN m
     """
     variable = described(name, of)
     if not isfinite(value):
@@ -212,8 +216,27 @@ def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None)
         return "undefined, no power" if variable.display == "%" else "undefined"
     rounding = name in _DIFFERENCES and abs(value) < _OF_DIFFERENCES
     shown = float(displayed(variable, 0.0 if rounding else value))
-    return f"{number(shown)} {unit(variable.display)}".strip() if with_unit else number(shown)
+    return _with_unit(shown, variable.display) if with_unit else number(shown)
 
+
+def _with_unit(value: float, display: str) -> str:
+    """Number with its unit; with a larger or smaller one where it would need a power of ten."""
+    if value and not 10.0**_SMALLEST <= abs(value) < 10.0**_LARGEST:
+        larger = abs(value) >= 1.0
+        other, times = (_LARGER if larger else _SMALLER).get(display, (display, 1.0))
+        value, display = value / times, other
+    return f"{number(value)} {unit(display)}".strip()
+
+
+_LARGER = {"N m": ("kN m", 1e3), "N": ("kN", 1e3), "W": ("kW", 1e3), "kg cm2": ("kg m2", 1e4)}
+_SMALLER = {
+    "N m": ("mN m", 1e-3),
+    "N": ("mN", 1e-3),
+    "W": ("mW", 1e-3),
+    "J": ("µJ", 1e-6),
+    "kg cm2": ("g cm2", 1e-3),
+}
+"""Units in place of one, and what they are of it."""
 
 _DIFFERENCES = (
     "circumferential_backlash",
@@ -236,7 +259,8 @@ def span(low: str, high: str, values: Sequence[float], of: Any = None) -> str:
     first, last = quantity(low, values[0], of=of), quantity(high, values[1], of=of)
     if first == last:
         return first
-    return f"{quantity(low, values[0], with_unit=False, of=of)} to {last}"
+    (value, _, unit_of_low), (_, _, unit_of_high) = first.partition(" "), last.partition(" ")
+    return f"{value if unit_of_low == unit_of_high else first} to {last}"
 
 
 def the(member: str) -> str:
