@@ -1,7 +1,7 @@
 """Compliance of the body under a tooth: the tooth tilts and sinks as its root yields."""
 
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.doubts import GUESSED, Doubt, in_percent
@@ -11,7 +11,6 @@ __all__ = [
     "HALF_ANGLE_RANGE",
     "RIM_RATIO_RANGE",
     "foundation_compliance",
-    "foundation_in_range",
     "foundation_warnings",
     "sainsot_2004",
 ]
@@ -95,17 +94,6 @@ def foundation_compliance(section: ToothSection) -> Float[Array, " node"]:
     )
 
 
-def foundation_in_range(section: ToothSection) -> Bool[Array, ""]:
-    """True where the polynomial is used inside the range for which it was fitted, under a disc.
-
-    Source: Sainsot, Velex and Duverger (2004), range of their fit.
-    """
-    within = _within(section.rim_ratio, RIM_RATIO_RANGE) & _within(
-        section.root_half_angle, HALF_ANGLE_RANGE
-    )
-    return within & (not section.stiff)
-
-
 def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
     """Sentences on what the foundation's compliance does not cover for this tooth; none if it does."""
     if section.stiff:
@@ -169,7 +157,3 @@ def _factors(rim_ratio: Float[Array, ""], half_angle: Float[Array, ""]) -> Float
     inverse = 1.0 / half_angle
     terms = [inverse**2, rim_ratio**2, rim_ratio * inverse, inverse, rim_ratio]
     return jnp.asarray(_POLYNOMIAL) @ jnp.stack([*terms, jnp.ones_like(inverse)])
-
-
-def _within(value: Float[Array, ""], limits: tuple[float, float]) -> Bool[Array, ""]:
-    return (value >= limits[0]) & (value <= limits[1])

@@ -8,7 +8,6 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
-from pitchpoint.factored import Numbers
 from pitchpoint.gears.bodies import main_dimensions, plain_inertia
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
 from pitchpoint.gears.pairs import largest_inclination
@@ -125,25 +124,6 @@ class TorusPair(InvolutePair):
             tilt=jnp.arctan(self.faces[0].slope(self.place)),
             across=self._bends,
         )
-
-    def flank_points(
-        self, member: int, radius: Float[Numbers, "*#b"], across: Float[Numbers, "*#b"]
-    ) -> Float[Array, "3 *b"]:
-        """Points of the flank of one tooth whose axis is y, in the frame of its gear [m].
-
-        Args:
-            member: 0 or 1.
-            radius: of each point about the gear's axis, above that of the base circle [m].
-            across: of each point from the middle plane of the gear [m].
-
-        Source: ISO 21771:2007, tooth thickness, with the profile shift at each place across the face.
-        """
-        shift = self.middle_shift[member] + self.faces[member].shift(across) / self.module
-        gear = dataclasses.replace(self.gears[member], profile_shift=jnp.zeros(()))
-        lean = 2.0 * shift * jnp.tan(self.pressure_angle) / self.teeth[member]
-        angle = gear.half_thickness_angle(jnp.asarray(radius)) + lean
-        given = radius * jnp.sin(angle), radius * jnp.cos(angle), jnp.asarray(across)
-        return jnp.stack(jnp.broadcast_arrays(*given))
 
     @property
     def _bends(self) -> Float[Array, "2"]:
