@@ -568,6 +568,9 @@ def export(
     isaac: Annotated[
         bool, typer.Option("--isaac", help="Friction and armature for Isaac Lab on PhysX.")
     ] = False,
+    modelica: Annotated[
+        bool, typer.Option("--modelica", help="A package of Modelica around LossyGear.")
+    ] = False,
     law: Annotated[
         str | None,
         typer.Option(
@@ -619,6 +622,7 @@ def export(
     asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx, "evaluator": evaluator}
     formats = [name for name, wanted in asked.items() if wanted]
     joints = {"mujoco": mujoco, "urdf": urdf, "ros2_control": ros2_control, "isaac": isaac}
+    joints |= {"modelica": modelica}
     targets = [name for name, wanted in joints.items() if wanted]
     outcomes, folder = open_result(result), output or Path(result) / "export"
     if formats or not targets:

@@ -434,6 +434,7 @@ def test_pages_can_be_read_without_the_site(
         ("min_lambda_ratio", ["reference/variables"]),
         ("MuJoCo", ["guide/simulators"]),
         ("URDF", ["guide/simulators"]),
+        ("Modelica", ["guide/simulators"]),
         ("armature", ["guide/simulators"]),
         ("frictionloss", ["guide/simulators"]),
     ],

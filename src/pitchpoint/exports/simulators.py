@@ -46,6 +46,7 @@ TARGETS: Mapping[str, str] = {
     "urdf": "pitchpoint.exports.urdf:write_urdf",
     "ros2_control": "pitchpoint.exports.ros2_control:write_ros2_control",
     "isaac": "pitchpoint.exports.isaac:write_isaac",
+    "modelica": "pitchpoint.exports.modelica:write_modelica",
 }
 """Where each target of a hand-over is written, by the name of its folder and option."""
 
