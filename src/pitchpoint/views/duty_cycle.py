@@ -103,13 +103,5 @@ def _places(data: xr.Dataset) -> Iterator[tuple[tuple[int, int], tuple[str, str]
             yield (row, column), (mesh, gear)
 
 
-_LARGER = {"J": ((1e6, "MJ"), (1e3, "kJ")), "s": ((3600.0, "h"), (60.0, "min"))}
-"""Units in which large energies and times stand, the largest first."""
-
-
 def _value(data: xr.Dataset, name: str) -> str:
-    value, unit = float(data[name]), data[name].attrs["units"]
-    for size, larger in _LARGER.get(unit, ()):
-        if abs(value) >= 10.0 * size:
-            return f"{show.number(value / size)} {larger}"
-    return show.quantity(name, value, of=data)
+    return show.quantity(name, float(data[name]), of=data)

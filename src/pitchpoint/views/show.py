@@ -228,7 +228,13 @@ def _with_unit(value: float, display: str) -> str:
     return f"{number(value)} {unit(display)}".strip()
 
 
-_LARGER = {"N m": ("kN m", 1e3), "N": ("kN", 1e3), "W": ("kW", 1e3), "kg cm2": ("kg m2", 1e4)}
+_LARGER = {
+    "N m": ("kN m", 1e3),
+    "N": ("kN", 1e3),
+    "W": ("kW", 1e3),
+    "J": ("MJ", 1e6),
+    "kg cm2": ("kg m2", 1e4),
+}
 _SMALLER = {
     "N m": ("mN m", 1e-3),
     "N": ("mN", 1e-3),
