@@ -106,7 +106,7 @@ def demand_inside(table: LossTable, history: LoadHistory) -> None:
             history.temperature - _ZERO,
             table.temperatures,
             "degC",
-            "loss_map.temperature",
+            "loss_map.temperatures",
         ),
     )
     for name, values, axis, unit, key in rows:
@@ -117,7 +117,7 @@ def demand_inside(table: LossTable, history: LoadHistory) -> None:
             raise InputError(
                 f"{np.count_nonzero(beyond)} of {values.size} samples lie beyond the loss map, the first at "
                 f"{history.time[at]:.6g} s with {values[at]:.6g} {unit}; the map has {axis[0]:.6g} to "
-                f"{axis[-1]:.6g} {unit}; run the case with a wider {key}",
+                f"{axis[-1]:.6g} {unit}; widen {key}",
                 key=name,
             )
 
