@@ -26,7 +26,7 @@ from pitchpoint.views.first_screen import (
     beside_each_other,
     swept_beside,
 )
-from pitchpoint.views.point import member_names
+from pitchpoint.views.point import by_members, member_names
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import KeyFigure, Page, Table, key_figures
 from pitchpoint.views.sections.inspection import INSPECTION
@@ -145,6 +145,28 @@ def test_members_of_a_train_are_inspected_by_their_names(pair: dict[str, Outcome
     ]
     assert ["dimension", "sun", "planet"] in [[*table.head] for table in tables]
     assert any("turn of planet, the other one held" in row[0] for row in tables[0].rows)
+
+
+def test_a_set_without_stages_of_its_own_is_told_by_its_members(pair: dict[str, Outcome]) -> None:
+    meshes = [
+        {"number": k, "bodies": bodies, "members": ["gear 1", "gear 2"]}
+        for k, bodies in ((1, "sun and planet"), (2, "planet and ring"))
+    ]
+    rows = [{"table": "gears", "key": "family", "value": "planetary"}]
+    (own, of_stages) = (
+        doubting(pair["default"], stages=meshes, inputs=inputs) for inputs in (rows, [])
+    )
+    told = {
+        "at planet of stage 2; no safety": "at planet in ring mesh; no safety",
+        "at sun of stage 1": "at sun",
+        "Doubtful: Stage 1: xu_2007: thin": "Doubtful: Sun mesh: xu_2007: thin",
+        "Stage 2: gear 2: a rim": "Ring mesh: ring: a rim",
+        "Stages 1 and 2: K_A = 1": "Both meshes: K_A = 1",
+        "Backlash, stages 1 and 2": "Backlash, both meshes",
+        "at stage 1": "at sun mesh",
+    }
+    assert {text: by_members(own, text) for text in told} == told
+    assert [by_members(of_stages, text) for text in told] == [*told]
 
 
 def test_a_short_detail_is_whole() -> None:

@@ -3,7 +3,7 @@
 import shlex
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from math import isfinite
 from pathlib import Path
@@ -19,9 +19,10 @@ from pitchpoint.views import show
 from pitchpoint.views.figures import laws
 from pitchpoint.views.inputs import number
 from pitchpoint.views.inputs import words as input_words
-from pitchpoint.views.point import ratio_words, speed_ratio
+from pitchpoint.views.point import by_members, ratio_words, speed_ratio
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import (
+    OF_MESHES,
     KeyFigure,
     Page,
     key_figures,
@@ -94,10 +95,9 @@ def first_screen(
     titles = titles if len(titles) <= min(room, 2) else [show.first_clauses(title, width)]
     head = [Line(text, "title") for text in titles]
     head += [Line(show.first_clauses(at, width))] if at else []
-    known = stages_together(key_figures(in_order(), outcome)) if len(outcomes) == 1 else []
-    figures = (
-        _fitting(known, max(room - len(titles), 0), width) if tables else aligned(known, width)
-    )
+    known = _key_figures(outcome) if len(outcomes) == 1 else []
+    room = max(room - len(titles), 0)
+    figures = _fitting(known, room, width) if tables else _in_full(known, width)
     fails, doubtful = (
         [line for line in doubts if line.style == style] for style in ("fails", "doubt")
     )
@@ -229,9 +229,24 @@ def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
     return [*chain(*shown), *[Line(f"{more} in the report.", "doubt")] * (rest > 0)]
 
 
+def _key_figures(outcome: Outcome) -> list[KeyFigure]:
+    """Figures of one variant in their order, those of a planetary set by its members."""
+    return [
+        replace(
+            figure,
+            name=by_members(outcome, figure.name),
+            detail=by_members(outcome, figure.detail),
+        )
+        for figure in stages_together(key_figures(in_order(), outcome))
+    ]
+
+
 def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
     """Briefs of all variants, each once and the worst of each first, those of some with their variants."""
-    told = told_of_variants(outcomes, kind, lambda text: show.pretty(as_doubt(text).brief))
+    first = next(iter(outcomes.values()))
+    told = told_of_variants(
+        outcomes, kind, lambda text: by_members(first, show.pretty(as_doubt(text).brief))
+    )
     return [
         text if len(names) == len(outcomes) else f"{_few(names, len(outcomes))}: {text}"
         for text, names in told.items()
@@ -241,6 +256,12 @@ def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
 def _few(names: Sequence[str], variants: int) -> str:
     """Some of the variants by name where that is short, else how many they are."""
     return names[0] if len(names) == 1 else f"{len(names)} of {variants} variants"
+
+
+def _in_full(figures: Sequence[KeyFigure], width: int) -> list[Line]:
+    """All figures; those of meshes, whose names are long, in columns of their own."""
+    of_drive = [figure for figure in figures if figure.order < OF_MESHES]
+    return [*aligned(of_drive, width), *aligned(figures[len(of_drive) :], width)]
 
 
 def _fitting(figures: Sequence[KeyFigure], room: int, width: int) -> list[Line]:

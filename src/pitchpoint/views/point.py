@@ -1,6 +1,7 @@
 """Where a result was run, and the period of its mesh."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
@@ -16,6 +17,7 @@ from pitchpoint.views.inputs import given, number
 __all__ = [
     "OperatingPoint",
     "Period",
+    "by_members",
     "member_names",
     "named_members",
     "of_geometry",
@@ -101,6 +103,44 @@ def member_names(outcome: Outcome, stage: Label) -> dict[str, str]:
 def named_members(outcome: Outcome) -> list[str]:
     """Members of a mesh by the bodies of a train that they are, "sun" say; else by themselves."""
     return _by_bodies(outcome.manifest)
+
+
+def by_members(outcome: Outcome, text: str) -> str:
+    """A text on a planetary set whose case has no stages, with the members of its meshes in place of these.
+
+    Args:
+        outcome: of any case; other than of such a set the text stays as it is.
+        text: that says "stage 1" of the mesh of sun and planet, say.
+    """
+    if not any(
+        row["table"] == "gears" and row["key"] == "family" and row["value"] == "planetary"
+        for row in outcome.manifest["inputs"]
+    ):
+        return text
+    meshes = {str(one["number"]): _by_bodies(one) for one in outcome.manifest["stages"]}
+    names = {number: _central(bodies) for number, bodies in meshes.items()}
+    every = "|".join(map(re.escape, meshes))
+
+    def member(at: re.Match[str]) -> str:
+        own, central = at[1], names[at[2]]
+        return own if own == central else f"{own} in {central} mesh"
+
+    def gear(at: re.Match[str]) -> str:
+        return f"{at[1]}tage {at[2]}: {meshes[at[2]][int(at[3]) - 1]}"
+
+    def mesh(at: re.Match[str]) -> str:
+        words = f"{names[at[2]]} mesh"
+        return words if at[1] == "s" else words.capitalize()
+
+    text = re.sub(rf"\b(\w+) of stage ({every})\b", member, text)
+    text = re.sub(rf"\b([Ss])tage ({every}): gear (\d)", gear, text)
+    text = re.sub(r"\b([Ss])tages 1 and 2\b", lambda at: f"{'Bb'[at[1] == 's']}oth meshes", text)
+    return re.sub(rf"\b([Ss])tage ({every})\b", mesh, text)
+
+
+def _central(bodies: Sequence[str]) -> str:
+    """The body of a mesh of a planetary set that is no planet."""
+    return next((body for body in bodies if body != "planet"), bodies[0])
 
 
 def _by_bodies(record: Mapping[str, Any]) -> list[str]:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
 __all__ = [
+    "OF_MESHES",
     "Block",
     "Drawn",
     "Folded",
@@ -196,6 +197,9 @@ _GOES_ON = (
 )
 """Words with which the sentence of a value goes on; before others it has a comma."""
 
+OF_MESHES = 100.0
+"""Order behind which figures stand that each mesh of a drive has beside those of the whole."""
+
 _ELSE = 60.0
 """Order from which on a figure is what else a joint has, see `KeyFigure`."""
 
@@ -235,7 +239,7 @@ class KeyFigure:
 
     def of(self, stage: str) -> "KeyFigure":
         """That of a stage; what limits a drive keeps its place, the rest comes behind that of the whole."""
-        late = 100.0 if self.order >= _ELSE else 0.0
+        late = OF_MESHES if self.order >= _ELSE else 0.0
         return replace(self, name=f"{self.name}, {stage}", order=self.order + late)
 
 
