@@ -171,18 +171,30 @@ def _drawn(block: Drawn) -> "markupsafe.Markup":
 
 @cache
 def packed_plotly() -> str:
-    """plotly.js, compressed: it is most of the page, and is kept, since packing it takes .2 s."""
+    """plotly.js in the plane, compressed: most of a page; kept, since packing it takes half a second."""
     folder = _kept_pages()
-    path = None if folder is None else folder / f"plotly-b85-{version('plotly')}"
+    path = None if folder is None else folder / f"plotly-plane-{version('plotly')}"
     packed = None if path is None else read(path)
     if packed is None:
         from plotly.offline import get_plotlyjs
 
-        text = _as_text(get_plotlyjs())
+        text = _as_text(_in_the_plane(get_plotlyjs()))
         if path is not None:
             write(path, text.encode())
         return text
     return packed.decode()
+
+
+_WORKER = re.compile(r"(?<=\.exports=')(?:[^'\\]|\\.){100000,}(?=')")
+"""The program of a worker that draws maps of the earth, as text."""
+
+_SHADER = re.compile(r"(?<=[=(,:\[]`)[^`\\$]*void main\(\) ?\{[^`\\$]*(?=`)")
+"""The program of a graphics card, as text."""
+
+
+def _in_the_plane(plotly: str) -> str:
+    """plotly.js without what draws maps of the earth and bodies in space, which no figure of a page is."""
+    return _SHADER.sub("", _WORKER.sub("", plotly))
 
 
 def _as_text(content: str) -> str:
