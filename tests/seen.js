@@ -43,7 +43,7 @@
   // Units on another line than their numbers, numbers on another than their symbol; values of tiles are narrow.
   for (const one of document.querySelectorAll("p, dd, li, td, th, figcaption, caption, summary")) {
     if (!shown(one) || one.closest(".spoken, .plot")) continue;
-    const raw = one.textContent.match(/\d (deg[CF]?|um|urad|mm2|mm3)\b|\d x \d/);
+    const raw = one.textContent.match(/\d (deg[CF]?|(N\/)?um|urad|mm2|mm3)\b|\d x \d/);
     if (raw && !one.closest("code") && !one.querySelector("pre, code")) faults.push(`"${raw[0]}" is not as printed: ${name(one)}`);
     const texts = document.createTreeWalker(one, NodeFilter.SHOW_TEXT);
     while (texts.nextNode()) for (const { 0: pair, index } of texts.currentNode.data.matchAll(/\d[ \u00a0]([%°µ]|([kMG]?(N|Pa|W|g|Hz)|[mkc]?m|m?s|rpm|arcmin)(?![\w-]))|(?<![^\s(])[^\s="]{1,7} = [−-]?\d/g)) {
@@ -89,6 +89,10 @@
       const place = (values[values.length >> 1] - zmin) / (zmax - zmin);
       const stop = colorscale.findLast(([at]) => at <= Math.min(Math.max(place, 0), 1));
       if (shade(stop[1]) > 0.45) say("a bright map on dark paper");
+    }
+    for (const axis of ["xtick", "ytick"]) {
+      const labels = [...plot.querySelectorAll(`.${axis} text`)].map((one) => one.textContent.trim()).filter(Boolean);
+      if (labels.length === 1 && /^[\d.,\s−]+$/.test(labels[0])) say(`"${labels[0]}" alone on an axis`);
     }
     const level = (one) => Math.min(Math.abs(one.getScreenCTM().a), Math.abs(one.getScreenCTM().b)) < 0.01;
     const texts = [...plot.querySelectorAll("text")].filter((one) => shown(one) && one.textContent.trim() && level(one));

@@ -117,6 +117,7 @@ _SPOILED = {
     "is broken": "document.querySelector('#models thead th').style.cssText = 'display: block; width: 30px'",
     "is parted": "document.querySelector('#sources').innerHTML += '<p style=width:3em>It is 123 µm</p>'",
     '"μ = 1" is parted': "document.querySelector('#sources').innerHTML += '<p style=width:3em>At μ = 1'",
+    "alone on an axis": "Plotly.relayout('along_loss', {'yaxis.tickvals': [5]})",
     "not as printed": "document.querySelector('#sources').innerHTML += '<p>Oil at 20 degC'",
     "told from its ground": "document.querySelector('#along_loss .xtitle').style.fill = '#fafafa'",
 }

@@ -504,6 +504,14 @@ def test_quantities_stand_over_the_angle_of_the_tooth(whole: Outcome) -> None:
     assert figure(panel, "pressure").layout["yaxis"].get("type") != "log"
 
 
+def test_a_law_alone_is_drawn_solid_whatever_its_place_among_others(whole: Outcome) -> None:
+    """Dashed is the other contact of a tooth."""
+    alone = replace(whole, parts={**whole.parts, "cycle": whole.parts["cycle"].isel(law=[0])})
+    second = {key: replace(one, dash="dash") for key, one in curves({"default": alone}).items()}
+    drawn = [one for one in arc_panel({"default": alone}, second).figures if one.drawn]
+    assert {one.data[0]["line"].get("dash", "solid") for one in drawn} == {"solid"}
+
+
 def test_an_idle_drive_says_so(whole: Outcome) -> None:
     idle = whole.parts["cycle"].copy()
     idle["load"] = 0.0 * idle["load"]

@@ -217,13 +217,14 @@ def _number_as_printed(text: str) -> str:
 
 
 _SHOWN = re.compile(r"(?<!<strong)>[^<>]*\d[^<>]+<")
-_UNIT = r"[%°µ]|(?:[kMG]?(?:N|Pa|W|g|J|Hz|K)|[mkc]?m|m?s|rpm|arcmin|arcsec)(?![a-zA-Z_-])"
+_UNIT = r"[%°µ]|(?:[kmMG]?(?:N|Pa|W|g|J|Hz|K)|[mkc]?m|m?s|rpm|arcmin|arcsec)(?![a-zA-Z_-])"
 _PRINTED = (
     (re.compile(r"(?<=[\s(>])-(?=\d)"), "\u2212"),
     (re.compile(r"(?<=\d)e-0*(?=\d)"), "e\u2212"),
     (re.compile(r"(?<=\d)e\+0*(?=\d)"), "e"),
     (re.compile(r"(?<=\d)[ \u00a0](?:deg\b|°(?![CF]))"), "°"),
     (re.compile(r"(?<=\d)[ \u00a0]degC\b"), "\u00a0°C"),
+    (re.compile(r"(?<=\d)[ \u00a0]N/um\b"), "\u00a0N/µm"),
     (re.compile(r"(?<=\d) x (?=\d)"), "\u00a0×\u00a0"),
     (re.compile(r"(>|(?<![^\s(>])[^\s<>=\"]{1,7}) = (?=[\u2212-]?\d)"), "\\1\u00a0=\u00a0"),
     (re.compile(r"((?:[\dKgN][ \u00a0]|/)[kcm]?m)2(?!\w)"), r"\1²"),

@@ -172,6 +172,8 @@ def _traces(seen: list[tuple[Curve, xr.Dataset, int]], name: str) -> Iterator[Tr
         for place in [None] if name in _SUMS else range(data.sizes["slice"]):
             x, y = _along(data, name, law, place)
             trace = line(curve, x, display(name, y), unit)
+            if len(seen) == 1:  # dashes are those of the other contact of a pair
+                trace["line"] = trace["line"] | {"dash": "solid"}
             if place:
                 trace["line"] = trace["line"] | {"dash": "dash", "width": 1.5}
             if x.size or not place:
@@ -228,6 +230,10 @@ def _scale(look: dict[str, Any], traces: list[Trace]) -> bool:
     decades = float(np.log10(high / low))
     ends = [round(float(np.log10(low)), 3), round(float(np.log10(high)), 3)]
     look["yaxis"] |= {"type": "log", "dtick": 2 if decades > 6.0 else 1, "range": ends}
+    powers = range(int(np.ceil(ends[0])), int(np.floor(ends[1])) + 1)
+    if len(powers) < 2:  # one number alone tells no scale
+        marks = np.outer(10.0 ** np.arange(powers.start - 1, powers.stop), [1.0, 2.0, 5.0]).ravel()
+        look["yaxis"]["tickvals"] = [float(mark) for mark in marks if low <= mark <= high]
     return bool(values.min() < low or values.max() > high)
 
 

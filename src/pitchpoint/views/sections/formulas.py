@@ -371,7 +371,7 @@ def _table(data: xr.Dataset, beside: Beside) -> Table:
         )
         for told, names in rows
     ]
-    return Table(["Quantity", *heads], wide, compact=len(wide) > _LONG)
+    return Table(["Quantity", *heads], wide, compact=len(heads) < 4 or len(wide) > _LONG)
 
 
 def _titled(told: str, name: str) -> str:

@@ -410,7 +410,7 @@ def slope_rows(outcome: Outcome) -> list[dict[str, str]]:
 def _table(rows: list[dict[str, str]]) -> Iterator[Block]:
     """Rows as a table of the report; nothing without any."""
     if rows:
-        yield Table([*rows[0]], [[*row.values()] for row in rows])
+        yield Table([*rows[0]], [[*row.values()] for row in rows], compact=len(rows[0]) < 5)
 
 
 def _down(rows: list[dict[str, str]]) -> list[dict[str, str]]:

@@ -186,7 +186,7 @@ def _table(data: xr.Dataset) -> Table:
         for name in _OF_MEMBER
         if name in data
     ]
-    return Table(["at the end", *names], rows)
+    return Table(["at the end", *names], rows, compact=True)
 
 
 def _places(data: xr.Dataset, member: int) -> tuple[str, np.ndarray]:
@@ -264,16 +264,24 @@ def _lines(data: xr.Dataset, member: int, step: int) -> list[Trace]:
 
 def _tooth(name: str, data: xr.Dataset, member: int) -> Figure:
     """Half a tooth before and after, its wear magnified."""
+    lines = _outlines(data, member, data.sizes["step"] - 1)
     look = layout(
         f"from the axis of the tooth [{show.unit_of('flank_half_thickness')}]",
         short_axis("flank_height", data),
         yaxis={"scaleanchor": "x", "scaleratio": 1, "constrain": "domain"},
-        xaxis={"constrain": "domain", "nticks": 3},
+        xaxis={"constrain": "domain", "nticks": 3, "range": _as_wide_as_high(lines)},
     )
     title = f"Flank as new and worn, {_members(data)[member]}"
     keys = _before_and_after(data)
-    lines = _outlines(data, member, data.sizes["step"] - 1)
     return Figure(name, title, lines, look, "In the normal section.", keys, _NONE)
+
+
+def _as_wide_as_high(lines: list[Trace]) -> list[float]:
+    """Ends of an axis across outlines that leave room for its numbers, however slender these are."""
+    across, upwards = ([x for one in lines for x in one[name] if x is not None] for name in "xy")
+    middle = 0.5 * (max(across) + min(across))
+    half = 0.5 * max(1.1 * (max(across) - min(across)), max(upwards) - min(upwards))
+    return [round(middle - half, 3), round(middle + half, 3)]
 
 
 def _before_and_after(data: xr.Dataset) -> tuple[Key, Key]:
