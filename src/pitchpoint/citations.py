@@ -100,7 +100,8 @@ def cite(key: str) -> str:
         'Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press.'
     """
     entry = reference(key)
-    parts = (f"{_names(entry)} ({entry.year}). {entry.title}", _where(entry), _doi(entry))
+    doi = f"doi:{entry.doi}" if entry.doi else ""
+    parts = (f"{_names(entry)} ({entry.year}). {entry.title}", _where(entry), doi)
     return ". ".join(part.rstrip(".") for part in parts if part) + "."
 
 
@@ -170,7 +171,3 @@ def _names(entry: Reference) -> str:
 def _where(entry: Reference) -> str:
     issue = f"{entry.volume}({entry.number})" if entry.number else entry.volume
     return ", ".join(p for p in (entry.journal, issue, entry.pages, entry.publisher) if p)
-
-
-def _doi(entry: Reference) -> str:
-    return f"doi:{entry.doi}" if entry.doi else ""

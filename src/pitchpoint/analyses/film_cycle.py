@@ -71,6 +71,7 @@ def whole(
     told = codes[loaded] if loaded.any() else np.array([int(Code.UNLOADED)])
     laws = film_laws(built.design.mesh.shape)
     spread = _by_summits(built, found, again)
+    steps = np.array([int(part.attrs["iterations"]) for part in parts])
     data = dataset(
         {
             **solved,
@@ -93,7 +94,7 @@ def whole(
             *_about(built, states, found),
             *_of_summits(spread),
         ],
-        solve=told_of(told, _residuals(parts, told), _iterations(parts)),
+        solve=told_of(told, _residuals(parts, told), steps),
         film_titles=[law.title for law in laws],
         film_places=[law.place for law in laws],
         choices=_choices(built),
@@ -282,15 +283,12 @@ def _worst(told: Sequence[tuple[Doubt, str]]) -> Doubt:
 def _about(built: Built, states: States, found: xr.Dataset) -> list[str]:
     """What the films leave out."""
     run = {"load": np.where(states["loaded"], states["load"], 0.0), "radius": states["radius"]}
-    cold = [cold_warning(built, _moving(states, found))] if _is_cold(built) else []
+    isothermal = film_model_of(built).thermal == ISOTHERMAL
+    cold = [cold_warning(built, _moving(states, found))] if isothermal else []
     return [
         *cold,
         *(reworded(text, "Films: {}".format) for text in conformal_warning(built.design.mesh, run)),
     ]
-
-
-def _is_cold(built: Built) -> bool:
-    return film_model_of(built).thermal == ISOTHERMAL
 
 
 def _moving(states: States, found: xr.Dataset) -> dict[str, np.ndarray]:
@@ -412,7 +410,3 @@ def _choices(built: Built) -> dict[str, Any]:
 def _residuals(parts: Sequence[xr.Dataset], codes: np.ndarray) -> np.ndarray:
     largest = max(float(part.attrs["residual"]) for part in parts)
     return np.full(codes.shape, largest)
-
-
-def _iterations(parts: Sequence[xr.Dataset]) -> np.ndarray:
-    return np.array([int(part.attrs["iterations"]) for part in parts])

@@ -267,13 +267,10 @@ def following_rows(built: Ready) -> Iterator[Row]:
             *(row for gear in (1, 2) for row in _of_solid(one, gear)),
         ]
         rows += [] if one_oil else _of_oil(one)
-        yield from (_labelled(row, label) if label else row for row in rows)
+        of_stage = f"stage {label}." if label else ""
+        yield from ({**row, "key": f"{of_stage}{row['key']}"} for row in rows)
     if one_oil:
         yield from _of_oil(built.meshes[0])
-
-
-def _labelled(row: Row, label: int | str) -> Row:
-    return {**row, "key": f"stage {label}.{row['key']}"}
 
 
 def _of_oil(built: Built) -> Iterator[Row]:

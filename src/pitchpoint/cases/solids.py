@@ -286,16 +286,13 @@ def _warm(case: Case, mesh: Mesh, used: Used, gear: int, found: Mapping[str, flo
     )
     brief, moved = f"Gear {gear + 1} is warm: root at {celsius(root)}, {modulus}.", REMARKED
     if not heat_failure(record, max(flank, root)):
-        told += f" {_upper(modulus_at(record, root).status)}."
+        status = modulus_at(record, root).status
+        told += f" {status[:1].upper()}{status[1:]}."
         if record.young_at and flank > record.young_at[-1].temperature:
             told += f" No modulus is known at the temperature of the flank of gear {gear + 1}."
             brief = f"Gear {gear + 1}: no modulus is known at the {celsius(flank)} of its flank."
             moved = LEFT_OUT
     return replace(warm, told=Doubt(told, moves=moved, brief=brief), flank=flank)
-
-
-def _upper(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 @remembering

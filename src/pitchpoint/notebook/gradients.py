@@ -150,7 +150,11 @@ def _numbers(built: Built) -> Iterator[Number]:
     """Key, value, kind and what sets it, of the numbers of a case, those of two gears apart."""
     for table in _TABLES:
         held = getattr(built.case, table)
-        plain = held.model_dump() if isinstance(held, BaseModel) else _dumped(held)
+        plain = (
+            held.model_dump()
+            if isinstance(held, BaseModel)
+            else {name: one.model_dump() for name, one in held.items()}
+        )
         for key, value in leaves({table: plain}):
             quantity = _continuous(key)
             if quantity is not None and isinstance(value, float):
@@ -158,10 +162,6 @@ def _numbers(built: Built) -> Iterator[Number]:
             elif quantity is not None and isinstance(value, tuple):
                 for k, one in enumerate(value):
                     yield f"{key}.{k + 1}", one, quantity.kind, _in_list(key, value, k)
-
-
-def _dumped(tables: Mapping[str, BaseModel]) -> dict[str, Any]:
-    return {name: one.model_dump() for name, one in tables.items()}
 
 
 def _continuous(key: str) -> Quantity | None:

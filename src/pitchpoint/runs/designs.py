@@ -313,7 +313,8 @@ def _extreme(data: xr.Dataset, array: xr.DataArray) -> xr.DataArray:
 
 def _there(outcome: Outcome, array: xr.DataArray) -> xr.DataArray:
     """Values over torque, speed and temperature at the operating point, if it lies among them."""
-    point = {row["key"]: row["value"] for row in outcome.manifest["inputs"] if _given_there(row)}
+    inputs = outcome.manifest["inputs"]
+    point = {row["key"]: row["value"] for row in inputs if row["table"] == "operation"}
     for axis in ("torque", "speed", "temperature"):
         if axis not in array.dims or axis not in array.coords:
             continue
@@ -324,10 +325,6 @@ def _there(outcome: Outcome, array: xr.DataArray) -> xr.DataArray:
             array.interp({axis: np.clip(at, ends.min(), ends.max())}) if ends.size > 1 else array
         )
     return array
-
-
-def _given_there(row: Mapping[str, Any]) -> bool:
-    return bool(row["table"] == "operation")
 
 
 def _places(array: xr.DataArray) -> Iterator[tuple[str, float]]:

@@ -271,7 +271,7 @@ def _answer(page: Page, outcome: Outcome, law: str, position: int, curve: Curve)
         "back": back_driving(outcome, law),
         "contact": [
             (VARIABLES[name].long_name, show.quantity(name, value(name), of=data))
-            for name in _at_contact(data)
+            for name in (CONTACT if of_contact(data) else ())
         ],
         "borne": list(_borne(outcome, position)),
         "drag": _drag(data, position),
@@ -282,11 +282,6 @@ def _answer(page: Page, outcome: Outcome, law: str, position: int, curve: Curve)
             for row in made_of([outcome], partial(section.card, outcome, law))
         ],
     }
-
-
-def _at_contact(data: Any) -> tuple[str, ...]:
-    """Names of the figures of a test rig; none of a drive."""
-    return CONTACT if of_contact(data) else ()
 
 
 def _range(data: xr.Dataset, name: str, value: Callable[[str], float]) -> str:

@@ -166,13 +166,9 @@ def _rows(seen: Seen, columns: list[str]) -> Iterator[tuple[str, ...]]:
     """Every point of a study under every law."""
     for curve, data, law in seen:
         for point in range(data.sizes["point"]):
-            place = _valued(data, point) if "axis" in data else ""
+            place = show.number(float(_swept(data)[0][point]), 6) if "axis" in data else ""
             cells = _cells(data, law, columns, point)
             yield str(data.attrs["title"]), curve.label, place, *cells
-
-
-def _valued(data: xr.Dataset, point: int) -> str:
-    return show.number(float(_swept(data)[0][point]), 6)
 
 
 def _studies(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[str, Seen]]:
@@ -243,14 +239,14 @@ def _of_strength(every: Sequence[xr.Dataset], *, vary: bool) -> list[str]:
     def told(name: str) -> bool:
         each = [one[name].values for one in every if name in one]
         known = [values[~np.isnan(values)] for values in each]
-        return any(not vary or _varies(values) for values in known if values.size)
+        return any(
+            not vary or not np.allclose(values, values.flat[0], rtol=ROUNDING, atol=0.0)
+            for values in known
+            if values.size
+        )
 
     safeties = [name for name in RATING[2:] if told(name)]
     return safeties or [name for name in RATING[:2] if told(name)]
-
-
-def _varies(values: np.ndarray) -> bool:
-    return not np.allclose(values, values.flat[0], rtol=ROUNDING, atol=0.0)
 
 
 def _panel(studies: list[tuple[str, Seen]]) -> Panel:
