@@ -53,24 +53,23 @@ def _rated_below(built: Ready, data: xr.Dataset) -> list[str]:
     laws = range(data.sizes["law"])
     each = [built.carried_by_meshes({n: data[n].values[k, 0] for n in names}) for k in laws]
     carried = np.fmax.reduce(each).tolist()  # under the law that asks for most
-    stages = zip(built.numbers, built.stages, carried, strict=True)
     return [
         in_stage(number, doubt)
-        for number, stage, torque in stages
-        if not stage.trains
-        for mesh in stage.meshes
+        for number, one, torque in zip(built.numbers, built.stages, carried, strict=True)
+        if not one.trains
+        for mesh in one.meshes
         if mesh.case.gears.rated
         for doubt in _above(mesh, torque)
     ]
 
 
-def _above(stage: Built, torque: float) -> Iterator[Doubt]:
-    """How much stresses are higher under this torque than under the load of a stage."""
-    rated = stage.case.operation.load
+def _above(mesh: Built, torque: float) -> Iterator[Doubt]:
+    """How much stresses of a mesh are higher under this torque than under its own load."""
+    rated = mesh.case.operation.load
     more = torque / rated - 1.0 if rated > 0.0 else 0.0
     if more > FELT:
         roots, flanks = (f"{in_percent(part)}" for part in (more, sqrt(1.0 + more) - 1.0))
-        under, over = (stage.carried.show(float(f"{load:.4g}")) for load in (rated, torque))
+        under, over = (mesh.carried.show(float(f"{load:.4g}")) for load in (rated, torque))
         yield Doubt(
             f"stresses and safeties are those for {under}, without the losses behind it; it carries {over}, "
             f"under which stresses of roots are {roots} higher and those of flanks {flanks}.",

@@ -68,7 +68,7 @@ def _of_drive(built: Ready, torques: np.ndarray) -> xr.Dataset:
     """
     steps, copies = built.steps, np.array(built.copies)
     each, numbers = _of_meshes(built, torques), np.array(built.mesh_numbers)
-    of_stages = [numbers == number for number in built.numbers]
+    together = [numbers == number for number in built.numbers]
 
     def at_output(name: str) -> np.ndarray:
         return np.stack([step * found[name] for step, found in zip(steps, each, strict=True)], -1)
@@ -76,11 +76,11 @@ def _of_drive(built: Ready, torques: np.ndarray) -> xr.Dataset:
     slopes = np.stack([found["tangent_torsional_stiffness"] for found in each], -1)
     slopes *= copies / steps**2
     slope, turned = 1.0 / np.sum(1.0 / slopes, axis=-1), at_output("wind_up")
-    slopes = np.stack([1.0 / np.sum(1.0 / slopes[:, own], axis=-1) for own in of_stages], -1)
-    turned = np.stack([np.sum(turned[:, own], axis=-1) for own in of_stages], -1)
+    slopes = np.stack([1.0 / np.sum(1.0 / slopes[:, own], axis=-1) for own in together], -1)
+    turned = np.stack([np.sum(turned[:, own], axis=-1) for own in together], -1)
     told_parts = (one.design.mesh.body.yielding for one in built.meshes)
     yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
-    parts = _parts_of_stages(built, steps, each)
+    parts = _parts_of_meshes(built, steps, each)
     assumed = proportions_words(built.meshes)
     data = dataset(
         {
@@ -110,7 +110,7 @@ def _of_drive(built: Ready, torques: np.ndarray) -> xr.Dataset:
         travels=built.travels,
         warnings=[
             *_lost(built, turned.sum(axis=-1), torques),
-            *_on_edges_of_stages(built, torques, each),
+            *_on_edges_of_meshes(built, torques, each),
         ],
         note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
         brief=f"{'; '.join(rigid)} are not in it{proportions_counted(built.meshes)}",
@@ -141,7 +141,7 @@ def mesh_slopes(built: Ready) -> np.ndarray:
     return np.array([np.interp(load, torques, slope) for slope in slopes])
 
 
-def _parts_of_stages(
+def _parts_of_meshes(
     built: Ready, steps: np.ndarray, each: list[dict[str, Any]]
 ) -> dict[str, np.ndarray]:
     """Parts of the wind-up at the output by stage and name [rad]; nothing where no body couples teeth."""
@@ -155,7 +155,7 @@ def _parts_of_stages(
     return parts
 
 
-def _on_edges_of_stages(built: Ready, torques: np.ndarray, each: list[dict[str, Any]]) -> list[str]:
+def _on_edges_of_meshes(built: Ready, torques: np.ndarray, each: list[dict[str, Any]]) -> list[str]:
     return [
         in_stage(number, told)
         for number, found in zip(built.mesh_numbers, each, strict=True)

@@ -240,7 +240,7 @@ def _told_or_error(
 
 
 def _told(whole: _Pair, gears: list[_Gear]) -> list[str]:
-    for beside in _stages(whole, gears):
+    for beside in _in_turn(whole, gears):
         wrong = Complaints()
         for faults in beside:
             wrong.tried(_refuse_first, faults)
@@ -255,11 +255,11 @@ def cannot_run(pair: CylindricalPair) -> Bool[Array, ""]:
     Args:
         pair: with the dimensions that follow.
     """
-    every = chain.from_iterable(chain.from_iterable(_stages(*_named(pair))))
+    every = chain.from_iterable(chain.from_iterable(_in_turn(*_named(pair))))
     return jnp.any(jnp.stack([jnp.asarray(fails) for fails, _ in every]))
 
 
-def _stages(whole: _Pair, gears: list[_Gear]) -> Iterator[list[Faults]]:
+def _in_turn(whole: _Pair, gears: list[_Gear]) -> Iterator[list[Faults]]:
     """Whether a design has each fault, and what refuses one that has it.
 
     What has nothing to do with each other stands beside each other; all that comes later rests on it.
