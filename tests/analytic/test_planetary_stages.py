@@ -282,6 +282,9 @@ def test_second_gears_of_the_planets_make_a_3k_set():
     got, want = figures(short), figures(long)
     for name in ("mean_efficiency", "mean_input_torque", "stage_loss"):
         assert got[name] == pytest.approx(want[name], rel=1e-9), name
+    # Events of its meshes coincide: which contacts carry at them does not hang on rounding.
+    for name in ("max_input_torque", "min_input_torque", "max_efficiency", "min_efficiency"):
+        assert got[name] == pytest.approx(want[name], rel=1e-9), name
 
 
 @pytest.mark.whole
@@ -597,3 +600,24 @@ def test_pins_in_their_place_need_no_unit(tmp_path, text):
         InputError, match=r'"20" has no unit where a length is needed; write "20 um"'
     ):
         load_case(tmp_path / "case.toml")
+
+
+@pytest.mark.whole
+def test_a_mesh_that_carries_nothing_without_losses_does_not_lock_a_set():
+    """Between two rings alike the held sun bears what their meshes lose, on the flank that they press."""
+    second = {"teeth": [25, 96], "face_width": "8.78 mm", "module": "0.486 mm"}
+    second["profile_shift"] = [0.022, "from centre distance"]
+    ends = {"input": "ring", "output": "second ring", "held": "sun"}
+    table = {"family": "planetary", "teeth": [44, 25, 96], "planets": 5, "module": "0.5 mm"}
+    table |= {
+        "face_width": "6.42 mm",
+        "profile_shift": [0.278, 0.05],
+        "fillet_radius": [0.3, 0.2, 0.1],
+    }
+    built = alone({**table, **ends, "second": second}, 2.0, SPEED)
+    found = figures(built)
+    assert not found["locked"]
+    taken = found["mean_input_torque"] * SPEED
+    assert taken == pytest.approx(2.0 * SPEED * built.output_rate + found["mean_loss"], rel=1e-9)
+    # Of each ring mesh about the loss of a pair with this coefficient.
+    assert 0.98 < found["mean_efficiency"] < 0.999

@@ -16,6 +16,7 @@ from pitchpoint.efficiency.drag import ROUNDING as NO_TURNING
 from pitchpoint.efficiency.quasi_static import Models, Operation, events_of, extremes, power_ratio
 from pitchpoint.efficiency.train import Train, TrainMesh
 from pitchpoint.factored import as_array, root
+from pitchpoint.gears.period import apart
 from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import UNSOLVED
 from pitchpoint.lubrication.conditions import Conditions, evaluate
@@ -194,15 +195,15 @@ def train_cycle(
     mean over a period.
     """
     demand_double()
-    phase, weight = (
-        one.ravel() for one in period_nodes(jnp.concatenate([*_events(train, models)]), nodes)
-    )
+    phase, weight = period_nodes(jnp.concatenate([*_events(train, models)]), nodes)
+    phase, weight = apart(phase, weight).ravel(), weight.ravel()
     every = [
         _Meshing(train, one, operation, laws, phase)
         for one, laws in zip(train.meshes, models, strict=True)
     ]
     if train.drag:
         _press(train, every, operation)
+    _leave_open(every)
     solved = _solve(train, every, operation)
     lost = solved.code != int(Code.SOLVED)
     forces = _by_mesh(every, jnp.where(lost[:, None], jnp.nan, solved.forces))
@@ -251,7 +252,7 @@ class _Meshing:
         self, train: Train, mesh: TrainMesh, operation: Operation, models: Models, phase: Nodes
     ) -> None:
         self.mesh, self.models = mesh, models
-        self.braked, self.planets = bool(train.drag), train.planets
+        self.planets = train.planets
         pair, turned = mesh.design.mesh, train.onward(mesh) * mesh.periods * phase
         self.contacts: Contacts = pair.contacts(mesh.phases[:, None] + turned)
         motion = train.motion(mesh)
@@ -264,6 +265,7 @@ class _Meshing:
         arm = jnp.abs(total(self.share * along(self.contacts.normal, pair.loaded)))
         self.rates = motion * operation.speed
         self.carry(self.operation.load / arm)
+        self.either: Bool[Array, "..."] = jnp.asarray(bool(train.drag))
         slip, roll = along(self.contacts.slip_arm, motion), along(self.contacts.roll_arm, motion)
         # Beside the pitch point by rounding, a contact does not slide.
         self.sense = jnp.where(jnp.abs(slip) > 1e-13 * jnp.abs(roll), jnp.sign(slip), 0.0)
@@ -295,8 +297,8 @@ class _Meshing:
         return coefficient, jnp.where(loaded, resistance, 0.0)
 
     def pressing(self, force: Copies) -> Copies:
-        """One, or minus one where losses beside the teeth press the other flanks."""
-        return jnp.where(force < 0.0, -1.0, 1.0) if self.braked else jnp.ones_like(force)
+        """One, or minus one where losses press the other flanks, where they may: see `_leave_open`."""
+        return jnp.where((force < 0.0) & self.either, -1.0, 1.0)
 
     def torques(self, coefficient: Lanes, force: Copies) -> Float[Array, "dof copy node"]:
         """Torques from outside on the coordinates that a unit of normal force on each copy asks for."""
@@ -389,7 +391,7 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
         # A body that idles is in balance within rounding of the forces in the rest of the train.
         size = jnp.maximum(size, IDLE * jnp.max(size, axis=-1, keepdims=True))
         residual = jnp.max(jnp.abs(left) / jnp.where(size > 0.0, size, 1.0), axis=-1)
-        return nominal * _least(arms * nominal[:, None], wanted), residual, steps + 1
+        return usual * _least(arms * usual[:, None], wanted), residual, steps + 1
 
     def goes_on(held: tuple[Forces, Nodes, Array]) -> Array:
         _, residual, steps = held
@@ -397,12 +399,16 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
 
     nominal = jnp.concatenate([one.nominal for one in every]).T
     largest = jnp.max(nominal, axis=-1, keepdims=True)
+    idle = nominal <= IDLE * largest
     nominal = jnp.maximum(nominal, jnp.where(largest > 0.0, IDLE * largest, 1.0))
+    # Forces of a mesh that idles without losses are free to become what these ask for.
+    usual = jnp.where(idle & (largest > 0.0), largest, nominal)
     first = nominal, jnp.full(nominal.shape[0], jnp.inf), jnp.asarray(0)
     forces, residual, steps = jax.lax.while_loop(goes_on, step, first)
-    pulled = jnp.any(forces < -IDLE * jnp.max(jnp.abs(forces), axis=-1, keepdims=True), axis=-1)
-    # With losses beside the teeth other flanks are pressed there, and no forces hold a train that is locked.
-    pulled &= not train.drag
+    pulled = forces < -IDLE * jnp.max(jnp.abs(forces), axis=-1, keepdims=True)
+    # Where other flanks may be pressed, no forces hold a train that is locked.
+    either = [jnp.broadcast_to(one.either, one.nominal.shape) for one in every]
+    pulled = jnp.any(pulled & ~jnp.concatenate(either).T, axis=-1)
     code = jnp.where(pulled, int(Code.LOCKED), int(Code.SOLVED))
     code = jnp.where(residual <= UNSOLVED, code, int(Code.NOT_CONVERGED))
     return _Balanced(forces, residual, steps, code)
@@ -583,6 +589,17 @@ def _on_rows(train: Train, places: Sequence[_Place]) -> Float[Array, "node row"]
                     taken = torque[number] if body in train.planets else jnp.sum(torque, axis=0)
                     rows[body, number] += taken
     return jnp.stack([*rows.values()], axis=-1)
+
+
+def _leave_open(every: Sequence[_Meshing]) -> None:
+    """Let losses choose the flanks of meshes that carry nothing without them.
+
+    As that of the sun of a 3K set between two rings: what rounding leaves has no side.
+    """
+    nominal = jnp.concatenate([one.nominal for one in every])
+    idle = IDLE * jnp.max(nominal, axis=0)
+    for one in every:
+        one.either = one.either | (one.nominal <= idle)
 
 
 def _press(train: Train, every: Sequence[_Meshing], operation: Operation) -> None:

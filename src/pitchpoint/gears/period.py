@@ -5,12 +5,16 @@ from functools import cache
 import numpy as np
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 
-__all__ = ["INSIDE", "between", "edges", "lobatto", "nodes"]
+__all__ = ["INSIDE", "apart", "between", "edges", "lobatto", "nodes"]
 
 INSIDE = 1e-9
 """Nodes keep this relative distance from the events, so that each lies on one side of them."""
+
+
+TOGETHER = 1e-9
+"""Part of a period within which events are at the same phase: that of rounding, and of printed numbers."""
 
 
 def edges(events: Float[Array, " event"]) -> Float[Array, " edge"]:
@@ -36,6 +40,23 @@ def nodes(
     start, length = ends[:-1, None], jnp.diff(ends)[:, None]
     unit, weight = lobatto(count)
     return start + length * unit, length * weight
+
+
+def apart(
+    phase: Float[Array, "segment node"], weight: Float[Array, "segment node"]
+) -> Float[Array, "segment node"]:
+    """Phases whose segments between events that are together are at the first node behind these.
+
+    Which contacts carry between two events that rounding alone parts, hangs on rounding.
+
+    Args:
+        phase, weight: see `nodes`.
+    """
+    short = jnp.sum(weight, axis=-1) < TOGETHER
+    first = jnp.where(short, jnp.inf, phase[:, 0])
+    behind = jax.lax.cummin(first, reverse=True)
+    behind = jnp.where(jnp.isinf(behind), jnp.min(first) + 1.0, behind)
+    return jnp.where(short[:, None], behind[:, None], phase)
 
 
 @cache
