@@ -571,6 +571,9 @@ def export(
     modelica: Annotated[
         bool, typer.Option("--modelica", help="A package of Modelica around LossyGear.")
     ] = False,
+    fmu: Annotated[
+        bool, typer.Option("--fmu", help="The loss map as a unit of FMI 2.0 for co-simulation.")
+    ] = False,
     law: Annotated[
         str | None,
         typer.Option(
@@ -622,7 +625,7 @@ def export(
     asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx, "evaluator": evaluator}
     formats = [name for name, wanted in asked.items() if wanted]
     joints = {"mujoco": mujoco, "urdf": urdf, "ros2_control": ros2_control, "isaac": isaac}
-    joints |= {"modelica": modelica}
+    joints |= {"modelica": modelica, "fmu": fmu}
     targets = [name for name, wanted in joints.items() if wanted]
     outcomes, folder = open_result(result), output or Path(result) / "export"
     if formats or not targets:

@@ -435,6 +435,7 @@ def test_pages_can_be_read_without_the_site(
         ("MuJoCo", ["guide/simulators"]),
         ("URDF", ["guide/simulators"]),
         ("Modelica", ["guide/simulators"]),
+        ("FMI", ["guide/simulators"]),
         ("armature", ["guide/simulators"]),
         ("frictionloss", ["guide/simulators"]),
     ],

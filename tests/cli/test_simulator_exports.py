@@ -3,6 +3,7 @@
 import re
 import runpy
 import xml.etree.ElementTree as ElementTree
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +20,15 @@ WISHES = Asked(torque_range="5 N m:25 N m", speed_range="2 rpm:20 rpm")
 
 def handed(made: Outcome, folder: Path, target: str, wishes: Asked | None = None) -> HandedOver:
     return hand_over({"default": made}, folder, [target], wishes)[target]
+
+
+def unpacked(path: Path) -> list[Path]:
+    """A file of text, or those of an archive."""
+    if path.suffix != ".fmu":
+        return [path]
+    with zipfile.ZipFile(path) as archive:
+        archive.extractall(path.parent)
+        return [path.parent / one for one in archive.namelist() if not one.startswith("binaries/")]
 
 
 def rows(lines: list[str]) -> np.ndarray:
@@ -68,11 +78,13 @@ def test_what_somebody_typed_ends_no_remark(target: str, tmp_path: Path) -> None
     made = made_joint()
     made.manifest["members"][0] = "a -- b <c>&"
     made.manifest |= {"case": '--> 1 end; */ """ \'', "driver": "a -- b <c>&", "warnings": [TITLE]}
-    for path in handed(made, tmp_path, target).paths:
+    paths = handed(made, tmp_path, target).paths
+    for path in [one for each in paths for one in unpacked(each)]:
         text = path.read_text("utf-8")
         if path.suffix in (".xml", ".urdf"):
             root = ElementTree.fromstring(text)
-            names = [one.get("name") or one.get("class") or "x" for one in root.iter()]
+            named = [one for one in root.iter() if one.tag not in ("Unit", "File")]
+            names = [one.get("name") or one.get("class") or "x" for one in named]
             assert all(re.fullmatch(r"[A-Za-z]\w*", name) for name in names)
         elif path.suffix == ".py":
             compile(text, path.name, "exec")

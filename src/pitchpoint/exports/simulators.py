@@ -47,6 +47,7 @@ TARGETS: Mapping[str, str] = {
     "ros2_control": "pitchpoint.exports.ros2_control:write_ros2_control",
     "isaac": "pitchpoint.exports.isaac:write_isaac",
     "modelica": "pitchpoint.exports.modelica:write_modelica",
+    "fmu": "pitchpoint.exports.fmu:write_fmu",
 }
 """Where each target of a hand-over is written, by the name of its folder and option."""
 
