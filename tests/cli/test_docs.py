@@ -436,6 +436,7 @@ def test_pages_can_be_read_without_the_site(
         ("URDF", ["guide/simulators"]),
         ("Modelica", ["guide/simulators"]),
         ("FMI", ["guide/simulators"]),
+        ("Simulink", ["guide/simulators"]),
         ("armature", ["guide/simulators"]),
         ("frictionloss", ["guide/simulators"]),
     ],

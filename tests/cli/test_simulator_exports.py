@@ -80,6 +80,8 @@ def test_what_somebody_typed_ends_no_remark(target: str, tmp_path: Path) -> None
     made.manifest |= {"case": '--> 1 end; */ """ \'', "driver": "a -- b <c>&", "warnings": [TITLE]}
     paths = handed(made, tmp_path, target).paths
     for path in [one for each in paths for one in unpacked(each)]:
+        if path.suffix == ".mat":
+            continue
         text = path.read_text("utf-8")
         if path.suffix in (".xml", ".urdf"):
             root = ElementTree.fromstring(text)
