@@ -660,7 +660,7 @@ def test_a_result_without_the_map(
     assert "--set loss_map.quadrants=4" in told
     assert command("export", tmp_path / "other", "--mujoco") == 2
     told = capsys.readouterr().err
-    assert "--mujoco: the result has no loss map of the output, on which a joint rests" in told
+    assert "--mujoco: the result has no loss map of the output" in told
     assert "--set loss_map.quadrants=4" in told
     assert (
         open_result(folder)["default"].parts["four_quadrants"].attrs["title"]
@@ -771,6 +771,8 @@ def test_a_duty_cycle_is_told_by_the_map(
     assert told["lost_energy"] == pytest.approx(2.0 * lost[0] + lost[1], rel=1e-9)
     assert told["output_energy"] == pytest.approx(2.0 * 20.0 * speed, rel=1e-12)
     assert told["returned_energy"] == pytest.approx(20.0 * speed, rel=1e-12)
+    assert command("duty", folder, path, "--law", "xu") == 2
+    assert "is not a friction law of this result" in capsys.readouterr().err
     path.write_text(head + "2, 20, 60, 400\n")
     assert command("duty", folder, path) == 2
     assert (

@@ -15,6 +15,7 @@ from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import write_text
+from pitchpoint.runs.joint_model import map_of_output
 from pitchpoint.runs.run import Outcome
 
 __all__ = [
@@ -69,9 +70,12 @@ def evaluator(outcome: Outcome, folder: Path) -> list[Path]:
     Raises:
         InputError: the result has no such map, or too large a one.
     """
-    _demand_map(outcome)
     try:
-        table = table_of(outcome.parts[FOUR_QUADRANTS.name])
+        data = map_of_output(outcome)
+    except InputError as error:
+        raise error.at(key="--evaluator") from None
+    try:
+        table = table_of(data)
         texts = {"loss_table.py": module(outcome, table), "loss_table.h": header(outcome, table)}
     except (
         AttributeError,
@@ -85,16 +89,6 @@ def evaluator(outcome: Outcome, folder: Path) -> list[Path]:
     for name, text in texts.items():
         write_text(folder / name, text)
     return [folder / name for name in texts]
-
-
-def _demand_map(outcome: Outcome) -> None:
-    """InputError unless the result has such a map."""
-    name = FOUR_QUADRANTS.name
-    if name not in outcome.parts:
-        why = outcome.manifest["lacks"].get(name)
-        how = f"run {outcome.manifest['case']} with --set loss_map.quadrants=4, which computes it"
-        told = f"the result has no {FOUR_QUADRANTS.title}"
-        raise InputError(f"{told}: {why}" if why else f"{told}; {how}", key="--evaluator")
 
 
 def demand_room(table: LossTable, key: str) -> None:

@@ -8,7 +8,6 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from pitchpoint.analyses.four_quadrants import table_of
-from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
 from pitchpoint.duty_cycle.history import (
     LoadHistory,
@@ -21,6 +20,7 @@ from pitchpoint.duty_cycle.motor import Motor
 from pitchpoint.duty_cycle.tooth_life import tooth_life
 from pitchpoint.errors import InputError
 from pitchpoint.notebook.result import Result
+from pitchpoint.runs.joint_model import law_of, map_of_output
 from pitchpoint.runs.run import Outcome
 
 if TYPE_CHECKING:
@@ -68,11 +68,12 @@ def duty(
 
     Example:
         >>> import pitchpoint as pp
-        >>> result = pp.run("drive.toml", changes={"loss_map.quadrants": 4})  # doctest: +SKIP
+        >>> result = pp.run("drive.toml", settings={"loss_map.quadrants": 4})  # doctest: +SKIP
         >>> pp.duty(result, [0.0, 1.0, 3.0], [20.0, 60.0, -10.0], 2.0).lost_energy  # doctest: +SKIP
     """
     outcome = _outcome(result, variant)
-    data = outcome.parts[FOUR_QUADRANTS.name]
+    data = map_of_output(outcome)
+    table = table_of(data)
     travels = data["output_torque"].attrs["units"] == "N"
     usual = float(data.attrs["degree"]) if temperature is None else temperature
     if torque is None and speed is None:
@@ -82,9 +83,9 @@ def duty(
     else:
         history = load_history(time, torque, speed, usual)  # type: ignore[arg-type]
     cycle = duty_dataset(
-        table_of(data),
+        table,
         history,
-        law=law,
+        law=law_of(table, law or None),
         motor=motor,
         lives=lives,
         heating=heating,
@@ -100,18 +101,11 @@ def duty(
 
 
 def _outcome(result: Result, variant: str | None) -> Outcome:
-    """That of a variant, with the map; InputError without."""
+    """That of a variant, the first one by default; InputError where there is no such variant."""
     name = next(iter(result)) if variant is None else variant
     if name not in result:
         raise InputError(f"there is no variant {name!r}, but {', '.join(result)}", key="variant")
     outcome: Outcome = result[name]
-    if FOUR_QUADRANTS.name not in outcome.parts:
-        case = outcome.manifest["case"]
-        why = outcome.manifest["lacks"].get(FOUR_QUADRANTS.name)
-        raise InputError(
-            f"the result has no {FOUR_QUADRANTS.title}: "
-            + (why or f"run {case} with --set loss_map.quadrants=4, which computes it")
-        )
     return outcome
 
 

@@ -26,7 +26,16 @@ from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["AngleWaves", "JointModel", "WindUpTable", "joint_model", "part_of_map", "quantity_of"]
+__all__ = [
+    "AngleWaves",
+    "JointModel",
+    "WindUpTable",
+    "joint_model",
+    "law_of",
+    "map_of_output",
+    "part_of_map",
+    "quantity_of",
+]
 
 LEAST_WAVE = 0.01
 """Part of the largest wave of an error from which on one counts."""
@@ -291,9 +300,9 @@ def joint_model(
     Raises:
         InputError: the result has no such map, the map no such law, or the inertia is no such quantity.
     """
-    data = _map_of(outcome)
+    data = map_of_output(outcome)
     table, record = table_of(data), outcome.manifest
-    name = _law_of(table, law)
+    name = law_of(table, law)
     ratio, speed = _ratio(record), float(data["output_speed"].max())
     travels = [*map(str, record["travels"])]
     found, lacks = _parts(outcome, name, ratio, float(data.attrs["load"]))
@@ -402,18 +411,19 @@ def quantity_of(value: Any, unit: str, key: str) -> float | None:
         raise error.at(key=key) from None
 
 
-def _map_of(outcome: Outcome) -> xr.Dataset:
+def map_of_output(outcome: Outcome) -> xr.Dataset:
     """The loss map of the output; InputError, and how it is had, unless there is one."""
     name = FOUR_QUADRANTS.name
     if name in outcome.parts:
         return outcome.parts[name]
     why = outcome.manifest["lacks"].get(name)
     how = f"run {outcome.manifest['case']} with --set loss_map.quadrants=4, which computes it"
-    told = f"the result has no {FOUR_QUADRANTS.title}, on which a joint rests"
+    told = f"the result has no {FOUR_QUADRANTS.title}"
     raise InputError(f"{told}: {why}" if why else f"{told}; {how}")
 
 
-def _law_of(table: LossTable, law: str | None) -> str:
+def law_of(table: LossTable, law: str | None) -> str:
+    """A friction law of a map by name, the first one by default; InputError for another."""
     names = [*table.loss_torques]
     if law is None or law in names:
         return law or names[0]
