@@ -194,9 +194,17 @@ _OTHER_COMMANDS = {
     **dict.fromkeys(("list", "ls"), "pitchpoint cases lists the shipped ones"),
     **dict.fromkeys(("init", "create", "template"), "pitchpoint new FAMILY writes a case file"),
     "help": "pitchpoint docs has the pages",
+    "study": "a table [studies] of a case, or pitchpoint run CASE --sweep KEY=START:STOP:COUNT",
     "sweep": 'it is an option: pitchpoint run CASE --sweep operation.speed="500 rpm:3000 rpm:11"',
 }
 """Commands as other programs have them, with what to call."""
+
+_TAKES = {
+    "models": "one kind or name, such as friction",
+    "cases": "nothing and lists all; pitchpoint show CASE has the inputs of one",
+    "new": "one family; keys follow in the file",
+}
+"""What commands take that are called with more words than that."""
 
 _OPTIONS = {
     "--set": '--set operation.torque="50 N m"',
@@ -227,6 +235,8 @@ def _advice(told: str, of: str) -> str:
         "explore",
     ):
         return "; it takes one case, pitchpoint compare several"
+    if told.startswith("Got unexpected extra") and of.split()[-1] in _TAKES:
+        return f"; it takes {_TAKES[of.split()[-1]]}"
     if told.startswith("Missing argument 'CASE"):
         return (
             "; a case is a TOML file (pitchpoint new writes one) or a name out of pitchpoint cases"

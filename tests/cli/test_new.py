@@ -152,6 +152,11 @@ def test_a_planetary_set_for_a_ratio_turns_so(ratio: float, sense: str) -> None:
 
 
 @pytest.mark.whole
+def test_a_set_that_turns_the_other_way_says_so() -> None:
+    assert "Ratio -1.95263: its output turns against the input." in case_for_ratio("3k", 2.0)
+    assert "against the input" not in case_for_ratio("planetary", 5.0)
+
+
 @pytest.mark.parametrize(("family", "ratio"), [("planetary", 5.0), ("3K", 100.0)])
 def test_the_module_is_the_smallest_that_bears_the_torque(family: str, ratio: float) -> None:
     text = case_for_ratio(family.lower(), ratio, torque="200 N m")

@@ -2824,7 +2824,8 @@ def _needed(location: tuple[Any, ...], model: type[BaseModel]) -> str:
         return f"; write {quantity.example}; {quantity.allowed}"
     if len(location) == 1:
         needed = [name for name, field in fields.items() if field.is_required()]
-        return f"; a case file needs the tables {', '.join(needed)}"
+        begin = "; pitchpoint new spur writes a file to begin with"
+        return f"; a case file needs the tables {', '.join(needed)}{begin}"
     if get_origin(info.annotation) is tuple:
         return "; write a list"
     if alternatives(info.annotation):

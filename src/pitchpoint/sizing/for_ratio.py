@@ -121,7 +121,7 @@ def case_for_ratio(
 
     if torque is None:
         remark = "The module is not sized: --torque is what the output bears."
-        return template(named, with_rest(1.0), [f"Ratio {met:.6g}. {remark}"])
+        return template(named, with_rest(1.0), [f"{_met(met, ratio)}. {remark}"])
     module, safeties = _sized(named, with_rest)
     borne = ", ".join(f"{part}s {value:.3g}" for part, value in safeties.items())
     asked = " and ".join(f"{least:g} ({part}s)" for part, least in SAFETIES.items())
@@ -129,11 +129,17 @@ def case_for_ratio(
         named,
         with_rest(module),
         [
-            f"Ratio {met:.6g}. Module {module:g} mm for {torque}: least safeties by ISO 6336 {borne}; asked "
-            f"were {asked}.",
+            f"{_met(met, ratio)}. Module {module:g} mm for {torque}: least safeties by ISO 6336 {borne}; "
+            f"asked were {asked}.",
             "Load factors but K_v and that of planets are 1: give those of your drive in [strength].",
         ],
     )
+
+
+def _met(met: float, ratio: float) -> str:
+    """The ratio of a set in words; that of another sense than was asked says so."""
+    against = ": its output turns against the input" if met * ratio < 0.0 else ""
+    return f"Ratio {met:.6g}{against}"
 
 
 def _check(key: str, read: Callable[[], float]) -> float:
