@@ -120,7 +120,7 @@ def test_a_torque_that_holds_hardly_anything_is_told_as_none_is(
         assert "A torque to start of 0.3 N m beside 0.3 N m in slow motion is too low" in told
         assert [*beside_torques_at_rest(moving[1], running)] == [
             "at 1500\u00a0rpm",
-            *["too low, drives take up to many times as much; no breakaway in [losses]"] * 2,
+            *["too low by up to many times; no breakaway in [losses]"] * 2,
         ]
         every = moving[1].parts["four_quadrants"]
         bare = every.drop_vars([end for ends in HOLDING_BANDS.values() for end in ends])

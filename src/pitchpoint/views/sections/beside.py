@@ -275,7 +275,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield from [Paragraph(show.pretty(told), "note")] if told else []
 
 
-_TOO_LOW = "too low, drives take up to many times as much; no breakaway in [losses]"
+_TOO_LOW = "too low by up to many times; no breakaway in [losses]"
 """Beside a torque from rest of which nothing says what holds it there."""
 
 _FROM_REST, _DOUBTED = 70.1, 79.6
