@@ -2001,13 +2001,15 @@ def _check_materials(case: DriveCase) -> None:
     """InputError for materials of gears of planetary sets where there is no set."""
     sets = [number for number, one in case.stages.items() if isinstance(one.gears, PlanetaryGears)]
     wrong = Complaints()
-    tables: dict[str, StageTable | DriveCase] = {
-        f"stages.{number}.": one for number, one in case.stages.items() if number not in sets
+    tables = {
+        f"stages.{number}.": one.materials
+        for number, one in case.stages.items()
+        if number not in sets
     }
     if not sets and case.gears is None:
-        tables[""] = case
-    for place, table in tables.items():
-        for key in sorted(table.materials.of_set):
+        tables[""] = case.materials
+    for place, materials in tables.items():
+        for key in sorted(materials.of_set):
             told = "is the material of a gear of a planetary set, which this is not; use gear_1 and gear_2"
             wrong.add(InputError(told, key=f"{place}materials.{key}"))
     wrong.demand_none()
