@@ -194,9 +194,11 @@ def heading(given: Simulated, what: str) -> Iterator[str]:
         f"{joint.limits['largest_speed']:.6g} {unit['speed']} of the output, and from "
         f"{joint.table.temperatures[0]:g} to {joint.table.temperatures[-1]:g} degC."
     )
-    yield "Not known of this drive: " + inert(
-        "; ".join(f"{name.replace('_', ' ')} ({why})" for name, why in joint.lacks.items()) + "."
-    )
+    if joint.lacks:
+        yield "Not known of this drive: " + inert(
+            "; ".join(f"{name.replace('_', ' ')} ({why})" for name, why in joint.lacks.items())
+            + "."
+        )
 
 
 def lost_lines(given: Simulated, law: LossLaw, beside: str) -> list[str]:
