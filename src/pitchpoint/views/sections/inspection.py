@@ -138,8 +138,9 @@ def _blocks(page: Page) -> Iterator[Block]:
 
 def _of_members(outcome: Outcome) -> xr.Dataset:
     """Inspection of the gears of a mesh, those of a train by the bodies that they are."""
-    data, names = outcome.parts["inspection"], named_members(outcome)
-    return data.assign_coords(gear=names) if len(names) == data.sizes["gear"] else data
+    data = outcome.parts["inspection"]
+    known = bool(outcome.manifest.get("bodies"))
+    return data.assign_coords(gear=named_members(outcome)) if known else data
 
 
 def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
