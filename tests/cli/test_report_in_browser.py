@@ -331,3 +331,15 @@ def test_every_figure_can_be_saved(wide: Browser, kind: str, tmp_path: Path) -> 
         assert len({len(row) for row in rows}) == 1
         assert all(float(x) is not None for _, x, *_ in rows[1:] if x)
     assert wide.console == []
+
+
+def test_what_stands_elsewhere_stays_folded_on_paper(wide: Browser) -> None:
+    list_again = "<details class=elsewhere><summary>5 numbers were not met</summary></details>"
+    wide.run(
+        f"(document.querySelector('#answer').insertAdjacentHTML('beforeend', '{list_again}'), null)"
+    )
+    wide.run("dispatchEvent(new Event('beforeprint'))")
+    assert wide.run("document.querySelectorAll('#answer details[open]').length") > 0
+    assert not wide.run("document.querySelector('.elsewhere').open")
+    wide.run("dispatchEvent(new Event('afterprint'))")
+    wide.window = None

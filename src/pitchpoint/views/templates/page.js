@@ -288,7 +288,7 @@
   let restore = [];
   window.addEventListener("beforeprint", () => {
     const alone = seen.alone !== undefined;
-    const folded = alone ? [] : [...document.querySelectorAll("details:not([open]):not(.beside)")];
+    const folded = alone ? [] : [...document.querySelectorAll("details:not([open], .beside, .elsewhere)")];
     const hidden = alone ? [] : [...document.querySelectorAll(".pane[hidden]")];
     for (const one of folded) one.open = true;
     for (const one of hidden) one.hidden = false;
