@@ -180,16 +180,25 @@ def test_a_short_detail_is_whole() -> None:
 def test_what_a_case_asks_for_by_a_key_of_its_own_stands_before_what_follows(
     pair: dict[str, Outcome],
 ) -> None:
-    inspected = {"table": "stages", "key": "0.gears.inspection.tooth_thickness", "value": 1.0}
+    film = {"table": "models", "key": "film_thickness", "value": "dowson_higginson_1977"}
 
     def names(status: str) -> list[str]:
-        rows = [*pair["default"].manifest["inputs"], {**inspected, "status": status}]
+        rows = [*pair["default"].manifest["inputs"], {**film, "status": status}]
         asked = doubting(pair["default"], inputs=rows)
         return [figure.name for figure in key_figures(in_order(), asked)]
 
     usual, asked = names("default"), names("given")
-    assert usual.index("Stress of roots") < usual.index("Backlash")
-    assert asked.index("Loss") < asked.index("Backlash") < asked.index("Stress of flanks")
+    assert usual.index("Stress of roots") < usual.index("Backlash") < usual.index("Film ratio")
+    assert asked.index("Stress of roots") < asked.index("Film ratio") < asked.index("Backlash")
+
+
+def test_safeties_stand_behind_the_efficiency_where_a_case_has_a_table_on_strength(
+    pair: dict[str, Outcome],
+) -> None:
+    life = {"table": "strength", "key": "life", "value": 1.0, "status": "given"}
+    rated = doubting(pair["default"], inputs=[*pair["default"].manifest["inputs"], life])
+    names = [figure.name for figure in key_figures(in_order(), rated)]
+    assert names[:3] == ["Efficiency", "Stress of flanks", "Stress of roots"]
 
 
 def test_figures_that_do_not_fit_in_are_named_with_what_shows_them(

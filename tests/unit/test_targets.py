@@ -310,7 +310,8 @@ def test_numbers_of_an_independent_calculation_are_counted_apart():
         row("definition", "pass"),
     ]
     of_the_publication = (
-        "5 printed numbers: 2 met, 1 missed with a reason, 1 missed without a reason, 1 left out"
+        "5 printed numbers: 2 met, 1 missed with a reason, 1 missed without a reason, 1 left out; "
+        "1 of 1 predicted met"
     )
     assert in_words(rows) == of_the_publication
     beside = [row("reference", "pass"), row("reference", "miss")]
@@ -319,6 +320,6 @@ def test_numbers_of_an_independent_calculation_are_counted_apart():
         == f"{of_the_publication}; 2 of an independent calculation: 1 met, 1 missed without a reason"
     )
     found = [row("fitted", "pass"), row("calibrated", "pass"), row("predicted", "pass")]
-    assert in_words(found) == "3 printed numbers: 3 met (2 fitted)"
+    assert in_words(found) == "3 printed numbers: 3 met (2 fitted); 1 of 1 predicted met"
     assert in_words(beside[:1]) == "1 of an independent calculation: 1 met"
     assert in_words([]) == ""

@@ -67,9 +67,13 @@ def in_words(rows: Iterable[Row]) -> str:
 def _tally(rows: Sequence[Row]) -> str:
     ordered = sorted(rows, key=lambda row: ([*_VERDICTS].index(row.verdict), row.surprises))
     fitted = sum(row.verdict == "pass" and row.kind in FITTED for row in rows)
-    return ", ".join(
+    counted = ", ".join(
         f"{count} {told}{f' ({fitted} fitted)' if told == _MET and fitted else ''}"
         for told, count in Counter(map(_verdict, ordered)).items()
+    )
+    predicted = [row.verdict == "pass" for row in rows if row.kind == "predicted"]
+    return (
+        f"{counted}; {sum(predicted)} of {len(predicted)} predicted met" if predicted else counted
     )
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from itertools import islice
-from math import ceil, pi, sin
+from math import ceil, pi, radians, sin
 from typing import Any
 
 from pitchpoint import units
@@ -38,8 +38,8 @@ PIN = 0.4
 
 SUNS, LARGEST_RING = range(12, 81), 240
 LEAST_PLANET = 18
-UNDERCUT_BELOW = 17.1
-"""Teeth, 2 over the square of the sine of 20 degrees: fewer need a profile shift."""
+STRAIGHT = 1.1184
+"""Depth of the straight flank of the usual rack below its datum, 1.25 - 0.2 (1 - sin 20 deg) [modules]."""
 _BETWEEN_PLANETS = 2.5
 """Addenda and room between tip circles of neighbouring planets [modules]."""
 _NEAR = 0.005
@@ -173,8 +173,8 @@ def _planetary(ratio: float, planets: int) -> tuple[Making, float]:
     ends = {} if held == "ring" else {"input": turned, "output": loaded, "held": held}
     for sun, planet, ring in islice(planetary_teeth(basic(ratio), planets), MOST_TRIED):
         gears: Tree = {"teeth": [sun, planet, ring], "planets": planets, **ends}
-        if sun < UNDERCUT_BELOW:
-            gears["profile_shift"] = [ceil(100.0 * (1.0 - sun / UNDERCUT_BELOW)) / 100.0, 0.0]
+        if any(shifts := [_without_undercut(teeth) for teeth in (sun, planet)]):
+            gears["profile_shift"] = shifts
 
         def make(module: float, gears: Tree = gears, planet: int = planet) -> Tree:
             lengths = {
@@ -190,6 +190,11 @@ def _planetary(ratio: float, planets: int) -> tuple[Making, float]:
         f"no teeth for a ratio of {ratio:g} with {planets} planets can be made; take another number of them",
         key="ratio",
     )
+
+
+def _without_undercut(teeth: int) -> float:
+    """Least profile shift of two digits, not negative, with which a rack of 20 degrees does not undercut."""
+    return max(ceil(100.0 * (STRAIGHT - 0.5 * teeth * sin(radians(20.0)) ** 2)) / 100.0, 0.0)
 
 
 def _reach(planets: int) -> Iterator[tuple[tuple[Any, ...], float, float]]:

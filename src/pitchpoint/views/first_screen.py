@@ -221,6 +221,10 @@ def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
         *([Line(line, "doubt") for line in _folded(f"Doubtful: {text}", width)] for text in doubts),
     ]
     most = _DOUBTS + bool(fails)
+    if fails:  # room for what is asked first
+        every[len(fails) :] = [
+            [Line(show.first_clauses(f"Doubtful: {text}", width), "doubt")] for text in doubts
+        ]
     shown = every if len(every) <= most else every[: most - 1]
     while sum(map(len, shown)) > _OF_DOUBTS:
         shown = shown[:-1]

@@ -265,6 +265,17 @@ _NO_FILM = 1e-3
 """Film over composite Rq below which it is thinner than a molecule, where the entrainment turns."""
 
 
+_FULL, _BOUNDARY = 3.0, 1.0
+"""Film over composite Rq from which on the film is whole, and below which roughness carries most."""
+
+
+def _regime(ratio: float) -> str:
+    """How a film separates flanks, in the usual words (Hamrock, Schmid, Jacobson 2004, ch. 1)."""
+    if ratio >= _FULL:
+        return "full film"
+    return "mixed: rough peaks touch" if ratio >= _BOUNDARY else "boundary: rough peaks carry"
+
+
 def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     """The thinnest film over roughness and what asperities carry at most, under the first law."""
     data = outcome.parts.get("cycle")
@@ -276,7 +287,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         least = float(np.nanmin(ratio))
         value = show.number(least) if least >= _NO_FILM else f"below {_NO_FILM:g}"
         law = show.pretty(input_words(outcome, "models", "film_thickness"))
-        detail = f"thinnest film by {law} over composite Rq"
+        detail = f"{_regime(least)}; thinnest film by {law} over composite Rq"
         asked_by = "models.film_thickness", "models.asperity_load"
         yield KeyFigure(76.5, "Film ratio", value, detail, rank=least, asked_by=asked_by)
     if "asperity_load_ratio" in data:

@@ -88,7 +88,7 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
             59.0,
             "Backlash at the output",
             f"{value} {unit}",
-            "by tolerances, the input held" if _by_tolerances(data) else _of_nominal(nominal),
+            _whence(data, nominal),
             "" if _by_tolerances(data) else f"{value} {unit} nominal",
             asked_by=("gears.inspection",),
         )
@@ -107,6 +107,17 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     if '"from_stiffness" do' in outcome.manifest["lacks"].get("torsion", ""):
         how = 'load_sharing = "from_stiffness" has it'
         yield KeyFigure(79.5, "Torsional stiffness", "not asked", how)
+
+
+def _whence(data: xr.Dataset, nominal: float) -> str:
+    """By what the backlash at the output is, and which stages have no tolerances in it."""
+    if not _by_tolerances(data):
+        return _of_nominal(nominal)
+    numbers = json.loads(data.attrs["without_tolerances"])
+    if not numbers:
+        return "by tolerances, the input held"
+    several = "stages" if len(numbers) > 1 else "stage"
+    return f"without play of {several} {enumerated(numbers)}: no tolerances there"
 
 
 def _of_nominal(backlash: float) -> str:

@@ -198,14 +198,23 @@ def _blocks(page: Page) -> Iterator[Block]:
     return by_variant(page, "strength", _blocks_of)
 
 
+_ASKED, _UNASKED = 12.0, 40.0
+"""Place of safeties among the key figures: behind the efficiency where a case has a table on strength."""
+
+
 def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
     """The least safeties; where none is known, the largest stresses that are rated."""
     data = outcome.parts.get("strength")
     if data is None:
         return
+    asked = any(
+        row["status"] == "given" and row["table"].endswith("strength")
+        for row in outcome.manifest["inputs"]
+    )
+    first = _ASKED if asked else _UNASKED
     for order, where, part, stress, limit in (
-        (40.0, "flanks", "flank", "contact_stress", "hlim"),
-        (41.0, "roots", "root", "root_stress", "flim"),
+        (first, "flanks", "flank", "contact_stress", "hlim"),
+        (first + 1.0, "roots", "root", "root_stress", "flim"),
     ):
         known = data[f"{part}_safety"].where(np.isfinite(data[f"{part}_safety"]))
         if not known.isnull().all():
