@@ -779,3 +779,12 @@ def test_a_duty_cycle_is_told_by_the_map(
         "cycle.csv: temperature: 673.15 K, which are 400 degC, is no temperature"
         in capsys.readouterr().err
     )
+
+
+def test_files_of_the_map_say_what_is_doubtful_of_it(moving: tuple[Ready, Outcome]) -> None:
+    _, made = moving
+    doubtful = replace(made, manifest={**made.manifest, "warnings": ["The film */ is thin."]})
+    table = table_of(made.parts[FOUR_QUADRANTS.name])
+    for text in (header(doubtful, table), module(doubtful, table)):
+        assert "Doubtful: The film _/ is thin." in text
+        assert "Doubtful" not in text.replace("Doubtful: The film _/ is thin.", "")

@@ -237,6 +237,7 @@ def _head(outcome: Outcome, table: LossTable) -> Iterable[str]:
     yield BEYOND
     yield AT_REST
     yield str(data.attrs["note"])
+    yield from (f"Doubtful: {text}" for text in outcome.manifest["warnings"])
     yield f"Made by Pitchpoint {data.attrs['version']}."
 
 
