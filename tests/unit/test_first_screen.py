@@ -16,6 +16,7 @@ from screens import REPORT, faults_of_the_screen, screen
 from pitchpoint.cases.build import ALONE, LACKING
 from pitchpoint.doubts import Doubt
 from pitchpoint.results.target_rows import Row
+from pitchpoint.runs import run
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.columns import fitted
@@ -369,7 +370,26 @@ def test_rows_that_are_missed_beyond_two_lines_are_counted_with_the_command_that
     rows = [row | {"quantity": f"efficiency by Method {k} at the pitch point"} for k in range(9)]
     lines = shown({"default": doubting(pair["default"], rows=rows)})
     (first,) = (k for k, line in enumerate(lines) if line.startswith("Missed: "))
-    assert lines[first + 1].endswith("and 7 more: pitchpoint compare pair_23_61.toml")
+    assert lines[first + 1].endswith("and 7 more: pitchpoint compare results/pair")
+
+
+def test_rows_of_a_result_are_compared_without_another_run(
+    pair: dict[str, Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where these programs wrote it and finished it; else the case is computed."""
+    row = Row("efficiency", "Table 1", 1.0, 2.0, "1", 0.1, "predicted", "miss", "").as_json()
+    kept = doubting(pair["default"], rows=[row], finished=True, surroundings=run.surroundings())
+    (tmp_path / run.RUN).write_text("{}", "utf-8")
+    monkeypatch.setattr(run, "held", lambda *_: pytest.fail("computed anew"))
+    for change in ({}, {"finished": False}, {"rows": []}, {"surroundings": {"code": "older"}}):
+        made = {"default": doubting(kept, **change)}
+        monkeypatch.setattr(run, "open_result", lambda _, made=made: made)
+        if change:
+            with pytest.raises(pytest.fail.Exception, match="computed anew"):
+                run.compare_case(str(tmp_path))
+        else:
+            _, variant, rows = run.compare_case(str(tmp_path))
+            assert (variant, [one.as_json() for one in rows]) == ("default", [row])
 
 
 def test_key_figures_are_named_once(pair: dict[str, Outcome]) -> None:

@@ -85,7 +85,7 @@ def first_screen(
     at = _operation(outcome) if len(outcomes) == 1 else ""
     doubts = _doubts(outcomes, width)
     more = _more(outcomes, report, width) if tables else [Line(f"Report: {report}")]
-    rows = [*_rows_met(outcomes), *_missed(outcomes, width)]
+    rows = [*_rows_met(outcomes), *_missed(outcomes, report.parent, width)]
     folded = [line for text in rows for line in _folded(text, width)]
     if 1 + len(doubts) + len(folded) + len(more) > FEW_LINES:
         folded = [show.first_clauses(text, width) for text in rows]
@@ -319,10 +319,14 @@ def _rows_met(outcomes: Mapping[str, Outcome]) -> Iterator[str]:
             yield f"{start}{in_words(outcome.rows)}"
 
 
-def _missed(outcomes: Mapping[str, Outcome], width: int) -> Iterator[str]:
+_PATH = 30
+"""Longest folder that is named in a command on the first screen [characters]."""
+
+
+def _missed(outcomes: Mapping[str, Outcome], folder: Path, width: int) -> Iterator[str]:
     """Which printed numbers are missed, as many as two lines hold, and what shows them all."""
-    case = next(iter(outcomes.values())).manifest["case"]
-    command = f"pitchpoint compare {shlex.quote(case)}"
+    case, where = next(iter(outcomes.values())).manifest["case"], str(folder)
+    command = f"pitchpoint compare {shlex.quote(where if len(where) <= _PATH else case)}"
     names = dict.fromkeys(
         row.quantity
         for outcome in outcomes.values()
