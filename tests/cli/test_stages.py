@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pitchpoint import cli
-from pitchpoint.analyses.torsion import _on_edges_of_stages
+from pitchpoint.analyses.torsion import _on_edges_of_meshes
 from pitchpoint.cases.schema import Study, Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
@@ -187,10 +187,10 @@ def test_edges_that_carry_are_told_of_their_stage() -> None:
     built = Variant(tomllib.loads(TWO), "two.toml", "default").built({})
     torques, none = np.array([0.0, 150.0, 300.0]), {"wind_up": np.zeros(3)}
     much = none | {"edge_share": np.array([0.0, 0.01, 0.05])}
-    (told,) = _on_edges_of_stages(built, torques, [none, much])
+    (told,) = _on_edges_of_meshes(built, torques, [none, much])
     assert told.startswith("Stage 2: edges of the teeth")
     assert "carry up to 5 % of the load, that part at 300 N m" in told
-    assert _on_edges_of_stages(built, torques, [none, none]) == []
+    assert _on_edges_of_meshes(built, torques, [none, none]) == []
 
 
 def test_variants_change_one_stage() -> None:

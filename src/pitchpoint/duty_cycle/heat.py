@@ -56,7 +56,7 @@ class ThermalNetwork:
         >>> (drive.steady({"gears": 15.0, "housing": 6.0}) - drive.ambient).round(6).tolist()
         [40.5, 31.5]
         >>> [round(seconds, 2) for seconds in drive.time_constants.tolist()]
-        [1389.81, 62.17]
+        [1389.83, 62.17]
     """
 
     capacities: Mapping[str, float]

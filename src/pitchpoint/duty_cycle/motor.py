@@ -39,6 +39,7 @@ class Motor:
         InputError: a constant that is not above zero, or negative inertia or loss.
 
     Example:
+        >>> import numpy as np
         >>> motor = Motor(torque_constant=0.1, resistance=0.5)
         >>> motor.copper_loss(np.array([0.2]), 293.15).tolist()
         [2.0]
