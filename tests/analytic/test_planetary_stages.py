@@ -502,6 +502,7 @@ def test_losses_of_planets_belong_into_the_stage_that_is_a_set(stages, tables):
     assert told.splitlines()[:1] == tables
 
 
+@pytest.mark.whole
 def test_second_gears_with_as_many_teeth_as_the_first_are_gears_of_their_own():
     """Other shifts than the first have, teeth that one mate loads, a name of their own."""
     second = {
@@ -538,6 +539,7 @@ def contact_stresses(**tree):
     return of(load_case({**tree, **TABLES, **point}), "strength")["contact_stress"].values
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(("gears", "last"), [(SETS[0], "ring"), (three_k(), "second_ring")])
 def test_gears_of_a_set_have_materials_of_their_own(gears, last):
     """The same as of the meshes, each with its two; a set in a row takes those of the drive."""
