@@ -27,7 +27,7 @@ class Motor:
         torque_constant: torque over current [N m/A].
         resistance: at 20 degC, on which the current of `torque_constant` loses R i^2 [ohm].
         inertia: of the rotor with what turns beside it before the gears [kg m2].
-        iron_loss: at a rotor speed of 1 rad/s, P = iron_loss |speed|^iron_exponent [W].
+        iron_loss: at 1 rad/s; it goes with the speed to the power of iron_exponent [W].
         iron_exponent: 1 of hysteresis alone to 2 of eddy currents alone [1].
         largest_torque: that it gives for a moment; not asked where infinite [N m].
         largest_speed: likewise [rad/s].

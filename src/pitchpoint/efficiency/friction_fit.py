@@ -90,7 +90,8 @@ class LawError(NamedTuple):
     locked: int
 
 
-class MapRange(NamedTuple):
+@dataclass(frozen=True)
+class MapRange:
     """Part of a map: least and largest amount of torque and speed of the output, and temperatures.
 
     Attributes:
