@@ -235,8 +235,9 @@ def _row(place: str, error: LawError) -> str:
 
 
 def _range_words(given: Simulated) -> str:
-    assert given.within is not None
-    (low, high), (slow, fast), (degree, _) = given.within
+    within = given.within
+    assert within is not None
+    (low, high), (slow, fast), (degree, _) = within.torque, within.speed, within.temperature
     unit = given.joint.units
     return (
         f"The range: {low:.4g} to {high:.4g} {unit['torque']}, {slow:.4g} to {fast:.4g} {unit['speed']}, "
