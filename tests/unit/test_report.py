@@ -568,9 +568,12 @@ def test_the_page_holds_plotly_without_maps_and_space_in_a_third_of_its_size(pag
     script, whole = decoded(_plotly(page)).decode(), get_plotlyjs()
     modules = re.compile(r"\w+=W\(\(\w*,?\w*\)=>\{")
     assert modules.findall(script) == modules.findall(whole)  # texts within them alone are cut
-    assert len(whole) - len(script) > 6e5 and script.startswith(whole[:250])
-    assert len(_plotly(page)) < 0.35 * len(whole)
-    assert len(page.encode()) < 2.7e6
+    # The worker of older ones is not a text of its own and stays.
+    older = int(version("plotly").partition(".")[0]) < 7
+    least, part, most = (1e5, 0.42, 3e6) if older else (6e5, 0.35, 2.7e6)
+    assert len(whole) - len(script) > least and script.startswith(whole[:250])
+    assert len(_plotly(page)) < part * len(whole)
+    assert len(page.encode()) < most
 
 
 def test_nothing_is_loaded_from_elsewhere(page: str) -> None:
