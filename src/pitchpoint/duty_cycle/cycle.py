@@ -45,16 +45,21 @@ class Heating:
     motor: str = ""
 
     def __post_init__(self) -> None:
-        for name, body in (("gears", self.gears), ("motor", self.motor or self.gears)):
+        for name, body in (("gears", self.gears), ("motor", self.winding)):
             if body not in self.network.capacities:
                 known = ", ".join(self.network.bodies)
                 raise InputError(f"the network has no body {body!r}, but {known}", key=name)
+
+    @property
+    def winding(self) -> str:
+        """Body of the motor's winding."""
+        return self.motor or self.gears
 
     def _into(self, driver: DriverCourse) -> Floats:
         """Heat into each body, shape (n, b) [W]."""
         heat = np.zeros((driver.loss.size, len(self.network.bodies)))
         heat[:, self.place(self.gears)] += driver.loss
-        heat[:, self.place(self.motor or self.gears)] += driver.motor_loss
+        heat[:, self.place(self.winding)] += driver.motor_loss
         return heat
 
     def place(self, body: str) -> int:
@@ -63,8 +68,8 @@ class Heating:
 
     def periodic(
         self, table: LossTable, history: LoadHistory, law: str, motor: Motor | None
-    ) -> tuple[Floats, Floats]:
-        """Temperatures of the bodies in a cycle that repeats.
+    ) -> Floats:
+        """Temperatures of the bodies in a cycle that repeats, in the middle of each sample, shape (n, b) [K].
 
         Args:
             table: loss map, with whose nearest temperatures it goes on beyond its own on the way.
@@ -72,16 +77,13 @@ class Heating:
             law: of friction.
             motor: of the drive, or None.
 
-        Returns:
-            Temperatures at its begin, shape (b,), and in the middle of each sample, shape (n, b) [K].
-
         Raises:
             ConvergenceError: losses grow faster with the temperature than heat leaves.
         """
 
         def heat(degrees: Floats) -> Floats:
             warm = history.at_temperature(degrees[:, self.place(self.gears)])
-            winding = degrees[:, self.place(self.motor or self.gears)]
+            winding = degrees[:, self.place(self.winding)]
             return self._into(
                 driver_course(
                     table, warm, law=law, motor=motor, winding_temperature=winding, inside=False
@@ -127,9 +129,9 @@ def duty_dataset(
     ends: tuple[End, ...] = ("loaded",) if travels else ()
     coordinates: dict[str, Any] = {"time": history.time, "quadrant": [*QUADRANTS]}
     if heating is not None:
-        _, degrees = heating.periodic(table, history, law, motor)
+        degrees = heating.periodic(table, history, law, motor)
         history = history.at_temperature(degrees[:, heating.place(heating.gears)])
-        winding = degrees[:, heating.place(heating.motor or heating.gears)]
+        winding = degrees[:, heating.place(heating.winding)]
         extra["body_temperature"] = (("time", "body"), degrees)
         coordinates["body"] = [*heating.network.bodies]
     driver = driver_course(table, history, law=law, motor=motor, winding_temperature=winding)

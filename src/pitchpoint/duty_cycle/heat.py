@@ -181,17 +181,12 @@ class ThermalNetwork:
         rows = zip(begin, rates, forced, strict=True)
         return np.stack([_decaying(first, rate * durations, adds) for first, rate, adds in rows])
 
-    def periodic_with(
-        self, durations: Floats, heat: Callable[[Floats], Floats]
-    ) -> tuple[Floats, Floats]:
-        """Periodic temperatures under heat that depends on them.
+    def periodic_with(self, durations: Floats, heat: Callable[[Floats], Floats]) -> Floats:
+        """Periodic temperatures under heat that depends on them, in the middle of steps, shape (n, b) [K].
 
         Args:
             durations: of the steps of a cycle, shape (n,) [s].
             heat: into each body in each step at the temperatures in the middle of steps, both (n, b) [W].
-
-        Returns:
-            Temperatures at the begin, shape (b,), and in the middle of the steps, shape (n, b) [K].
 
         Raises:
             ConvergenceError: heat grows faster than it leaves.
@@ -204,8 +199,7 @@ class ThermalNetwork:
             return 0.5 * (ends[1:] + ends[:-1])
 
         cold = np.full((durations.size, len(self.bodies)), self.ambient)
-        middle = self._settled(again, cold)
-        return self.periodic(durations, heat(middle)), middle
+        return self._settled(again, cold)
 
     def _settled(self, again: Callable[[Floats], Floats], start: Floats) -> Floats:
         """Where temperatures and their losses agree, from the cold: of several the coolest, which is stable.

@@ -9,7 +9,7 @@ from pitchpoint.exports.simulators import (
     friction_at_load,
     heading,
     holding_friction,
-    lost_lines,
+    lost_without_load,
 )
 from pitchpoint.results.store import write_text
 
@@ -29,7 +29,7 @@ def write_isaac(given: Simulated, folder: Path) -> HandedOver:
         folder: of the file.
     """
     joint, unit, fit = given.joint, given.joint.units, friction_at_load(given)
-    lost = lost_lines(given, lambda torque, speed, _: fit.lost(0.0 * torque, speed), BESIDE)
+    lost = lost_without_load(given, fit, BESIDE)
     values = {
         "friction": holding_friction(given, fit.constant),
         "dynamic_friction": fit.constant,

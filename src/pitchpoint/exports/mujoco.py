@@ -13,7 +13,7 @@ from pitchpoint.exports.simulators import (
     Simulated,
     friction_at_load,
     heading,
-    lost_lines,
+    lost_without_load,
     most_torque,
     xml_comment,
 )
@@ -41,7 +41,7 @@ def write_mujoco(given: Simulated, folder: Path) -> HandedOver:
     """
     demand_room(given.joint.table, "--mujoco")
     fit = friction_at_load(given)
-    lost = lost_lines(given, lambda torque, speed, _: fit.lost(0.0 * torque, speed), BESIDE)
+    lost = lost_without_load(given, fit, BESIDE)
     texts = {
         "joint.xml": _fragment(given, fit, lost),
         "joint_friction.py": _module(given),

@@ -37,6 +37,7 @@ __all__ = [
     "heading",
     "holding_friction",
     "lost_lines",
+    "lost_without_load",
     "most_torque",
     "xml_comment",
 ]
@@ -224,6 +225,11 @@ def lost_lines(given: Simulated, law: LossLaw, beside: str) -> list[str]:
             f"Friction locks the drive at {locked} more points, where the map has no torque."
         )
     return [*lines, *wrap(beside, 78)]
+
+
+def lost_without_load(given: Simulated, fit: FrictionFit, beside: str) -> list[str]:
+    """The same of a target whose friction knows no load, see `friction_at_load`."""
+    return lost_lines(given, lambda torque, speed, _: fit.lost(0.0 * torque, speed), beside)
 
 
 def _row(place: str, error: LawError) -> str:

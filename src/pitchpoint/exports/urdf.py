@@ -7,7 +7,7 @@ from pitchpoint.exports.simulators import (
     Simulated,
     friction_at_load,
     heading,
-    lost_lines,
+    lost_without_load,
     xml_comment,
 )
 from pitchpoint.results.store import write_text
@@ -31,7 +31,7 @@ def write_urdf(given: Simulated, folder: Path) -> HandedOver:
         folder: of the file.
     """
     fit, joint, unit = friction_at_load(given), given.joint, given.joint.units
-    lost = lost_lines(given, lambda torque, speed, _: fit.lost(0.0 * torque, speed), BESIDE)
+    lost = lost_without_load(given, fit, BESIDE)
     what = "Joint of URDF: copy dynamics and limit into the joint of your robot."
     remarks = (
         f"friction [{unit['torque']}] and damping [{unit['torque']} over {unit['speed']}] are nearest to the "

@@ -21,7 +21,6 @@ from pitchpoint.duty_cycle.tooth_life import tooth_life
 from pitchpoint.errors import InputError
 from pitchpoint.notebook.result import Result
 from pitchpoint.runs.joint_model import law_of, map_of_output
-from pitchpoint.runs.run import Outcome
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -71,7 +70,7 @@ def duty(
         >>> result = pp.run("drive.toml", settings={"loss_map.quadrants": 4})  # doctest: +SKIP
         >>> pp.duty(result, [0.0, 1.0, 3.0], [20.0, 60.0, -10.0], 2.0).lost_energy  # doctest: +SKIP
     """
-    outcome = _outcome(result, variant)
+    outcome = result.outcome(variant)
     data = map_of_output(outcome)
     table = table_of(data)
     travels = data["output_torque"].attrs["units"] == "N"
@@ -98,15 +97,6 @@ def duty(
         return cycle
     (held,) = result.case(variant).held
     return cycle.merge(tooth_life(held.built({}), history))
-
-
-def _outcome(result: Result, variant: str | None) -> Outcome:
-    """That of a variant, the first one by default; InputError where there is no such variant."""
-    name = next(iter(result)) if variant is None else variant
-    if name not in result:
-        raise InputError(f"there is no variant {name!r}, but {', '.join(result)}", key="variant")
-    outcome: Outcome = result[name]
-    return outcome
 
 
 def _of_columns(columns: Any, temperature: Any, travels: bool) -> LoadHistory:

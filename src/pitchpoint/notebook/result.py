@@ -209,7 +209,7 @@ class Result(Mapping[str, Outcome]):
         """
         from pitchpoint.runs.joint_model import joint_model
 
-        outcome = self._outcome(variant)
+        outcome = self.outcome(variant)
         return joint_model(outcome, law=law, rotor_inertia=rotor_inertia)
 
     def gradients(
@@ -243,14 +243,19 @@ class Result(Mapping[str, Outcome]):
             cases = {name: runs.own_law(one, self._friction) for name, one in cases.items()}
         runs.keep(self, cases, Path(folder), studies=self._studies, overwrite=overwrite)
 
-    def _outcome(self, variant: str | None) -> Outcome:
+    def outcome(self, variant: str | None = None) -> Outcome:
+        """That of a variant, of the first one by default.
+
+        Raises:
+            InputError: there is no such variant.
+        """
         name = variant or next(iter(self))
         if name not in self:
             raise InputError(f"{shown(name)} is not a variant of this result{nearest(name, self)}")
         return self._outcomes[name]
 
     def _part(self, part: str, variant: str | None) -> xr.Dataset:
-        outcome = self._outcome(variant)
+        outcome = self.outcome(variant)
         if part not in outcome.parts:
             why = outcome.manifest.get("lacks", {}).get(part, "")
             told = f": {why}" if why else nearest(part, outcome.parts)
