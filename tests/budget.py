@@ -19,7 +19,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-PROGRAMS = 3850
+PROGRAMS = 3800
 """Programs of the quick part that JAX is asked for, found in the cache on disk or not."""
 
 PARTS = ("quick", "whole")
