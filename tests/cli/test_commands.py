@@ -17,6 +17,7 @@ from pathlib import Path
 import bank
 import numpy as np
 import pytest
+import sound
 import xarray as xr
 
 from pitchpoint import cli
@@ -41,20 +42,9 @@ PARTS = {
     "back_driving",
 }
 
-TINY = """
-title = "A [bold]pair[/bold] of <b>gears</b>"
-[gears]
-teeth = [23, 61]
-module = "2 mm"
-face_width = "20 mm"
-[lubricant]
-name = "75W90-A"
-[roughness]
-ra = "0.4 um"
-[operation]
-torque = "50 N m"
-speed = "1500 rpm"
-temperature = "60 degC"
+TINY = (
+    f'title = "A [bold]pair[/bold] of <b>gears</b>"\n{sound.PAIR}'
+    + """
 [models]
 friction = ["xu_2007", "frictionless"]
 [loss_map]
@@ -64,6 +54,7 @@ sweep = { key = "operation.speed", start = "500 rpm", stop = "1500 rpm", count =
 [studies.smooth.change.roughness]
 ra = "0.2 um"
 """
+)
 
 
 @dataclass(frozen=True)

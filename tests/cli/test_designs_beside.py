@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import sound
 from scipy.io import loadmat
 
 from pitchpoint import cli
@@ -31,20 +32,9 @@ from pitchpoint.views.designs import (
 )
 from pitchpoint.views.report import render
 
-PAIR = """
-title = "First of two"
-[gears]
-teeth = [23, 61]
-module = "2 mm"
-face_width = "20 mm"
-[lubricant]
-name = "75W90-A"
-[roughness]
-ra = "0.4 um"
-[operation]
-torque = "50 N m"
-speed = "1500 rpm"
-temperature = "60 degC"
+PAIR = (
+    f'title = "First of two"\n{sound.PAIR}'
+    + """
 [models]
 friction = ["xu_2007", "frictionless"]
 [loss_map]
@@ -54,6 +44,7 @@ title = "First of two, new"
 [variants.worn.roughness]
 ra = "0.8 um"
 """
+)
 BALL = """
 [gears]
 family = "ball_on_disc"
