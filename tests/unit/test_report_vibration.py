@@ -22,11 +22,13 @@ from pitchpoint.gears.pairs import way
 from pitchpoint.results.by_stage import by_stage
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
 from pitchpoint.views.figures import Figure, Panel, continued
 from pitchpoint.views.path import path_of
 from pitchpoint.views.registry import STIFFNESS, WEAR
 from pitchpoint.views.report import render
 from pitchpoint.views.section import Page, Table
+from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.design_chart import design_charts
 from pitchpoint.views.sections.joint import joint_panel
 from pitchpoint.views.sections.path import along, loss_places
@@ -570,3 +572,30 @@ def test_figures_of_a_stage_are_those_of_its_own_motion(stages: Outcome, number:
     drawn = {title: one for _, title, one in page.each("joint")}[f"stage {number}"]
     levels = joint_panel("joint", "", drawn).figures[-1].data[-2:]
     assert [level["y"][0] for level in levels] == pytest.approx([natural, 1.5 * natural])
+
+
+FILM_LAWS = {1: "dowson_hamrock_1977", 2: "grubin_1949"}
+
+
+@pytest.mark.parametrize("number", FILM_LAWS)
+def test_a_stage_is_told_by_its_own_film_law(stages: Outcome, number: int) -> None:
+    """The thinnest film on the first screen is that of the stage that has it, and so is the law beside it."""
+    parts = {
+        own: dataset(
+            {name: (("law", "node"), [[2.0, least]]) for name in ("lambda_ratio", "load")},
+            {"law": ["iso_tr_14179_2"]},
+            title="mesh cycle",
+        )
+        for own, least in ((own, 0.7 if own == number else 1.7) for own in FILM_LAWS)
+    }
+    like = {**stages.manifest["inputs"][0], "unit": ""}
+    laws = [
+        {**like, "table": "stages", "key": f"{own}.models.film_thickness", "value": law}
+        for own, law in FILM_LAWS.items()
+    ]
+    usual = {**like, "table": "models", "key": "film_thickness", "value": "ertel_1939"}
+    manifest = {**stages.manifest, "inputs": [*laws, usual, *stages.manifest["inputs"]]}
+    (fact,) = CYCLE.answers(Outcome(manifest, {"cycle": by_stage(parts)}))
+    assert (fact.name, fact.value) == ("Film ratio", "0.7")
+    assert fact.detail.startswith(f"at stage {number}; ")
+    assert f"thinnest film by {show.pretty(FILM_LAWS[number])} over" in fact.detail
