@@ -297,13 +297,9 @@ class _Looked(Mesh):
     contact_ratio: ClassVar[jax.Array] = jnp.asarray(1.5)
     shape: ClassVar[str] = "line"
     surfaces = ((), ())
-    body = onward = other_flanks = None
-    events = relation = motion = driver = driven_by = period = None
+    driver = body = other_flanks = events = relation = pitch = passing = None
     coordinates = rigid_contacts = spots = None
-
-    @property
-    def loaded(self):
-        return jnp.asarray([0.0, 0.0, 1.0])
+    loaded = np.array([0.0, 0.0, 1.0])
 
 
 way.register(_Looked, lambda looked: WAVE if looked.separate else ACTION)

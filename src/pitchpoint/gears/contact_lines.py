@@ -198,11 +198,6 @@ class InvoluteMesh(Mesh):
         return self.line.contact_ratio
 
     @property
-    def loaded(self) -> Float[Array, "2"]:
-        """The driven one."""
-        return 1.0 - self.driver
-
-    @property
     def other_flanks(self) -> Self:
         """The same teeth on their other flanks, which lie back by the backlash."""
         first, second = (other_side(own) for own in self.surfaces)

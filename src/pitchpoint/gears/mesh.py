@@ -1,20 +1,25 @@
 """What every gear family answers."""
 
 import abc
+import dataclasses
+from functools import singledispatch
 from typing import Any, Self, final
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Float
 
+from pitchpoint._jax import jnp
 from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
 from pitchpoint.contact.worn import new_and_worn, with_worn
+from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.coordinates import Coordinate
+from pitchpoint.gears.coordinates import Coordinate, number_of
 from pitchpoint.gears.gear_body import GearBody
 
-__all__ = ["Mesh", "has"]
+__all__ = ["Mesh", "has", "turned_rates"]
 
 
 class Mesh(eqx.Module):
@@ -26,9 +31,13 @@ class Mesh(eqx.Module):
 
     Attributes:
         shape: of the class; that of all its contacts.
+        driver: one for the coordinate that drives, zero elsewhere.
+        loaded: one for the coordinate whose load is prescribed, zero elsewhere; what is left stands still.
     """
 
     shape: eqx.AbstractClassVar[Shape]
+    driver: eqx.AbstractVar[Float[Arrays, " dof"]]
+    loaded: eqx.AbstractVar[Float[Arrays, " dof"]]
 
     def __repr__(self) -> str:
         return brief(self)
@@ -37,11 +46,6 @@ class Mesh(eqx.Module):
     @abc.abstractmethod
     def surfaces(self) -> Surfaces:
         """How all flanks of each member differ from those of `rigid_contacts`; a field of every family."""
-
-    @property
-    @abc.abstractmethod
-    def onward(self) -> Float[Array, ""]:
-        """Sense in which the phase runs while the drive turns on: one, or minus one."""
 
     @property
     @abc.abstractmethod
@@ -94,28 +98,45 @@ class Mesh(eqx.Module):
     @property
     @abc.abstractmethod
     def relation(self) -> Float[Array, " dof"]:
-        """Factors of the rates of the coordinates, whose sum is zero in every motion that flanks allow."""
+        """Factors of the rates of the coordinates: their sum is zero in every motion that flanks allow.
+
+        A sum above zero closes the flanks that touch.
+        """
 
     @property
     @abc.abstractmethod
+    def pitch(self) -> Float[Array, ""]:
+        """Pitch of a period, positive: `passing` over one period [rad or m]."""
+
+    @property
+    @abc.abstractmethod
+    def passing(self) -> Float[Array, " dof"]:
+        """Factors of the rates of the coordinates, whose sum is the rate at which engagements pass."""
+
+    @final
+    @property
     def motion(self) -> Float[Array, " dof"]:
-        """Nominal rate of each coordinate for a unit rate of the driver."""
+        """Nominal rates of the coordinates for a unit rate of the driver, which presses the flanks."""
+        turned, relation = turned_rates(self), self.relation
+        return turned - (relation @ turned) / (relation @ self.loaded) * self.loaded
 
+    @final
     @property
-    @abc.abstractmethod
-    def driver(self) -> Float[Array, " dof"]:
-        """One for the coordinate that drives, zero elsewhere."""
+    def period(self) -> Float[Array, ""]:
+        """Motion of the driver in one period [rad or m]."""
+        return self.pitch / jnp.abs(self.passing @ self.motion)
 
+    @final
     @property
-    @abc.abstractmethod
-    def loaded(self) -> Float[Array, " dof"]:
-        """One for the coordinate whose load is prescribed, zero elsewhere."""
+    def onward(self) -> Float[Array, ""]:
+        """Sense in which the phase runs while the drive turns on: one, or minus one."""
+        return jnp.sign(self.passing @ self.motion)
 
-    @abc.abstractmethod
+    @final
     def driven_by(self, member: str | int) -> Self:
         """The same drive with another member driving, in the sense that presses the same flanks.
 
-        A fixed member stays fixed; the remaining one carries the load.
+        A fixed member stays fixed; the one that drove carries the load.
 
         Args:
             member: name of a body, or number of its coordinate.
@@ -123,11 +144,25 @@ class Mesh(eqx.Module):
         Raises:
             InputError: it cannot drive.
         """
+        places = eqx.filter_eval_shape(lambda mesh: mesh.coordinates, self)
+        names = tuple(place.body for place in places)
+        drives = number_of(member, names)
+        if np.asarray(self.driver)[drives]:
+            return self
+        if not (np.asarray(self.loaded)[drives] and self.relation @ self.driver):
+            raise InputError(f"the {names[drives]} is fixed and cannot drive")
+        return dataclasses.replace(self, driver=self.loaded, loaded=self.driver)
 
-    @property
-    @abc.abstractmethod
-    def period(self) -> Float[Array, ""]:
-        """Motion of the driver in one period [rad or m]."""
+
+@singledispatch
+def turned_rates(mesh: Any) -> Float[Array, " dof"]:
+    """Rates of the coordinates that are turned from outside, zero of the others.
+
+    Args:
+        mesh: any family; that of most turns its driver alone.
+    """
+    rates: Array = mesh.driver * jnp.sign(mesh.relation @ mesh.driver)
+    return rates
 
 
 def has(mesh: Mesh, question: Any) -> bool:

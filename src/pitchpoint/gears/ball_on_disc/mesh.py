@@ -37,11 +37,10 @@ class BallOnDisc(Rig):
     surfaces: Surfaces = ((), ())
 
     @property
-    def motion(self) -> Float[Array, "3"]:
+    def other_rate(self) -> Float[Array, ""]:
         """The ball is driven to the slide-roll ratio on its own."""
         slip = self.slide_roll_ratio
-        ball = self.track_radius / self.radius[0] * (2.0 - slip) / (2.0 + slip)
-        return jnp.stack([jnp.asarray(1.0), ball, jnp.asarray(0.0)])
+        return self.track_radius / self.radius[0] * (2.0 - slip) / (2.0 + slip)
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:

@@ -272,8 +272,10 @@ def _opened(given: Values, helical: bool, internal: bool) -> CylindricalPair:
         "rim_ratio": np.broadcast_to(rims, of_both.shape),
         "crossing": np.stack([angle, angle], axis=-1),
     }
+    first = (np.asarray(values.pop("driver"))[..., None] == 1) == np.array([True, False])
     flags = {
-        "wheel_drives": np.asarray(values.pop("driver")) == 2,
+        "driver": first * 1.0,
+        "loaded": ~first * 1.0,
         "right_flank": np.asarray(values.pop("right_flank"), dtype=bool),
     }
     static: dict[str, Any] = {

@@ -8,7 +8,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import array, jnp
+from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Spot, Surfaces
@@ -21,7 +21,7 @@ from pitchpoint.gears.contact_lines import (
     line_of_action,
     pitch_point,
 )
-from pitchpoint.gears.coordinates import AXIAL, Coordinate, number_of
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.involute import (
     InvoluteGear,
@@ -178,7 +178,7 @@ class InvolutePair(InvoluteMesh):
         face_width: common to both [m].
         centre_distance: in operation, positive [m].
         rim_ratio: root radius over bore radius (outer over root radius of a ring), for each gear.
-        wheel_drives: True if gear 2 drives and gear 1 carries the load; the same flanks touch.
+        driver, loaded: see `Mesh`; the same flanks touch, whichever gear drives.
         follows: static; whether centre distance (without backlash) and tip alterations (rack's tip
             clearance) follow from the other dimensions.
         shortened: for each gear whether its tip is shortened to `least_tip`; static.
@@ -222,7 +222,8 @@ class InvolutePair(InvoluteMesh):
     face_width: Float[Arrays, ""]
     centre_distance: Float[Arrays, ""]
     rim_ratio: Float[Arrays, "2"]
-    wheel_drives: Bool[Arrays, ""]
+    driver: Float[Arrays, "2"]
+    loaded: Float[Arrays, "2"]
     right_flank: Bool[Arrays, ""]
     follows: tuple[bool, bool] = eqx.field(static=True)
     shortened: tuple[bool, bool] = eqx.field(static=True)
@@ -390,40 +391,23 @@ class InvolutePair(InvoluteMesh):
     @property
     def relation(self) -> Float[Array, "2"]:
         """Teeth pass the pitch point together: z1 q1 + z2 q2 = 0, the teeth of a ring counted negative."""
-        return self.teeth
+        return self._side * self.teeth
 
     @property
-    def motion(self) -> Float[Array, "2"]:
-        """Rates of both gears for one radian of the driver."""
-        ratio = self.teeth[0] / self.teeth[1]
-        gear_1_drives = jnp.stack([jnp.ones_like(ratio), -ratio])
-        return self._side * jnp.where(self.wheel_drives, -1.0 / jnp.abs(ratio), 1.0) * gear_1_drives
+    def pitch(self) -> Float[Array, ""]:
+        """Angle of gear 1 of one base pitch [rad]."""
+        return 2.0 * jnp.pi / self.teeth[0]
 
     @property
-    def driver(self) -> Float[Array, "2"]:
-        """Gear 1, or gear 2 if the wheel drives."""
-        return jnp.where(self.wheel_drives, jnp.array([0.0, 1.0]), jnp.array([1.0, 0.0]))
-
-    def driven_by(self, member: str | int) -> Self:
-        """The pair with this gear driving the other one; the same flanks touch."""
-        wheel_drives = array(number_of(member, MEMBERS) == 1)
-        return dataclasses.replace(self, wheel_drives=wheel_drives)
-
-    @property
-    def onward(self) -> Float[Array, ""]:
-        """Pairs run from A to E where gear 1 drives, else from E to A."""
-        return jnp.where(self.wheel_drives, -1.0, 1.0)
+    def passing(self) -> Float[Array, "2"]:
+        """Pairs run from A to E as gear 1 turns on."""
+        return self._side * jnp.array([1.0, 0.0])
 
     @property
     def active_flanks(self) -> Float[Array, "2 2"]:
         """Roll lengths of both gears at the start of the active profile and at the tip, positive [m]."""
         tips = jnp.stack([gear.tip_roll_length for gear in self.gears])
         return jnp.stack([jnp.abs(self._innermost), tips], axis=1)
-
-    @property
-    def period(self) -> Float[Array, ""]:
-        """Driver angle of one base pitch [rad]."""
-        return 2.0 * jnp.pi / jnp.sum(self.driver * jnp.abs(self.teeth))
 
     @property
     def coordinates(self) -> tuple[Coordinate, Coordinate]:

@@ -1,13 +1,11 @@
 """Rack and pinion: an involute gear on straight flanks that travel."""
 
-import dataclasses
 from functools import cached_property
-from typing import Self
 
 import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import array, jnp
+from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot, Surfaces
 from pitchpoint.factored import Arrays
@@ -19,7 +17,7 @@ from pitchpoint.gears.contact_lines import (
     line_of_action,
     pitch_point,
 )
-from pitchpoint.gears.coordinates import AXIAL, Coordinate, number_of
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
 from pitchpoint.gears.rack_and_pinion import MEMBERS
@@ -100,7 +98,7 @@ class RackAndPinion(InvoluteMesh):
         distance: from the pinion's axis to the reference line of the rack [m].
         rim_ratio: root radius over bore radius of the pinion.
         moved_mass: of the rack and what it carries [kg]; NaN where it is not known.
-        rack_drives: True if the rack drives and the pinion carries the load; the same flanks touch.
+        driver, loaded: see `Mesh`; the same flanks touch, whether pinion or rack drives.
         helical: False if the helix angle is zero; static.
         lanes: static count of pairs held, at least the contact ratio rounded up.
         slices: static count of slices of each contact line; even, or one.
@@ -113,7 +111,8 @@ class RackAndPinion(InvoluteMesh):
     distance: Float[Array, ""]
     rim_ratio: Float[Array, ""]
     moved_mass: Float[Array, ""]
-    rack_drives: Bool[Array, ""]
+    driver: Float[Array, "2"]
+    loaded: Float[Array, "2"]
     right_flank: Bool[Array, ""]
     helical: bool = eqx.field(static=True)
     lanes: int = eqx.field(static=True)
@@ -143,34 +142,17 @@ class RackAndPinion(InvoluteMesh):
     @property
     def relation(self) -> Float[Array, "2"]:
         """The rack travels as far as the reference circle of the pinion turns."""
-        return jnp.stack([self.pinion.reference_radius, -jnp.ones(())])
+        return self._side * jnp.stack([self.pinion.reference_radius, -jnp.ones(())])
 
     @property
-    def motion(self) -> Float[Array, "2"]:
-        """Rates of both for one radian of the pinion, or one metre of the rack where that drives."""
-        radius = self.pinion.reference_radius
-        turned = jnp.stack([jnp.ones_like(radius), radius])
-        return self._side * jnp.where(self.rack_drives, -1.0 / radius, 1.0) * turned
+    def pitch(self) -> Float[Array, ""]:
+        """Angle of the pinion over one pitch [rad]."""
+        return 2.0 * jnp.pi / self.pinion.teeth
 
     @property
-    def driver(self) -> Float[Array, "2"]:
-        """The pinion, or the rack where that drives."""
-        return jnp.where(self.rack_drives, jnp.array([0.0, 1.0]), jnp.array([1.0, 0.0]))
-
-    def driven_by(self, member: str | int) -> Self:
-        """The same with this member driving the other one; the same flanks touch."""
-        return dataclasses.replace(self, rack_drives=array(number_of(member, MEMBERS) == 1))
-
-    @property
-    def onward(self) -> Float[Array, ""]:
-        """Pairs run from A to E where the pinion drives, else from E to A."""
-        return jnp.where(self.rack_drives, -1.0, 1.0)
-
-    @property
-    def period(self) -> Float[Array, ""]:
-        """Motion of the driver over one pitch [rad or m]."""
-        turn = 2.0 * jnp.pi / self.pinion.teeth
-        return jnp.where(self.rack_drives, turn * self.pinion.reference_radius, turn)
+    def passing(self) -> Float[Array, "2"]:
+        """Pairs run from A to E as the pinion turns on."""
+        return self._side * jnp.array([1.0, 0.0])
 
     @property
     def coordinates(self) -> tuple[Coordinate, Coordinate]:
@@ -362,7 +344,7 @@ def _line_of_action(mesh: RackAndPinion) -> Float[Array, "2"]:
 def _pitch_point(mesh: RackAndPinion) -> PitchPoint:
     """Values at the pitch point C, where the rack is straight."""
     line = mesh.line
-    speed = jnp.where(mesh.rack_drives, 1.0, mesh.pinion.reference_radius)
+    speed = mesh.driver @ jnp.stack([mesh.pinion.reference_radius, jnp.ones(())])
     return PitchPoint(
         width=mesh.face_width,
         line_length=mesh.face_width / line.slope,

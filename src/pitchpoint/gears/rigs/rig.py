@@ -3,16 +3,16 @@
 import abc
 from typing import ClassVar, Self
 
+import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot
-from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.gear_body import GearBody
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import Mesh, turned_rates
 from pitchpoint.gears.pairs import flanks_in_turn
 
 __all__ = ["Rig"]
@@ -26,11 +26,12 @@ class Rig(Mesh):
     """
 
     body: ClassVar[GearBody] = GearBody()
-
-    @property
-    def onward(self) -> Float[Array, ""]:
-        """Phase counts turns of body 0, which drives."""
-        return jnp.ones(())
+    driver: Float[Array, "3"] = eqx.field(
+        default_factory=lambda: jnp.array([1.0, 0.0, 0.0]), kw_only=True
+    )
+    loaded: Float[Array, "3"] = eqx.field(
+        default_factory=lambda: jnp.array([0.0, 0.0, 1.0]), kw_only=True
+    )
 
     @property
     def other_flanks(self) -> Self:
@@ -48,27 +49,19 @@ class Rig(Mesh):
         return jnp.array([0.0, 0.0, 1.0])
 
     @property
-    def driver(self) -> Float[Array, "3"]:
-        """Body 0 sets the speed."""
+    def pitch(self) -> Float[Array, ""]:
+        """One turn of body 0."""
+        return jnp.asarray(2.0 * jnp.pi)
+
+    @property
+    def passing(self) -> Float[Array, "3"]:
+        """Phase counts turns of body 0."""
         return jnp.array([1.0, 0.0, 0.0])
 
     @property
-    def loaded(self) -> Float[Array, "3"]:
-        """The load presses along the normal."""
-        return jnp.array([0.0, 0.0, 1.0])
-
-    def driven_by(self, member: str | int) -> Self:
-        """The rig as it is, driven by body 0; its load presses and does not drive."""
-        if member not in (0, self.coordinates[0].body):
-            raise InputError(
-                f"the {self.coordinates[0].body} of a test rig sets the speed, and nothing else drives it"
-            )
-        return self
-
-    @property
-    def period(self) -> Float[Array, ""]:
-        """One turn of body 0."""
-        return jnp.asarray(2.0 * jnp.pi)
+    @abc.abstractmethod
+    def other_rate(self) -> Float[Array, ""]:
+        """Rate of body 1, which is turned on its own, for a unit rate of body 0."""
 
     @property
     def _approach(self) -> Coordinate:
@@ -142,6 +135,12 @@ def _everywhere(values: Float[Array, "..."], lanes: tuple[int, ...]) -> Float[Ar
     return jnp.broadcast_to(
         values.reshape(*values.shape, *(1 for _ in lanes)), (*values.shape, *lanes)
     )
+
+
+@turned_rates.register
+def _turned_rates(rig: Rig) -> Float[Array, "3"]:
+    """Both bodies, each by its own motor."""
+    return jnp.stack([jnp.asarray(1.0), rig.other_rate, jnp.asarray(0.0)])
 
 
 @flanks_in_turn.register

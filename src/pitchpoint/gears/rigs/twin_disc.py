@@ -32,11 +32,9 @@ class TwinDisc(Rig):
     surfaces: Surfaces = ((), ())
 
     @property
-    def motion(self) -> Float[Array, "3"]:
+    def other_rate(self) -> Float[Array, ""]:
         """Disc 1 turns the other way at the speed that the ratio asks for."""
-        return jnp.stack(
-            [jnp.asarray(1.0), -self.speed_ratio * self.radii[0] / self.radii[1], jnp.asarray(0.0)]
-        )
+        return -self.speed_ratio * self.radii[0] / self.radii[1]
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:

@@ -17,7 +17,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.designs import Designs, Faults, Group, Number, check_counts
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing
-from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for, rates, survey
+from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for, survey
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
 from pitchpoint.gears.strain_wave.groove import (
@@ -387,7 +387,7 @@ def _planned(
 ) -> _Plan:
     """What follows without the groove; arguments as in `build_strain_wave`."""
     z1, z2 = _checked_teeth(teeth)
-    motion, drives, loaded = rates(np.array([z1, z2], dtype=float), *_roles(fixed, driver))
+    _check_roles(fixed, driver)
     w0 = deflection * module * (z2 - z1) / 2.0
     rim = _rim(walls, module, z1, w0) if rim_thickness is None else rim_thickness
     sizes = (tip_rounding, tip_relief, relief_length, bottom_clearance, RIDGE)
@@ -434,9 +434,8 @@ def _planned(
         "tips": tips,
         "edges_carry": edges_carry,
         "backlash": array(backlash),
-        "motion_of": array(motion),
-        "driver_of": array(drives),
-        "loaded_of": array(loaded),
+        "driver": array([float(name == driver) for name in MEMBERS]),
+        "loaded": array([float(name not in {driver, fixed}) for name in MEMBERS]),
         "conjugate": groove is None,
         "odd": z1 % 2 == 1,
     }
@@ -824,15 +823,13 @@ def _check_as_given(*sizes: float) -> None:
             )
 
 
-def _roles(fixed: str, driver: str) -> tuple[int, int]:
-    """Numbers of the fixed and of the driving member."""
+def _check_roles(fixed: str, driver: str) -> None:
     for name, member in (("fixed", fixed), ("driver", driver)):
         if member not in MEMBERS:
             raise InputError(f"'{member}' is no member; use one of {', '.join(MEMBERS)}", key=name)
     if fixed == driver:
         others = " or ".join(name for name in MEMBERS if name != fixed)
         raise InputError(f"the {driver} is fixed and cannot drive; use {others}", key="driver")
-    return MEMBERS.index(fixed), MEMBERS.index(driver)
 
 
 def _weights(shape: str | tuple[float, ...], angle: float, relative: float) -> np.ndarray:

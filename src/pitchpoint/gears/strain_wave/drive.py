@@ -7,13 +7,12 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Shaped
 
-from pitchpoint._jax import array, jax, jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, Shape, along
 from pitchpoint.contact.surface import Spot, Surfaces, other_side
-from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.bodies import completed, drawing, independent, main_dimensions
-from pitchpoint.gears.coordinates import AXIAL, Coordinate, number_of
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import (
     WAVE,
@@ -46,7 +45,6 @@ __all__ = [
     "lanes_for",
     "nearest_points",
     "places",
-    "rates",
     "survey",
 ]
 
@@ -149,7 +147,7 @@ class StrainWave(Mesh):
         backlash: play between the flanks beyond the groove that just lets the teeth through, on
             the circumference [m]. It opens all gaps alike, so losses have one derivative by it on
             both sides, at no play too.
-        motion_of, driver_of, loaded_of: see `motion`, `driver`, `loaded`.
+        driver, loaded: see `Mesh`.
         held: pairs in each of both zones.
         surveyed: rigid teeth along the wave, as they follow from all these.
         edges_carry: True if the rounding of the flexspline's tips may carry; static.
@@ -174,9 +172,8 @@ class StrainWave(Mesh):
     tip_height: Float[Array, ""]
     tips: Tips
     backlash: Float[Array, ""]
-    motion_of: Float[Array, "3"]
-    driver_of: Float[Array, "3"]
-    loaded_of: Float[Array, "3"]
+    driver: Float[Array, "3"]
+    loaded: Float[Array, "3"]
     held: Float[Array, ""]
     surveyed: Survey
     edges_carry: bool = eqx.field(static=True)
@@ -235,42 +232,18 @@ class StrainWave(Mesh):
 
     @property
     def relation(self) -> Float[Array, "3"]:
-        """Teeth that are left behind in a turn of the wave, see `rates`."""
+        """Teeth that are left behind in a turn of the wave: z2 q_C = z1 q_F + (z2 - z1) q_W."""
         return left_behind(self.teeth)
 
     @property
-    def motion(self) -> Float[Array, "3"]:
-        """Rates of the members for one radian of the driver."""
-        return self.motion_of
+    def pitch(self) -> Float[Array, ""]:
+        """Angle by which the wave moves on by one tooth of the flexspline [rad]."""
+        return self.tooth_angle
 
     @property
-    def driver(self) -> Float[Array, "3"]:
-        """One for the member that drives."""
-        return self.driver_of
-
-    @property
-    def loaded(self) -> Float[Array, "3"]:
-        """One for the member that carries the load."""
-        return self.loaded_of
-
-    def driven_by(self, member: str | int) -> Self:
-        """The drive with this member driving; the fixed one stays fixed, the third carries the load."""
-        drives = number_of(member, MEMBERS)
-        fixed = int(np.argmin(np.asarray(self.driver_of) + np.asarray(self.loaded_of)))
-        if drives == fixed:
-            raise InputError(f"the {MEMBERS[fixed]} is fixed and cannot drive")
-        motion, driver, loaded = map(array, rates(np.asarray(self.teeth), fixed, drives))
-        return dataclasses.replace(self, motion_of=motion, driver_of=driver, loaded_of=loaded)
-
-    @property
-    def period(self) -> Float[Array, ""]:
-        """Driver angle in which the wave moves on by one tooth of the flexspline [rad]."""
-        return self.tooth_angle / jnp.abs(self.motion[1] - self.motion[0])
-
-    @property
-    def onward(self) -> Float[Array, ""]:
+    def passing(self) -> Float[Array, "3"]:
         """A wave that runs ahead of the flexspline meets teeth of growing angle, and phases fall."""
-        return jnp.sign(self.motion[1] - self.motion[0])
+        return jnp.array([-1.0, 1.0, 0.0])
 
     def events(self) -> Float[Array, " event"]:
         """Phases at which the sliding of a tooth changes its sense; pairs enter and leave without load."""
@@ -462,34 +435,6 @@ class StrainWave(Mesh):
 def _vector(place: Array) -> Float[Array, "3 pair slice *b"]:
     """Vector of a place in the plane across the axis."""
     return jnp.stack([jnp.real(place), jnp.imag(place), jnp.zeros(place.shape)])
-
-
-def rates(
-    teeth: Float[np.ndarray, "2"], fixed: int, drives: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Rates of the members for a radian of the driver, in the sense that presses the flanks together.
-
-    Args:
-        teeth: numbers of teeth z1, z2 of flexspline and circular spline.
-        fixed: member that does not turn.
-        drives: member that drives.
-
-    Returns:
-        Rates [rad/rad], and one for the driver and for the loaded member, zero elsewhere.
-
-    Source: z2 q_C = z1 q_F + (z2 - z1) q_W; torques are in proportion to these factors.
-
-    Example:
-        >>> import numpy as np
-        >>> rates(np.array([200.0, 202.0]), fixed=2, drives=0)[0]
-        array([ 1.  , -0.01,  0.  ])
-    """
-    z1, z2 = teeth
-    law, loaded = np.array([z2 - z1, z1, -z2]), 3 - fixed - drives
-    motion = np.zeros(3)
-    motion[drives] = np.sign(law[drives])
-    motion[loaded] = -law[drives] * motion[drives] / law[loaded]
-    return motion, np.eye(3)[drives], np.eye(3)[loaded]
 
 
 def seconds_for(lanes: int) -> int:
