@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from pitchpoint.contact.hertz import line_pressure
-from pitchpoint.efficiency.summary import in_chunks
+from pitchpoint.efficiency.summary import first_points, stacks
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.rated_pair import bare
@@ -109,7 +109,8 @@ def rating(
     ends: Any = (nan, nan),
 ) -> Found:
     one = [(pair, jnp.asarray(np.array(ends)), asked, loads, of, finish)]
-    found = in_chunks(lambda rows: ratings(*rows), one, size=ROWS)
+    ((rows, used),) = stacks(one, ROWS)
+    found = first_points(ratings(*rows), used)
     return {name: values[0] for name, values in found.items()}
 
 

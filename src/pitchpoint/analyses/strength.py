@@ -18,7 +18,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.cases.strength import MESH_LOAD
 from pitchpoint.doubts import Doubt, fails, in_stage
-from pitchpoint.efficiency.summary import in_chunks, in_groups
+from pitchpoint.efficiency.summary import first_points, groups_alike, stacks, whole_of
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import bare, ends_at_tips, rated_pair
 from pitchpoint.programs import program
@@ -194,18 +194,22 @@ def rating_inputs(built: Ready) -> list[tuple[Label, tuple[Any, ...]]]:
     return [(label, _asked(one)) for label, one in _with_sharing(built)[0]]
 
 
-def rated_rows(alike: Sequence[Any]) -> Numbers:
+def rated_rows(rows: Sequence[Any]) -> Numbers:
     """Ratings of many rows as `rated` takes them, of gears of one kind, by name along an axis in front.
 
     Args:
-        alike: the rows.
+        rows: each a mesh and what is asked of it.
     """
-    return in_chunks(lambda rows: ratings(_bare(rows[0]), *rows[1:]), alike, size=ROWS)
+    return whole_of(
+        [first_points(ratings(_bare(one[0]), *one[1:]), used) for one, used in stacks(rows, ROWS)]
+    )
 
 
 def _ratings(pairs: Sequence[Built]) -> list[Numbers]:
     """Ratings of pairs, together as far as their gears are of one kind."""
-    found = in_groups(rated_rows, [_asked(one) for one in pairs])
+    rows = [_asked(one) for one in pairs]
+    groups = groups_alike(rows)
+    found = whole_of([rated_rows([rows[k] for k in group]) for group in groups], groups)
     return [{name: values[row] for name, values in found.items()} for row in range(len(pairs))]
 
 

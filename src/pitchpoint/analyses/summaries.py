@@ -22,7 +22,7 @@ from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, doubts_of, stored
 from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.rows import NODES
-from pitchpoint.efficiency.summary import in_groups, summarise
+from pitchpoint.efficiency.summary import groups_alike, summarise, whole_of
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.pairs import touching
@@ -298,13 +298,14 @@ def _grouped(
     if models.law.films is not None:
         return _by_films(alone(points), models.law.name, progress)
 
-    def of(group: Sequence[Ready]) -> dict[str, np.ndarray]:
-        kind: Any = group[0]
-        each = [(point.design, point.operation) for point in group]
+    def of(group: Sequence[int]) -> dict[str, np.ndarray]:
+        kind: Any = points[group[0]]
+        each = [(points[k].design, points[k].operation) for k in group]
         found: dict[str, np.ndarray] = kind.figures_of(each, models, progress)
         return found
 
-    return in_groups(of, points, _design)
+    groups = groups_alike([_design(point) for point in points])
+    return whole_of([*map(of, groups)], groups)
 
 
 def _design(point: Ready) -> Any:
@@ -381,5 +382,6 @@ def vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
         return {}
     from pitchpoint.analyses.vibration import figures_of
 
-    found = in_groups(figures_of, points, _design)
+    groups = groups_alike([_design(point) for point in points])
+    found = whole_of([figures_of([points[k] for k in group]) for group in groups], groups)
     return {name: (("law", "point"), np.stack([values] * laws)) for name, values in found.items()}

@@ -1,9 +1,9 @@
 """Figures of whole mesh cycles for many designs and operating points at once, in chunks of one size."""
 
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -50,16 +50,17 @@ if TYPE_CHECKING:
 __all__ = [
     "at_points",
     "engaged",
+    "first_points",
+    "groups_alike",
     "heat",
-    "in_chunks",
-    "in_groups",
     "loss_factor",
     "mean_friction",
+    "stacks",
     "summarise",
     "summary",
+    "whole_of",
 ]
 
-T = TypeVar("T")
 
 Point = tuple[Design, Operation]
 Prepared = tuple[Design, Operation, Engagement | None]
@@ -235,7 +236,12 @@ def summarise(
     prepared = list(_prepared(points, models))
     if models.law.films is not None:
         return _by_films(prepared, models, progress)
-    return in_chunks(lambda chunk: _figures(chunk, models), prepared, progress=progress)
+    return whole_of(
+        [
+            first_points(_figures(one, models), used)
+            for one, used in stacks(prepared, CHUNK, progress)
+        ]
+    )
 
 
 def at_points(design: Design, operation: Operation, models: Models) -> dict[str, np.ndarray]:
@@ -261,7 +267,7 @@ def at_points(design: Design, operation: Operation, models: Models) -> dict[str,
         return found
 
     chunks = [some(start) for start in range(0, count, CHUNK)]
-    return {name: np.concatenate([one[name] for one in chunks])[:count] for name in chunks[0]}
+    return first_points(whole_of(chunks), count)
 
 
 def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
@@ -287,7 +293,12 @@ def _by_films(
         doubts.append("; ".join(getattr(one, "brief", "") or one for one in found.warnings))
         if progress is not None:
             progress(done)
-    told = in_chunks(lambda chunk: _summaries(chunk[0], chunk[1], alone, models.film), rows)
+    told = whole_of(
+        [
+            first_points(_summaries(one[0], one[1], alone, models.film), used)
+            for one, used in stacks(rows)
+        ]
+    )
     each = {
         "turns_code": [one.code for one in ends],
         "turns_change": [one.residual for one in ends],
@@ -367,61 +378,60 @@ _LAST: deque[_Known] = deque(maxlen=2)
 """The parts of a case ask for those of its drive, and of the same driven from its output."""
 
 
-def in_chunks(
-    function: Callable[[Any], dict[str, Array]],
-    inputs: Sequence[Any],
-    *,
-    size: int = CHUNK,
-    progress: Callable[[int], None] | None = None,
-) -> dict[str, np.ndarray]:
-    """Results of a compiled function for many inputs, each quantity [point].
+def stacks(
+    points: Sequence[Any], size: int = CHUNK, progress: Callable[[int], None] | None = None
+) -> Iterator[tuple[Any, int]]:
+    """Stacks of so many points, the last one filled up by repetition, and how many of each count.
+
+    One program serves any number of points.
 
     Args:
-        function: of stacked inputs; one program serves any number of points.
-        inputs: trees of arrays of equal static structure.
-        size: inputs that are stacked together.
-        progress: told the number of finished points after each chunk.
+        points: trees of arrays of equal static structure.
+        size: points that are stacked together.
+        progress: told the number of finished points when the next stack is asked for.
     """
-    chunks: list[dict[str, np.ndarray]] = []
-    done = 0
-    for chunk, used in _chunks(inputs, size):
-        out = function(chunk)
-        chunks.append({name: np.asarray(values)[:used] for name, values in out.items()})
-        done += used
+    for start in range(0, len(points), size):
+        part = list(points[start : start + size])
+        yield stacked(part + [part[-1]] * (size - len(part))), len(part)
         if progress is not None:
-            progress(done)
-    if len(chunks) == 1:
-        return chunks[0]
-    return {name: np.concatenate([part[name] for part in chunks]) for name in chunks[0]}
+            progress(start + len(part))
 
 
-def in_groups(
-    compute: Callable[[Sequence[T]], Mapping[str, np.ndarray]],
-    inputs: Sequence[T],
-    tree: Callable[[T], Any] = lambda one: one,
+def first_points(found: Mapping[str, Any], used: int) -> dict[str, np.ndarray]:
+    """Of the results of a stack, each quantity [point ...], those of points that count."""
+    return {name: np.asarray(values)[:used] for name, values in found.items()}
+
+
+def groups_alike(trees: Iterable[Any]) -> list[list[int]]:
+    """Positions of inputs in groups of equal static structure and shapes: one program serves a group."""
+    groups: dict[Any, list[int]] = {}
+    for position, tree in enumerate(trees):
+        leaves, structure = jax.tree.flatten(tree)
+        groups.setdefault((structure, *map(np.shape, leaves)), []).append(position)
+    return [*groups.values()]
+
+
+def whole_of(
+    parts: Sequence[Mapping[str, np.ndarray]], groups: Sequence[Sequence[int]] = ()
 ) -> dict[str, np.ndarray]:
-    """Results [point ...] in order, from computations of inputs of equal static structure.
+    """Results of several parts as those of the whole, each quantity [point ...].
 
     Args:
-        compute: each quantity [point ...] of some inputs that are alike.
-        inputs: in any order.
-        tree: what is alike of them; they themselves unless given.
+        parts: each quantity [point ...] of some points.
+        groups: positions of the points of each part; they follow each other unless given.
+
+    Example:
+        >>> import numpy as np
+        >>> from pitchpoint.efficiency.summary import groups_alike
+        >>> groups = groups_alike([np.zeros(2), np.zeros(3), np.ones(2)])
+        >>> parts = [{"loss": np.array([1.0, 3.0])}, {"loss": np.array([2.0])}]
+        >>> groups, whole_of(parts, groups)["loss"].tolist()
+        ([[0, 2], [1]], [1.0, 2.0, 3.0])
     """
-    groups: dict[Any, list[int]] = {}
-    for position, one in enumerate(inputs):
-        leaves, structure = jax.tree.flatten(tree(one))
-        groups.setdefault((structure, *map(np.shape, leaves)), []).append(position)
-    parts = [(where, compute([inputs[i] for i in where])) for where in groups.values()]
     if len(parts) == 1:
-        return dict(parts[0][1])
-    result = {
-        name: np.empty((len(inputs), *values.shape[1:]), values.dtype)
-        for name, values in parts[0][1].items()
-    }
-    for where, values in parts:
-        for name in result:
-            result[name][where] = values[name]
-    return result
+        return dict(parts[0])
+    order = np.argsort(np.concatenate(groups)) if groups else slice(None)
+    return {name: np.concatenate([part[name] for part in parts])[order] for name in parts[0]}
 
 
 @program
@@ -437,14 +447,6 @@ def _summaries(
 
     result: dict[str, Array] = eqx.filter_vmap(one)(*rows, found)
     return result
-
-
-def _chunks(points: Sequence[Any], size: int) -> Iterator[tuple[Any, int]]:
-    """Stacks of so many points, the last one filled up by repetition."""
-    for start in range(0, len(points), size):
-        part = list(points[start : start + size])
-        padded = part + [part[-1]] * (size - len(part))
-        yield stacked(padded), len(part)
 
 
 def mean_friction(state: "State | TrainState") -> Array:

@@ -67,7 +67,7 @@ def _blocks(page: Page) -> Iterator[Block]:
             "Friction locks the drive against its output at some of these points, see the warnings."
         )
         yield Paragraph(told, "note")
-    if alone := covered(one.parts for one in there.values()):
+    if alone := covered([one.parts for one in there.values()]):
         yield Paragraph(alone, "note")
     yield map_panel(there, page.curves, OF_OUTPUT)
     yield Heading("Held at rest")

@@ -390,7 +390,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         f"Mean loss and mean efficiency over driver speed and {load}. At zero {load.split()[-1]} or zero "
         f"speed no power is transmitted and the efficiency is undefined.{_colours(there)}"
     )
-    if alone := covered(one.parts for one in there.values()):
+    if alone := covered([one.parts for one in there.values()]):
         yield Paragraph(alone, "note")
     yield map_panel(there, page.curves)
     lines = efficiency_panel({n: one for n, one in there.items() if _lossy(one)}, page.curves)

@@ -12,7 +12,7 @@ __all__ = ["SOURCES"]
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    sources = sources_of(one.manifest for one in page.outcomes.values())
+    sources = sources_of([one.manifest for one in page.outcomes.values()])
     if sources:
         yield Drawn("sources.html.jinja", {"sources": sources})
     yield Heading("This result")

@@ -339,7 +339,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         ),
         "note",
     )
-    if alone := covered(one.parts for one in page.outcomes.values()):
+    if alone := covered([one.parts for one in page.outcomes.values()]):
         yield Paragraph(alone, "note")
     told = _warnings(page)
     if told:
