@@ -14,6 +14,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.surface import Spot
 from pitchpoint.factored import Arrays
 
 __all__ = [
@@ -28,6 +29,8 @@ __all__ = [
     "of_pairs",
     "on_edge",
     "planet_gears",
+    "since_entry",
+    "spots_on_turning",
     "touching",
     "way",
 ]
@@ -176,6 +179,47 @@ def flanks_in_turn(mesh: Any) -> Float[Array, "2"]:
         TypeError: they do not go round, see `has`.
     """
     raise TypeError(f"engagements of {type(mesh).__name__} do not go round")
+
+
+def since_entry(phase: Float[Arrays, "*b"], lanes: int) -> Float[Array, "pair 1 *b"]:
+    """Periods since each pair entered, in the order in which pairs came; the first one enters at phase 0.
+
+    Args:
+        phase: of the mesh [periods].
+        lanes: pairs that it holds.
+    """
+    number = jnp.arange(float(lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
+    return jnp.asarray(jnp.mod(phase, 1.0) + number)
+
+
+def spots_on_turning(
+    contacts: Contacts,
+    phase: Float[Arrays, "..."],
+    teeth: Float[Arrays, "2"],
+    senses: Sequence[Float[Arrays, ""] | float],
+) -> tuple[Spot, Spot]:
+    """Where contacts lie on members that both turn on by a tooth in a period; teeth follow each other.
+
+    Args:
+        contacts, phase: see `Mesh.spots`; the first pair enters at phase 0.
+        teeth: of each member, positive.
+        senses: against which each turns.
+    """
+    lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
+    number = since_entry(jnp.zeros_like(phase), contacts.path.shape[0])
+    entered = jnp.broadcast_to(jnp.floor(phase) - number, lanes)
+    first, second = (
+        Spot(
+            flank=jnp.broadcast_to(contacts.flank[member], lanes),
+            across=jnp.broadcast_to(contacts.width, lanes),
+            angle=jnp.broadcast_to(sense * phase * 2.0 * jnp.pi / teeth[member], lanes),
+            # A tooth that enters later lies behind those before it.
+            tooth=jnp.mod(sense * entered, teeth[member]).astype(int),
+            leaning=jnp.ones(lanes),
+        )
+        for member, sense in enumerate(senses)
+    )
+    return first, second
 
 
 @singledispatch

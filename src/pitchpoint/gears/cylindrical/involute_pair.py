@@ -31,7 +31,7 @@ from pitchpoint.gears.involute import (
     transverse_angle,
 )
 from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
-from pitchpoint.gears.pairs import flanks_in_turn, planet_gears
+from pitchpoint.gears.pairs import flanks_in_turn, planet_gears, spots_on_turning
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.roots import hypot, root
 
@@ -441,11 +441,6 @@ class InvolutePair(InvoluteMesh):
         positions = [*rolls[0], *(line.tangent_length - second * roll for roll in rolls[1])]
         return [(position - line.limits[0]) / line.base_pitch for position in positions]
 
-    def entered(self, phase: Float[Array, "*b"]) -> Float[Array, "pair 1 *b"]:
-        """Base pitches since each pair entered, in the order in which pairs came; phase 0 is at A."""
-        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
-        return jnp.asarray(jnp.mod(phase, 1.0) + number)
-
     def contacts_at(
         self,
         path: Float[Arrays, "pair slice *b"],
@@ -512,23 +507,8 @@ class InvolutePair(InvoluteMesh):
 
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the line of action, against which both gears turn; teeth follow each other."""
-        lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
-        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
-        entered = jnp.broadcast_to(jnp.floor(phase) - number, lanes)
-        found = []
-        for member, teeth in enumerate(jnp.abs(self.teeth)):
-            # A tooth that enters later lies behind those before it.
-            sense = -self._side * (1.0 if member == 0 else -jnp.sign(self.teeth[1]))
-            found.append(
-                Spot(
-                    flank=jnp.broadcast_to(contacts.flank[member], lanes),
-                    across=jnp.broadcast_to(contacts.width, lanes),
-                    angle=jnp.broadcast_to(sense * phase * 2.0 * jnp.pi / teeth, lanes),
-                    tooth=jnp.mod(sense * entered, teeth).astype(int),
-                    leaning=jnp.ones(lanes),
-                )
-            )
-        return found[0], found[1]
+        senses = -self._side, self._side * jnp.sign(self.teeth[1])
+        return spots_on_turning(contacts, phase, jnp.abs(self.teeth), senses)
 
     def _layers(self) -> dict[str, Float[Array, "..."]]:
         """The transverse section at the middle of the face, gear 2 above gear 1, a ring below.

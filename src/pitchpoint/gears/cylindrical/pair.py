@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
+from pitchpoint.gears.pairs import since_entry
 from pitchpoint.gears.rated_pair import (
     RatedPair,
     StandardPair,
@@ -32,7 +33,7 @@ class CylindricalPair(InvolutePair):
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
-        line, entered = self.line, self.entered(phase)
+        line, entered = self.line, since_entry(phase, self.lanes)
         across, share = line.lines(entered, helical=self.helical, slices=self.slices)
         path = jnp.broadcast_to(entered, jnp.shape(across))
         if self.helical:

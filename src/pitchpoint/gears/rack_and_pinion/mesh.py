@@ -1,5 +1,6 @@
 """Rack and pinion: an involute gear on straight flanks that travel."""
 
+import dataclasses
 from functools import cached_property
 
 import equinox as eqx
@@ -20,6 +21,7 @@ from pitchpoint.gears.contact_lines import (
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
+from pitchpoint.gears.pairs import since_entry, spots_on_turning
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.rack_and_pinion.rack import Rack
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
@@ -172,8 +174,7 @@ class RackAndPinion(InvoluteMesh):
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
         line = self.line
-        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
-        entered = jnp.mod(phase, 1.0) + number
+        entered = since_entry(phase, self.lanes)
         across, share = line.lines(entered, helical=self.helical, slices=self.slices)
         lanes = jnp.shape(across)
         path = jnp.broadcast_to(entered - line.overlap_ratio * across * self.helical, lanes)
@@ -224,19 +225,12 @@ class RackAndPinion(InvoluteMesh):
 
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """The line of action stands still; the pinion turns on against it, the rack travels past it."""
-        lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
-        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
-        entered = jnp.broadcast_to(jnp.floor(phase) - number, lanes)
-        turned = jnp.broadcast_to(-self._side * phase * 2.0 * jnp.pi / self.pinion.teeth, lanes)
-        tooth = (-self._side * entered).astype(int)
-        flank = [jnp.broadcast_to(each, lanes) for each in contacts.flank]
-        across, ones = jnp.broadcast_to(contacts.width, lanes), jnp.ones(lanes)
-        around = jnp.mod(tooth, self.pinion.teeth.astype(int))
-        return (
-            Spot(flank[0], across, turned, around, ones),
-            # A rack has no end here, and no angle: whatever repeats on it counts in turns of the pinion.
-            Spot(flank[1], across, turned, tooth, ones),
-        )
+        teeth = jnp.stack([self.pinion.teeth] * 2)
+        first, second = spots_on_turning(contacts, phase, teeth, [-self._side] * 2)
+        # A rack has no end here, and no angle: whatever repeats on it counts in turns of the pinion.
+        number = since_entry(jnp.zeros_like(phase), self.lanes)
+        passed = jnp.broadcast_to(self._side * (number - jnp.floor(phase)), second.tooth.shape)
+        return first, dataclasses.replace(second, tooth=passed.astype(int))
 
     def _layers(self, line: LineOfAction) -> dict[str, Float[Array, "..."]]:
         """The transverse section at the middle of the face, the rack above the pinion."""

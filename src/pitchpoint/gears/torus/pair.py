@@ -10,7 +10,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.gears.bodies import main_dimensions, plain_inertia
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
-from pitchpoint.gears.pairs import largest_inclination
+from pitchpoint.gears.pairs import largest_inclination, since_entry
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.gears.torus.face import TorusFace, least
 
@@ -115,7 +115,7 @@ class TorusPair(InvolutePair):
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """The one contact of each pair in mesh; phase 0 is the entry of a pair at A [base pitches]."""
-        entered = self.entered(phase)
+        entered = since_entry(phase, self.lanes)
         return self.contacts_at(
             entered,
             active=entered <= self.line.contact_ratio,
