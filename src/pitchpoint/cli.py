@@ -447,11 +447,15 @@ def compare(
     ] = None,
     units: UnitsByKind = None,
     overwrite: Overwrite = False,
+    full: Annotated[
+        bool,
+        typer.Option("--full", help="Print all results and inputs that differ, and every warning."),
+    ] = False,
     json_: AsJson = False,
 ) -> None:
     """Compare designs, or a published case with its print.
 
-    Several designs: inputs that differ, main results and their differences, and a report with their
+    Several designs: main results with their differences, inputs that differ, and a report with their
     curves on the same axes. One published case: exit status 1 when a row misses without a known cause.
     """
     from pitchpoint.runs.designs import wanted
@@ -459,42 +463,54 @@ def compare(
     if len(designs) > 1:
         if variant is not None:
             raise InputError("goes with one case; of several write case@variant", key="--variant")
-        _compare_designs(designs, output, overwrite, json_, _units(units) if units else None)
+        outcomes, report = _compared_designs(designs, output, overwrite, units)
+        if json_:
+            _emit_designs(outcomes)
+            return
+        with _shown_units(outcomes, _units(units) if units else None):
+            _designs_in_full(outcomes, report) if full else _designs_at_first(outcomes, report)
         return
     if units:
         raise InputError("goes with several designs; print has its own units", key="--units")
+    if full:
+        raise InputError("goes with several designs; a print is told in full", key="--full")
     one = wanted(designs[0])
     _compare_with_print(one.case, variant or one.variant, json_)
 
 
-def _compare_designs(
-    designs: list[str],
-    output: Path | None,
-    overwrite: bool,
-    as_json: bool,
-    units: dict[str, str] | None,
-) -> None:
+def _compared_designs(
+    designs: list[str], output: Path | None, overwrite: bool, units: list[str] | None
+) -> "tuple[dict[str, Outcome], str]":
+    """Results of designs by name, and the report that was written of them."""
     from pitchpoint.runs.designs import DESIGNS, folder_of
     from pitchpoint.runs.designs import designs as compared
 
+    chosen = _units(units) if units else None
     folder = output or folder_of(designs, Path("results"))
     with _progress(folder) as progress:
         outcomes = compared(
             designs, folder=folder / DESIGNS, overwrite=overwrite, progress=progress
         )
         progress.part("", "report", False)
-        _write_report(outcomes, folder, designs=True, units=units)
-    if as_json:
-        from pitchpoint.runs.designs import as_json as told
-
-        _emit({**told(outcomes), "designs": {n: _figures(one) for n, one in outcomes.items()}})
-        return
-    with _shown_units(outcomes, units):
-        _differences(outcomes)
-    _console().print(f"Report: {_plain(str(folder / 'report.html'))}")
+        _write_report(outcomes, folder, designs=True, units=chosen)
+    return outcomes, f"Report: {folder / 'report.html'}"
 
 
-def _differences(outcomes: "dict[str, Outcome]") -> None:
+def _emit_designs(outcomes: "dict[str, Outcome]") -> None:
+    from pitchpoint.runs.designs import as_json
+
+    _emit({**as_json(outcomes), "designs": {n: _figures(one) for n, one in outcomes.items()}})
+
+
+def _designs_at_first(outcomes: "dict[str, Outcome]", report: str) -> None:
+    from pitchpoint.views.designs_screen import designs_screen
+
+    console = _console()
+    for line in designs_screen(outcomes, report, console.width):
+        console.print(_plain_line(line.text), style=_STYLES[line.style], soft_wrap=True)
+
+
+def _designs_in_full(outcomes: "dict[str, Outcome]", report: str) -> None:
     """What cannot be, results with their differences, inputs that differ, and what warns of each design."""
     from pitchpoint.views.designs import (
         differing,
@@ -521,6 +537,7 @@ def _differences(outcomes: "dict[str, Outcome]") -> None:
             )
     for name, outcome in outcomes.items():
         _warn([f"{name}: {text}" for text in outcome.manifest["warnings"]])
+    _console().print(_plain(report))
 
 
 def _compare_with_print(case: str, variant: str | None, json_: bool) -> None:

@@ -1,6 +1,7 @@
 """Results of several designs beside each other, and given to other programs."""
 
 import json
+import re
 import sys
 import tomllib
 import webbrowser
@@ -30,6 +31,7 @@ from pitchpoint.views.designs import (
     of_several,
     result_table,
 )
+from pitchpoint.views.designs_screen import COMPARED_LINES, designs_screen
 from pitchpoint.views.report import render
 
 PAIR = (
@@ -197,6 +199,50 @@ def test_what_is_of_other_things_is_not_subtracted(compared: Outcomes) -> None:
     assert "of other things" not in rows["largest Hertz pressure (xu_2007) [MPa]"][2]
 
 
+def lines(outcomes: Outcomes, width: int = 80) -> list[str]:
+    """First screen of a comparison, whose bounds it keeps."""
+    told = [line.text for line in designs_screen(outcomes, "Report: out/report.html", width)]
+    assert len(told) <= COMPARED_LINES == 24
+    assert max(map(len, told)) <= width
+    return told
+
+
+def test_the_first_screen_tells_what_differs_in_the_answer(compared: Outcomes) -> None:
+    told = lines(compared)
+    assert told[0] == "pair@worn against pair@new"
+    (loss,) = (line for line in told if line.startswith("loss [W] "))
+    losses = [float(one.parts["operation"]["mean_loss"][0, 0]) for one in compared.values()]
+    assert loss.split()[2:4] == [show.number(value) for value in losses]
+    assert loss.endswith(f"(+{100.0 * (losses[1] / losses[0] - 1.0):.1f} %)")
+    assert not any(line.startswith("stress of flanks") for line in told)
+    assert re.search(r"The same in all: stress of flanks [\d.]+ MPa; ", " ".join(told))
+    assert "Friction in every design: Xu and Kahraman 2007, EHL regression." in told
+    assert "Inputs that differ: roughness.ra 0.4 µm → 0.8 µm." in told
+    assert told[-2].startswith("By --full: ") and told[-1] == "Report: out/report.html"
+
+
+def test_the_first_screen_says_in_words_what_is_unlike(compared: Outcomes) -> None:
+    first, last = compared.values()
+    operation = last.parts["operation"].copy()
+    operation["mean_efficiency"] = operation["mean_efficiency"].assign_attrs(covers="")
+    told = lines(
+        {"one": first, "other": replace(last, parts={**last.parts, "operation": operation})}
+    )
+    (efficiency,) = (line for line in told if line.startswith("efficiency [%]"))
+    assert efficiency.endswith("of other things")
+    assert "Efficiency is that of the: teeth alone (one); whole drive (other)." in told
+
+
+def test_the_first_screen_of_many_designs_has_a_line_for_each(compared: Outcomes) -> None:
+    first, second = compared.values()
+    told = lines({f"design_{number}": (first, second)[number % 2] for number in range(9)})
+    each = [line for line in told if re.match(r"design_\d ", line)]
+    assert len(each) == 9
+    assert len({line.partition(" ")[2] for line in each}) == 2
+    crowd = lines({f"design_{number}": (first, second)[number % 2] for number in range(40)}, 60)
+    assert any(re.fullmatch(r"\d+ more designs by --full\.", line) for line in crowd)
+
+
 def test_films_count_only_where_pairs_touch(compared: Outcomes) -> None:
     figures = [one for one in main_results(compared) if one.name == "film_thickness"]
     for figure in figures:
@@ -236,6 +282,11 @@ def test_the_command(
     assert "−" in out
     assert "Report: beside/report.html" in out
     assert "Designs beside each other" in Path("beside/report.html").read_text("utf-8")
+    assert "ripple of the input torque" not in out
+    _, whole, _ = told("out/pair@new", "out/pair@worn", "-o", "beside", "--full")
+    assert "ripple of the input torque" in whole
+    _, _, err = told("out/pair@new", "--full")
+    assert "goes with several designs" in err
     _, out, _ = told("out/pair", "out/ball", "-o", "beside", "--json")
     found = json.loads(out)
     assert [*found["designs"]] == ["pair@new", "pair@worn", "ball"]
@@ -310,7 +361,7 @@ def test_what_cannot_be_stands_before_every_number(
 ) -> None:
     monkeypatch.setenv("COLUMNS", "300")
     output = str(Path(drives[0]).parent / "beside")
-    monkeypatch.setattr(sys, "argv", ["pitchpoint", "compare", *drives, "-o", output])
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "compare", *drives, "--full", "-o", output])
     with pytest.raises(SystemExit) as caught:
         cli.main()
     assert not caught.value.code

@@ -1,8 +1,10 @@
 """Tables on a narrow screen: columns that keep numbers and keys whole, in as many blocks as it takes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import zip_longest
+from textwrap import wrap
 
-__all__ = ["Columns", "fitted"]
+__all__ = ["Columns", "fitted", "lines_of"]
 
 _WHOLE = 16
 """Characters up to which a cell is never broken: numbers, units, keys."""
@@ -41,6 +43,29 @@ def fitted(rows: Sequence[Mapping[str, str]], names: Sequence[str], width: int) 
         _shared({name: least[name] for name in block}, natural, width)
         for block in _blocks(least, width)
     ]
+
+
+def lines_of(rows: Sequence[Mapping[str, str]], names: Sequence[str], width: int) -> Iterator[str]:
+    r"""A table as lines of text, block below block; the heads stand above each.
+
+    Args:
+        rows: of the table, cells by name of the column.
+        names: of the columns.
+        width: of the screen, in characters.
+
+    Example:
+        >>> print(*lines_of([{"": "loss [W]", "new": "13.58"}], ["", "new"], 40), sep="\n")
+                 new
+        loss [W] 13.58
+    """
+    for block in fitted(rows, names, width):
+        for row in ({name: name for name in block}, *rows):
+            cells = [wrap(row.get(name, ""), size) or [""] for name, size in block.items()]
+            for line in zip_longest(*cells, fillvalue=""):
+                padded = (
+                    f"{text:<{size}}" for text, size in zip(line, block.values(), strict=True)
+                )
+                yield (" " * _GAP).join(padded).rstrip()
 
 
 def _least(name: str, cells: Sequence[str]) -> int:

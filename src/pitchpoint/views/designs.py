@@ -15,10 +15,15 @@ from pitchpoint.views.point import ratio_words
 
 __all__ = [
     "NOTHING",
+    "RATIO",
+    "UNLIKE",
     "Compared",
+    "bases",
     "differing",
+    "figure_row",
     "input_tables",
     "law_words",
+    "left_by_rounding",
     "named_inputs",
     "of_several",
     "result_table",
@@ -100,9 +105,9 @@ def named_inputs(table: Compared) -> list[tuple[str, ...]]:
     return [(f"{where}, {key}", *told) for where, key, *told in table.rows]
 
 
-def law_words(outcomes: Mapping[str, Outcome]) -> str:
-    """Under which friction law the designs are compared, as a sentence."""
-    shared = shared_laws(outcomes)
+def law_words(outcomes: Mapping[str, Outcome], most: int | None = None) -> str:
+    """Under which friction laws the designs are compared, so many at most, as a sentence."""
+    shared = shared_laws(outcomes)[:most]
     if shared:
         told = [law_title(next(iter(outcomes.values())), law) for law in shared]
         return f"Friction in every design: {'; '.join(told)}."
@@ -121,32 +126,50 @@ def result_table(outcomes: Mapping[str, Outcome]) -> Compared:
         outcomes: by design.
     """
     first, *others = outcomes if len(outcomes) <= _FEW_DESIGNS else [*outcomes][:1]
-    figures = [one for one in main_results(outcomes) if not _left_by_rounding(one)]
+    figures = [one for one in main_results(outcomes) if not left_by_rounding(one)]
     by_law = len({one.law for one in figures if one.law}) > 1
     rows = [
-        (
-            _title(one, by_law),
-            *(_value(one, design) for design in outcomes),
-            *(
-                _UNLIKE
-                if {first, design} <= {*one.values}
-                and _unlike(one, outcomes[first], outcomes[design])
-                else _difference(one, first, design)
-                for design in others
-            ),
+        figure_row(
+            one, f"{one.title} ({one.law})" if by_law and one.law else one.title, outcomes, others
         )
         for one in figures
     ]
     head = ("result", *outcomes, *(f"{one} against {first}" for one in others))
-    return Compared(head, [*_meant(outcomes, len(others)), *rows], 1)
+    blank = ("",) * len(others)
+    return Compared(head, [*((*row, *blank) for row in bases(outcomes)), *rows], 1)
 
 
-_UNLIKE = "of other things"
+def figure_row(
+    figure: Figure, title: str, outcomes: Mapping[str, Outcome], others: Sequence[str]
+) -> tuple[str, ...]:
+    """A figure in words: title with unit, value of each design, differences of some from the first one.
+
+    Args:
+        figure: that some of the designs have.
+        title: words for it.
+        outcomes: by design.
+        others: designs whose differences from the first one are told.
+    """
+    first = next(iter(outcomes))
+    return (
+        show.bracketed(title, figure.variable),
+        *(_value(figure, design) for design in outcomes),
+        *(
+            UNLIKE
+            if {first, design} <= {*figure.values}
+            and _unlike(figure, outcomes[first], outcomes[design])
+            else _difference(figure, first, design)
+            for design in others
+        ),
+    )
+
+
+UNLIKE = "of other things"
 
 _OF_POWER = ("efficiency", "loss", "input_torque", "torque_ripple")
 """Parts of the names of figures that are of what the efficiency is of."""
 
-_OF_BODIES = ("reaction", "contact_ratio")
+_OF_BODIES = ("reaction", "contact_ratio", "bearing_load")
 """Parts of the names of figures that are of the bodies of a drive."""
 
 
@@ -180,22 +203,21 @@ def of_several(table: Compared, designs: int) -> tuple[Compared, int]:
     return replace(table, rows=rows), len(table.rows) - len(rows)
 
 
-def _meant(outcomes: Mapping[str, Outcome], more: int) -> Iterator[tuple[str, ...]]:
+def bases(outcomes: Mapping[str, Outcome]) -> Iterator[tuple[str, ...]]:
     """Ratios that differ, and what efficiencies and stiffnesses are of, where that is not the whole."""
     ratios = [ratio_words(one) or NOTHING for one in outcomes.values()]
     if len({*ratios}) > 1:
-        yield (
-            "ratio, speed of the driver over that of the output",
-            *ratios,
-            *("" for _ in range(more)),
-        )
+        yield (RATIO, *ratios)
     for words, told in (
         ("efficiency is that of the", _efficiency),
         ("stiffness is that of", _yields),
     ):
         each = [told(one).partition(";")[0] for one in outcomes.values()]
         if any(each):
-            yield (words, *(one or NOTHING for one in each), *("" for _ in range(more)))
+            yield (words, *(one or NOTHING for one in each))
+
+
+RATIO = "ratio, speed of the driver over that of the output"
 
 
 def _efficiency(outcome: Outcome) -> str:
@@ -225,17 +247,11 @@ def _yields(outcome: Outcome) -> str:
     return f"{told.get('covers', '')}{told.get('assumed', '')}"
 
 
-def _title(figure: Figure, by_law: bool) -> str:
-    unit = show.unit(figure.variable.display)
-    law = f" ({figure.law})" if by_law and figure.law else ""
-    return f"{figure.title}{law} [{unit}]" if unit else f"{figure.title}{law}"
-
-
 def _shown(figure: Figure, value: float) -> float:
     return float(show.displayed(figure.variable, value))
 
 
-def _left_by_rounding(figure: Figure) -> bool:
+def left_by_rounding(figure: Figure) -> bool:
     """True if all values are shown as zero; that of a temperature is as good as any other one."""
     values = (_shown(figure, value) for value in figure.values.values())
     return figure.variable.kind != "temperature" and not any(values)

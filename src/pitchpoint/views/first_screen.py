@@ -32,7 +32,17 @@ from pitchpoint.views.section import (
 )
 from pitchpoint.views.sections.studies import is_swept, swept_place
 
-__all__ = ["FEW_LINES", "Line", "aligned", "beside_each_other", "first_screen", "swept_beside"]
+__all__ = [
+    "FEW_LINES",
+    "Line",
+    "Style",
+    "aligned",
+    "beside_each_other",
+    "first_screen",
+    "swept_beside",
+    "within",
+    "wrapped",
+]
 
 FEW_LINES = 12
 """Lines of a first screen."""
@@ -86,12 +96,12 @@ def first_screen(
     doubts = _doubts(outcomes, width)
     more = _more(outcomes, report, width) if tables else [Line(f"Report: {report}")]
     rows = [*_rows_met(outcomes), *_missed(outcomes, report.parent, width)]
-    folded = [line for text in rows for line in _folded(text, width)]
+    folded = [line for text in rows for line in wrapped(text, width)]
     if 1 + len(doubts) + len(folded) + len(more) > FEW_LINES:
         folded = [show.first_clauses(text, width) for text in rows]
     foot = [*map(Line, folded), *more]
     room = FEW_LINES - len(doubts) - len(foot) - bool(at)
-    titles = _folded(title, width)
+    titles = wrapped(title, width)
     titles = titles if len(titles) <= min(room, 2) else [show.first_clauses(title, width)]
     head = [Line(text, "title") for text in titles]
     head += [Line(show.first_clauses(at, width))] if at else []
@@ -217,8 +227,8 @@ def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
     fails = _of_variants(outcomes, "implausible")
     doubts = _of_variants(outcomes, "warnings")
     every: list[list[Line]] = [
-        *([Line(line, "fails") for line in _folded(text, width)] for text in fails),
-        *([Line(line, "doubt") for line in _folded(f"Doubtful: {text}", width)] for text in doubts),
+        *([Line(line, "fails") for line in wrapped(text, width)] for text in fails),
+        *([Line(line, "doubt") for line in wrapped(f"Doubtful: {text}", width)] for text in doubts),
     ]
     most = _DOUBTS + bool(fails)
     if fails:  # room for what is asked first
@@ -336,14 +346,22 @@ def _missed(outcomes: Mapping[str, Outcome], folder: Path, width: int) -> Iterat
     for count in range(len(names), 0, -1):
         rest = f"and {len(names) - count} more: {command}".replace(" ", "\u00a0")
         text = f"Missed: {'; '.join([*names][:count])}{f'; {rest}' if count < len(names) else ''}"
-        if len(_folded(text, width)) <= 2:
+        if len(wrapped(text, width)) <= 2:
             yield text
             return
 
 
-def _folded(text: str, width: int) -> list[str]:
+def wrapped(text: str, width: int) -> list[str]:
     """A text on as many lines as it takes."""
     return textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
+
+
+def within(text: str, width: int, most: int) -> list[str]:
+    """A text on so many lines at most; the last one ends early where there is more."""
+    lines = wrapped(text, width)
+    return [*lines[: most - 1], show.first_clauses(" ".join(lines[most - 1 :]), width)][
+        : len(lines)
+    ]
 
 
 def _more(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Line]:
