@@ -369,6 +369,7 @@ _STYLES = {"title": "bold", "fails": "bold red", "doubt": "yellow", "figure": ""
 def _first_screen(outcomes: "dict[str, Outcome]", report: Path, *, tables: bool) -> None:
     """The answer; several variants side by side in a table, and sweeps that were asked for."""
     from pitchpoint.views.first_screen import beside_each_other, first_screen, swept_beside
+    from pitchpoint.views.sections.studies import extrapolated_note
 
     console = _console()
     for line in first_screen(outcomes, report, console.width, tables=tables):
@@ -377,6 +378,8 @@ def _first_screen(outcomes: "dict[str, Outcome]", report: Path, *, tables: bool)
         _table(beside_each_other(outcomes), ("", *outcomes))
     for rows in swept_beside(outcomes) if tables else ():
         _table(rows, tuple(rows[0]))
+        if note := extrapolated_note(rows):
+            console.print(note, style="dim")
 
 
 @app.command()

@@ -26,6 +26,7 @@ from pitchpoint.cases.schema import Study, Sweep
 from pitchpoint.materials import lubricants
 from pitchpoint.runs import run as running
 from pitchpoint.runs.run import describe, open_result
+from pitchpoint.views import show
 from pitchpoint.views.report import render
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -435,6 +436,21 @@ def published(tmp_path: Path, old: str = "", new: str = "") -> Path:
     path = tmp_path / "copy.toml"
     path.write_text(text.replace(old, new, 1), "utf-8")
     return path
+
+
+def test_points_of_a_study_out_of_the_range_of_their_law_are_marked(finished: Path) -> None:
+    outcomes = open_result(str(finished))
+    study = outcomes["default"].parts["study_speed"]
+    assert study["extrapolated"].sel(law="xu_2007").values.all()  # films below the roughness
+    assert not study["extrapolated"].sel(law="frictionless").values.any()
+    smooth = study_of_one_point = outcomes["default"].parts["study_smooth"]
+    assert study_of_one_point["extrapolated"].shape == smooth["mean_loss"].shape
+    page = render(outcomes)
+    efficiency = show.quantity(
+        "mean_efficiency", float(smooth["mean_efficiency"][0, 0]), with_unit=False
+    )
+    assert (f"{efficiency}†" in page) is bool(smooth["extrapolated"][0, 0])
+    assert ("out of its range there" in page) is bool(smooth["extrapolated"][0, 0])
 
 
 def test_compare(pitchpoint: Callable[..., Told], monkeypatch: pytest.MonkeyPatch) -> None:

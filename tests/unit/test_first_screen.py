@@ -32,6 +32,7 @@ from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import KeyFigure, Page, Table, key_figures
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.strength import strength_rows
+from pitchpoint.views.sections.studies import extrapolated_note
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -70,6 +71,11 @@ def test_a_sweep_that_was_asked_for_stands_below_the_answer(pair: dict[str, Outc
             {"operation.speed": "3000 rpm", "efficiency [%]": "–", "loss [W]": "30"},
         ]
     ]
+    beyond = swept.assign(extrapolated=(("law", "point"), np.array([[True, False]])))
+    ((first, second),) = swept_beside(run(beyond))
+    assert first["efficiency [%]"] == "98†" and second["efficiency [%]"] == "–"
+    assert "out of its range" in extrapolated_note([first, second])
+    assert extrapolated_note([second]) == ""
     assert swept_beside(run(xr.concat([swept] * 13, "point", data_vars="all"))) == []
     assert swept_beside(pair) == []
 

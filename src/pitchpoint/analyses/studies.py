@@ -108,7 +108,9 @@ class _Planned:
         under = points[0].models
         extra = {**self._axis(changes), **more_of(points, len(under))}
         data = summaries(points, under, extra, progress, title=self.title, several=True)
-        data = data.drop_vars("out_of_range", errors="ignore")  # a warning counts them
+        if "out_of_range" in data:  # a warning says why
+            data["extrapolated"] = data["out_of_range"] != ""
+            data = data.drop_vars("out_of_range")
         data.attrs.update(self.told)
         if self.told.get("axis_kind"):
             units = si_unit(self.told["axis_kind"])

@@ -604,6 +604,7 @@ VARIABLES: dict[str, Variable] = {
     "loss_factor_efficiency": percent("efficiency by loss factor, 1 - μ H_V", "1 - μ H_V"),
     "iterations": Variable("iterations of the torque balance", "", "1"),
     "locked": Variable("friction locks the mesh", "", "1"),
+    "extrapolated": Variable("the friction law is out of its range", "", "1"),
     "torque": torque("output torque", "T_out"),
     "speed": Variable("driver speed", "n", "rad/s", "rpm", "rotational speed"),
     "output_torque": torque("output torque", "T_out"),

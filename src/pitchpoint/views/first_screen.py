@@ -30,7 +30,7 @@ from pitchpoint.views.section import (
     stages_together,
     told_of_variants,
 )
-from pitchpoint.views.sections.studies import is_swept, swept_place
+from pitchpoint.views.sections.studies import is_swept, marked, swept_place
 
 __all__ = [
     "FEW_LINES",
@@ -191,7 +191,10 @@ def _swept(data: xr.Dataset, *, solved: bool) -> Iterator[dict[str, str]]:
         for law in laws:
             named = {"law": str(data["law"].values[law])} if len(laws) > 1 else {}
             values = {name: float(data[name].values[law, point]) for name in known}
-            cells = {known[name]: _cell(name, value, data) for name, value in values.items()}
+            cells = {
+                known[name]: marked(name, _cell(name, value, data), data, law, point)
+                for name, value in values.items()
+            }
             yield swept_place(data, point) | named | cells
 
 

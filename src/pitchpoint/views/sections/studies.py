@@ -36,7 +36,15 @@ from pitchpoint.views.screen import efficiency_of, head, shown
 from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Section, Table
 from pitchpoint.views.sections.design_chart import design_charts, is_design_chart
 
-__all__ = ["STUDIES", "is_swept", "study_panels", "swept_place", "swept_rows"]
+__all__ = [
+    "STUDIES",
+    "extrapolated_note",
+    "is_swept",
+    "marked",
+    "study_panels",
+    "swept_place",
+    "swept_rows",
+]
 
 _SHOWN = ("mean_efficiency", "efficiency_fluctuation", "mean_input_torque", "torque_ripple")
 _MOVING = ("mean_stiffness", "transmission_error_range", "largest_dynamic_factor")
@@ -142,6 +150,8 @@ def _table(studies: list[Seen], note: str, *, lossless: bool, named: bool) -> It
     titles = (show.axis_title(name, like) for name in columns)
     heads = ["Study", "Friction law", _swept(like)[1] if swept else "", *titles]
     rows = [row for seen in studies for row in _rows(seen, columns)]
+    if any(cell.endswith(OUTSIDE) for row in rows for cell in row):
+        note = " ".join(filter(None, (note, f"{OUTSIDE} {OF_MARK}")))
     shown = [k for k in range(len(heads)) if (named or swept or k) and (swept or k != _PLACE)]
     same = [k for k in shown if k != _PLACE and len(rows) > 1 and len({r[k] for r in rows}) == 1]
     kept = [k for k in shown if k not in same]
@@ -198,10 +208,11 @@ def _columns(seen: Seen) -> list[str]:
 
 def _cells(data: xr.Dataset, law: int, columns: list[str], point: int = 0) -> list[str]:
     values = {name: float(_valid(data, name)[law, point]) for name in columns}
-    return [
-        _endless(name, value) or show.quantity(name, value, with_unit=False, of=data)
+    told = {
+        name: _endless(name, value) or show.quantity(name, value, with_unit=False, of=data)
         for name, value in values.items()
-    ]
+    }
+    return [marked(name, words, data, law, point) for name, words in told.items()]
 
 
 def _endless(name: str, value: float) -> str:
@@ -380,7 +391,27 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     """Every sweep of the command line: point by point, each friction law by name."""
     for name, data in outcome.parts.items():
         if is_swept(name, data):
-            yield Printed(str(data.attrs["title"]), swept_rows(data))
+            rows = swept_rows(data)
+            yield Printed(str(data.attrs["title"]), rows, extrapolated_note(rows))
+
+
+OUTSIDE = "†"
+"""Behind an efficiency by a friction law that is out of its range there."""
+
+
+def marked(name: str, words: str, data: xr.Dataset, law: int, point: int) -> str:
+    """A number in words, an efficiency with a mark where it is extrapolated."""
+    outside = "extrapolated" in data and bool(data["extrapolated"].values[law, point])
+    return f"{words}{OUTSIDE}" if outside and name == "mean_efficiency" else words
+
+
+def extrapolated_note(rows: Sequence[Mapping[str, str]]) -> str:
+    """What the mark means; empty where it stands in no cell."""
+    there = any(cell.endswith(OUTSIDE) for row in rows for cell in row.values())
+    return f"{OUTSIDE} {OF_MARK}" if there else ""
+
+
+OF_MARK = "The friction law is out of its range there: its figures are extrapolations."
 
 
 def is_swept(name: str, data: xr.Dataset) -> bool:
@@ -408,7 +439,7 @@ def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
     if idle := all(_lossless(data, each) for each in range(data.sizes["law"])):
         names = tuple(name for name in names if name not in _OF_LOSS)
     cells = {
-        head(n, data): _endless(n, value) or shown(n, value, data)
+        head(n, data): marked(n, _endless(n, value) or shown(n, value, data), data, law, point)
         for n, value in ((n, float(data[n].values[law, point])) for n in names if n in data)
     }
     told = {} if idle else efficiency_of(data)
