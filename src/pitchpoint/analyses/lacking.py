@@ -81,7 +81,9 @@ def no_bodies(built: Built) -> str | None:
         return None
     if not built.transmits:
         return Unasked("a test rig has bodies of any mass")
-    return Unasked("masses of cylindrical gears stand with the dimensions of their drawing")
+    if built.family.drawing:
+        return Unasked("masses of cylindrical gears stand with the dimensions of their drawing")
+    return "masses of these gears are not computed"
 
 
 def of_one_mesh(built: Ready) -> str | None:

@@ -30,7 +30,9 @@ _OF_TEETH = ("worn_tip_land", "backlash_growth", "backlash_growth_error")
 def _unasked(built: Built) -> str | None:
     """Why a case has no wear: nobody asks for it, or a member has no end."""
     if not has(built.design.mesh, flanks_in_turn):
-        return "a rack has no number of teeth among which wear goes round"
+        return (
+            "these gears name no number of flanks among which wear goes round, as a rack has none"
+        )
     return Unasked("the case has no [wear]") if built.case.wear is None else None
 
 

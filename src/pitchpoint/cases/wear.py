@@ -59,7 +59,10 @@ def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
     if table is None:
         return
     if not has(mesh, flanks_in_turn):
-        told = "was given; a rack has no number of teeth among which wear goes round, leave the table out"
+        told = (
+            "was given; these gears name no number of flanks among which wear goes round, as a rack has "
+            "none; leave the table out"
+        )
         raise InputError(told, key="wear")
     if case.worn is not None:
         raise InputError(

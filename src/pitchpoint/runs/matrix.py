@@ -16,6 +16,7 @@ from pitchpoint.cases.schema import with_meshes
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.pairs import flanks_in_turn
+from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.input.tables import tag
 from pitchpoint.runs.run import load_case
 
@@ -42,7 +43,7 @@ def matrix() -> list[dict[str, str]]:
         table for table in TABLES if samples[tag(table)][0].transmits and table.load == "torque"
     ]
     asked: list[Mapping[str, Any]] = [*map(_films, FILM_SOLVERS["line"]), _WEAR]
-    drives = [_drive(sample_of(table)) for table in turning]
+    drives = [_drive(sample_of(table), _sharing(*samples[tag(table)][:1])) for table in turning]
     samples["several stages"] = drives + [_drive(sample_of(turning[0]), one) for one in asked]
     deviating = {"gears.deviations.iso_class": 6}
     pins = {"gears.pin_tolerance": "20 um"}
@@ -53,6 +54,12 @@ def matrix() -> list[dict[str, str]]:
         | {name: _why_not(analysis, cases) for name, cases in samples.items()}
         for analysis in ANALYSES.values()
     ]
+
+
+def _sharing(sample: Ready) -> dict[str, str]:
+    """Settings by which teeth that no section says to yield stand in a drive of others that do."""
+    (built,) = sample.meshes
+    return {} if has(built.design.mesh, tooth_sections) else {"models.load_sharing": "equal"}
 
 
 def _drive(sample: Path, settings: Mapping[str, Any] = MappingProxyType({})) -> Ready:
