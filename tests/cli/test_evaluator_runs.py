@@ -22,6 +22,7 @@ from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.analysis import silent
 from pitchpoint.analyses.figures import HOLDING_BANDS, held_at_operation, standstill_figures
 from pitchpoint.analyses.four_quadrants import (
+    loss_beside,
     loss_of_output,
     quadrant_axes,
     table_of,
@@ -430,6 +431,27 @@ def test_loss_from_loads_at_the_driver(
     loss, found = loss_of_output(torque, 1.0, driving, driving + 1.0, np.array(locked))
     np.testing.assert_allclose(loss, expected)
     assert found.tolist() == held
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_bound_at_rest_encloses_what_it_bounds_at_any_load(way: float) -> None:
+    """Drawn losses beside the teeth, of the teeth, and what phases add; on curves of their own some cross."""
+    rng, load, crossed = np.random.default_rng(0), np.array([0.0, 0.5, 2, 4, 6, 8, 11, 15]), 0
+    torque, free = np.linspace(0.1, 15.0, 50), np.zeros(8, bool)
+    for _ in range(300):
+        idle = 10.0 ** rng.uniform(-2.0, 1.5)
+        usual = idle + rng.uniform(0.05, 0.8) * load ** rng.uniform(0.5, 1.0)
+        bound = usual * (1.0 + way * rng.uniform(0.0, 0.02, 8))
+        start = idle * rng.uniform(0.2, 2.0)
+        mean = (start, load + usual, usual, free)
+        beyond = (start * (1.0 + 0.01 * way), load + bound, bound, free)
+        alone, kept = loss_of_output(torque, *mean)[0], loss_beside(torque, mean, beyond)[0]
+        crossed += bool(np.any(way * (loss_of_output(torque, *beyond)[0] - alone) < -1e-12))
+        at_nodes = loss_beside(load + bound, mean, beyond)[0]
+        assert np.all(way * (kept - alone)[np.isfinite(kept + alone)] >= -1e-12)
+        ahead = way * (bound - loss_of_output(load + bound, *mean)[0]) > 0.0
+        np.testing.assert_allclose(at_nodes[ahead], bound[ahead], rtol=1e-9)
+    assert crossed > 5
 
 
 ASK = """

@@ -26,6 +26,7 @@ from pitchpoint.status import locked_or_lost, told
 
 __all__ = [
     "both",
+    "loss_beside",
     "loss_of_output",
     "mirrored",
     "pieces",
@@ -220,8 +221,7 @@ def loss_of_output(
         >>> loss.tolist(), held.tolist()
         ([2.0, 7.0, nan], [False, False, True])
     """
-    there = np.flatnonzero(np.isfinite(driving + losses) & ~locked)
-    there = there[[bool(np.all(driving[there[:k]] < driving[one])) for k, one in enumerate(there)]]
+    there = _rising(driving, losses, locked)
     known = driving[there]
     # A torque lies between two loads; where one in between is missing, so is what the torque does.
     gaps = [*pairwise([-1, *there, driving.size])]
@@ -230,6 +230,58 @@ def loss_of_output(
     place = np.searchsorted(known * (1.0 + FALLS_SHORT), torque)
     found = _between_loads(torque, no_load, known, losses[there])
     return np.where(missing[place], np.nan, found), held[place]
+
+
+Curve = tuple[float, np.ndarray, np.ndarray, np.ndarray]
+"""Arguments of `loss_of_output` but the torques."""
+
+
+def loss_beside(
+    torque: np.ndarray,
+    usual: Curve,
+    other: Curve,
+) -> tuple[np.ndarray, np.ndarray]:
+    """The same of a bound: what it loses beside the usual loss goes straight from load to load.
+
+    Each on a cubic of its own, a bound and what it bounds cross between loads where they lie close together.
+
+    Args:
+        torque: see `loss_of_output`.
+        usual: what is bounded, the other arguments of `loss_of_output`.
+        other: the same of the bound, which loses more under every load, or less under every one.
+
+    Returns:
+        As `loss_of_output`; never on the other side of the usual loss.
+
+    Example:
+        >>> import numpy as np
+        >>> load, free = np.array([0.0, 5.0, 10.0]), np.zeros(3, bool)
+        >>> usual, other = ((1.0, load + k, np.full(3, k), free) for k in (2.0, 2.5))
+        >>> loss_beside(np.array([3.0, 9.0]), usual, other)[0].tolist()
+        [2.5, 2.5]
+    """
+    found, held = loss_of_output(torque, *other)
+    (idle, *rest), (no_load, driving, losses, locked) = usual, other
+    carried, there = _rising(*rest), _rising(driving, losses, locked)
+
+    def bounded(at: np.ndarray) -> np.ndarray:
+        return _between_loads(at, idle, rest[0][carried], rest[1][carried])
+
+    known = np.append(0.0, driving[there])
+    apart = np.append(no_load - idle, losses[there] - bounded(driving[there]))
+    begin = int(known.size > 1 and known[1] <= 0.0)
+    apart = np.clip(apart, 0.0, None) if np.nansum(apart) > 0.0 else np.clip(apart, None, 0.0)
+    beside = bounded(torque) + np.interp(torque, known[begin:], apart[begin:])
+    return np.where(np.isnan(beside) | np.isnan(found), found, beside), held
+
+
+def _rising(driving: np.ndarray, losses: np.ndarray, locked: np.ndarray) -> np.ndarray:
+    """Places of the loads that the output carries, each by a larger torque than those before it."""
+    there = np.flatnonzero(np.isfinite(driving + losses) & ~locked)
+    rising: np.ndarray = there[
+        [bool(np.all(driving[there[:k]] < driving[one])) for k, one in enumerate(there)]
+    ]
+    return rising
 
 
 def _between_loads(
@@ -249,7 +301,7 @@ def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """The whole map, with how near values between its nodes are, and what there is to say about it."""
     (loads, _, degrees), (_, speeds, _) = quadrant_axes(built), quadrant_axes(_driven_back(built))
     ratio, torques = speed_ratio(built), both(loads)
-    lost, stuck = _over_output(built, parts, "largest_holding_torque")
+    lost, stuck = _over_output(built, parts)
     surely, _ = _over_output(built, parts, "moving_on_torque")
     axes = {
         "law": built.law_names,
@@ -325,7 +377,13 @@ def mirrored(values: Values) -> Values:
     return np.concatenate([values[:, ::-1, :0:-1], values], axis=2)
 
 
-def _over_output(built: Ready, parts: Sequence[xr.Dataset], start: str) -> tuple[Values, Values]:
+_USUAL = "largest_holding_torque"
+"""Torque at rest that the others are bounds of, as it starts the drive in the mean over its phases."""
+
+
+def _over_output(
+    built: Ready, parts: Sequence[xr.Dataset], start: str = _USUAL
+) -> tuple[Values, Values]:
     """Torque that is lost over torques of either sign and speeds from rest on, and where friction locks."""
     lost, locked, driving = {}, {}, {}
     for way in (FORWARDS, BACKWARDS):
@@ -336,13 +394,12 @@ def _over_output(built: Ready, parts: Sequence[xr.Dataset], start: str) -> tuple
         held = np.isnan(rest) & formulas
         locked[way] = np.concatenate([held[:, :, None], stuck[:, :, 1:]], axis=2)
         driving[way] = _ideal(built, way, between=False) + lost[way]
-    turned, held = _turned(
-        quadrant_axes(built)[0][1:],
-        lost[FORWARDS][:, 0],
-        driving[BACKWARDS],
-        lost[BACKWARDS],
-        locked[BACKWARDS],
-    )
+    torques = quadrant_axes(built)[0][1:]
+    curves = lost[FORWARDS][:, 0], driving[BACKWARDS], lost[BACKWARDS], locked[BACKWARDS]
+    turned, held = _turned(torques, *curves)
+    if start != _USUAL:
+        at_rest = tuple(one[..., 0, :] for one in curves)
+        turned[:, :, 0] = _bound(torques, at_rest, _usual_at_rest(built, parts))
     loaded = (quadrant_axes(built)[0] > 0.0)[:, None, None]
     return (
         np.concatenate([turned[:, ::-1], lost[FORWARDS]], axis=1),
@@ -402,6 +459,31 @@ def _turned(
         start = float(no_load[law, speed, degree])
         found[at], held[at] = loss_of_output(torques, start, driving[at], lost[at], locked[at])
     return found, held
+
+
+Curves = tuple[np.ndarray, ...]
+"""Arguments of `loss_of_output` but the torques, each [law, ..., temperature]."""
+
+
+def _usual_at_rest(built: Ready, parts: Sequence[xr.Dataset]) -> Curves:
+    """What the mean over the phases loses at rest, backwards under every load."""
+    forth, back = (
+        _lost_at_rest(built, way, parts, _USUAL, between=False) for way in (FORWARDS, BACKWARDS)
+    )
+    ideal = _ideal(built, BACKWARDS, between=False)[:, 0]
+    return forth[:, 0], ideal + back, back, np.zeros(back.shape, bool)
+
+
+def _bound(torques: np.ndarray, bound: Curves, usual: Curves) -> Values:
+    """Torque that is lost at rest by a bound over torques that turn the output [law, torque, temperature]."""
+    found = np.zeros((bound[0].shape[0], torques.size, bound[0].shape[1]))
+    for law, degree in np.ndindex(bound[0].shape):
+        each: list[Curve] = [
+            (float(start[law, degree]), *(one[law, :, degree] for one in rest))
+            for start, *rest in (usual, bound)
+        ]
+        found[law, :, degree], _ = loss_beside(torques, *each)
+    return found
 
 
 def _figures(
