@@ -127,7 +127,7 @@ def test_a_torque_that_holds_hardly_anything_is_told_as_none_is(
         bare = every.drop_vars([end for ends in HOLDING_BANDS.values() for end in ends])
         doubted = replace(moving[1], parts={"running": running, "four_quadrants": bare})
         (figure,) = FOUR_QUADRANTS_SECTION.answer(doubted)
-        assert figure.detail.startswith("too narrow: no breakaway in [losses]; for ")
+        assert figure.detail.startswith("too narrow: no breakaway given; for ")
 
 
 def test_the_input_of_a_drive_that_runs_backwards_is_the_member_that_is_loaded() -> None:

@@ -24,11 +24,12 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.explorer import Reader
 from pitchpoint.views.figures import Figure, Panel, curves
+from pitchpoint.views.first_screen import aligned
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import operating_point, period_of
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.report import render
-from pitchpoint.views.section import Page, key_figures
+from pitchpoint.views.section import KeyFigure, Page, key_figures
 from pitchpoint.views.sections.answer import teeth_rows
 from pitchpoint.views.sections.arc import arc_panel, wave_losses, wave_sentence
 from pitchpoint.views.sections.beside import drag_panel, starting_answer
@@ -37,7 +38,7 @@ from pitchpoint.views.sections.drive import loaded_arcs, picture, wave_dimension
 from pitchpoint.views.sections.kinematic_error import kinematic_error_answer, kinematic_error_panels
 from pitchpoint.views.sections.loss_map import efficiency_panel
 from pitchpoint.views.sections.passing import gap_panel
-from pitchpoint.views.sections.torsion import torsion_answer, torsion_panels
+from pitchpoint.views.sections.torsion import torsion_answer, torsion_facts, torsion_panels
 
 EVIL = "</script><b>&"
 LAWS = ["constant", "own"]
@@ -390,6 +391,17 @@ def test_the_torsional_stiffness_says_what_yields(whole: Outcome, page: str) -> 
     ) in words(page)
     assert "Teeth and ring yield; shafts are not in it." in words(page)
     assert torsion_answer(whole).endswith("; shafts are not in it")
+
+
+def test_three_slopes_stand_in_a_line_with_what_is_assumed_of_them(whole: Outcome) -> None:
+    slopes = {"slope_stiffness": (("slope",), [21230.0, 35660.0, 39440.0])}
+    data = whole.parts["torsion"].assign(slopes).assign_coords(slope=["K1", "K2", "K3"])
+    data.attrs["brief"] = (
+        "shafts are not in it; 14 dimensions of its parts are assumed, see the inputs"
+    )
+    (stiffness, *_) = torsion_facts(replace(whole, parts={**whole.parts, "torsion": data}))
+    (line,) = aligned([stiffness, KeyFigure(75.0, "Inertia at the input", "3 kg cm²")], 80)[:1]
+    assert line.text.endswith("K1–K3 21.2, 35.7, 39.4; 14 sizes assumed")
 
 
 def test_what_starts_a_drive_stands_before_its_kinematic_error(whole: Outcome) -> None:

@@ -398,7 +398,8 @@ def _over_output(
     curves = lost[FORWARDS][:, 0], driving[BACKWARDS], lost[BACKWARDS], locked[BACKWARDS]
     turned, held = _turned(torques, *curves)
     if start != _USUAL:
-        at_rest = tuple(one[..., 0, :] for one in curves)
+        no_load, driven, back, stuck = (one[..., 0, :] for one in curves)
+        at_rest = no_load, driven, back, stuck
         turned[:, :, 0] = _bound(torques, at_rest, _usual_at_rest(built, parts))
     loaded = (quadrant_axes(built)[0] > 0.0)[:, None, None]
     return (
@@ -461,7 +462,7 @@ def _turned(
     return found, held
 
 
-Curves = tuple[np.ndarray, ...]
+Curves = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 """Arguments of `loss_of_output` but the torques, each [law, ..., temperature]."""
 
 
@@ -478,12 +479,15 @@ def _bound(torques: np.ndarray, bound: Curves, usual: Curves) -> Values:
     """Torque that is lost at rest by a bound over torques that turn the output [law, torque, temperature]."""
     found = np.zeros((bound[0].shape[0], torques.size, bound[0].shape[1]))
     for law, degree in np.ndindex(bound[0].shape):
-        each: list[Curve] = [
-            (float(start[law, degree]), *(one[law, :, degree] for one in rest))
-            for start, *rest in (usual, bound)
-        ]
+        each = (_at(curves, law, degree) for curves in (usual, bound))
         found[law, :, degree], _ = loss_beside(torques, *each)
     return found
+
+
+def _at(curves: Curves, law: int, degree: int) -> Curve:
+    start, driving, lost, locked = curves
+    each = (law, slice(None), degree)
+    return float(start[law, degree]), driving[each], lost[each], locked[each]
 
 
 def _figures(

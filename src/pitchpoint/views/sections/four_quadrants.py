@@ -164,7 +164,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     yield KeyFigure(36.0, "Holding torque", words, detail)
 
 
-_TOO_NARROW = "too narrow: no breakaway in [losses]"
+_TOO_NARROW = "too narrow: no breakaway given"
 """Beside torques that hold a load of which nothing says what holds the drive at rest."""
 
 

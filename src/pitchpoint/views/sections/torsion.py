@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.figures import WIND_UP
-from pitchpoint.results.variables import VARIABLES
+from pitchpoint.results.variables import VARIABLES, variable_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -468,7 +468,7 @@ def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     slopes = _slopes(data)
     rigid = _rigid(data)
     detail = figure.detail.replace(f"; {rigid} are not in it", "")
-    each = (slopes, f"without {rigid}" if rigid else "", detail)
+    each = (slopes, _assumed(data), f"without {rigid}" if rigid else "", detail)
     yield replace(figure, detail="; ".join(filter(None, each)), asked_by=("gears.yielding",))
     if "catalogue_lost_motion" in data:
         values = data["catalogue_lost_motion"].values
@@ -484,16 +484,26 @@ def _rigid(data: xr.Dataset) -> str:
     return rigid if without else ""
 
 
+def _assumed(data: xr.Dataset) -> str:
+    """On how many sizes that nobody gave a stiffness rests, in few words; empty if on none."""
+    told = str(data.attrs.get("brief", "")).partition(" are not in it; ")[2]
+    return f"{told.split()[0]} sizes assumed" if told else ""
+
+
+_OF_SLOPES = 3
+"""Digits of a slope: makers print two, and a screen has the doubt beside."""
+
+
 def _slopes(data: xr.Dataset) -> str:
-    """Stiffness in three slopes in few words; empty where catalogues have none."""
+    """Stiffness in three slopes, in the unit of the stiffness itself; empty where catalogues have none."""
     if "slope_stiffness" not in data:
         return ""
-    each = zip(data["slope"].values, data["slope_stiffness"].values, strict=True)
-    named = (
-        f"{name} {show.quantity('slope_stiffness', float(value), with_unit=False, of=data)}"
-        for name, value in each
-    )
-    return f"{', '.join(named)} {show.unit_of('slope_stiffness', data)}"
+    names, each = data["slope"].values, data["slope_stiffness"]
+    values = np.asarray(show.displayed(variable_of(data, "slope_stiffness"), each.values), float)
+    told = ", ".join(show.number(float(value), _OF_SLOPES) for value in values)
+    units = {show.unit_of(name, data) for name in ("slope_stiffness", "torsional_stiffness")}
+    unit = f" {show.unit_of('slope_stiffness', data)}" if len(units) > 1 else ""
+    return f"{names[0]}–{names[-1]} {told}{unit}"
 
 
 def torsion_printed(outcome: Outcome) -> list[Printed]:
