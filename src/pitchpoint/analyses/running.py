@@ -189,6 +189,8 @@ def _easily_started(
         return []
     kind = "force" if "driver" in built.travels else "torque"
     unit = "N" if kind == "force" else "N m"
+    if rest < _SMALL:
+        rest, moving, unit = 1e3 * rest, 1e3 * moving, f"m{unit}"
     return [
         Doubt(
             f"A {kind} to start of {rest:.3g} {unit} beside {moving:.3g} {unit} in slow motion is too low: "
@@ -198,6 +200,10 @@ def _easily_started(
             brief=f"{rest:.3g} {unit} to start: too low, too little holds.",
         )
     ]
+
+
+_SMALL = 0.01
+"""Below which a torque is told in mN m, a force in mN [N m, N]."""
 
 
 def running_axes(built: Ready) -> tuple[np.ndarray, np.ndarray]:

@@ -12,6 +12,7 @@ from pitchpoint.input.quantities import Quantity
 from pitchpoint.results.chosen_units import Choice, unit_choice, unit_in_use
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views.show import handy
 
 __all__ = [
     "FOLLOWING",
@@ -160,10 +161,22 @@ def _words(row: Row) -> str:
     if not isinstance(value, list):
         return _one(value, row)
     if value and all(isinstance(one, float) for one in value):
-        shown = [_one(one, row) for one in value]
+        shown = _several(value, row)
         alike = not _path(row).endswith("gears.profile_shift") and len(set(shown)) == 1
         return " / ".join(shown[:1] if alike else shown)
     return ", ".join(_item(one, row) for one in value) or "none"
+
+
+def _several(values: list[float], row: Row) -> list[str]:
+    """Numbers of a row; in one smaller unit where one of them would need a power of ten."""
+    kind = row["kind"]
+    usual = _unit(row["table"], row["key"], kind) if kind and isinstance(kind, str) else ""
+    shown, unit = (
+        handy([units.convert(one, usual, kind) for one in values], usual) if usual else ([], "")
+    )
+    if unit == usual:
+        return [_one(one, row) for one in values]
+    return [f"{one:.6g} {unit}" for one in shown]
 
 
 def _item(value: Any, row: Row) -> str:
@@ -215,7 +228,8 @@ def _unit(table: str, key: str, kind: str) -> str:
 def _own_unit(table: str, key: str) -> str:
     """Unit that the schema or the list of variables names for a key; empty where neither does."""
     if table == DIMENSIONS:
-        variable = VARIABLES.get(key) or VARIABLES.get(f"{key}_1")
+        name = key.rsplit(".", 1)[-1]  # behind the stage that it is of
+        variable = VARIABLES.get(name) or VARIABLES.get(f"{name}_1")
         return "" if variable is None else variable.usual
     try:
         quantity = quantity_at(f"{table}.{key}")

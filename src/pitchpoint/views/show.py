@@ -18,9 +18,11 @@ __all__ = [
     "described",
     "displayed",
     "first_clauses",
+    "handy",
     "number",
     "one_line",
     "pretty",
+    "quantities",
     "quantity",
     "sentence",
     "signed",
@@ -219,13 +221,46 @@ def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None)
     return _with_unit(shown, variable.display) if with_unit else number(shown)
 
 
+def quantities(name: str, values: Sequence[float], of: Any = None) -> tuple[str, list[str]]:
+    """Unit, as printed, and numbers of values of a variable that share it [SI in], see `described`.
+
+    Example:
+        >>> quantities("disc_inertia", (2.038e-8, 8.014e-5))
+        ('g cm²', ['0.2038', '801.4'])
+    """
+    variable = described(name, of)
+    shown, display = handy(
+        [float(displayed(variable, value)) for value in values], variable.display
+    )
+    return unit(display), [number(value) for value in shown]
+
+
+def handy(values: Sequence[float], display: str) -> tuple[list[float], str]:
+    """Values and their unit; in a larger or smaller one where one of them would need a power of ten.
+
+    Args:
+        values: in the unit.
+        display: the unit; one that has no other in its place stays.
+
+    Example:
+        >>> handy([1.088e-9, 1.059e-5], "kg m2")[1], handy([2.5], "N m")
+        ('g cm2', ([2.5], 'N m'))
+    """
+    sizes = [abs(value) for value in values if value and isfinite(value)]
+    if not sizes:
+        return list(values), display
+    small, large = min(sizes) < 10.0**_SMALLEST, max(sizes) >= 10.0**_LARGEST
+    other, times = (_LARGER if large else _SMALLER).get(display, (display, 1.0))
+    if small == large or other == display or (small and max(sizes) / times >= 10.0**_LARGEST):
+        return list(values), display
+    changed = [value / times for value in values]
+    return handy(changed, other) if small else (changed, other)
+
+
 def _with_unit(value: float, display: str) -> str:
     """Number with its unit; with a larger or smaller one where it would need a power of ten."""
-    if value and not 10.0**_SMALLEST <= abs(value) < 10.0**_LARGEST:
-        larger = abs(value) >= 1.0
-        other, times = (_LARGER if larger else _SMALLER).get(display, (display, 1.0))
-        value, display = value / times, other
-    return f"{number(value)} {unit(display)}".strip()
+    (shown,), display = handy([value], display)
+    return f"{number(shown)} {unit(display)}".strip()
 
 
 _LARGER = {
@@ -240,6 +275,8 @@ _SMALLER = {
     "N": ("mN", 1e-3),
     "W": ("mW", 1e-3),
     "J": ("µJ", 1e-6),
+    "kg": ("g", 1e-3),
+    "kg m2": ("kg cm2", 1e-4),
     "kg cm2": ("g cm2", 1e-3),
 }
 """Units in place of one, and what they are of it."""
@@ -273,10 +310,10 @@ def the(member: str) -> str:
     """Name of a body in a sentence.
 
     Example:
-        >>> the("rack"), the("gear 2")
-        ('the rack', 'gear 2')
+        >>> the("rack"), the("gear 2"), the("stage 1: carrier")
+        ('the rack', 'gear 2', 'stage 1: carrier')
     """
-    return member if member.startswith("gear") else f"the {member}"
+    return member if re.search(r"\d", member) else f"the {member}"
 
 
 def axis_title(name: str, of: Any = None) -> str:

@@ -1020,7 +1020,7 @@ def _overlap_warning(pair: _Pair) -> Doubt:
 
 def _undercut_warning(pair: _Pair, gear: _Gear) -> Doubt:
     lost = _lost_ratio(pair, gear)
-    circle = f"its form circle ({_mm(gear.form_diameter)})"
+    circle = f"its form circle ({1e3 * gear.form_diameter:.6g} mm)"
     loses, ends = (
         (f"loses {lost:.2g} of its contact ratio", f"the path of contact ends at {circle}")
         if lost > 0.0

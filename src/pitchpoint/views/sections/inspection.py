@@ -50,10 +50,8 @@ def measured_rows(data: xr.Dataset) -> list[Row]:
         _measured("measuring balls D_M", "ball_diameter", data),
         *_limits(data, "over_balls", "over balls, in a ring between them, M_d"),
         _measured("the balls touch on d", "ball_contact_diameter", data),
-        *(
-            _row(f"{title} [{show.unit_of(name)}]", _each(name, data))
-            for name, title in (("disc_mass", "mass m"), ("disc_inertia", "moment of inertia J"))
-        ),
+        _weighed("mass m", "disc_mass", data),
+        _weighed("moment of inertia J", "disc_inertia", data),
     ]
 
 
@@ -72,6 +70,11 @@ def backlash_rows(data: xr.Dataset) -> list[Row]:
             for gear in data["gear"].values
         ),
     ]
+
+
+def _weighed(title: str, name: str, data: xr.Dataset) -> Row:
+    unit, cells = show.quantities(name, data[name].values.tolist())
+    return _row(f"{title} [{unit}]", cells)
 
 
 def _limits(data: xr.Dataset, name: str, title: str) -> Iterator[Row]:

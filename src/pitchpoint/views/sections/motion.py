@@ -110,8 +110,18 @@ def motion_answer(outcome: Outcome) -> str:
 def _taken(data: xr.Dataset) -> str:
     """What vibration takes of the efficiency, to digits that say something."""
     taken = float(data["efficiency_difference"])
-    points = show.number(abs(100.0 * taken))
-    return f"which is {points} percentage points {'more' if taken >= 0.0 else 'less'}"
+    return f"which is {_points(abs(taken))} {'more' if taken >= 0.0 else 'less'}"
+
+
+def _points(difference: float) -> str:
+    """Difference of efficiencies in percentage points, to a thousandth of one."""
+    points = 100.0 * difference
+    if 0.0 < abs(points) < _LEAST_POINTS:
+        return f"under {_LEAST_POINTS} percentage points"
+    return f"{show.number(points)} percentage points"
+
+
+_LEAST_POINTS = 0.001
 
 
 def _parts(data: xr.Dataset) -> str:
@@ -264,7 +274,7 @@ _OF_MODES = ("natural_frequency", "modal_damping_ratio")
 def _cell(data: xr.Dataset, name: str) -> str:
     value = float(data[name])
     if name == "efficiency_difference" and np.isfinite(value):
-        return f"{show.number(100.0 * value)} percentage points"
+        return _points(value)
     return show.quantity(name, value, of=data) if np.isfinite(value) else "none"
 
 
