@@ -165,11 +165,32 @@ def regimes(look: dict[str, Any], traces: list[Trace]) -> None:
         part = (_place(ends["y1"], bottom) - _place(ends["y0"], bottom)) / span
         if part < _LEAST_BAND:
             continue
+        name = _place(ends["y1"], bottom)
+        side = _free_side(traces, (name - _BESIDE * span, name), bottom)
         look["annotations"].append(
-            {"text": words, "xref": "paper", "x": 0.99, "xanchor": "right", "showarrow": False}
+            {"text": words, "xref": "paper", "x": _ENDS[side], "xanchor": side, "showarrow": False}
             | {"y": _place(ends["y1"], bottom), "yanchor": "top", "yshift": 3}
             | {"font": {"size": 11, "color": "#7a6a4f"}}
         )
+
+
+_ENDS = {"left": 0.01, "right": 0.99}
+_BESIDE, _LAST = 0.16, 0.25
+"""Height of the name of a band and what it may come close to, and its length, as parts of the axes."""
+
+
+def _free_side(traces: list[Trace], heights: tuple[float, float], bottom: float) -> str:
+    """Side on which fewer points of curves lie at the heights of a name; the right one at a tie."""
+    x, y = (
+        np.array([np.nan if v is None else v for t in traces for v in t[name]]) for name in "xy"
+    )
+    with np.errstate(invalid="ignore"):
+        at = np.array([_place(max(value, bottom), bottom) for value in y])
+        met = (heights[0] <= at) & (at <= heights[1])
+        low, high = np.nanmin(x), np.nanmax(x)
+        place = (x - low) / max(high - low, SHORT)
+        left, right = (np.count_nonzero(met & far) for far in (place < _LAST, place > 1.0 - _LAST))
+    return "left" if left < right else "right"
 
 
 def _place(value: float, bottom: float) -> float:
