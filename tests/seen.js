@@ -45,6 +45,18 @@
     if (!shown(one) || one.closest(".spoken, .plot")) continue;
     const raw = one.textContent.match(/\d (deg[CF]?|(N\/)?um|urad|mm2|mm3)\b|\d x \d/);
     if (raw && !one.closest("code") && !one.querySelector("pre, code")) faults.push(`"${raw[0]}" is not as printed: ${name(one)}`);
+    const read = document.createTreeWalker(one, NodeFilter.SHOW_TEXT);
+    while (read.nextNode()) {
+      const { data: words, parentElement: inside } = read.currentNode;
+      if (inside.closest("code, pre, .key, #sources")) continue;
+      const raised = words.match(/(?<![\p{L}\p{N}_.\/])\p{L}_[\p{L}\p{N}]{1,5}(?![\p{L}\p{N}_(.])/u);
+      if (raised) faults.push(`"${raised[0]}" is not set low: ${name(one)}`);
+      const many = [...words.matchAll(/(?<![\w.\/])\d+\.\d+(?![\w.\/])/g)].find(([it]) => it.replace(".", "").replace(/^0+/, "").length > 6);
+      if (many) faults.push(`${many[0]} has more digits than anybody reads: ${name(one)}`);
+      const power = words.match(/\de[−-]\d+ (k?g|[kM]?N|[MG]?Pa|percentage|[mµ]?m|[km]?W|µ?J)(?![\w/])/) ??
+        (/\[(k?g|[kM]?N|k?W|µ?J)( |\])/.test(one.closest("tr")?.cells[0].textContent) ? words.match(/\de[−-]\d/) : null);
+      if (power) faults.push(`"${power[0]}" could have a smaller unit: ${name(one)}`);
+    }
     const texts = document.createTreeWalker(one, NodeFilter.SHOW_TEXT);
     while (texts.nextNode()) for (const { 0: pair, index } of texts.currentNode.data.matchAll(/\d[ \u00a0]([%°µ]|([kMG]?(N|Pa|W|g|Hz)|[mkc]?m|m?s|rpm|arcmin)(?![\w-]))|(?<![^\s(])[^\s="]{1,7} = [−-]?\d/g)) {
       if (texts.currentNode.parentElement.closest("strong, .big, option")) continue;
@@ -118,6 +130,15 @@
     });
   }
 
+  for (const figures of height ? [] : document.querySelectorAll(".figures")) {
+    const drawings = [...figures.querySelectorAll(":scope > figure")].filter((one) => shown(one) && one.querySelector(".plot"));
+    drawings.forEach((one, k) => {
+      const other = drawings[k + 1];
+      const [a, b] = [one, other].map((it) => it && box(it.querySelector(".plot")).top);
+      if (other && Math.abs(box(one).top - box(other).top) < 2 && Math.abs(a - b) > 2) faults.push(`not level with the figure beside it: ${name(one)}`);
+    });
+  }
+
   painted.remove();
 
   // Lines of legends, which have the colours of those in figures.
@@ -145,7 +166,7 @@
       while (next && !shown(next)) next = next.nextElementSibling;
       return next && ([...next.querySelectorAll("figure, tr, p, li, dd, svg")].find(shown) ?? next);
     };
-    for (const one of main.querySelectorAll("h2, h3, h4, summary, .legend, .marks, .figures")) {
+    for (const one of main.querySelectorAll("h2, h3, h4, summary, .legend, .marks, p:has(+ .marks), .figures")) {
       const above = one.matches(".figures") ? one.previousElementSibling?.closest("p, h3, h4") : one;
       const below = one.matches(".figures") ? one.querySelector("figure") : after(one);
       if (above && below && shown(above) && shown(below) && ends(above, true) !== ends(below)) faults.push("left behind at the end of a page: " + name(above));

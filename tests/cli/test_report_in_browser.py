@@ -119,6 +119,10 @@ _SPOILED = {
     '"μ = 1" is parted': "document.querySelector('#sources').innerHTML += '<p style=width:3em>At μ = 1'",
     "alone on an axis": "Plotly.relayout('along_loss', {'yaxis.tickvals': [5]})",
     "not as printed": "document.querySelector('#sources').innerHTML += '<p>Oil at 20 degC'",
+    "is not set low": "document.querySelector('#models').innerHTML += '<p>At K_A = 1'",
+    "more digits than anybody reads": "document.querySelector('#models').innerHTML += '<p>31.949566 mm'",
+    "could have a smaller unit": "document.querySelector('#models').innerHTML += '<p>8.2e−5 kg m²'",
+    "not level": "document.querySelector('#cycle_input_torque').style.marginTop = '20px'",
     "told from its ground": "document.querySelector('#along_loss .xtitle').style.fill = '#fafafa'",
 }
 

@@ -12,7 +12,7 @@ from pitchpoint.views.designs import input_tables, named_inputs
 from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
-from pitchpoint.views.point import ratio_words, way_in_a_turn
+from pitchpoint.views.point import named_members, ratio_words, way_in_a_turn
 from pitchpoint.views.section import (
     Page,
     Paragraph,
@@ -137,12 +137,19 @@ def _place_of(row: Mapping[str, str]) -> str:
     return "" if table in ("gears", "stages") else f"{table}: "
 
 
+def _of_member(key: str, outcome: Outcome) -> str:
+    """Key of a material as the member of a mesh that it is of."""
+    gear, *rest = key.split(".")
+    members = dict(zip(("gear_1", "gear_2"), named_members(outcome), strict=False))
+    return " ".join([members.get(gear, gear), *rest]).replace("_", " ")
+
+
 def _facts(outcome: Outcome) -> list[tuple[str, str]]:
     """Operating point, materials, oil and models that the numbers stand on."""
     manifest = outcome.manifest
     rows = input_rows(manifest)
     materials = [
-        f"{row['key'].replace('.', ' ').replace('_', ' ')} {show.pretty(row['value'])}"
+        f"{_of_member(row['key'], outcome)} {show.pretty(row['value'])}"
         for row in rows
         if row["table"] == "materials"
     ]

@@ -278,24 +278,24 @@ def _typeset(words: str) -> "markupsafe.Markup":
 
 
 def _breakable(words: str) -> "markupsafe.Markup":
-    """Words, escaped, that break after an underscore of a name rather than within it, and within no unit."""
+    """Words, escaped, with indices set low, that break after an underscore of a name, and within no unit."""
     from markupsafe import Markup, escape
 
-    whole = _IN_UNIT.sub("\u00a0", str(escape(words)))
+    whole = show.subscripts(_IN_UNIT.sub("\u00a0", str(escape(words))))
     return Markup(whole.replace("_", "_<wbr>"))
 
 
 def _marked(words: str) -> "markupsafe.Markup":
-    """Words, escaped, with `code` set as code and units as printed."""
-    from markupsafe import Markup, escape
+    """Words, escaped, with `code` set as code, units as printed and indices of symbols set low."""
+    from markupsafe import Markup
 
     if isinstance(words, Markup):
         return words
-    parts = [escape(part) for part in show.pretty(words).split("`")]
+    parts = words.split("`")
     if len(parts) % 2 == 0:
-        return escape(show.pretty(words))
+        return _typeset(words)
     code = Markup("<code>{}</code>")
-    return Markup("").join(code.format(p) if k % 2 else p for k, p in enumerate(parts))
+    return Markup("").join(code.format(p) if k % 2 else _typeset(p) for k, p in enumerate(parts))
 
 
 def _payload(each: Sequence[Panel]) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """Inputs as resolved, each with the mark that says how it was come by."""
 
 from collections.abc import Iterator, Mapping
+from itertools import groupby
 from typing import Any
 
 from pitchpoint.runs.run import Outcome
@@ -25,7 +26,7 @@ STATUSES = {
 
 def _blocks(page: Page) -> Iterator[Block]:
     values = {
-        "tables": _inputs(page.outcomes),
+        "runs": _runs(_inputs(page.outcomes)),
         "several": page.several,
         "statuses": STATUSES,
         "source_keys": {
@@ -45,6 +46,16 @@ def _inputs(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
     for (table, key), by_variant in rows.items():
         tables.setdefault(table, []).append(_input(show.pretty(key), by_variant, len(outcomes)))
     return [{"table": table, "rows": inside} for table, inside in tables.items()]
+
+
+def _runs(tables: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Tables in turn, those without places and notes together: they stand in two columns."""
+    return [{"bare": bare, "tables": list(run)} for bare, run in groupby(tables, key=_is_bare)]
+
+
+def _is_bare(table: dict[str, Any]) -> bool:
+    cells = [cell for row in table["rows"] for cell in row["cells"]]
+    return not any(cell["where"] or cell["note"] for cell in cells)
 
 
 def _input(key: str, by_variant: Mapping[str, dict[str, str]], variants: int) -> dict[str, Any]:
