@@ -18,6 +18,7 @@ from pitchpoint.gears.pairs import WAVE
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.drive import rates
 from pitchpoint.gears.strain_wave.family import FAMILY
+from pitchpoint.results.by_stage import by_stage
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.designs import main_results
 from pitchpoint.runs.run import Outcome
@@ -30,11 +31,14 @@ from pitchpoint.views.point import operating_point, period_of
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.report import render
 from pitchpoint.views.section import KeyFigure, Page, key_figures
+
+
+from pitchpoint.views.section import Page, key_figures, panels
 from pitchpoint.views.sections.answer import teeth_rows
-from pitchpoint.views.sections.arc import arc_panel, wave_losses, wave_sentence
+from pitchpoint.views.sections.arc import ARC, arc_panel, wave_losses, wave_sentence
 from pitchpoint.views.sections.beside import drag_panel, starting_answer
 from pitchpoint.views.sections.cycle import cycle_panel
-from pitchpoint.views.sections.drive import loaded_arcs, picture, wave_dimensions
+from pitchpoint.views.sections.drive import DRIVE, loaded_arcs, picture, wave_dimensions
 from pitchpoint.views.sections.kinematic_error import kinematic_error_answer, kinematic_error_panels
 from pitchpoint.views.sections.loss_map import efficiency_panel
 from pitchpoint.views.sections.passing import gap_panel
@@ -744,3 +748,30 @@ def test_what_flanks_bear_stands_in_the_answer_and_on_the_screen(whole: Outcome)
     assert row["part of the load on edges of the teeth"] == edges
     assert f"part of the load on edges of the teeth {edges}" in words(render({"default": one}))
     assert "part of the load on edges" not in words(render({"default": whole}))
+
+
+def test_teeth_that_carry_name_the_variant_whose_load_they_are(whole: Outcome) -> None:
+    lighter = cycle()
+    lighter["load"] = lighter["load"].where(lighter["load"] > 20.0, 0.0)
+    light = replace(whole, parts={**whole.parts, "cycle": lighter})
+    (drawn,) = DRIVE.shows(Page({"heavy": whole, "light": light}, {}))
+    assert drawn.values["d"]["of_loads"] == "heavy"
+    assert {one.title.rpartition(" · ")[2] for one in drawn.panels[0].figures} == {"heavy"}
+    (drawn,) = DRIVE.shows(Page({"one": whole, "two": whole}, {}))
+    assert drawn.values["d"]["of_loads"] == ""
+    assert not any("·" in one.title for one in drawn.panels[0].figures)
+
+
+def test_a_wave_of_one_stage_names_it(whole: Outcome) -> None:
+    parts = {name: by_stage({2: whole.parts[name]}) for name in ("teeth", "cycle")}
+    (stage,) = [
+        {"number": 2, "bodies": "", "travels": [], "speed": 1.0, "load": 1.0}
+        | {key: whole.manifest[key] for key in ("driver", "loaded", "members", "motion")}
+    ]
+    drive = replace(whole, parts=parts, manifest={**whole.manifest, "stages": [stage]})
+    titles = [
+        one.title
+        for panel in panels(ARC.shows(Page({"default": drive}, {})))
+        for one in panel.figures
+    ]
+    assert titles and all(title.endswith(" · stage 2") for title in titles)

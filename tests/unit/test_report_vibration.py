@@ -19,7 +19,7 @@ from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.pairs import way
-from pitchpoint.results.by_stage import by_stage
+from pitchpoint.results.by_stage import by_stage, of_stage
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -29,6 +29,9 @@ from pitchpoint.views.registry import STIFFNESS, WEAR
 from pitchpoint.views.report import render
 from pitchpoint.views.section import Page, Table
 from pitchpoint.views.sections.cycle import CYCLE
+
+
+from pitchpoint.views.section import Page, Table, panels
 from pitchpoint.views.sections.design_chart import design_charts
 from pitchpoint.views.sections.joint import joint_panel
 from pitchpoint.views.sections.path import along, loss_places
@@ -599,3 +602,13 @@ def test_a_stage_is_told_by_its_own_film_law(stages: Outcome, number: int) -> No
     assert (fact.name, fact.value) == ("Film ratio", "0.7")
     assert fact.detail.startswith(f"at stage {number}; ")
     assert f"thinnest film by {show.pretty(FILM_LAWS[number])} over" in fact.detail
+
+
+def test_the_stiffness_of_one_stage_names_it(stages: Outcome) -> None:
+    """Its column, its heading and its figures, though no other stage has any."""
+    alone = by_stage({1: of_stage(stages.parts["stiffness"], 1)})
+    page = Page({"default": replace(stages, parts={**stages.parts, "stiffness": alone})}, {})
+    blocks = STIFFNESS.shows(page)
+    assert next(one.head for one in blocks if isinstance(one, Table)) == ["Stiffness", "stage 1"]
+    titles = [figure.title for panel in panels(blocks) for figure in panel.figures]
+    assert titles and all(title.endswith(" · stage 1") for title in titles)

@@ -25,7 +25,7 @@ from pitchpoint.views.figures import (
 )
 from pitchpoint.views.lines import REGIMES, regimes, titled, values_of
 from pitchpoint.views.point import period_of
-from pitchpoint.views.section import Block, Page, Paragraph, Section
+from pitchpoint.views.section import Block, Page, Paragraph, Section, naming
 from pitchpoint.views.way import at_origin, beside, place_of
 from pitchpoint.views.where_lost import where_lost
 
@@ -68,8 +68,11 @@ def _lacks(page: Page) -> str | None:
 
 
 def _blocks(page: Page) -> Iterator[Block]:
+    ways = _ways(page)
+    alone = next(iter(ways)) if len(ways) == 1 else ""
+    panel = arc_panel(ways, page.by_mesh("teeth", "cycle").curves)
     yield Paragraph(_told(page, "told"))
-    yield arc_panel(_ways(page), page.by_mesh("teeth", "cycle").curves)
+    yield from naming("" if alone in page.outcomes else alone, [panel])
 
 
 def _closing(page: Page) -> Iterator[Block]:

@@ -184,16 +184,18 @@ def _told_arcs(outcome: Outcome) -> str:
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    for position, (variants, outcome) in enumerate(
-        of_geometry(by_mesh(page.having(*_PARTS), *_PARTS))
-    ):
-        (gap,) = naming(variants, [gap_panel(outcome, f"drive{position}")])
+    meshes = by_mesh(page.having(*_PARTS), *_PARTS)
+    several = len({_told_arcs(one) for one in meshes.values()}) > 1
+    for position, (variants, outcome) in enumerate(of_geometry(meshes)):
+        of_loads = next(name for name, one in meshes.items() if one is outcome) if several else ""
+        (gap,) = naming(variants or of_loads, [gap_panel(outcome, f"drive{position}")])
         values = {
             "variants": variants,
             "picture": picture(outcome, f"drive{position}"),
             "gap": gap,
             "dimensions": wave_dimensions(outcome),
             "arcs": _told_arcs(outcome),
+            "of_loads": "" if variants else of_loads,
         }
         yield Drawn("drive.html.jinja", {"d": values}, [gap])
 

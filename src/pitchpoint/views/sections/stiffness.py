@@ -62,7 +62,7 @@ def _table(page: Page) -> Table:
         if any(name in data for data in parts.values())
     ]
     models = [str(data.attrs.get("model", "")) for data in parts.values()]
-    head = [*parts] if page.several else ["value"]
+    head = [*parts] if page.several or "number" in page.first else ["value"]
     return Table(["Stiffness", *head], [*rows, ("teeth yield as", *models)], compact=True)
 
 
@@ -168,7 +168,7 @@ def stiffness_blocks(page: Page) -> Iterator[Block]:
     )
     if told := _of_publication(page.first.get("source", "")):
         yield Paragraph(told, "note")
-    page = page.by_mesh("stiffness")
+    of_drives, page = page.outcomes, page.by_mesh("stiffness")
     yield _table(page)
     having = page.outcomes
     if page.designs and len(having) > 1:
@@ -176,7 +176,8 @@ def stiffness_blocks(page: Page) -> Iterator[Block]:
         title = "Mesh stiffness over the mesh cycle"
         figure = overlaid("stiffness_of_designs", title, "phase", "mesh_stiffness", parts)
         yield Panel("Designs on the same axes", [figure])
-    yield from tabbed((it.title, _of_variant(it)) for it in stiffness_panels(page.outcomes))
+    alone = "" if {*having} <= {*of_drives} else next(iter(having))
+    yield from tabbed((it.title or alone, _of_variant(it)) for it in stiffness_panels(having))
 
 
 def _of_publication(source: str) -> str:
