@@ -83,7 +83,7 @@
   }
 
   // Plots of figures that stand side by side, one of which begins lower than the other.
-  if (!height) for (const one of document.querySelectorAll(".figures > figure:has(> .plot) + figure:has(> .plot)")) {
+  if (!height) for (const one of document.querySelectorAll(".figures > figure:has(.plot) + figure:has(.plot)")) {
     const [plot, before] = [one, one.previousElementSibling].map((figure) => figure.querySelector(".plot"));
     const beside = box(one).left > box(one.previousElementSibling).right - 1;
     if (shown(plot) && shown(before) && beside && Math.abs(box(plot).top - box(before).top) > 1) faults.push(`figure ${plot.id}: lower or higher than the one beside it`);
@@ -117,6 +117,11 @@
     const texts = [...plot.querySelectorAll("text")].filter((one) => shown(one) && one.textContent.trim() && level(one));
     const [outer, boxes] = [box(plot), texts.map(box)];
     if (height && box(plot.closest("figure")).width > 1.3 * box(plot.querySelector(".main-svg")).width) say("blank beside it");
+    const legend = plot.closest("figure").querySelector(".keys");
+    for (const one of legend ? [...texts, legend] : texts) {
+      const raw = one.textContent.match(/(?<![\p{L}\p{N}_.])[ΔΣd]?\p{L}_\p{L}\w*/u);
+      if (raw) say(`"${raw[0]}" is not set as an index`);
+    }
     texts.forEach((one, k) => {
       const at = boxes[k];
       if (at.left < outer.left - 2 || at.right > outer.right + 2 || at.top < outer.top - 2 || at.bottom > outer.bottom + 2) say(`cut: "${one.textContent}"`);

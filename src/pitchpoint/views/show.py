@@ -73,7 +73,9 @@ _MOST_OF = 0.6
 
 _NUMBER = re.compile(r"[−+-]?\d[\d.,]*(e[−+-]?\d+)?")
 
-_INDEXED = re.compile(r"(?<![\w`.])(?<![^\WΔ]\w/)(?<!\./)(Δ?[^\W\d_])_([^\W²³]{1,5})(?![^\W²³]|\()")
+_INDEXED = re.compile(
+    r"(?<![\w`.])(?<![^\W_Δ]\w/)(?<!\./)([ΔΣd]?[^\W\d_])_([^\W²³]{1,5})(?![^\W²³]|\()"
+)
 _LAST_UNIT = re.compile(r"(?<=\d) (um|urad|degC|degF|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
 
 
@@ -114,6 +116,8 @@ def subscripts(text: str) -> str:
         'pitch diameter d<sub>w</sub> of gear_1'
         >>> subscripts("Δk/k_m in out/k_m")
         'Δk/k<sub>m</sub> in out/k_m'
+        >>> subscripts("Δh_c/h_c and ΣF_f")
+        'Δh<sub>c</sub>/h<sub>c</sub> and ΣF<sub>f</sub>'
     """
     return _INDEXED.sub(r"\1<sub>\2</sub>", text)
 
