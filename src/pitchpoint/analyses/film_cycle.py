@@ -388,7 +388,7 @@ def _below_hertz(built: Built, states: States, figures: Mapping[str, np.ndarray]
         return ""
     return (
         f"The largest pressure is {100.0 * lacks:.0f} % below Hertz's: rough flanks spread the load beyond "
-        f"the dry contact, where Rq R/b2 is {ratio:.2g}."
+        f"the dry contact, where Rq R/b² is {ratio:.2g}."
     )
 
 

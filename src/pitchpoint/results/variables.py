@@ -380,7 +380,7 @@ VARIABLES: dict[str, Variable] = {
     "largest_mesh_force": force("largest normal force of all pairs", "F_n max"),
     "smallest_mesh_force": force("smallest normal force of all pairs", "F_n min"),
     "quasi_static_efficiency": percent("mean efficiency without vibration", "η_0"),
-    "efficiency_difference": percent("what vibration takes of the mean efficiency", "η_0 - η"),
+    "efficiency_difference": percent("what vibration takes of the mean efficiency", "η_0 − η"),
     "mesh_damping": Variable(
         "damping along the line of action", "c", "N s/m", "N s/m", "viscous damping"
     ),
