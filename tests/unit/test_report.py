@@ -1102,6 +1102,22 @@ def test_numbers_beside_print_have_seven_digits_and_unknown_ones_are_said() -> N
     assert (trend["printed"], trend["tolerance"]) == ("< 0 N/µm", "")
 
 
+@pytest.mark.parametrize(
+    ("printed", "computed", "tolerance", "told"),
+    [
+        (4.31e-18, 4.31002e-18, 1e-21, "4.31e−18"),
+        (4e10, 4.0546758e10, 4e9, "4.055e10"),
+        (2e6, 2.0123456e6, 2e4, "2.012e6"),
+        (0.0, -1e-7, 0.001, "0.0000"),
+    ],
+)
+def test_numbers_beside_print_are_written_out_as_far_as_anyone_reads(
+    printed: float, computed: float, tolerance: float, told: str
+) -> None:
+    row = Row("number", "a table", printed, computed, "1", tolerance, "reference", "pass", "")
+    assert comparison._row(row)["computed"] == told
+
+
 def test_what_fails_alike_in_several_variants_is_said_once() -> None:
     told = {"warm": ["Teeth melt."], "cold": ["Teeth jam."], "hot": ["Teeth melt."]}
     outcomes = {name: Outcome({"implausible": texts}, {}) for name, texts in told.items()}

@@ -75,12 +75,15 @@ def _row(row: Row) -> dict[str, str]:
     computed, deviation, tolerance = "not computed", "", ""
     if row.computed is not None and row.deviation is not None and isfinite(row.computed):
         digits = _decimals(row.tolerance)
-        if digits > _most_decimals(row.computed):  # a tolerance for rounding, or none
-            computed = show.number(row.computed, 7 if row.tolerance else 4)
+        rounding = digits > _most_decimals(row.computed)  # a tolerance for that alone, or none
+        if rounding or digits > _WRITTEN_OUT or abs(row.computed) >= _LARGE:
+            computed = show.number(row.computed, _digits(row.computed, row.tolerance))
             off = round(row.deviation, digits)
             deviation = f"{'+' * (off > 0.0)}{show.number(off)}"
         else:
-            computed, deviation = f"{row.computed:.{digits}f}", show.signed(row.deviation, digits)
+            # What is rounded to nothing has no sign.
+            computed = f"{round(row.computed, digits) + 0.0:.{digits}f}"
+            deviation = show.signed(row.deviation, digits)
         computed = f"{computed.replace('-', '−')} {unit}".strip()
         tolerance = "" if row.bound else f"± {row.tolerance:.3g}"
     return {
@@ -94,6 +97,15 @@ def _row(row: Row) -> dict[str, str]:
         "verdict": row.verdict,
         "reason": row.reason or "no reason is known" * (row.verdict == "miss"),
     }
+
+
+def _digits(value: float, tolerance: float) -> int:
+    """Significant digits that show a tenth of the tolerance, four to seven of them; four without one."""
+    return min(max(ceil(log10(abs(value) / tolerance)) + 1, 4), 7) if value and tolerance else 4
+
+
+_WRITTEN_OUT, _LARGE = 9, 1e6
+"""Decimals beyond which, and numbers from which on, a power of ten is told."""
 
 
 def _decimals(tolerance: float) -> int:
