@@ -706,7 +706,8 @@ def duty(
 
     data = over_cycle(open_result(result), cycle, variant=variant, law=law, teeth=teeth)
     if json_:
-        _emit({name: data[name].values.tolist() for name in data if data[name].dims != ("time",)})
+        figures = {n: data[n].values.tolist() for n in data if data[n].dims != ("time",)}
+        _emit({**figures, **{name: data.attrs[name] for name in ("first_to_fail", "left_out")}})
         return
     console = _console()
     for line in duty_screen(data, console.width):

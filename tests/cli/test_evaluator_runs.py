@@ -782,6 +782,7 @@ def test_a_duty_cycle_is_told_by_the_map(
     assert command("duty", folder, path) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) <= 12 and max(map(len, lines)) <= 80
+    assert lines[-1].split(maxsplit=2)[:2] == ["Fails", "first"]
     assert command("duty", folder, path, "--json", "--law", "frictionless") == 0
     told = json.loads(capsys.readouterr().out)
     table = table_of(moving[1].parts[FOUR_QUADRANTS.name])

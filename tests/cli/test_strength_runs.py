@@ -14,9 +14,9 @@ import pitchpoint as pp
 from pitchpoint.analyses.figures import RATING
 from pitchpoint.analyses.strength import STRENGTH as ANALYSIS
 from pitchpoint.analyses.strength import ratings_of
+from pitchpoint.analyses.tooth_life import tooth_life
 from pitchpoint.cases.variant import Variant
 from pitchpoint.duty_cycle.history import load_steps
-from pitchpoint.duty_cycle.tooth_life import tooth_life
 from pitchpoint.errors import InputError
 from pitchpoint.gears.families import sample_of
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears

@@ -6,8 +6,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from scipy.integrate import solve_ivp
 
+from pitchpoint.analyses.tooth_life import cycles_to_failure, load_classes
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
 from pitchpoint.duty_cycle.energy import driver_course, energies, mean_load
 from pitchpoint.duty_cycle.heat import ThermalNetwork
@@ -20,9 +22,9 @@ from pitchpoint.duty_cycle.history import (
 )
 from pitchpoint.duty_cycle.life import BALL, ROLLER, SCATTER, RatedLife, system_life
 from pitchpoint.duty_cycle.motor import COPPER, Motor
-from pitchpoint.duty_cycle.tooth_life import cycles_to_failure, load_classes
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.views.duty_cycle import first_to_fail
 
 WARM = 313.15
 RATIO = 0.02
@@ -180,6 +182,51 @@ def test_quadrants_add_up_to_the_whole() -> None:
     assert float(data["quadrant_lost_energy"].sum()) == pytest.approx(float(data["lost_energy"]))
     together = float(data["bearing_life"][0]) / 2.0 ** (1.0 / SCATTER[BALL])
     assert float(data["system_life"]) == pytest.approx(together, rel=1e-12)
+
+
+def teeth(flank: float, root: float) -> xr.Dataset:
+    """Lives [s] of the working flank and of the root of gear 1; all others endure."""
+    lives = {name: np.full((1, 2), math.inf) for name in ("flank", "back_flank", "root")}
+    lives["flank"][0, 0], lives["root"][0, 0] = flank, root
+    data = {f"{name}_life": (("mesh", "gear"), each) for name, each in lives.items()}
+    return xr.Dataset(data, {"mesh": ["1"], "gear": ["gear 1", "gear 2"]})
+
+
+def test_the_part_that_fails_first_is_the_one_of_the_shortest_life() -> None:
+    bearing = {"output": RatedLife(40.0, 1e8)}
+    data = duty_dataset(table(), history(), lives=bearing, teeth=teeth(9e9, 8e3))
+    assert data.attrs["first_to_fail"] == "root of gear 1" and float(data["shortest_life"]) == 8e3
+    assert data.attrs["parts_compared"] == 7 and data.attrs["left_out"] == "heat, wear"
+    assert first_to_fail(data, 0.0).value == "root of gear 1"
+    data = duty_dataset(table(), history(), lives=bearing, teeth=teeth(math.inf, math.nan))
+    assert data.attrs["first_to_fail"] == "bearing output"
+    assert float(data["shortest_life"]) == float(data["bearing_life"][0])
+    assert data.attrs["parts_compared"] == 6
+    assert data.attrs["left_out"] == "other teeth, heat, wear"
+    endures = duty_dataset(table(), history(), teeth=teeth(math.inf, math.inf))
+    assert endures.attrs["first_to_fail"] == "" and first_to_fail(endures, 0.0).value == "none"
+    bare = duty_dataset(table(), history())
+    assert math.isnan(float(bare["shortest_life"]))
+    assert first_to_fail(bare, 0.0).detail == "not compared: teeth, bearings, heat, wear"
+
+
+@pytest.mark.parametrize(("most", "fails"), [(1.0, "heat of drive"), (-1.0, "")])
+def test_a_body_that_gets_too_hot_fails_at_once(most: float, fails: str) -> None:
+    network = ThermalNetwork({"drive": 1e9}, {("drive", "ambient"): 0.8}, ambient=293.15)
+    free = duty_dataset(table(), history(), heating=Heating(network, "drive"))
+    hottest = float(free["body_temperature"].max())
+    heating = Heating(network, "drive", limits={"drive": hottest - most})
+    data = duty_dataset(table(), history(), heating=heating, teeth=teeth(math.inf, math.inf))
+    assert data.attrs["first_to_fail"] == fails
+    assert float(data["shortest_life"]) == (0.0 if fails else math.inf)
+
+
+def test_limits_of_bodies_are_kelvins_of_bodies_that_are_there() -> None:
+    network = ThermalNetwork({"drive": 1e9}, {("drive", "ambient"): 0.8})
+    with pytest.raises(InputError, match="limits: the network has no body 'gear', but drive"):
+        Heating(network, "drive", limits={"gear": 353.0})
+    with pytest.raises(InputError, match=r"80 K, .* is no temperature of drive; plain numbers"):
+        Heating(network, "drive", limits={"drive": 80.0})
 
 
 def test_tables_and_files_have_units_in_their_heads(tmp_path: Path) -> None:

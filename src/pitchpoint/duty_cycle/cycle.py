@@ -1,7 +1,7 @@
 """A duty cycle as a dataset: courses, energies, means, life and temperatures."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -9,8 +9,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from pitchpoint.duty_cycle.energy import DriverCourse, driver_course, energies, mean_load
+from pitchpoint.duty_cycle.first_failure import first_failure
 from pitchpoint.duty_cycle.heat import ThermalNetwork
-from pitchpoint.duty_cycle.history import LoadHistory
+from pitchpoint.duty_cycle.history import LoadHistory, demand_kelvins
 from pitchpoint.duty_cycle.life import BALL, ROLLER, RatedLife, system_life
 from pitchpoint.duty_cycle.motor import Motor
 from pitchpoint.efficiency.loss_table import LossTable
@@ -35,20 +36,25 @@ class Heating:
         gears: body that the loss of the drive heats and whose temperature is that of the oil.
         motor: body that the loss of the motor heats and whose temperature is that of its winding; that of
             the gears where empty.
+        limits: largest temperatures that bodies bear, by name [K].
 
     Raises:
-        InputError: the network has no such body.
+        InputError: the network has no such body, or a limit is no temperature.
     """
 
     network: ThermalNetwork
     gears: str
     motor: str = ""
+    limits: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name, body in (("gears", self.gears), ("motor", self.winding)):
+        limited = (("limits", body) for body in self.limits)
+        for name, body in (("gears", self.gears), ("motor", self.winding), *limited):
             if body not in self.network.capacities:
                 known = ", ".join(self.network.bodies)
                 raise InputError(f"the network has no body {body!r}, but {known}", key=name)
+        for body, most in self.limits.items():
+            demand_kelvins(most, "limits", body)
 
     @property
     def winding(self) -> str:
@@ -101,6 +107,7 @@ def duty_dataset(
     motor: Motor | None = None,
     lives: Mapping[str, RatedLife] | None = None,
     heating: Heating | None = None,
+    teeth: xr.Dataset | None = None,
     travels: bool = False,
     **attributes: Any,
 ) -> xr.Dataset:
@@ -113,12 +120,13 @@ def duty_dataset(
         motor: of the drive, none by default.
         lives: of bearings by name.
         heating: resistances that give the temperatures; those of the history by default.
+        teeth: damage and life of the teeth over this history, see `tooth_life`; not known by default.
         travels: the output travels.
         attributes: of the dataset beside.
 
     Returns:
         Courses over `time`, energies and means as single numbers, energies over `quadrant`, lives over
-        `bearing`, temperatures over `time` and `body`.
+        `bearing`, temperatures over `time` and `body`; the part that fails first, see `first_failure`.
 
     Raises:
         InputError: samples beyond the map or the limits of the motor, or where friction locks the drive.
@@ -140,9 +148,16 @@ def duty_dataset(
         extra["bearing_life"] = (("bearing",), [*each.values()])
         extra["system_life"] = ((), system_life(each.values()))
         coordinates["bearing"] = [*each]
+    if teeth is not None:
+        extra |= {str(name): (("mesh", "gear"), teeth[name].values) for name in teeth}
+        coordinates |= {name: teeth[name].values for name in ("mesh", "gear")}
     numbers = energies(history, driver)
     numbers["mean_torque_of_balls"] = mean_load(history, BALL)
     numbers["mean_torque_of_rollers"] = mean_load(history, ROLLER)
+    failing = first_failure(
+        xr.Dataset(extra, coordinates), None if heating is None else heating.limits
+    )
+    numbers["shortest_life"] = failing.life
     return dataset(
         {
             "output_torque": (("time",), history.torque),
@@ -160,6 +175,9 @@ def duty_dataset(
         travels=ends,
         title="duty cycle",
         law=law or next(iter(table.loss_torques)),
+        first_to_fail=failing.part,
+        parts_compared=failing.compared,
+        left_out=", ".join(failing.left_out),
         **attributes,
     )
 

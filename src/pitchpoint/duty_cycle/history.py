@@ -14,7 +14,14 @@ from pitchpoint.plain_files import content
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["LoadHistory", "history_of_table", "load_history", "load_steps", "read_history"]
+__all__ = [
+    "LoadHistory",
+    "demand_kelvins",
+    "history_of_table",
+    "load_history",
+    "load_steps",
+    "read_history",
+]
 
 Floats = NDArray[np.float64]
 
@@ -267,10 +274,21 @@ def _samples(name: str, values: ArrayLike, count: int) -> Floats:
 def _temperatures(values: ArrayLike, count: int) -> Floats:
     degrees = _samples("temperature", values, count)
     for degree in (degrees.min(), degrees.max()):
-        if not _COLDEST <= degree <= _HOTTEST:
-            meant = "; plain numbers are in K" if degree < _COLDEST else ""
-            raise InputError(
-                f"{degree:.6g} K, which are {degree - 273.15:.6g} degC, is no temperature of an oil{meant}",
-                key="temperature",
-            )
+        demand_kelvins(float(degree), "temperature", "an oil")
     return degrees
+
+
+def demand_kelvins(degree: float, key: str, body: str) -> None:
+    """InputError for what is no plausible temperature of a body, as numbers meant in degC are none.
+
+    Args:
+        degree: temperature [K].
+        key: where it was given.
+        body: whose it is.
+    """
+    if not _COLDEST <= degree <= _HOTTEST:
+        meant = "; plain numbers are in K" if degree < _COLDEST else ""
+        raise InputError(
+            f"{degree:.6g} K, which are {degree - 273.15:.6g} degC, is no temperature of {body}{meant}",
+            key=key,
+        )

@@ -8,6 +8,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from pitchpoint.analyses.four_quadrants import table_of
+from pitchpoint.analyses.tooth_life import tooth_life
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
 from pitchpoint.duty_cycle.history import (
     LoadHistory,
@@ -17,7 +18,6 @@ from pitchpoint.duty_cycle.history import (
 )
 from pitchpoint.duty_cycle.life import RatedLife
 from pitchpoint.duty_cycle.motor import Motor
-from pitchpoint.duty_cycle.tooth_life import tooth_life
 from pitchpoint.errors import InputError
 from pitchpoint.notebook.result import Result
 from pitchpoint.runs.joint_model import law_of, map_of_output
@@ -81,22 +81,20 @@ def duty(
         raise InputError(f"{'torque' if torque is None else 'speed'} of the output is missing")
     else:
         history = load_history(time, torque, speed, usual)  # type: ignore[arg-type]
-    cycle = duty_dataset(
+    (held,) = result.case(variant).held if teeth else (None,)
+    return duty_dataset(
         table,
         history,
         law=law_of(table, law or None),
         motor=motor,
         lives=lives,
         heating=heating,
+        teeth=None if held is None else tooth_life(held.built({}), history),
         travels=travels,
         case=str(outcome.manifest["case"]),
         variant=str(outcome.manifest["variant"]),
         fingerprint=str(data.attrs["fingerprint"]),
     )
-    if not teeth:
-        return cycle
-    (held,) = result.case(variant).held
-    return cycle.merge(tooth_life(held.built({}), history))
 
 
 def _of_columns(columns: Any, temperature: Any, travels: bool) -> LoadHistory:

@@ -668,6 +668,7 @@ VARIABLES: dict[str, Variable] = {
     "quadrant_input_energy": energy("energy of the driver by quadrant", "W_in"),
     "quadrant_lost_energy": energy("energy lost in the drive by quadrant", "W_loss"),
     "system_life": Variable("life of all bearings together", "L", "s", "h", "time"),
+    "shortest_life": Variable("life of the part that fails first", "L_min", "s", "h", "time"),
     "flank_damage": Variable("damage of the working flank in one cycle", "D_H", "1"),
     "back_flank_damage": Variable("damage of the back flank in one cycle", "D_H", "1"),
     "root_damage": Variable("damage of the root in one cycle", "D_F", "1"),

@@ -9,7 +9,10 @@ from pitchpoint.views import show
 from pitchpoint.views.first_screen import Line, aligned
 from pitchpoint.views.section import KeyFigure
 
-__all__ = ["duty_screen"]
+__all__ = ["FIRST", "duty_screen", "first_to_fail"]
+
+FIRST = "Fails first"
+"""Name of the line on the part with the shortest life."""
 
 
 def duty_screen(data: xr.Dataset, width: int) -> list[Line]:
@@ -67,40 +70,26 @@ def _figures(data: xr.Dataset) -> Iterator[KeyFigure]:
             ("at rest", quadrants["rest"]),
         )
     ]
-    if "root_life" in data:
-        yield _of_teeth(data)
     yield KeyFigure(len(rows), "Time", _value(data, "duration"), ", ".join(shares))
+    yield first_to_fail(data, len(rows) + 1)
 
 
-def _of_teeth(data: xr.Dataset) -> KeyFigure:
-    """Least life of teeth and whose it is; a word where all endure."""
-    parts = {"flank": "flank_life", "back flank": "back_flank_life", "root": "root_life"}
-    lives = {
-        (words, *place): float(data[name].values[at])
-        for words, name in parts.items()
-        for at, place in _places(data)
-        if not np.isnan(data[name].values[at])
-    }
-    if not lives:
-        return KeyFigure(
-            90, "Life of teeth", "not known", "ISO 6336 has no lines of these materials"
-        )
-    (part, mesh, gear), least = min(lives.items(), key=lambda item: item[1])
-    if np.isinf(least):
-        return KeyFigure(
-            90, "Life of teeth", "no end", "all teeth endure the cycle (ISO 6336, Miner)"
-        )
-    of = f", mesh {mesh}" if data.sizes["mesh"] > 1 else ""
-    value = show.quantity("root_life", least)
-    return KeyFigure(90, "Life of teeth", value, f"{part} of {gear}{of} first (ISO 6336, Miner)")
+def first_to_fail(data: xr.Dataset, order: float) -> KeyFigure:
+    """Which part of a drive fails first over its duty cycle, and after how long.
 
-
-def _places(data: xr.Dataset) -> Iterator[tuple[tuple[int, int], tuple[str, str]]]:
-    """Indices of meshes and gears with their labels."""
-    meshes, gears = (data[name].values.tolist() for name in ("mesh", "gear"))
-    for row, mesh in enumerate(meshes):
-        for column, gear in enumerate(gears):
-            yield (row, column), (mesh, gear)
+    Args:
+        data: see `duty_dataset`.
+        order: of the line.
+    """
+    count, life = int(data.attrs["parts_compared"]), float(data["shortest_life"])
+    without = f"not compared: {data.attrs['left_out']}"
+    if not count:
+        return KeyFigure(order, FIRST, "not known", without)
+    if np.isinf(life):
+        return KeyFigure(order, FIRST, "none", f"all of {count} endure; {without}")
+    after = show.quantity("shortest_life", life) if life > 0.0 else "at once"
+    part = str(data.attrs["first_to_fail"])
+    return KeyFigure(order, FIRST, part, f"{after}, of {count}; {without}")
 
 
 def _value(data: xr.Dataset, name: str) -> str:

@@ -1,0 +1,109 @@
+"""Which part of a drive fails first over a duty cycle."""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+__all__ = ["LEFT_OUT", "FirstFailure", "first_failure"]
+
+_TEETH = {"flank": "flank_life", "back flank": "back_flank_life", "root": "root_life"}
+"""Parts of a tooth with the variable of their life."""
+
+
+LEFT_OUT = {
+    "teeth": "Lives of teeth were not asked for.",
+    "other teeth": "Some teeth have no life here: ISO 6336 has no lines of their materials, as of plastics.",
+    "bearings": "No bearing or wave generator was given with its rated life.",
+    "heat": "No body was given with a largest temperature, so that none gets too hot.",
+    "wear": "Wear has no life here: its depth is that of the operating point.",
+}
+"""Why parts have no life, by what they are."""
+
+
+class FirstFailure(NamedTuple):
+    """The part with the shortest life.
+
+    Attributes:
+        part: its name; empty where all endure, and where no life is known.
+        life: of it; 0 where a body is too hot, infinite where all endure, NaN where none is known [s].
+        compared: number of parts whose lives are known.
+        left_out: keys of `LEFT_OUT`, of what has no life here.
+    """
+
+    part: str
+    life: float
+    compared: int
+    left_out: tuple[str, ...]
+
+
+def first_failure(data: xr.Dataset, limits: Mapping[str, float] | None = None) -> FirstFailure:
+    """The part with the shortest life among bodies too hot, bearings, and flanks and roots of the teeth.
+
+    Args:
+        data: with `bearing_life` over `bearing`, lives of teeth over `mesh` and `gear`, `body_temperature`
+            over `time` and `body`; any of them may be missing.
+        limits: largest temperatures of bodies by name [K]; one that gets hotter fails at once.
+
+    Example:
+        >>> import xarray as xr
+        >>> lives = {"bearing_life": ("bearing", [2e7, 1e7])}
+        >>> first_failure(xr.Dataset(lives, {"bearing": ["input", "output"]}))[:3]
+        ('bearing output', 10000000.0, 2)
+    """
+    lives = {**_of_bodies(data, limits or {}), **dict(_of_bearings(data)), **dict(_of_teeth(data))}
+    known = {name: life for name, life in lives.items() if not np.isnan(life)}
+    left_out = tuple(_left_out(data, limits or {}, len(known) < len(lives)))
+    if not known:
+        return FirstFailure("", float("nan"), 0, left_out)
+    part, life = min(known.items(), key=lambda item: item[1])
+    return FirstFailure("" if np.isinf(life) else part, life, len(known), left_out)
+
+
+def _of_bodies(data: xr.Dataset, limits: Mapping[str, float]) -> dict[str, float]:
+    hottest = {
+        body: float(data["body_temperature"].sel(body=body).max())
+        for body in limits
+        if "body_temperature" in data
+    }
+    return {
+        f"heat of {body}": 0.0 if degrees > limits[body] else float("inf")
+        for body, degrees in hottest.items()
+    }
+
+
+def _of_bearings(data: xr.Dataset) -> Iterator[tuple[str, float]]:
+    if "bearing_life" in data:
+        for name, life in zip(
+            data["bearing"].values.tolist(), data["bearing_life"].values.tolist(), strict=True
+        ):
+            bare = "bearing" in name or "generator" in name
+            yield (name if bare else f"bearing {name}"), life
+
+
+def _of_teeth(data: xr.Dataset) -> Iterator[tuple[str, float]]:
+    for part, variable in _TEETH.items():
+        if variable in data:
+            for (row, column), place in _places(data):
+                yield f"{part} of {place}", float(data[variable].values[row, column])
+
+
+def _places(data: xr.Dataset) -> Iterator[tuple[tuple[int, int], str]]:
+    """Indices of meshes and gears with their names; the mesh is named where there are several."""
+    for row, mesh in enumerate(data["mesh"].values.tolist()):
+        for column, gear in enumerate(data["gear"].values.tolist()):
+            yield (row, column), f"{gear}, mesh {mesh}" if data.sizes["mesh"] > 1 else str(gear)
+
+
+def _left_out(data: xr.Dataset, limits: Mapping[str, float], unknown: bool) -> Iterator[str]:
+    """What is not among the lives."""
+    if not any(name in data for name in _TEETH.values()):
+        yield "teeth"
+    elif unknown:
+        yield "other teeth"
+    if "bearing_life" not in data:
+        yield "bearings"
+    if "body_temperature" not in data or not limits:
+        yield "heat"
+    yield "wear"
