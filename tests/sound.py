@@ -87,3 +87,12 @@ def pair(teeth, degrees=0.0, module=3e-3, width=20e-3, **options):
         face_width=width,
         **options,
     )
+
+
+def wave_rates(teeth: tuple[float, float], fixed: int, drives: int) -> np.ndarray:
+    """Rates of wave generator, flexspline and circular spline by z2 q_C = z1 q_F + (z2 - z1) q_W, by hand."""
+    law, loaded = np.array([teeth[1] - teeth[0], teeth[0], -teeth[1]]), 3 - fixed - drives
+    motion = np.zeros(3)
+    motion[drives] = np.sign(law[drives])
+    motion[loaded] = -law[drives] * motion[drives] / law[loaded]
+    return motion

@@ -12,11 +12,11 @@ import pytest
 import xarray as xr
 from pages import payload
 from records import entries
+from sound import wave_rates
 
 from pitchpoint.analyses.kinematic_error import _turns
 from pitchpoint.gears.pairs import WAVE
 from pitchpoint.gears.strain_wave import MEMBERS
-from pitchpoint.gears.strain_wave.drive import rates
 from pitchpoint.gears.strain_wave.family import FAMILY
 from pitchpoint.results.by_stage import by_stage
 from pitchpoint.results.store import dataset
@@ -30,10 +30,7 @@ from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import operating_point, period_of
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.report import render
-from pitchpoint.views.section import KeyFigure, Page, key_figures
-
-
-from pitchpoint.views.section import Page, key_figures, panels
+from pitchpoint.views.section import KeyFigure, Page, key_figures, panels
 from pitchpoint.views.sections.answer import teeth_rows
 from pitchpoint.views.sections.arc import ARC, arc_panel, wave_losses, wave_sentence
 from pitchpoint.views.sections.beside import drag_panel, starting_answer
@@ -276,7 +273,7 @@ def outcome(parts: Mapping[str, xr.Dataset], **changes: Any) -> Outcome:
     driver = changes.setdefault("driver", "wave generator")
     loaded = changes.setdefault("loaded", "flexspline")
     fixed = next(name for name in MEMBERS if name not in (driver, loaded))
-    turning, _, _ = rates(np.array([Z1, Z2], float), *map(MEMBERS.index, (fixed, driver)))
+    turning = wave_rates((Z1, Z2), *map(MEMBERS.index, (fixed, driver)))
     manifest = {
         "case": "by hand",
         "variant": "default",

@@ -27,11 +27,8 @@ from pitchpoint.views.figures import Figure, Panel, continued
 from pitchpoint.views.path import path_of
 from pitchpoint.views.registry import STIFFNESS, WEAR
 from pitchpoint.views.report import render
-from pitchpoint.views.section import Page, Table
-from pitchpoint.views.sections.cycle import CYCLE
-
-
 from pitchpoint.views.section import Page, Table, panels
+from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.design_chart import design_charts
 from pitchpoint.views.sections.joint import joint_panel
 from pitchpoint.views.sections.path import along, loss_places

@@ -184,6 +184,8 @@ def _free_side(traces: list[Trace], heights: tuple[float, float], bottom: float)
     x, y = (
         np.array([np.nan if v is None else v for t in traces for v in t[name]]) for name in "xy"
     )
+    if not np.isfinite(x).any():  # curves of an idle drive
+        return "right"
     with np.errstate(invalid="ignore"):
         at = np.array([_place(max(value, bottom), bottom) for value in y])
         met = (heights[0] <= at) & (at <= heights[1])
