@@ -11,15 +11,20 @@ pair. Seconds are of the processor; compile time is told apart. Both find the sa
 
 import dataclasses
 import statistics
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import bench
 import equinox as eqx
 import jax
 import numpy as np
 import wear_numpy as rival
+from worn_together import worn_together
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
@@ -36,7 +41,6 @@ from pitchpoint.wear.history import Cells, WearModel, as_new, one_turn
 from pitchpoint.wear.laws import archard_1953
 from pitchpoint.wear.march import Limit, Rate, after
 from pitchpoint.wear.march import as_new as unworn
-from pitchpoint.wear.together import worn_together
 
 jax.config.update("jax_enable_x64", True)
 

@@ -9,6 +9,7 @@ import equinox as eqx
 import numpy as np
 import pytest
 from vdi_2736_wear import mean_wear_depth
+from worn_together import worn_together
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.build import Built
@@ -33,7 +34,6 @@ from pitchpoint.wear.laws import archard_1953
 from pitchpoint.wear.march import Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
 from pitchpoint.wear.teeth import backlash_growth, half_teeth, tips_of
-from pitchpoint.wear.together import worn_together
 
 K = 1e-16
 OWN = {"coefficient": array(K * 2e9), "hardness": array(2e9)}
