@@ -40,6 +40,12 @@
     }
   }
 
+  // First cells of the row and of the column of a cell.
+  const heads = (cell) => {
+    const row = cell.closest("tr");
+    return row ? row.cells[0].textContent + (row.closest("table").tHead?.rows[0].cells[cell.cellIndex]?.textContent ?? "") : "";
+  };
+
   // Units on another line than their numbers, numbers on another than their symbol; values of tiles are narrow.
   for (const one of document.querySelectorAll("p, dd, li, td, th, figcaption, caption, summary")) {
     if (!shown(one) || one.closest(".spoken, .plot")) continue;
@@ -51,10 +57,10 @@
       if (inside.closest("code, pre, .key, #sources")) continue;
       const raised = words.match(/(?<![\p{L}\p{N}_.\/])\p{L}_[\p{L}\p{N}]{1,5}(?![\p{L}\p{N}_(.])/u);
       if (raised) faults.push(`"${raised[0]}" is not set low: ${name(one)}`);
-      const many = [...words.matchAll(/(?<![\w.\/])\d+\.\d+(?![\w.\/])/g)].find(([it]) => it.replace(".", "").replace(/^0+/, "").length > 6);
+      const many = one.matches("td, th") ? null : [...words.matchAll(/(?<![\w.\/])\d+\.\d+(?![\w.\/])/g)].find(([it]) => it.replace(".", "").replace(/^0+/, "").length > 6);
       if (many) faults.push(`${many[0]} has more digits than anybody reads: ${name(one)}`);
       const power = words.match(/\de[−-]\d+ (k?g|[kM]?N|[MG]?Pa|percentage|[mµ]?m|[km]?W|µ?J)(?![\w/])/) ??
-        (/\[(k?g|[kM]?N|k?W|µ?J)( |\])/.test(one.closest("tr")?.cells[0].textContent) ? words.match(/\de[−-]\d/) : null);
+        (/\[(k?g|[kM]?N|k?W|µ?J)( |\])/.test(heads(one)) ? words.match(/\de[−-]?\d/) : null);
       if (power) faults.push(`"${power[0]}" could have a smaller unit: ${name(one)}`);
     }
     const texts = document.createTreeWalker(one, NodeFilter.SHOW_TEXT);

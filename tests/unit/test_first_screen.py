@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import Mock
 
 import bank
 import numpy as np
@@ -27,9 +28,10 @@ from pitchpoint.views.first_screen import (
     beside_each_other,
     swept_beside,
 )
-from pitchpoint.views.point import by_members, member_names
+from pitchpoint.views.point import by_bodies, by_members, member_names, of_stage_by_bodies
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import KeyFigure, Page, Table, key_figures
+from pitchpoint.views.sections import beside
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.strength import strength_rows
 from pitchpoint.views.sections.studies import extrapolated_note
@@ -428,3 +430,30 @@ def test_columns_fit_and_keep_words_whole(cells: list[list[str]], width: int) ->
         for name, size in block.items():
             words = [word for text in (name, *(row[name] for row in rows)) for word in text.split()]
             assert size == width or size >= max(map(len, words))
+
+
+def test_sentences_on_a_mesh_of_a_train_name_its_bodies():
+    mesh = {"number": 2, "members": ["gear 1", "gear 2"], "bodies": "planet and ring"}
+    train = Mock(spec=Outcome, manifest={**mesh, "stages": [mesh]})
+    assert by_bodies(train, "Gear 2 has teeth. A at the tip of gear 2; gear 1 drives.") == (
+        "The ring has teeth. A at the tip of the ring; the planet drives."
+    )
+    rim = of_stage_by_bodies(train, "stage 2: gear 2: a rim; gear 1 too")
+    assert rim == "stage 2: ring: a rim; the planet too"
+    assert of_stage_by_bodies(train, "stage 1: gear 2: a rim") == "stage 1: gear 2: a rim"
+    pair = Mock(spec=Outcome, manifest={"members": ["gear 1", "gear 2"]})
+    assert by_bodies(pair, "tip of gear 2") == "tip of gear 2"
+
+
+def test_values_and_axes_have_a_unit_without_powers_of_ten():
+    assert show.handy([2.038e-8, 8.014e-5], "kg m2") == (
+        [pytest.approx(0.2038), pytest.approx(801.4)],
+        "g cm2",
+    )
+    assert show.handy([7.893e7, 85850.0, 0.0], "kg cm2")[1] == "kg m2"
+    assert show.handy([0.0, 0.259], "N m") == ([0.0, 0.259], "N m")
+    curves = [{"y": [2.59e-4, None], "hovertemplate": "%{y} N\u00a0m"}]
+    look = {"yaxis": {"title": {"text": "T [N\u00a0m]"}}}
+    beside.in_smaller_unit(curves, look, "N m")
+    assert curves == [{"y": [pytest.approx(0.259), None], "hovertemplate": "%{y} mN\u00a0m"}]
+    assert look["yaxis"]["title"]["text"] == "T [mN\u00a0m]"

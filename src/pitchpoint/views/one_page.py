@@ -1,5 +1,6 @@
 """The page that sums a report up on paper: gears, operating point, results, figures, doubts, assumptions."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -12,7 +13,7 @@ from pitchpoint.views.designs import input_tables, named_inputs
 from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
-from pitchpoint.views.point import named_members, ratio_words, way_in_a_turn
+from pitchpoint.views.point import named_members, of_stage_by_bodies, ratio_words, way_in_a_turn
 from pitchpoint.views.section import (
     Page,
     Paragraph,
@@ -125,10 +126,10 @@ def _given_gears(outcome: Outcome, apart: Sequence[str]) -> Table:
 
 
 def _plain_key(key: str) -> str:
-    """A dotted key of the case file in words."""
+    """A dotted key of the case file in words; symbols, X_L say, stay."""
     *tables, name = key.split(".")
     stage = f"stage {tables[0]}, " if tables and tables[0].isdigit() else ""
-    return stage + name.replace("_", " ")
+    return stage + re.sub(r"(?<=\w\w)_", " ", name)
 
 
 def _place_of(row: Mapping[str, str]) -> str:
@@ -188,7 +189,8 @@ def _standing(page: Page) -> Table | None:
 
 def _doubts(page: Page) -> list[str]:
     """Warnings of all, each once, with the names of those that have it where not all do."""
-    of = told_of_variants(page.outcomes, "warnings")
+    named = partial(of_stage_by_bodies, next(iter(page.outcomes.values())))
+    of = told_of_variants(page.outcomes, "warnings", named)
     everyone = len(page.outcomes)
     return [t if len(of[t]) == everyone else f"{', '.join(of[t])}: {t}" for t in of]
 

@@ -17,10 +17,12 @@ from pitchpoint.views.inputs import given, number
 __all__ = [
     "OperatingPoint",
     "Period",
+    "by_bodies",
     "by_members",
     "member_names",
     "named_members",
     "of_geometry",
+    "of_stage_by_bodies",
     "operating_point",
     "period_of",
     "ratio_words",
@@ -136,6 +138,29 @@ def by_members(outcome: Outcome, text: str) -> str:
     text = re.sub(rf"\b([Ss])tage ({every}): gear (\d)", gear, text)
     text = re.sub(r"\b([Ss])tages 1 and 2\b", lambda at: f"{'Bb'[at[1] == 's']}oth meshes", text)
     return re.sub(rf"\b([Ss])tage ({every})\b", mesh, text)
+
+
+def by_bodies(outcome: Outcome, text: str) -> str:
+    """A text on a mesh of a train with bodies, "the ring" say, in place of its members, "gear 2"."""
+    return _in_bodies(outcome.manifest, text)
+
+
+def of_stage_by_bodies(outcome: Outcome, text: str) -> str:
+    """A text that begins with its stage, with the bodies of that in place of the members of its mesh."""
+    begun = re.match(r"[Ss]tage (\d+)\b[^:]*: ", text)
+    stages = outcome.manifest.get("stages", ()) if begun else ()
+    own = [one for one in stages if begun and str(one["number"]) == begun[1]]
+    return _in_bodies(own[0], text) if own else text
+
+
+def _in_bodies(record: Mapping[str, Any], text: str) -> str:
+    for member, body in zip(map(str, record["members"]), _by_bodies(record), strict=True):
+        if member != body:
+            named = show.the(body)
+            text = re.sub(rf": {member}(?=: )", f": {body}", text)
+            text = re.sub(rf"\b{member}\b", named, text)
+            text = re.sub(rf"\b{member.capitalize()}\b", show.sentence(named, False), text)
+    return text
 
 
 def _central(bodies: Sequence[str]) -> str:

@@ -14,6 +14,7 @@ from pitchpoint.results.by_stage import Label, of_stage, stages_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import Curves, Panel, curves
+from pitchpoint.views.point import by_bodies
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -433,7 +434,22 @@ def by_variant(
     page: Page, part: str, show: Callable[[int, Outcome], Iterator[Block]]
 ) -> Iterator[Block]:
     """Blocks of every variant that has a part, see `tabbed`."""
-    return tabbed((title, show(position, outcome)) for position, title, outcome in page.each(part))
+    return tabbed(
+        (title, _by_bodies(show(position, outcome), outcome))
+        for position, title, outcome in page.each(part)
+    )
+
+
+def _by_bodies(blocks: Iterable[Block], outcome: Outcome) -> Iterator[Block]:
+    """Blocks of a mesh of a train, whose sentences say "the ring", not "gear 2"."""
+    for one in blocks:
+        if isinstance(one, Paragraph) and type(one.words) is str:  # no markup
+            yield replace(one, words=by_bodies(outcome, one.words))
+        elif isinstance(one, Panel):
+            own = [replace(each, note=by_bodies(outcome, each.note)) for each in one.figures]
+            yield replace(one, figures=own)
+        else:
+            yield one
 
 
 def tabbed(groups: Iterable[tuple[str, Iterable[Block]]]) -> Iterator[Block]:
@@ -565,7 +581,10 @@ class Section:
         return tabbed(
             (
                 ": ".join(filter(None, (label, _bodies(label, one)))),
-                _told_apart(self.blocks(one), f"_mesh{k}" if k else ""),
+                _told_apart(
+                    _by_bodies(self.blocks(one), next(iter(one.outcomes.values()))),
+                    f"_mesh{k}" if k else "",
+                ),
             )
             for k, (label, one) in enumerate(pages)
         )

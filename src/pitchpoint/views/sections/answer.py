@@ -27,7 +27,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
-from pitchpoint.views.point import operating_point, speed_ratio, way_in_a_turn
+from pitchpoint.views.point import of_stage_by_bodies, operating_point, speed_ratio, way_in_a_turn
 from pitchpoint.views.screen import cell, efficiency_of, head, shown
 from pitchpoint.views.section import (
     Block,
@@ -72,9 +72,10 @@ AVERAGES = {
 
 def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
+    named = partial(of_stage_by_bodies, next(iter(page.outcomes.values())))
     values = {
         "variants": variants,
-        "warnings": (warnings := told_of_variants(page.outcomes, "warnings")),
+        "warnings": (warnings := told_of_variants(page.outcomes, "warnings", named)),
         "first_doubt": show.first_clauses(next(iter(warnings), ""), _SUMMED_UP),
         "several": page.several,
         "designs": page.designs,

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from functools import reduce
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -37,6 +38,7 @@ from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed,
 __all__ = [
     "BESIDE",
     "drag_panel",
+    "in_smaller_unit",
     "loss_split",
     "running_rows",
     "starting_answer",
@@ -228,17 +230,33 @@ def _starting(name: str, seen: list[tuple[Curve, xr.Dataset, int, Outcome]]) -> 
         _dashed(curve, data.isel(law=law), "temperature", name, curve.dash)
         for curve, data, law, _ in seen
     ]
+    look = _look(like, "temperature", name)
+    in_smaller_unit(traces, look, show.described(name, like).display)
     return Figure(
         f"running_{name}",
         titled(name, like),
         traces,
-        _look(like, "temperature", name),
+        look,
         "From rest, without load, at the worst phase of the mesh.",
         missing="Friction holds the drive whatever the torque.",
     )
 
 
-def _look(data: xr.Dataset, axis: str, name: str) -> dict[str, object]:
+def in_smaller_unit(traces: list[Trace], look: dict[str, Any], display: str) -> None:
+    """Turns curves and their axis to a smaller unit where all values would need a power of ten."""
+    top = max((abs(v) for trace in traces for v in trace["y"] if v is not None), default=0.0)
+    (shown,), other = show.handy([top], display)
+    if other == display:
+        return
+    usual, smaller = show.unit(display), show.unit(other)
+    for trace in traces:
+        trace["y"] = [None if v is None else v * shown / top for v in trace["y"]]
+        trace["hovertemplate"] = trace["hovertemplate"].replace(usual, smaller)
+    title = look["yaxis"]["title"]
+    title["text"] = title["text"].replace(usual, smaller)
+
+
+def _look(data: xr.Dataset, axis: str, name: str) -> dict[str, Any]:
     axes = {"yaxis": {"rangemode": "tozero"}}
     return layout(show.axis_title(axis, data), short_axis(name, data), **axes)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from pitchpoint import units
 from pitchpoint.registry import enumerated
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -47,14 +48,14 @@ def _by_tolerances(data: xr.Dataset) -> bool:
 
 
 def _carriers(data: xr.Dataset) -> str:
-    return " and ".join(json.loads(data.attrs["carriers"]))
+    return " and ".join(show.the(one) for one in json.loads(data.attrs["carriers"]))
 
 
 def _of_planets(data: xr.Dataset) -> Iterator[str]:
     """What is not known of a train."""
     if _carriers(data):
         yield (
-            f"The {_carriers(data)} is not in it: nothing says what it weighs. All planets play alike."
+            f"Not in it: {_carriers(data)}, of which nothing says what it weighs. All planets play alike."
         )
 
 
@@ -101,7 +102,7 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     for (end, value), *others in [known] if known else []:
         more = "".join(f"{inertia} at the {name}; " for name, inertia in others)
         mass = show.quantity("drive_mass", float(data["drive_mass"]))
-        without = f", without the {_carriers(data)}" if _carriers(data) else ""
+        without = f", without {_carriers(data)}" if _carriers(data) else ""
         detail = f"{more}gears {mass}{without}"
         yield KeyFigure(75.0, f"Inertia at the {end}", value, detail, asked_by=INERTIA)
     if '"from_stiffness" do' in outcome.manifest["lacks"].get("torsion", ""):
@@ -132,26 +133,42 @@ def reflected_printed(outcome: Outcome) -> Iterator[Printed]:
     yield Printed(rows=[dict(zip(_heads(data), row, strict=True)) for row in _rows(data)])
 
 
+_INERTIAS = ("body_inertia", "reflected_part", "reflected_inertia")
+
+
+def _inertias(data: xr.Dataset) -> tuple[str, float]:
+    """Unit of all inertias of the table, and what one of the usual unit is in it."""
+    usual = show.described("body_inertia").display
+    values = [
+        v for name in _INERTIAS for v in show.displayed(show.described(name), data[name]).flat
+    ]
+    _, unit = show.handy([v for v in values if np.isfinite(v)], usual)
+    return unit, units.convert(1.0, unit, "moment of inertia") / units.convert(
+        1.0, usual, "moment of inertia"
+    )
+
+
 def _heads(data: xr.Dataset) -> list[str]:
-    unit = show.unit_of("body_inertia")
+    unit = show.unit(_inertias(data)[0])
     ends = [f"at the {end} [{unit}]" for end in data["end"].values]
     return ["body", f"mass m [{show.unit_of('body_mass')}]", f"inertia J [{unit}]", *ends]
 
 
 def _rows(data: xr.Dataset) -> list[Row]:
+    _, times = _inertias(data)
     columns = data["body_mass"], data["body_inertia"], data["reflected_part"].T
     each = zip(*(column.values for column in columns), strict=True)
     rows = [
         (
             str(name),
             _cell("body_mass", float(mass)),
-            _cell("body_inertia", float(inertia)),
-            *(_cell("reflected_part", float(part)) for part in parts),
+            _cell("body_inertia", times * float(inertia)),
+            *(_cell("reflected_part", times * float(part)) for part in parts),
         )
         for name, (mass, inertia, parts) in zip(data["body"].values, each, strict=True)
     ]
-    whole = [_cell("reflected_inertia", float(v)) for v in data["reflected_inertia"].values]
-    without = f", without the {_carriers(data)}" if _carriers(data) else ""
+    whole = [_cell("reflected_inertia", times * float(v)) for v in data["reflected_inertia"].values]
+    without = f", without {_carriers(data)}" if _carriers(data) else ""
     return [*rows, (f"drive{without}", _cell("drive_mass", float(data["drive_mass"])), "", *whole)]
 
 

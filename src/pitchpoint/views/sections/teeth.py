@@ -13,7 +13,7 @@ from pitchpoint.views.figures import Panel, pair_key
 from pitchpoint.views.inputs import words
 from pitchpoint.views.path import PathOfContact, path_of
 from pitchpoint.views.picture import picture_of
-from pitchpoint.views.point import named_members, of_geometry
+from pitchpoint.views.point import by_bodies, named_members, of_geometry
 from pitchpoint.views.section import (
     Block,
     Drawn,
@@ -49,7 +49,7 @@ def _blocks(page: Page) -> Iterator[Block]:
             "members": named_members(outcome),
             "dimensions": dimensions(outcome),
             "path": path_of(outcome),
-            "internal": _internal(outcome.parts["teeth"]),
+            "ring": _ring(outcome),
         }
         yield Drawn("teeth.html.jinja", {"t": values}, [sliding])
 
@@ -65,6 +65,11 @@ def _titled(variants: str, outcome: Outcome) -> str:
 def _moving(outcome: Outcome, name: str) -> Moving:
     """Teeth in mesh over one period, in frames as close as those of the report."""
     return Moving("mesh", picture_of(outcome).svg(name), "Phase", 1.0, 1.0 / 48.0)
+
+
+def _ring(outcome: Outcome) -> str:
+    """The gear with internal teeth at the begin of a sentence; empty without one."""
+    return by_bodies(outcome, "Gear 2") if _internal(outcome.parts["teeth"]) else ""
 
 
 def _internal(teeth: xr.Dataset) -> bool:
