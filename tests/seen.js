@@ -117,8 +117,12 @@
     }
     for (const axis of ["xtick", "ytick"]) {
       const labels = [...plot.querySelectorAll(`.${axis} text`)].map((one) => one.textContent.trim()).filter(Boolean);
+      const long = labels.find((words) => /0\.0*[1-9]\d*/.test(words) && /0\.\d{5}/.test(words) && !/0\.0*1$/.test(words) || /\d\s\d{3}\s\d{3}/.test(words));
+      if (long) say(`"${long}" has many digits for an axis`);
       if (labels.length === 1 && /^[\d.,\s−]+$/.test(labels[0])) say(`"${labels[0]}" alone on an axis`);
     }
+    const aslant = [...plot.querySelectorAll(".xtick text")].find((one) => shown(one) && Math.abs(one.getScreenCTM().b) > 0.01);
+    if (aslant) say(`"${aslant.textContent}" is turned`);
     const level = (one) => Math.min(Math.abs(one.getScreenCTM().a), Math.abs(one.getScreenCTM().b)) < 0.01;
     const texts = [...plot.querySelectorAll("text")].filter((one) => shown(one) && one.textContent.trim() && level(one));
     const [outer, boxes] = [box(plot), texts.map(box)];

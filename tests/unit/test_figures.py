@@ -111,3 +111,21 @@ def test_words_at_ends_of_lines_of_a_campbell_diagram_leave_each_other_room() ->
 
     assert words(18000.0) == ["1", "4", "100"]
     assert words(900.0) == ["1", "2", "3", "4", "100"]
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ([0.0, 1e8], "power"),
+        ([0.002648, 0.00267], "power"),
+        ([0.0, 6.4e-5], "power"),
+        ([0.31155, 0.31255], "none"),
+        ([0.0, 0.0035], "none"),
+        ([0.0, 20000.0], "none"),
+    ],
+)
+def test_numbers_of_many_digits_along_an_axis_have_a_power_of_ten(
+    values: list[float], told: str
+) -> None:
+    line = {"type": "scatter", "x": [0.0, 1.0], "y": values}
+    assert Figure("one", "One", [line], layout("x", "y")).layout["yaxis"]["exponentformat"] == told

@@ -109,7 +109,15 @@ class Figure:
     missing: str = NO_POWER
 
     def __post_init__(self) -> None:
-        """Gives an axis of constant values a range that says so, where plotly's would be of length two."""
+        """Gives an axis of constant values a range that says so, where plotly's would be of length two.
+
+        Numbers of many digits along an axis get a power of ten.
+        """
+        for name in "xy":
+            look = self.layout.get(f"{name}axis", {})
+            values = [value for trace in self.data for value in trace.get(name, [])]
+            if look.get("exponentformat") == "none" and look.get("type") != "log" and _long(values):
+                look |= {"exponentformat": "power", "minexponent": 2, "separatethousands": False}
         axis, level = self.layout.get("yaxis", {}), _constant(self.data)
         if level is not None and axis.get("type") != "log":
             axis.setdefault("range", _around(level, "rangemode" in axis))
@@ -401,6 +409,16 @@ def _constant(traces: Sequence[Trace]) -> float | None:
         return None
     values = {y for trace in traces for y in trace.get("y", []) if y is not None}
     return float(values.pop()) if len(values) == 1 else None
+
+
+def _long(values: Sequence[Any]) -> bool:
+    """True if numbers along an axis with these values would have seven digits, or five decimals."""
+    numbers = [value for value in values if isinstance(value, int | float)]
+    if not numbers:
+        return False
+    largest, span = max(map(abs, numbers)), max(numbers) - min(numbers)
+    step = (span or largest) / 4.0
+    return largest >= 1e6 or (largest < 0.01 and 0.0 < step < 1e-4)
 
 
 def _around(value: float, from_zero: bool) -> list[float]:

@@ -177,7 +177,7 @@ def _patch_axes(data: xr.Dataset, kept: int) -> dict[str, Any]:
     across = display("kept_y", _places(data, kept)[1])
     alike = 0.5 < np.ptp(across) / np.ptp(reach) < 2.0
     equal = {"scaleanchor": "x", "scaleratio": 1, "constrain": "domain"} if alike else {}
-    xaxis = {"range": reach, "constrain": "domain", "nticks": 5}
+    xaxis = {"range": reach, "constrain": "domain", "nticks": 3 if alike else 5}
     return layout(f"x [{unit}]", f"y [{unit}]", xaxis=xaxis, yaxis=equal)
 
 
