@@ -37,6 +37,7 @@ from pitchpoint.views.sections.sliding import sliding_figure
 from pitchpoint.views.sections.stiffness import stiffness_answer, stiffness_panels
 from pitchpoint.views.sections.vibration import (
     VIBRATION,
+    _gaps,
     resonance_panels,
     vibration_answer,
     vibration_panels,
@@ -609,3 +610,14 @@ def test_the_stiffness_of_one_stage_names_it(stages: Outcome) -> None:
     assert next(one.head for one in blocks if isinstance(one, Table)) == ["Stiffness", "stage 1"]
     titles = [figure.title for panel in panels(blocks) for figure in panel.figures]
     assert titles and all(title.endswith(" · stage 1") for title in titles)
+
+
+def test_speeds_that_both_directions_leave_out_are_told_once() -> None:
+    swept = resonance()
+    swept["vibration_status"][0, 1, 4:6] = 1
+    (told,) = _gaps(swept)
+    assert told.replace("\u00a0", " ").startswith(
+        "At 5.355 N m, speed rising and falling: 2 of 12 speeds ("
+    )
+    swept["vibration_status"][0, 1, 6] = 1
+    assert len([*_gaps(swept)]) == 2

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from sound import PAIR
 
-from pitchpoint.analyses.comparison import compare, demand_parts
+from pitchpoint.analyses.comparison import _Axis, compare, demand_parts
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.library import find, names
 from pitchpoint.cases.schema import Target, validate
@@ -323,3 +323,9 @@ def test_numbers_of_an_independent_calculation_are_counted_apart():
     assert in_words(found) == "3 printed numbers: 3 met (2 fitted); 1 of 1 predicted met"
     assert in_words(beside[:1]) == "1 of an independent calculation: 1 met"
     assert in_words([]) == ""
+
+
+def test_an_axis_that_begins_at_what_rounding_left_is_told_to_begin_at_zero():
+    axis = _Axis("stiffness_roll", np.array([2.7e-10, 0.27]), "angle", "deg")
+    with pytest.raises(InputError, match=r"runs from 0 ?\S* to 15\.4"):
+        axis.at(["16 deg"])

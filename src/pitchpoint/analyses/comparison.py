@@ -171,6 +171,7 @@ class _Axis:
         low, high = self.places.min(), self.places.max()
         if not low - (margin := 1e-9 * (high - low)) <= place <= high + margin:
             show = Quantity(self.kind, low, high, self.unit).show
+            low, high = (0.0 if abs(end) < 1e-6 * (high - low) else end for end in (low, high))
             told = f"{self.name} runs from {show(low)} to {show(high)}"
             raise _OutsideError(f"{shown(given)} lies outside; {told}", key="at")
         return place

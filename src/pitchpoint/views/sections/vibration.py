@@ -330,7 +330,8 @@ def _resonances(outcome: Outcome, speed: np.ndarray) -> list[tuple[str, float]]:
 
 
 def _gaps(data: xr.Dataset) -> Iterator[str]:
-    """For each direction and torque how many speeds have no steady state, and why."""
+    """For each torque how many speeds have no steady state, and why; one sentence where directions agree."""
+    ways: dict[tuple[str, str], list[str]] = {}
     told = json.loads(data.attrs.get("sentences", "[]"))
     codes = data["vibration_status"].values
     speed, unit = display("speed", data["speed"].values, data), show.unit_of("speed", data)
@@ -340,10 +341,11 @@ def _gaps(data: xr.Dataset) -> Iterator[str]:
                 where = speed[found == code]
                 ends = f"{show.number(where[0])} to {show.number(where[-1])} {unit}"
                 words = ends if where.size > 1 else f"{show.number(where[0])} {unit}"
-                yield (
-                    f"At {torque}, speed {way}: {where.size} of {speed.size} speeds ({words}) "
-                    f"are left out, {told[int(code)] if int(code) < len(told) else 'not solved'}."
-                )
+                why = told[int(code)] if int(code) < len(told) else "not solved"
+                left_out = f"{where.size} of {speed.size} speeds ({words}) are left out, {why}."
+                ways.setdefault((torque, left_out), []).append(str(way))
+    for (torque, left_out), those in ways.items():
+        yield f"At {torque}, speed {' and '.join(those)}: {left_out}"
 
 
 def _blocks(page: Page) -> Iterator[Block]:
