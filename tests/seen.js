@@ -186,6 +186,10 @@
       const below = one.matches(".figures") ? one.querySelector("figure") : after(one);
       if (above && below && shown(above) && shown(below) && ends(above, true) !== ends(below)) faults.push("left behind at the end of a page: " + name(above));
     }
+    const lasts = [...main.querySelectorAll("figure, tr, p, li, svg, h2, h3")].filter(shown).flatMap((one) => [...one.getClientRects()]);
+    const end = Math.max(...lasts.map(page));
+    const bottom = Math.max(...lasts.filter((part) => page(part) === end).map((part) => part.bottom)) - box(main).top;
+    if (end > 0 && bottom < 0.12 * height) faults.push("the last page is nearly empty");
     for (const rows of [...main.querySelectorAll("tbody")].map((body) => [...body.rows].filter(shown))) {
       for (const [one, other] of [rows.slice(0, 2), rows.slice(-2).reverse()]) {
         if (other && ends(one) !== ends(other)) faults.push("a row alone beside the end of a page: " + name(one));
