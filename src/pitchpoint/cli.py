@@ -910,7 +910,9 @@ def new(
     ],
     ratio: Annotated[
         float | None,
-        typer.Option(help="Of planetary and 3K: teeth for this ratio, input over output."),
+        typer.Option(
+            help="Of strain_wave, planetary and 3K: teeth for this ratio, input over output."
+        ),
     ] = None,
     torque: Annotated[
         str | None,
@@ -939,7 +941,7 @@ def new(
     from pitchpoint.sizing.for_ratio import case_for_ratio
 
     _write(
-        case_for_ratio(family, ratio, torque=torque, planets=3 if planets is None else planets),
+        case_for_ratio(family, ratio, torque=torque, planets=planets),
         output,
     )
 

@@ -169,7 +169,7 @@ _OTHERWISE = {
     **dict.fromkeys(("stages", "gearbox", "drive", "twostage"), "two_stages"),
     **dict.fromkeys(("harmonic", "harmonicdrive", "strainwavegear"), "strain_wave"),
     **dict.fromkeys(("coulomb", "mu"), "constant"),
-    **dict.fromkeys(("16mncr5", "20mncr5", "18crnimo76", "17crnimo6"), "case-hardened-mq"),
+    **dict.fromkeys(("16mncr5", "20mncr5", "18crnimo76", "17crnimo6", "mq"), "case-hardened-mq"),
     **dict.fromkeys(("42crmo4", "34crnimo6", "c45"), "through-hardened-mq"),
     **dict.fromkeys(("oil", "oils", "lubricants", "grease"), "lubricant"),
     **dict.fromkeys(("steels", "plastics", "solid", "solids", "materials"), "material"),

@@ -1636,7 +1636,7 @@ OTHER_CALLS = {
     "models steel oil": "it takes one kind or name, such as friction",
     "cases tian": "pitchpoint show CASE has the inputs of one",
     "new wolfrom": "did you mean 3K?",
-    "new spur --ratio 3": "is for planetary and 3K; leave it out for spur",
+    "new spur --ratio 3": "is for strain_wave, planetary and 3K; leave it out for spur",
     "new planetary --ratio 2": "2 is no ratio of one planetary set with 3 planets, which reaches",
     "new planetary --torque 5": "goes with --ratio",
     "new pair.toml": "'pair.toml' is a file and no family of gears; write new spur -o FILE",

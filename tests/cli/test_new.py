@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from pitchpoint import cli
+from pitchpoint.analyses.four_quadrants import speed_ratio
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.document import read, resolve
 from pitchpoint.cases.schema import Case, DriveCase, keys, quantity_at, validate
@@ -183,6 +184,23 @@ def test_the_module_is_the_smallest_that_bears_the_torque(family: str, ratio: fl
     assert built.case.operation.load == 200.0
 
 
+@pytest.mark.parametrize("ratio", [30.0, -80.0, 80.4, 320.0])
+def test_a_strain_wave_gear_for_a_ratio_has_it_within_half_a_turn(
+    ratio: float, tmp_path: Path
+) -> None:
+    text = case_for_ratio("strain wave", ratio)
+    flexspline, circular_spline = tomllib.loads(text)["gears"]["teeth"]
+    built = load_case(tomllib.loads(text))
+    met = -1.0 / speed_ratio(built)
+    assert circular_spline - flexspline == 2
+    assert met == pytest.approx(-flexspline / 2) and abs(abs(met) - abs(ratio)) <= 0.25
+    assert float(built.case.gears.module) * flexspline == pytest.approx(0.06, rel=1e-3)
+    against = ": its output turns against the input" if ratio > 0.0 else ""
+    assert f"Ratio {met:.6g}{against}. " in text
+    (tmp_path / "new.toml").write_text(text)
+    assert check(str(tmp_path / "new.toml")) == []
+
+
 @pytest.mark.parametrize(
     ("family", "ratio", "more", "told"),
     [
@@ -193,7 +211,11 @@ def test_the_module_is_the_smallest_that_bears_the_torque(family: str, ratio: fl
         ("planetary", 5.0, {"torque": "0 N m"}, "more than zero"),
         ("planetary", 5.0, {"planets": 30}, "planets: 30 is out of range; allowed is 1 to 24"),
         ("3K", -100.0, {}, "it is the size"),
-        ("spur", 5.0, {}, "is for planetary and 3K"),
+        ("spur", 5.0, {}, "is for strain_wave, planetary and 3K; leave it out for spur"),
+        ("strain_wave", 5.0, {}, "a strain wave gear of two lobes has 30 to 320"),
+        ("strain_wave", 80.0, {"torque": "5 N m"}, "no rating of its teeth, give operation.torque"),
+        ("strain_wave", 80.0, {"planets": 3}, "planets: is for planetary and 3K"),
+        ("planetary", float("nan"), {}, "nan is no ratio"),
     ],
 )
 def test_what_no_set_has_is_told_in_a_sentence(

@@ -440,6 +440,9 @@ def test_units_and_value_stand_beside_the_gradients(result: pp.Result) -> None:
     assert [*table.unit] == ["N m", "1"]
     loss = result.summary().iso_tr_14179_2["mean_loss"]
     assert table.attrs == {"of": "mean_loss", "unit": "W", "value": pytest.approx(loss)}
+    both = result.gradients(by="profile_shift")
+    assert [*both.index] == [SHIFT, SHIFT.replace(".1", ".2")]
+    assert both.loc[SHIFT].equals(table.loc[SHIFT])
     with pytest.raises(pp.InputError, match=r"gears.teeth: is no number of the case that varies"):
         result.gradients(by=["teeth"])
     with pytest.raises(pp.InputError, match='"mean_los" has no derivatives here; did you mean'):

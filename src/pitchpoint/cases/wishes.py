@@ -1107,6 +1107,23 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             "roughness counts by Ra or Rq, and Rz is neither",
             _by_rz,
         ),
+        Wish(
+            ("mq", "sq", "rms", "rrms", "rms_roughness"),
+            ("rq",),
+            "the root mean square of the heights of each flank is rq",
+            _renamed("rq"),
+        ),
+        Wish(
+            ("ma", "sa", "cla", "aa", "mean", "value", "roughness", "surface_roughness"),
+            ("ra",),
+            "the arithmetic mean of the heights of each flank is ra",
+            _renamed("ra"),
+        ),
+        Wish(
+            ("rt", "rmax", "ry", "rp", "rv", "rpk", "rk", "rvk", "rsk", "rku", "rmr"),
+            (),
+            "roughness counts by the mean of its heights alone: ra, or rq for the root mean square",
+        ),
     ),
     "lubricant": (
         Wish(

@@ -1,6 +1,7 @@
 """Derivatives of the main figures by the keys of a case file."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
@@ -48,7 +49,7 @@ Leaves = list[np.ndarray]
 def gradients(
     case: CaseLike,
     of: str = "mean_loss",
-    by: Sequence[str] = (),
+    by: str | Sequence[str] = (),
     *,
     law: str | None = None,
     variant: str | None = None,
@@ -59,7 +60,8 @@ def gradients(
     Args:
         case: a `Case`, or what makes one, of one mesh.
         of: "mean_loss", "mean_efficiency", "mean_input_torque" or "torque_ripple".
-        by: keys by which to differentiate, all by default.
+        by: key or keys by which to differentiate, all by default; one of both gears alone is
+            "gears.profile_shift.1", and "gears.profile_shift" has a row for each of them.
         law: friction law of the case that acts, the first one by default.
         variant: of the case, the first one by default.
         friction: laws of one's own, see `run`.
@@ -83,7 +85,8 @@ def gradients(
     models = _under(built, law)
     if of not in FIGURES:
         raise InputError(f"{shown(of)} has no derivatives here{nearest(of, FIGURES)}")
-    numbers = _asked(built, [chosen.key(name) for name in by])
+    names = [by] if isinstance(by, str) else by
+    numbers = _asked(built, [chosen.key(name) for name in names])
     value, slopes = figure_gradient(built.design, built.operation, models, FIGURES[of])
     flat = [np.asarray(leaf) for leaf in jax.tree.leaves(slopes)]
     rows = {
@@ -120,11 +123,12 @@ def _under(built: Built, law: str | None) -> Models:
 def _asked(built: Built, keys: Sequence[str]) -> "list[Number]":
     """Numbers of a case, those of some keys; InputError for a key without one."""
     every = {one[0]: one for one in _numbers(built)}
-    missing = [key for key in keys if key not in every]
+    members = {key: [one for one in every if one in (key, f"{key}.1", f"{key}.2")] for key in keys}
+    missing = [key for key, there in members.items() if not there]
     if missing:
         told = f"is no number of the case that varies{nearest(missing[0], every)}"
         raise InputError(told, key=missing[0])
-    return [every[key] for key in keys or every]
+    return [every[key] for key in dict.fromkeys(chain(*members.values())) or every]
 
 
 def _rows(

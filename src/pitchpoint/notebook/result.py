@@ -215,7 +215,7 @@ class Result(Mapping[str, Outcome]):
     def gradients(
         self,
         of: str = "mean_loss",
-        by: Sequence[str] = (),
+        by: str | Sequence[str] = (),
         *,
         law: str | None = None,
         variant: str | None = None,

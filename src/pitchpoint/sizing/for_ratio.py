@@ -1,8 +1,8 @@
-"""A case file of a planetary or 3K set from a ratio: teeth that assemble, a module that bears the torque."""
+"""A case file of gears from a ratio: teeth that assemble, a module that bears the torque if it is rated."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from itertools import islice
-from math import ceil, pi, radians, sin
+from math import ceil, isfinite, pi, radians, sin
 from typing import Any
 
 from pitchpoint import units
@@ -22,7 +22,8 @@ Making = Callable[[float], Tree]
 """Tables of a case with its gears for a module [mm]."""
 
 THREE_K = "3K"
-FOR_RATIO = (PLANETARY, THREE_K)
+STRAIN_WAVE = "strain_wave"
+FOR_RATIO = (STRAIN_WAVE, PLANETARY, THREE_K)
 
 MODULES = (
     *(0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0),
@@ -35,6 +36,9 @@ WIDTH = {PLANETARY: 12.0, THREE_K: 10.0}
 """Face width [modules]."""
 PIN = 0.4
 """Mean diameter of the bearing of a planet over its reference diameter."""
+
+TEETH_OF_FLEXSPLINE = 60, 640
+"""Flexsplines that usual proportions make, as catalogue drives have 60 to 320 teeth."""
 
 SUNS, LARGEST_RING = range(12, 81), 240
 LEAST_PLANET = 18
@@ -52,6 +56,13 @@ ARRANGED = (
     ("sun", "ring", "carrier", lambda ratio: -ratio, lambda basic: -basic),
 )
 """Input, output and held body; teeth of ring over sun by the ratio, and the ratio by these."""
+
+
+_LOBES = 2
+"""Teeth by which the circular spline of a strain wave gear has more than its flexspline."""
+
+_FLEXSPLINE = 60.0
+"""Reference diameter of the flexspline of a common catalogue drive, the size 25 [mm]."""
 
 
 def planetary_teeth(basic: float, planets: int) -> Iterator[tuple[int, int, int]]:
@@ -89,27 +100,34 @@ def planetary_teeth(basic: float, planets: int) -> Iterator[tuple[int, int, int]
 
 @double_precision()
 def case_for_ratio(
-    family: str, ratio: float, *, torque: str | None = None, planets: int = 3
+    family: str, ratio: float, *, torque: str | None = None, planets: int | None = None
 ) -> str:
     """A case file of a set of this ratio, with a module that bears the torque.
 
     Args:
-        family: "planetary" or "3K".
-        ratio: speed of the input over that of the output; of a 3K set its size, which is met within 3 %.
-        torque: at the output, with its unit; the module is 1 mm and stays unsized without one.
-        planets: at equal angles.
+        family: "strain_wave", "planetary" or "3K".
+        ratio: speed of the input over that of the output; of a 3K set and of a strain wave gear its size,
+            which is met within 3 %, and to half a turn.
+        torque: at the output, with its unit; the module is 1 mm and stays unsized without one. Not for strain
+            wave gears, whose teeth no standard rates.
+        planets: at equal angles, 3 unless given; of sets that have some.
 
     Raises:
         InputError: another family, no such teeth, more torque than gears of 32 mm module bear.
 
     The module is the smallest with which the least safeties by ISO 6336 are at least `SAFETIES`, of gears of
-    `MATERIAL` whose face width is `WIDTH` and that run at 3000 rpm.
+    `MATERIAL` whose face width is `WIDTH` and that run at 3000 rpm. A strain wave gear has the diameter of
+    the size 25 of catalogues at every ratio.
     """
     named = next((one for one in FOR_RATIO if letters(one) == letters(family)), None)
     if named is None:
-        raise InputError(
-            f"is for {' and '.join(FOR_RATIO)}; leave it out for {family}", key="ratio"
-        )
+        told = f"{', '.join(FOR_RATIO[:-1])} and {FOR_RATIO[-1]}"
+        raise InputError(f"is for {told}; leave it out for {family}", key="ratio")
+    if not isfinite(ratio):
+        raise InputError(f"{ratio} is no ratio, input over output", key="ratio")
+    if named == STRAIN_WAVE:
+        return _strain_wave(ratio, {"torque": torque, "planets": planets})
+    planets = 3 if planets is None else planets
     _check("planets", lambda: PLANETS.read(planets))
     if torque is not None and _check("torque", lambda: units.parse(torque, "torque")) <= 0.0:
         raise InputError(f"{torque} was given; it is more than zero", key="torque")
@@ -133,6 +151,39 @@ def case_for_ratio(
             f"asked were {asked}.",
             "Load factors but K_v and that of planets are 1: give those of your drive in [strength].",
         ],
+    )
+
+
+def _strain_wave(ratio: float, others: Mapping[str, Any]) -> str:
+    """A case file of a strain wave gear whose circular spline is held.
+
+    Args:
+        ratio: of the wave generator over the flexspline, of any sign: it turns against it.
+        others: options that are for sets of planets.
+    """
+    for key, value in others.items():
+        if value is not None:
+            raise InputError(
+                f"is for {' and '.join(FOR_RATIO[1:])}; a strain wave gear has no rating of its teeth, "
+                "give operation.torque in the file"
+                if key == "torque"
+                else f"is for {' and '.join(FOR_RATIO[1:])}; a strain wave gear has none",
+                key=key,
+            )
+    flexspline = round(_LOBES * abs(ratio))
+    if not TEETH_OF_FLEXSPLINE[0] <= flexspline <= TEETH_OF_FLEXSPLINE[1]:
+        low, high = (teeth / _LOBES for teeth in TEETH_OF_FLEXSPLINE)
+        raise InputError(
+            f"{ratio:g} was given; a strain wave gear of two lobes has {low:g} to {high:g}",
+            key="ratio",
+        )
+    module = _FLEXSPLINE / flexspline
+    gears = {"teeth": [flexspline, flexspline + _LOBES], "module": f"{module:.4g} mm"}
+    remark = (
+        f"The size is that of a common drive of {_FLEXSPLINE:g} mm, for 67 N m; it is not sized."
+    )
+    return template(
+        STRAIN_WAVE, {"gears": gears}, [f"{_met(-flexspline / _LOBES, ratio)}. {remark}"]
     )
 
 
