@@ -19,8 +19,9 @@ from pitchpoint.doubts import Doubt
 from pitchpoint.results.target_rows import Row
 from pitchpoint.runs import run
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import one_page, show
 from pitchpoint.views.columns import fitted
+from pitchpoint.views.figures import curves
 from pitchpoint.views.film_courses import answered, film_key_figure, place_of
 from pitchpoint.views.first_screen import (
     FEW_LINES,
@@ -31,7 +32,7 @@ from pitchpoint.views.first_screen import (
 from pitchpoint.views.point import by_bodies, by_members, member_names, of_stage_by_bodies
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import KeyFigure, Page, Table, key_figures
-from pitchpoint.views.sections import beside
+from pitchpoint.views.sections import answer, beside
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.strength import strength_rows
 from pitchpoint.views.sections.studies import extrapolated_note
@@ -156,12 +157,16 @@ def test_members_of_a_train_are_inspected_by_their_names(pair: dict[str, Outcome
     assert any("turn of planet, the other one held" in row[0] for row in tables[0].rows)
 
 
-def test_a_set_without_stages_of_its_own_is_told_by_its_members(pair: dict[str, Outcome]) -> None:
+def test_a_set_without_stages_of_its_own_is_told_by_its_members(
+    pair: dict[str, Outcome], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On the screen, at the top of the report and on its page that prints."""
     meshes = [
         {"number": k, "bodies": bodies, "members": ["gear 1", "gear 2"]}
         for k, bodies in ((1, "sun and planet"), (2, "planet and ring"))
     ]
-    rows = [{"table": "gears", "key": "family", "value": "planetary"}]
+    planetary = {"table": "gears", "key": "family", "value": "planetary", "status": "given"}
+    rows = [*pair["default"].manifest["inputs"], planetary]
     (own, of_stages) = (
         doubting(pair["default"], stages=meshes, inputs=inputs) for inputs in (rows, [])
     )
@@ -176,6 +181,12 @@ def test_a_set_without_stages_of_its_own_is_told_by_its_members(pair: dict[str, 
     }
     assert {text: by_members(own, text) for text in told} == told
     assert [by_members(of_stages, text) for text in told] == [*told]
+    figures = [KeyFigure(10.0, "Film ratio", "0.17", "at stage 2")]
+    monkeypatch.setattr(answer, "key_figures", lambda *_: figures)
+    monkeypatch.setattr(one_page, "key_figures", lambda *_: figures)
+    page = Page({"default": own}, curves({"default": own}))
+    assert answer._variant(page, "default", own)["tiles"][0].detail == "at ring mesh"
+    assert one_page._results(page, own).rows[0][2] == "at ring mesh"
 
 
 def test_a_short_detail_is_whole() -> None:

@@ -346,20 +346,35 @@ def test_maps_share_one_scale_and_have_lines_with_labels(page: str, published: O
     assert [(int(step), entries.count("<option")) for step, entries in menus] == [(3, 3), (1, 3)]
 
 
-def test_a_map_that_four_digits_do_not_tell_apart_has_one_colour(published: Outcomes) -> None:
+def test_a_map_that_four_digits_do_not_tell_apart_is_a_line(published: Outcomes) -> None:
     outcome = published["physical"]
     whole = outcome.parts["loss_map"]
     even = whole.assign(mean_efficiency=0.98 + 1e-7 * whole["mean_efficiency"])
     alike = {"physical": replace(outcome, parts={**outcome.parts, "loss_map": even})}
-    loss, map_of_efficiency = map_panel(alike, curves(alike)).figures
-    heat = map_of_efficiency.data[0]
+    panel = map_panel(alike, curves(alike))
+    (loss,) = panel.figures
+    assert panel.note == "Mean efficiency: 98 % throughout, to four digits."
+    assert loss.data[0]["showscale"] and "throughout" not in loss.remarks
+    assert {name for choice in panel.choices for name in choice.changes} == {"map_mean_loss"}
+    assert "throughout, to four digits." in render(alike)
+
+
+def test_maps_of_variants_that_differ_but_are_even_have_one_colour(published: Outcomes) -> None:
+    outcome = published["physical"]
+    whole = outcome.parts["loss_map"]
+
+    def of(value: float) -> Outcome:
+        data = whole.assign(mean_efficiency=value + 1e-7 * whole["mean_efficiency"])
+        return replace(outcome, parts={**outcome.parts, "loss_map": data})
+
+    two = {"physical": of(0.98), "other": of(0.9)}
+    _, drawn = map_panel(two, curves(two)).figures
+    heat = drawn.data[0]
     values = [value for row in heat["z"] for value in row if value is not None]
     assert values
     assert max(values) - min(values) < 1e-2 * (heat["zmax"] - heat["zmin"])
-    assert heat["contours"]["start"] > max(values)
-    assert "98 % throughout, to four digits." in map_of_efficiency.remarks
-    assert (heat["showscale"], loss.data[0]["showscale"]) == (False, True)
-    assert "throughout" not in loss.remarks
+    assert heat["contours"]["start"] > max(values) and heat["showscale"] is False
+    assert "98 % throughout, to four digits." in drawn.remarks
 
 
 def test_a_pair_that_carries_nothing_has_no_friction() -> None:

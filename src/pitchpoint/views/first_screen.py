@@ -3,7 +3,7 @@
 import shlex
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import chain
 from math import isfinite
 from pathlib import Path
@@ -19,7 +19,7 @@ from pitchpoint.views import show
 from pitchpoint.views.figures import laws
 from pitchpoint.views.inputs import number
 from pitchpoint.views.inputs import words as input_words
-from pitchpoint.views.point import by_members, ratio_words, speed_ratio
+from pitchpoint.views.point import by_members, figures_by_members, ratio_words, speed_ratio
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import (
     OF_MESHES,
@@ -248,14 +248,7 @@ def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
 
 def _key_figures(outcome: Outcome) -> list[KeyFigure]:
     """Figures of one variant in their order, those of a planetary set by its members."""
-    return [
-        replace(
-            figure,
-            name=by_members(outcome, figure.name),
-            detail=by_members(outcome, figure.detail),
-        )
-        for figure in stages_together(key_figures(in_order(), outcome))
-    ]
+    return figures_by_members(outcome, stages_together(key_figures(in_order(), outcome)))
 
 
 def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:

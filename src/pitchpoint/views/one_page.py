@@ -13,7 +13,13 @@ from pitchpoint.views.designs import input_tables, named_inputs
 from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
-from pitchpoint.views.point import named_members, of_stage_by_bodies, ratio_words, way_in_a_turn
+from pitchpoint.views.point import (
+    figures_by_members,
+    named_members,
+    of_stage_by_bodies,
+    ratio_words,
+    way_in_a_turn,
+)
 from pitchpoint.views.section import (
     Page,
     Paragraph,
@@ -212,7 +218,8 @@ def _results(page: Page, outcome: Outcome) -> Table:
         few = dict([*page.outcomes.items()][:_COLUMNS])
         rows = [[*row.values()] for row in beside_each_other(few)][:_RESULTS]
         return Table(["", *few], rows, caption="Results")
-    figures = stages_together(key_figures(page.sections, outcome))[:_RESULTS]
+    every = stages_together(key_figures(page.sections, outcome))
+    figures = figures_by_members(outcome, every)[:_RESULTS]
     return Table(
         ["", "", ""], [(f.name, f.value, _detail(f.detail)) for f in figures], caption="Results"
     )

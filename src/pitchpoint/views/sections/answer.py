@@ -27,7 +27,14 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
-from pitchpoint.views.point import of_stage_by_bodies, operating_point, speed_ratio, way_in_a_turn
+from pitchpoint.views.point import (
+    by_members,
+    figures_by_members,
+    of_stage_by_bodies,
+    operating_point,
+    speed_ratio,
+    way_in_a_turn,
+)
 from pitchpoint.views.screen import cell, efficiency_of, head, shown
 from pitchpoint.views.section import (
     Block,
@@ -142,7 +149,7 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
     """What the top of the page says about one variant."""
     manifest, parts = outcome.manifest, outcome.parts
     single = of_contact(parts.get("operation", ()))
-    figures = stages_together(key_figures(page.sections, outcome))
+    figures = figures_by_members(outcome, stages_together(key_figures(page.sections, outcome)))
     return {
         "name": name,
         "oil": manifest["oil"],
@@ -436,7 +443,8 @@ def _borne(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
         pressures = _pressures(cycle, law)
         most = max(pressures, key=lambda stage: pressures[stage])
         told = show.quantity("pressure", pressures[most])
-        yield VARIABLES["pressure"].long_name, f"{told} at {most}" if most else told
+        place = by_members(outcome, f" at {most}") if most else ""
+        yield VARIABLES["pressure"].long_name, f"{told}{place}"
         yield from _ellipse(cycle, law)
     if torsion is not None and "edge_share" in torsion:
         at = operating_point(outcome).torque

@@ -69,7 +69,10 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Paragraph(told, "note")
     if alone := covered([one.parts for one in there.values()]):
         yield Paragraph(alone, "note")
-    yield map_panel(there, page.curves, OF_OUTPUT)
+    panel = map_panel(there, page.curves, OF_OUTPUT)
+    if panel.note:
+        yield Paragraph(panel.note)
+    yield panel
     yield Heading("Held at rest")
     banded = any(
         HOLDING_BANDS[HOLDING[0]][0] in one.parts[OF_OUTPUT.part] for one in there.values()

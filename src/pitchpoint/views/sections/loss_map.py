@@ -82,13 +82,29 @@ def map_panel(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart = OF_
         return Panel(chart.title, [])
     first = min(range(len(choices)), key=lambda at: choices[at][0])
     _, variant, position, law = choices[first]
-    scales = {name: _scale(name, outcomes, chart) for name in chart.shown}
+    even = {name: words for name in chart.shown if (words := _even(name, outcomes, chart))}
     figures = [
-        _figure(name, outcomes[variant], chart, law, position, scales[name]) for name in chart.shown
+        _figure(name, outcomes[variant], chart, law, position, _scale(name, outcomes, chart))
+        for name in chart.shown
+        if name not in even
     ]
     menu = [_choice(outcomes, known, chart, *choice[1:]) for choice in choices]
     menus = _menus(outcomes, known, chart) if len(choices) > 1 else []
-    return Panel(chart.title, figures, choices=menu, menu="Shown for", menus=menus, at=first)
+    if not figures:
+        menu, menus, first = [], [], 0
+    told = " ".join(even.values())
+    return Panel(chart.title, figures, [], menu, told, menu="Shown for", menus=menus, at=first)
+
+
+def _even(name: str, outcomes: Mapping[str, Outcome], chart: Chart) -> str:
+    """A sentence in place of a map that would have one colour whatever is chosen; empty for others."""
+    every = [data[name].values.ravel() for data in chart.of(outcomes).values()]
+    low, high = _ends(np.concatenate(every))
+    if high > low:
+        return ""
+    data = next(iter(chart.of(outcomes).values()))
+    title = show.sentence(show.described(name, data).long_name, whole=False)
+    return f"{title}: {show.quantity(name, low, of=data)} throughout, to four digits."
 
 
 def _menus(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart) -> list[Menu]:
@@ -166,7 +182,7 @@ def _choice(
     curve = known[variant, laws(data)[law]]
     degree = level("temperature", float(data["temperature"].values[position]))
     changes: dict[str, list[Any]] = {}
-    for name in chart.shown:
+    for name in (one for one in chart.shown if not _even(one, outcomes, chart)):
         heat = _heat(name, data, chart, law, position)
         restyled = {**heat, **_contours(heat["z"])}
         changes[f"{chart.name}_{name}"] = [{k: [values] for k, values in restyled.items()}, {}, [0]]
@@ -245,7 +261,7 @@ def _figure(
 
 
 def _same(name: str, data: xr.Dataset) -> str:
-    """Value of a map that is of one colour, whatever is chosen; empty for others."""
+    """Value of a map that is of one colour beside others that are not; empty for others."""
     low, high = _ends(data[name].values)
     return "" if high > low else f" {show.quantity(name, low, of=data)} throughout, to four digits."
 
@@ -392,7 +408,10 @@ def _blocks(page: Page) -> Iterator[Block]:
     )
     if alone := covered([one.parts for one in there.values()]):
         yield Paragraph(alone, "note")
-    yield map_panel(there, page.curves)
+    panel = map_panel(there, page.curves)
+    if panel.note:
+        yield Paragraph(panel.note)
+    yield panel
     lines = efficiency_panel({n: one for n, one in there.items() if _lossy(one)}, page.curves)
     if lines.figures:
         yield Heading("Efficiency against load, speed and temperature")
