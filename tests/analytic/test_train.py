@@ -1,5 +1,6 @@
 """Planetary trains by their contacts: independent numbers, phases, equilibrium, one pair as the smallest."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,7 +14,7 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.efficiency.train import gear_train
 from pitchpoint.efficiency.train_cycle import train_cycle
-from pitchpoint.efficiency.train_summary import train_figures
+from pitchpoint.efficiency.train_summary import _figures, train_figures
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.registry import LOAD_SHARING
@@ -73,6 +74,11 @@ def planetary(teeth, angles, ends=TO_CARRIER, *, turned=False):
     return gear_train(links, designs, ends, planets=("planet",), phases=phases)
 
 
+def over_whole_period(train):
+    """The same train, with planets at any phases: nothing is known to repeat within its period."""
+    return replace(train, alike=False, turns=jnp.ones(()))
+
+
 def solved(train, mu, point=POINT):
     return train_cycle(train, point, [constant(mu)] * len(train.meshes))
 
@@ -107,9 +113,39 @@ def order(found, number):
 
 def test_orders_that_phases_cancel_do_not_reach_the_sun():
     """25 teeth are no multiple of 3: orders whose number is none either cancel (Parker 2000)."""
-    found = solved(planetary((25, 29, 83), equal_angles(3)), 0.05)
+    found = solved(over_whole_period(planetary((25, 29, 83), equal_angles(3))), 0.05)
     assert max(order(found, number) for number in (1, 2, 4, 5)) < 1e-8
     assert min(order(found, number) for number in (3, 6)) > 1e-5
+
+
+def test_a_third_of_the_period_stands_for_all_of_it():
+    """Where planets come to each other's places; forces of each over the rest are those of the others."""
+    train = planetary((25, 29, 83), equal_angles(3))
+    part, whole = (solved(one, 0.05) for one in (train, over_whole_period(train)))
+    assert float(train.turns) == 3.0
+    for name in ("input_torque", "loss"):
+        means = [float(one.mean(getattr(one, name))) for one in (part, whole)]
+        assert means[0] == pytest.approx(means[1], rel=1e-13)
+    assert float(part.ripple) == pytest.approx(float(whole.ripple), rel=1e-11)
+    first, every = (np.asarray(one.meshes[0].force)[:3] for one in (part, whole))
+    at, nodes = np.asarray(part.phase)[:, None] + np.arange(3) / 3, np.asarray(whole.phase)
+    for further in range(3):
+        number = np.array(
+            [np.argmin(abs((nodes - one + 0.5) % 1.0 - 0.5)) for one in at[:, further]]
+        )
+        inside = abs((nodes[number] - at[:, further] + 0.5) % 1.0 - 0.5) < 1e-12
+        shifted = np.roll(first, -further * int(train.onwards), axis=0)[:, inside]
+        assert inside.sum() > 20
+        np.testing.assert_allclose(every[:, number[inside]], shifted, rtol=1e-9)
+
+
+def test_another_number_of_planets_asks_for_no_program_more():
+    """24/30/84 with two, three and four planets; five to eight have a program of their own."""
+    _figures.ready.clear()
+    for count in (2, 3, 4):
+        found = figures(planetary((24, 30, 84), equal_angles(count)), 0.05)
+        assert found["mean_efficiency"] == pytest.approx(0.99114646, rel=3e-5)
+    assert len(_figures.ready) == 1
 
 
 def test_torques_are_in_equilibrium_and_power_is_lost_in_contacts():

@@ -114,7 +114,7 @@ def test_flanks_that_losses_press_are_in_equilibrium_without_load():
     """A planet that its pin brakes is turned by the sun and leans on the other flanks of the ring."""
     train = planetary([replace(QUIET, seal_torque=0.2)], [("planet", "carrier")])
     found = train_cycle(train, point(0.0), [constant(0.1)] * 2)
-    sun, ring = (np.asarray(mesh.force) for mesh in found.meshes)
+    sun, ring = (np.asarray(mesh.force)[:3] for mesh in found.meshes)
     assert (sun > 0.0).all() and (ring < 0.0).all()
     torques = np.array([*map(np.asarray, found.torques.values())])
     np.testing.assert_allclose(torques.sum(0), 0.0, atol=1e-12 * np.abs(torques).max())

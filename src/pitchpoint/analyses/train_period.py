@@ -1,5 +1,8 @@
 """A gear train over its period: torque of the driving body, forces of every planet in every mesh."""
 
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 import xarray as xr
 
@@ -15,6 +18,9 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 
+if TYPE_CHECKING:
+    from pitchpoint.efficiency.train import Train
+
 __all__ = ["train_period_of"]
 
 
@@ -29,10 +35,17 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
         for acting in built.models
     ]
     first, planets = cycles[0], max(built.copies)
-    forces = np.full((len(cycles), len(built.copies), planets, first.phase.size), np.nan)
+    turns = round(float(train.turns))
+    phase = first.phase + np.arange(turns)[:, None] / turns
+
+    def whole(values: Iterable[Any]) -> np.ndarray:
+        """Values [law node] over all parts of the period, in which planets have each other's places."""
+        return np.tile(np.stack([*values]), turns)
+
+    forces = np.full((len(cycles), len(built.copies), planets, phase.size), np.nan)
     for law, cycle in enumerate(cycles):
-        for stage, mesh in enumerate(cycle.meshes):
-            forces[law, stage, : mesh.force.shape[0]] = mesh.force
+        for stage, count in enumerate(built.copies):
+            forces[law, stage, :count] = _over_period(train, cycle.meshes[stage].force[:count])
     codes = np.stack([cycle.status.code for cycle in cycles])
     solved = codes == Code.SOLVED
     ratios = [power_ratio(cycle.output_power, cycle.input_power) for cycle in cycles]
@@ -40,11 +53,11 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     thrusts, tilting = _axial_loads(built)
     return dataset(
         {
-            "driver_angle": (("node",), first.phase * float(train.period)),
-            "weight": (("node",), first.weight),
-            "input_torque": (("law", "node"), np.where(solved, driven, np.nan)),
-            "efficiency": (("law", "node"), np.stack(ratios)),
-            "loss": (("law", "node"), np.stack([cycle.loss for cycle in cycles])),
+            "driver_angle": (("node",), phase.ravel() * float(train.period)),
+            "weight": (("node",), np.tile(first.weight, turns) / turns),
+            "input_torque": (("law", "node"), whole(np.where(solved, driven, np.nan))),
+            "efficiency": (("law", "node"), whole(ratios)),
+            "loss": (("law", "node"), whole(cycle.loss for cycle in cycles)),
             "contact_force": (("law", "stage", "planet", "node"), forces),
             "body_thrust": (("body",), [*thrusts.values()]),
             "planet_tilting_moment": ((), tilting),
@@ -59,6 +72,12 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
         solve=told_of(codes, np.stack([cycle.status.residual for cycle in cycles])),
         driver_period=float(train.period),
     )
+
+
+def _over_period(train: "Train", forces: np.ndarray) -> np.ndarray:
+    """Forces [planet node] over all parts of the period: in each, planets have those of others before it."""
+    parts, further = round(float(train.turns)), round(float(train.onwards))
+    return np.concatenate([np.roll(forces, -part * further, axis=0) for part in range(parts)], -1)
 
 
 def _axial_loads(built: BuiltTrain) -> tuple[dict[str, float], float]:

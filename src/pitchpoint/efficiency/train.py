@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from math import lcm
+from math import gcd, lcm, pi
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, demand_double, jnp
 from pitchpoint.brief import brief
@@ -17,10 +17,14 @@ from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.period import TOGETHER
 
 __all__ = ["Train", "TrainMesh", "gear_train", "presses_other_flanks"]
 
 Copies = Float[Array, "copy node"]
+
+PLACES = (1, 4, 8, 16, 24)
+"""Places for planets: trains with as many or less have programs in common."""
 
 MOST_PERIODS = 200
 """Periods of a mesh, in the period that a train repeats, up to which its repetition is looked for."""
@@ -31,7 +35,8 @@ class TrainMesh(eqx.Module):
 
     Attributes:
         design: mesh, materials, oil, surfaces.
-        phases: of the copies where the train starts [periods].
+        phases: of the copies where the train starts, of the first one at places without any [periods].
+        count: of the copies, which stand at the first places.
         carried: torque or force on the driven coordinate of the mesh for a unit load of the train, without
             friction, on all copies together.
         bodies, carrier, planet_gear: see `Link`; static.
@@ -40,6 +45,7 @@ class TrainMesh(eqx.Module):
 
     design: Design
     phases: Float[Array, " copy"]
+    count: Float[Array, ""]
     carried: Float[Array, ""]
     bodies: tuple[str, ...] = eqx.field(static=True)
     carrier: str = eqx.field(static=True)
@@ -54,7 +60,17 @@ class TrainMesh(eqx.Module):
     @property
     def copies(self) -> int:
         """How many there are of the mesh."""
+        return int(self.count)
+
+    @property
+    def places(self) -> int:
+        """Places for copies, some without one: so few programs serve all numbers of planets."""
         return int(np.shape(self.phases)[0])
+
+    @property
+    def there(self) -> Bool[Array, " copy"]:
+        """True at the places where a copy is."""
+        return jnp.arange(self.places) < self.count
 
     def arms(self, values: Float[Array, "dof copy node"]) -> dict[str, Copies]:
         """Values for the coordinates of the mesh by body of the train; the carrier has minus their sum.
@@ -78,21 +94,28 @@ class Train(eqx.Module):
             one; their `between` counts these two. A bearing bears what the teeth put on its body: that of a
             planet on its carrier all of it, one in the housing what does not cancel around it, several meshes
             side by side each by itself.
-        angles: at which planets stand about the axis of their carrier [rad].
+        angles: at which planets stand about the axis of their carrier, zero at places without one [rad].
+        turns: times in a period that each planet comes to where another one was: what they do together
+            repeats as often.
+        onwards: how many planets further that other one is, after the first of these parts of the period.
         held: bodies that do not move, beside the housing; static.
         planets: bodies of which there are as many as copies of their meshes; static.
         braked: the two bodies of each place, of which the housing may be one; static.
+        alike: False if planets stand so that none ever comes to where another one was; static.
     """
 
     meshes: tuple[TrainMesh, ...]
     rates: Mapping[str, Float[Array, ""]]
     drag: tuple[Drag, ...]
     angles: Float[Array, " planet"]
+    turns: Float[Array, ""]
+    onwards: Float[Array, ""]
     turned: str = eqx.field(static=True)
     loaded: str = eqx.field(static=True)
     held: tuple[str, ...] = eqx.field(static=True)
     planets: tuple[str, ...] = eqx.field(static=True)
     braked: tuple[tuple[str, str], ...] = eqx.field(static=True)
+    alike: bool = eqx.field(static=True)
 
     def __repr__(self) -> str:
         return brief(self)
@@ -136,21 +159,21 @@ class Train(eqx.Module):
             for design, one in zip(designs, self.meshes, strict=True)
         ]
         backwards = Ends({self.loaded: -float(self.rates[self.loaded])}, self.held, self.turned)
-        phases = [np.asarray(one.phases) for one in self.meshes]
+        phases = [np.asarray(one.phases)[: one.copies] for one in self.meshes]
         return gear_train(
             links,
             designs,
             backwards,
             planets=self.planets,
             phases=phases,
-            angles=np.asarray(self.angles),
+            angles=np.asarray(self.angles)[: max(one.copies for one in self.meshes)],
             drag=self.drag,
             braked=self.braked,
         )
 
     def rows(self) -> list[tuple[str, int]]:
-        """Bodies in equilibrium, planets by their number."""
-        counts = {body: one.copies for one in self.meshes for body in one.bodies}
+        """Bodies in equilibrium, planets by the number of their place."""
+        counts = {body: one.places for one in self.meshes for body in one.bodies}
         return [
             (body, number)
             for body in (self.loaded, *self.free)
@@ -206,7 +229,8 @@ def gear_train(
         meshes.append(
             TrainMesh(
                 design,
-                array(starts),
+                array(_padded(starts, starts[0])),
+                array(float(len(starts))),
                 array(abs(float(design.mesh.loaded @ torque))),
                 link.bodies,
                 link.carrier,
@@ -214,17 +238,81 @@ def gear_train(
                 link.planet_gear,
             )
         )
+    around = np.zeros(1) if angles is None else angles
+    exchange = _exchange(meshes, ideal.rates, around if drag else None)
+    turns, onwards = exchange or (1, 0)
     return Train(
         tuple(meshes),
         {body: array(one) for body, one in ideal.rates.items()},
         tuple(drag),
-        array(np.zeros(1) if angles is None else angles),
+        array(_padded(around, 0.0)),
+        array(float(turns)),
+        array(float(onwards)),
         turned,
         ends.loaded,
         tuple(ends.held),
         tuple(planets),
         tuple(braked),
+        exchange is not None,
     )
+
+
+def _padded(values: Float[np.ndarray, " copy"], rest: float) -> Float[np.ndarray, " place"]:
+    """Values of planets with those of places that are without one."""
+    places = min(size for size in PLACES if size >= len(values))
+    return np.concatenate([values, np.full(places - len(values), rest)])
+
+
+def _exchange(
+    meshes: Sequence[TrainMesh],
+    rates: Mapping[str, float],
+    angles: Float[np.ndarray, " planet"] | None,
+) -> tuple[int, int] | None:
+    """How often in a period planets take each other's places, and which ones; None if they never do.
+
+    Each planet is the first one at another time, by as much as the planet before it is. Meshes of one copy
+    are then as they were.
+    """
+    count = max(one.copies for one in meshes)
+    every = np.arange(float(count))
+    if any(one.copies not in (1, count) for one in meshes):
+        return None
+    if angles is not None and not _together(angles * count / (2.0 * pi), every):
+        return None
+
+    def fits(step: int) -> bool:
+        ahead = every * step / count
+        return all(
+            _together(
+                np.broadcast_to(np.asarray(one.phases)[: one.copies], (count,)),
+                float(one.phases[0]) + _onward(one, rates) * one.periods * ahead,
+            )
+            for one in meshes
+        )
+
+    step = next((step for step in range(count) if fits(step)), None)
+    if step is None:
+        return None
+    several = gcd(step, count)
+    turns = count // several
+    return turns, pow(step // several, -1, turns)
+
+
+def _together(first: Float[np.ndarray, " _"], second: Float[np.ndarray, " _"]) -> bool:
+    """True if phases are the same but for whole periods."""
+    if np.shape(first) != np.shape(second):
+        return False
+    apart = np.subtract(first, second)
+    return bool(np.max(np.abs(apart - np.round(apart))) < TOGETHER)
+
+
+def _onward(mesh: TrainMesh, rates: Mapping[str, float]) -> float:
+    """See `Train.onward`."""
+    own = mesh.design.mesh
+    against = np.array([rates[body] - rates[mesh.carrier] for body in mesh.bodies])
+    driver = np.asarray(own.driver)
+    senses = (driver @ np.asarray(own.motion)) * (driver @ against)
+    return float(own.onward * np.sign(senses))
 
 
 def presses_other_flanks(mesh: Mesh, torque: Float[np.ndarray, " dof"]) -> bool:

@@ -55,7 +55,7 @@ class MeshState(eqx.Module):
         friction: coefficient at each slice.
         sliding_loss, rolling_loss: power lost at each slice [W].
         force, nominal: normal force of each copy, negative on other flanks that losses press, and its size
-            without friction [N].
+            without friction; zero at places without a copy [N].
         input_torque: torque on the driving member of the mesh in its sense of motion, of all copies [N m].
         speed: of that member against the carrier [rad/s].
     """
@@ -95,7 +95,8 @@ class TrainCycle(eqx.Module):
     """One period of a train with the weights that integrate over it.
 
     Attributes:
-        phase: nodes, as parts of the period of the train.
+        phase: nodes, as parts of the period of the train; where planets come to each other's places, they lie
+            in the first part of it that repeats but for that, see `Train.turns`.
         weight: of each node; they sum to one.
         meshes: states of the meshes at the nodes.
         torques: from outside on every body that is not free, by name [N m or N].
@@ -196,7 +197,7 @@ def train_cycle(
     """
     demand_double()
     phase, weight = period_nodes(jnp.concatenate([*_events(train, models)]), nodes)
-    phase, weight = apart(phase, weight).ravel(), weight.ravel()
+    phase, weight = apart(phase, weight).ravel() / train.turns, weight.ravel()
     every = [
         _Meshing(train, one, operation, laws, phase)
         for one, laws in zip(train.meshes, models, strict=True)
@@ -229,12 +230,16 @@ def train_cycle(
 
 
 def _events(train: Train, models: Sequence[Models]) -> Iterator[Float[Array, " event"]]:
-    """Parts of the period of a train at which anything begins or ends in a mesh."""
+    """Parts of what repeats of a train at which anything begins or ends in a mesh.
+
+    What happens to one planet then happens to every other one at the same time in another part.
+    """
     for one, laws in zip(train.meshes, models, strict=True):
         events = events_of(one.design.mesh, laws.sharing)
         turns = jnp.arange(one.periods)[:, None, None]
-        ahead = (events[:, None] - one.phases) * train.onward(one)
-        yield jnp.mod((ahead + turns) / one.periods, 1.0).ravel()
+        phases = one.phases[:1] if train.alike else one.phases
+        ahead = (events[:, None] - phases) * train.onward(one)
+        yield jnp.mod(train.turns * (ahead + turns) / one.periods, 1.0).ravel()
 
 
 class _Meshing:
@@ -252,14 +257,14 @@ class _Meshing:
         self, train: Train, mesh: TrainMesh, operation: Operation, models: Models, phase: Nodes
     ) -> None:
         self.mesh, self.models = mesh, models
-        self.planets = train.planets
+        self.planets, self.there = train.planets, mesh.there[:, None]
         pair, turned = mesh.design.mesh, train.onward(mesh) * mesh.periods * phase
         self.contacts: Contacts = pair.contacts(mesh.phases[:, None] + turned)
         motion = train.motion(mesh)
         speed = jnp.abs(pair.driver @ motion) * operation.speed
         self.driving = pair.driver * jnp.sign(pair.driver @ motion)
         self.operation = Operation(
-            mesh.carried / mesh.copies * operation.load, speed, operation.temperature
+            mesh.carried / mesh.count * operation.load, speed, operation.temperature
         )
         self.share = models.share(mesh.design, self.contacts, self.operation.load)
         arm = jnp.abs(total(self.share * along(self.contacts.normal, pair.loaded)))
@@ -270,16 +275,16 @@ class _Meshing:
         # Beside the pitch point by rounding, a contact does not slide.
         self.sense = jnp.where(jnp.abs(slip) > 1e-13 * jnp.abs(roll), jnp.sign(slip), 0.0)
         self.turn = jnp.sign(roll)
-        self.carrying = self.contacts.active & (self.share > 0.0)
+        self.carrying = self.contacts.active & (self.share > 0.0) & self.there
 
     def carry(self, nominal: Copies) -> None:
         """Take these as the normal forces without friction."""
-        self.nominal = nominal
+        self.nominal = jnp.where(self.there, nominal, 0.0)
         self.unloaded = self.mesh.design.conditions(
             self.contacts,
             self.operation,
             load=jnp.zeros_like(self.share),
-            nominal_load=nominal,
+            nominal_load=jnp.where(self.there, nominal, 1.0),
             rates=self.rates,
         )
 
@@ -304,7 +309,7 @@ class _Meshing:
         """Torques from outside on the coordinates that a unit of normal force on each copy asks for."""
         slip, mu = self.contacts.slip_arm, coefficient * self.sense * self.pressing(force)
         each = zip(self.contacts.normal, slip, strict=True)
-        return jnp.stack([total(self.share * (n + mu * t)) for n, t in each])
+        return jnp.stack([total(self.share * (n + mu * t)) * self.there for n, t in each])
 
     def rolling_torques(self, resistance: Lanes) -> Float[Array, "dof copy node"]:
         """Torques from outside on the coordinates that rolling resistance asks for."""
@@ -427,7 +432,7 @@ def _levers(train: Train, every: Sequence[_Meshing]) -> Float[Array, "2 node bod
         arms = one.of_force(jnp.where(one.carrying, coefficient, 0.0), one.nominal)
         nothing = jnp.zeros(one.nominal.shape)
         each = (arms.get(body, nothing) for body in (train.loaded, *train.free))
-        return jnp.stack([jnp.mean(arm, axis=0) for arm in each])
+        return jnp.stack([jnp.sum(arm, axis=0) / one.mesh.count for arm in each])
 
     normal, whole = (
         jnp.stack([on_bodies(one, coefficient) for one in every], axis=-1)
@@ -455,18 +460,18 @@ def _arms(train: Train, every: Sequence[Mapping[str, Copies]]) -> Arms:
 def _least(arms: Arms, wanted: Float[Array, "node row"]) -> Forces:
     """Parts of the nominal forces of the least sum of squares that give the torques wanted.
 
-    By Lagrange's multipliers, with a second pass that takes off what rounding leaves of the first.
+    By Lagrange's multipliers, one for each row, which takes a fourth of the time of forces and multipliers in
+    one system; a second pass takes off what rounding leaves of the first.
     """
     size = jnp.max(jnp.abs(arms), axis=-1, keepdims=True)
+    absent = size == 0.0  # of a planet that is not there
+    size = jnp.where(absent, 1.0, size)
     arms, wanted = arms / size, wanted / size[..., 0]
-    count, rows = arms.shape[-1], arms.shape[-2]
-    none = jnp.zeros((*arms.shape[:-2], rows, rows))
-    unit = jnp.broadcast_to(jnp.eye(count), (*arms.shape[:-2], count, count))
-    system = jnp.block([[unit, jnp.swapaxes(arms, -1, -2)], [arms, none]])
+    system = jnp.einsum("nrf,nsf->nrs", arms, arms) + jnp.eye(arms.shape[-2]) * absent
 
     def solved(right: Float[Array, "node row"]) -> Forces:
-        whole = jnp.concatenate([jnp.zeros((*right.shape[:-1], count)), right], axis=-1)
-        found: Forces = jnp.linalg.solve(system, whole[..., None])[..., :count, 0]
+        multipliers = jnp.linalg.solve(system, right[..., None])[..., 0]
+        found: Forces = jnp.einsum("nrf,nr->nf", arms, multipliers)
         return found
 
     forces = solved(wanted)
@@ -475,7 +480,7 @@ def _least(arms: Arms, wanted: Float[Array, "node row"]) -> Forces:
 
 def _by_mesh(every: Sequence[_Meshing], forces: Forces) -> list[Copies]:
     """Forces of the copies of each mesh."""
-    ends = np.cumsum([one.mesh.copies for one in every])[:-1]
+    ends = np.cumsum([one.mesh.places for one in every])[:-1]
     split: list[Copies] = jnp.split(forces.T, ends)
     return split
 
@@ -528,12 +533,22 @@ def _places(
         load = drag.preload + _borne(train, every, forces, bodies) * (drag.bearing.name != "none")
         speed = jnp.abs(rate) * operation.speed
         torque = drag.torque(speed=speed, load=load, kinematic_viscosity=viscosity)
+        there = _there(train, every, bodies)
+        torque = torque * there
         torques = {
             body: side * sense * torque for body, side in zip(bodies, drag.between, strict=True)
         }
         lost = jnp.sum(torque, axis=0) * speed * turns
-        places.append(_Place(torques, jnp.mean(load, axis=0), lost))
+        mean = jnp.sum(load * there, axis=0) / jnp.sum(there, axis=0)
+        places.append(_Place(torques, mean, lost))
     return places
+
+
+def _there(train: Train, every: Sequence[_Meshing], bodies: tuple[str, str]) -> Float[Array, "_ 1"]:
+    """One for each planet that a place beside the teeth is at, zero where none stands; or one."""
+    braked = {*bodies} & {*train.planets}
+    of_planet = [one.there for one in every if braked & {*one.mesh.bodies}]
+    return jnp.where(of_planet[0], 1.0, 0.0) if of_planet else jnp.ones((1, 1))
 
 
 def _borne(

@@ -133,8 +133,9 @@ def train_memory(train: Train, models: Sequence[Models]) -> float:
     nodes, lanes = 0, 0
     for one, laws in zip(train.meshes, models, strict=True):
         contacts, phases = eqx.filter_eval_shape(_sizes, one.design.mesh, laws.sharing)
-        nodes += one.periods * one.copies * NODES_OF_TRAINS * phases.size
-        lanes += one.copies * contacts.size
+        own = 1 if train.alike else one.places
+        nodes += one.periods * own * NODES_OF_TRAINS * phases.size
+        lanes += one.places * contacts.size
     return nodes * lanes * OF_A_LANE
 
 
