@@ -13,7 +13,7 @@ from pitchpoint.analyses.running import from_rest
 from pitchpoint.efficiency.running_torque import torques_at_rest
 from pitchpoint.errors import CollectedInputError, InputError
 from pitchpoint.results.by_stage import of_stage, stages_of
-from pitchpoint.runs.run import load_case
+from pitchpoint.runs.run import describe, load_case
 
 SPEED, LOAD = 3000.0 * np.pi / 30.0, 40.0
 TABLES = {
@@ -248,6 +248,69 @@ def test_meshes_of_sets_in_a_row_are_those_of_each_set_by_itself():
     loads = [mesh.case.operation.load for one in again for mesh in one.at_work]
     assert [mesh.case.operation.load for mesh in built.at_work] == pytest.approx(loads, rel=1e-12)
     assert not built.locked
+
+
+FILM = {"solver": "line", "nodes": 65, "phases": 3}
+WORN = {"law": "vdi_2736", "cycles": 1e6, "rate": "1e-9 mm3/(N m)", "profile": "kept"}
+
+
+def test_films_and_wear_of_a_set_are_asked_of_each_mesh():
+    """Over turns of the input, by Willis those of a driver against the carrier; planets wear sun and ring."""
+    row = drive(PAIR, {"gears": SETS[0], "film": FILM, "wear": WORN})
+    by_itself = alone(SETS[0], LOAD, SPEED, film=FILM, wear=WORN)
+    for meshes in (row.meshes[1:], by_itself.meshes):
+        assert [mesh.case.film.solver for mesh in meshes] == ["line"] * 2
+        tables = [mesh.case.wear for mesh in meshes]
+        turns = [1e6 * (1 - 1 / RATIOS[0]), 1e6 * (84 / 30) / RATIOS[0]]
+        assert [table.cycles for table in tables] == pytest.approx(turns, rel=1e-12)
+        assert [table.engagements for table in tables] == [(3.0, 1.0), (1.0, 3.0)]
+    assert row.meshes[0].case.wear is None
+
+
+def test_inputs_of_films_and_wear_of_sets_are_told_once_as_given():
+    """A set in a file of its own has its tables there, one in a row in its stage."""
+    of_drive = {"operation": operation(), **TABLES}
+    row = {"stages": [{"gears": PAIR}, {"gears": SETS[0], "film": FILM, "wear": WORN}], **of_drive}
+    by_itself = {"gears": SETS[0], "film": FILM, "wear": WORN, **of_drive}
+    for tree, table, inside in ((row, "stages", "2.wear."), (by_itself, "wear", "")):
+        (manifest,) = describe(tree)
+        rows = [one for one in manifest["inputs"] if one["table"] == table and one["given"]]
+        told = {one["key"]: one["value"] for one in rows if one["key"].startswith(inside)}
+        cycles = (f"{inside}cycles", 1e6)
+        assert [(key, value) for key, value in told.items() if "cycles" in key] == [cycles]
+        assert told[f"{inside}law"] == "vdi_2736"
+
+
+@pytest.mark.whole
+def test_films_and_wear_of_a_set_in_a_row_are_those_of_the_set_alone():
+    """At the load and speed that it has, driven by a pair."""
+    row = drive(PAIR, {"gears": SETS[0], "film": FILM, "wear": WORN})
+    by_itself = alone(SETS[0], LOAD, SPEED / RATIO_OF_PAIR, film=FILM, wear=WORN)
+    for name in ("film", "wear"):
+        together, apart = (whole_of(built, name) for built in (row, by_itself))
+        bodies = by_itself.stage_bodies
+        assert stages_of(together) == tuple(f"2 ({pair})" for pair in bodies)
+        for number, pair in enumerate(bodies, 1):
+            got, want = of_stage(together, f"2 ({pair})"), of_stage(apart, number)
+            assert {*got.data_vars} == {*want.data_vars}
+            for variable, values in want.data_vars.items():
+                if np.issubdtype(values.dtype, np.floating):
+                    largest = np.max(np.nan_to_num(np.abs(values.values)), initial=0.0)
+                    np.testing.assert_allclose(
+                        got[variable], values, rtol=1e-12, atol=1e-12 * largest
+                    )
+
+
+def whole_of(built, name):
+    """A part of a drive, piece by piece."""
+    (analysis,) = ANALYSES[name].parts(Subject(None, built))
+    pieces = [analysis.compute(built, piece, lambda *_: None) for piece in analysis.pieces(built)]
+    while analysis.onward is not None:
+        further = analysis.onward(built, pieces[-1], lambda *_: None)
+        if further is None:
+            break
+        pieces.append(further)
+    return analysis.joined(built, pieces)
 
 
 def three_k(**more):

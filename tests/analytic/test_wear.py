@@ -66,6 +66,20 @@ def of_pair(name: str = "from_stiffness", cells: int = CELLS) -> tuple[Turn, Cel
     return turn(pair(name), cells)
 
 
+def test_flanks_of_a_gear_are_worn_by_each_of_its_mates():
+    """Three planets wear a sun three times as fast as one; each of them as before."""
+    built = pair()
+    start, grid = begun(built)
+    three = replace(WEAR, mates=array([3.0, 1.0]))
+    given = built.design, built.operation, built.models[0], three
+    found = jax.device_get(one_turn(*given, grid, start, jnp.zeros(grid.shape)))
+    alone = of_pair()[0]
+    for got, want in ((found.depth, alone.depth), (found.volume, alone.volume)):
+        assert got[0] == pytest.approx(3.0 * want[0], rel=1e-14)
+        assert np.array_equal(got[1], want[1])
+    assert found.depth[0].max() > 0.0
+
+
 # ---- closed forms
 
 

@@ -1342,12 +1342,12 @@ _SOURCE_OF = {
 class WearTable(Table):
     """Wear of the flanks at the operating point, over the life of the drive.
 
-    `cycles` are turns of the driver. A `profile` that is "updated" gives worn flanks back to load sharing,
-    pressure and film; one that is "kept" goes on as with new ones. The load on asperities is that of
-    `models.asperity_load`, the "formula", or that of the solved "film". The march ends before at a limit of
-    the depth, of the largest pressure over that at the start, of the thickness that is left of a tooth at
-    its tip, or of the normal backlash that wear adds, and where the pressure reaches the hardness of the
-    softer flank. `severe_by` names what tells that wear is severe.
+    `cycles` are turns of the driver, of the meshes of a train those of its input. A `profile` that is
+    "updated" gives worn flanks back to load sharing, pressure and film; one that is "kept" goes on as with
+    new ones. The load on asperities is that of `models.asperity_load`, the "formula", or that of the solved
+    "film". The march ends before at a limit of the depth, of the largest pressure over that at the start,
+    of the thickness that is left of a tooth at its tip, or of the normal backlash that wear adds, and where
+    the pressure reaches the hardness of the softer flank. `severe_by` names what tells that wear is severe.
     `cells` lie along each flank, `phases` are those between two events of the mesh cycle, and `tolerance` is
     the error of a step over the largest depth. Without `sensitivities` those of the life to all inputs are
     told where they take seconds: not of teeth on a ring that share their load by its stiffness.
@@ -1359,6 +1359,8 @@ class WearTable(Table):
     """Turns of the driver over which flanks wear."""
     coefficient: Annotated[tuple[float, float], Pair(WEAR_COEFFICIENT)] | None = None
     """Wear coefficient K of Archard's law, of dry sliding; 1e-5 unless given."""
+    engagements: Annotated[tuple[float, float], Pair(PLANETS)] | None = None
+    """Mates that wear the flanks in use of each gear alike; of a train the planets on what they mesh with."""
     hardness: Annotated[tuple[float, float], Pair(HARDNESS)] | None = None
     """Hardness H of the flanks; that of the materials unless given."""
     rate: Annotated[tuple[float, float], Pair(WEAR_RATE)] | None = None
@@ -1667,9 +1669,9 @@ class StageTable(Table):
     losses: Losses = Field(default_factory=dict)
     """Losses between two of its own bodies; none unless given."""
     film: FilmTable | None = None
-    """Asks for films solved over the mesh cycle of the stage; none unless given."""
+    """Asks for films solved over the mesh cycle of the stage, of a set of each mesh; none unless given."""
     wear: WearTable | None = None
-    """Asks for wear of the stage, over turns of the shaft that drives it; none unless given."""
+    """Asks for wear of the stage, of a set of each mesh, over turns of what drives it; none unless given."""
     dynamics: Dynamics | None = None
     """Asks for vibration of the stage by itself, speeds being those of its own driver; none unless given."""
     place: Annotated[float, PLACE] = 0.0
@@ -1773,6 +1775,10 @@ class DriveCase(Table):
     """Gears of a planetary set, in the place of the stages and the train that follow from them."""
     stages: Annotated[dict[str, StageTable], BeforeValidator(_stages), _Numbered()]
     """Meshes and planetary sets from the input to the output, each a table [[stages]]; at most 5."""
+    film: FilmTable | None = None
+    """Asks for films solved over the cycle of each mesh of a planetary set; stages have their own."""
+    wear: WearTable | None = None
+    """Asks for wear of each mesh of a planetary set; stages have their own."""
     train: TrainTable | None = None
     """Bodies of a train whose meshes turn together; stages follow each other unless given."""
     materials: DriveMaterials = DriveMaterials()
@@ -1894,7 +1900,7 @@ def _check_train(case: DriveCase) -> None:
                 told = "follows from the train; leave it out"
                 wrong.add(InputError(told, key=f"stages.{number}.{key}"))
         if stage.dynamics is not None:
-            wrong.add(InputError(_OF_SETS["dynamics"], key=f"stages.{number}.dynamics"))
+            wrong.add(InputError(_NO_VIBRATION, key=f"stages.{number}.dynamics"))
         for name in stage.losses:
             told = "losses of a train stand between its bodies; give this one under [losses]"
             wrong.add(InputError(told, key=f"stages.{number}.losses.{name}"))
@@ -1971,6 +1977,11 @@ def _check_passing(stages: Mapping[str, StageTable]) -> None:
                 )
 
 
+_NO_VIBRATION = (
+    "vibration is computed of one mesh, not of sets; leave this out: the stiffness k of the output, by "
+    'load_sharing = "from_stiffness" in [models], and a load of inertia J on it have a natural '
+    "frequency of sqrt(k/J)/2pi while the motor holds its speed"
+)
 _OF_NO_SET = {
     "driver": "is that of a mesh; what drives a planetary set is input, a key of its gears",
     **dict.fromkeys(
@@ -1978,11 +1989,7 @@ _OF_NO_SET = {
         "counts for bearings that teeth of one mesh press; a planetary set stands around the axis of its "
         "shafts: leave it out",
     ),
-    **dict.fromkeys(
-        ("film", "wear", "dynamics"),
-        "is computed of one mesh; a file of this set alone, with the torque and speed that it has here, has "
-        "it: write its meshes as [[stages]] with a [train], each with this table (pitchpoint docs stages)",
-    ),
+    "dynamics": _NO_VIBRATION,
 }
 
 
@@ -2239,8 +2246,8 @@ def validate(document: Document) -> Case | DriveCase:
     if STAGES not in document.tree:
         return validated(Case, document)
     of_set = is_planetary(document.tree)
-    for key, why in ({**_OF_ONE_MESH, **_OF_SETS} if of_set else _OF_ONE_MESH).items():
-        if key in document.tree and not (key == "gears" and of_set):
+    for key, why in (_OF_SETS if of_set else _OF_ONE_MESH).items():
+        if key in document.tree:
             given = document.tree[key]
             why = why if isinstance(given, Mapping) else f"{shown(given)} {why}"
             if key == "gears" and isinstance(given, Mapping) and given:
@@ -2249,18 +2256,15 @@ def validate(document: Document) -> Case | DriveCase:
     return validated(DriveCase, document)
 
 
-_AS_STAGES = (
-    "this is computed of one mesh; write the meshes of the set as [[stages]] with a [train], of which each "
-    "may have a table film or wear (pitchpoint docs stages)"
-)
 _OF_SETS = {
-    "dynamics": (
-        "vibration is computed of one mesh, not of sets; leave this out: the stiffness k of the output, by "
-        'load_sharing = "from_stiffness" in [models], and a load of inertia J on it have a natural '
-        "frequency of sqrt(k/J)/2pi while the motor holds its speed"
+    "dynamics": _NO_VIBRATION,
+    "worn": (
+        "worn flanks belong to one mesh, and a set has several; leave it out, or give one pair of its gears "
+        "a file of its own"
     ),
-    **dict.fromkeys(("film", "wear", "worn"), _AS_STAGES),
 }
+_OF_EACH_MESH = ("film", "wear")
+"""Tables of a planetary set that each of its meshes has."""
 
 
 def is_planetary(tree: Mapping[str, Any]) -> bool:
@@ -2315,13 +2319,10 @@ def with_meshes(document: Document) -> Document:
                 key=key,
             )
     gears = planetary_of(document)
-    stages = {
-        str(number): one for number, one in enumerate(_with_materials(gears.meshes(), document), 1)
-    }
-    return replace(
-        document,
-        tree={**tree, STAGES: stages, "train": _Followed(gears.train())},
-    )
+    of_each = {key: tree[key] for key in _OF_EACH_MESH if key in tree}
+    meshes = _with_materials(gears.meshes(), document)
+    stages = {str(number): {**one, **of_each} for number, one in enumerate(meshes, 1)}
+    return replace(document, tree={**tree, STAGES: stages, "train": _Followed(gears.train())})
 
 
 def _is_sound(materials: Mapping[str, Any]) -> bool:

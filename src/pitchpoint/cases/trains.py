@@ -16,6 +16,7 @@ from pitchpoint.cases.schema import (
     SolidValues,
     StrengthTable,
     TrainTable,
+    WearTable,
 )
 from pitchpoint.cases.solids import BY_VALUE
 from pitchpoint.cases.strength import MESH_LOAD, of_planets
@@ -101,7 +102,12 @@ def turning_together(
             "driver": one.gears.members[driver],
         }
         points.append(one.operation.model_copy(update=changes))
-        turned.append(one.model_copy(update={"strength": _strength(one, link, meshings, train)}))
+        per_turn = float(abs(rates[driver] / found.rates[train.input]))
+        shared = {
+            "strength": _strength(one, link, meshings, train),
+            "wear": _wear(one.wear, link, train, per_turn),
+        }
+        turned.append(one.model_copy(update=shared))
     return turned, points
 
 
@@ -116,6 +122,25 @@ def _strength(
         meets=_both(body != train.planet for body in link.bodies),
         both_ways=_both(meshings[gear] > 1 for gear in link.gears),
     )
+
+
+def _wear(
+    table: WearTable | None, link: Link, train: TrainTable, per_turn: float
+) -> WearTable | None:
+    """The wear of a mesh over turns of its own driver against the carrier, by all planets that it meets.
+
+    Args:
+        table: over turns of the input.
+        link: of the mesh.
+        train: of the case.
+        per_turn: turns of the driver of the mesh for one of the input.
+    """
+    if table is None:
+        return None
+    planets = train.planets if train.planet in link.bodies else 1.0
+    mates = tuple(1.0 if body == train.planet else planets for body in link.bodies)
+    changes = {"cycles": table.cycles * per_turn, "engagements": table.engagements or mates}
+    return table.model_copy(update=changes)
 
 
 def _both(values: Iterable[bool]) -> tuple[bool, bool]:
@@ -243,11 +268,11 @@ def _material(record: SolidRecord) -> str:
 
 
 _WORN = Doubt(
-    "Wear is that of a mesh with one planet: sun and ring meet every planet in a turn and wear as many "
-    "times as fast, and planets wear in all of their meshes.",
+    "One flank of the planets wears in two meshes: its depth is the sum of both, and wear, life and backlash "
+    "of either mesh are those of one alone.",
     moves=GUESSED,
     about=("deepest_wear",),
-    brief="Wear is that by one planet alone.",
+    brief="A flank of the planets wears in two meshes; each is told by itself.",
 )
 _WARMED = Doubt(
     "Teeth are as warm as the loss of one of their meshes makes them; planets and sun have more of them.",
@@ -305,6 +330,20 @@ def _fits(phases: Callable[[int], list[np.ndarray]], count: int) -> bool:
     return True
 
 
+def _worn_twice(case: DriveCase, built: Sequence[Built]) -> bool:
+    """True where one flank of the planets is pressed in two meshes."""
+    train = case.train
+    assert train is not None
+    pressed = Counter(
+        (link.gears[link.bodies.index(train.planet)], getattr(one.case.gears, "flank", ""))
+        for link, one in zip(
+            _links(case, train, [one.design.mesh for one in built]), built, strict=True
+        )
+        if train.planet in link.bodies
+    )
+    return any(count > 1 for count in pressed.values())
+
+
 def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
     """Sentences on what is not in the results of a train.
 
@@ -318,7 +357,7 @@ def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
     borne = [{*loss.between} for loss in losses]
     out_of_place = bool(train.pin_errors) or train.by_tolerance
     alone = case.strength is None or case.strength.mesh_load_factor is None
-    worn = any(one.wear is not None for one in case.stages.values())
+    worn = any(one.wear is not None for one in case.stages.values()) and _worn_twice(case, built)
     warmed = any(one.warming is not None for one in built)
     return (
         *[_WORN] * worn,

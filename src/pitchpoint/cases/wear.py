@@ -220,6 +220,7 @@ def wear_model(
         defect=defect,
         bodies=_conductors(used) if defect is not None and _by_formula(case) else None,
         films=films if table.load_ratio == "film" else None,
+        mates=array(table.engagements or (1.0, 1.0)),
     )
 
 

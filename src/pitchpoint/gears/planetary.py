@@ -533,6 +533,8 @@ def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:
     if table == "train":
         return error.at(key=".".join(filter(None, ("gears", inside))))
     number, _, key = inside.partition(".")
+    if key.startswith(("film", "wear")) and "gear" not in error.message:
+        return error.at(key=key)  # a table that all meshes have alike
     if table == "stages" and number == ("2" if gears.stepped else "3"):
         words = "in the mesh of the second gear of the planets (gear 1) and its ring (gear 2)"
         table, _, inside = key.partition(".")

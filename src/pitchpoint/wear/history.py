@@ -181,6 +181,7 @@ class WearModel(eqx.Module):
         films: how films are solved whose asperities carry the share, in place of the law; static.
         share: part of the load on asperities at each contact, once its film is solved; not a number where it
             was not.
+        mates: by which the flanks of each member are worn alike, of which the mesh has one; one unless given.
     """
 
     law: Callable[..., Array] = eqx.field(static=True)
@@ -190,6 +191,7 @@ class WearModel(eqx.Module):
     bodies: tuple[Conductor, Conductor] | None = None
     films: FilmModel | None = eqx.field(static=True, default=None)
     share: Lanes | None = None
+    mates: Two = eqx.field(default_factory=lambda: array([1.0, 1.0]))
 
     def solved(self, at: Conditions, oil: Lubricant, temperature: Each) -> "WearModel":
         """The same with the load on asperities that films at these contacts have, if they are asked for.
@@ -638,7 +640,7 @@ def wear_of(
     periods = 2.0 * jnp.pi / mesh.period
     lasts = known.weight * mesh.period / at.speed
     slid = jnp.where(carries, at.load * as_array(at.sliding), 0.0) * lasts
-    turns = periods / flanks_in_turn(mesh)
+    turns = wear.mates * periods / flanks_in_turn(mesh)
     gone = jnp.stack([turns[k] * rate * slid for k, rate in enumerate(rates)])
     along = jnp.stack([_spread(at, way, known.weight) for way in ways])
     depths = _laid(cells, at, along, gone)

@@ -28,6 +28,7 @@ from pitchpoint.views.figures import (
     verticals,
 )
 from pitchpoint.views.lines import titled
+from pitchpoint.views.point import named_members
 from pitchpoint.views.screen import head
 from pitchpoint.views.section import (
     Block,
@@ -75,7 +76,7 @@ def wear_blocks(page: Page) -> Iterator[Block]:
 
 
 def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
-    data, name = outcome.parts["wear"], f"wear{position}"
+    data, name = _of_members(outcome), f"wear{position}"
     if data.attrs["end"] == "lost":
         yield Paragraph(_said(data, "were not found"), "warning")
     yield Paragraph(_how(data))
@@ -172,6 +173,17 @@ _OF_MEMBER = (
     "worn_volume",
     "worn_tip_land",
 )
+
+
+def _of_members(outcome: Outcome) -> xr.Dataset:
+    """Wear of the flanks of a mesh, of a train by the bodies that its members are."""
+    data = outcome.parts["wear"]
+    names = dict(zip(outcome.manifest["members"], named_members(outcome), strict=True))
+    own = {
+        "members": json.dumps([names.get(one, one) for one in _members(data)]),
+        "driver": names.get(data.attrs["driver"], data.attrs["driver"]),
+    }
+    return data.assign_attrs(own)
 
 
 def _members(data: xr.Dataset) -> list[str]:
@@ -425,9 +437,9 @@ def _screen(data: xr.Dataset) -> Iterator[Printed]:
 
 def wear_facts(outcome: Outcome) -> Iterable[KeyFigure]:
     """Depth at the end of the march."""
-    return [key_figure(30.0, "Wear depth", _answer(outcome.parts["wear"]), " at most")]
+    return [key_figure(30.0, "Wear depth", _answer(_of_members(outcome)), " at most")]
 
 
 def wear_printed(outcome: Outcome) -> Iterable[Printed]:
     """What the screen shows."""
-    return _screen(outcome.parts["wear"])
+    return _screen(_of_members(outcome))
