@@ -250,6 +250,84 @@ def test_meshes_of_sets_in_a_row_are_those_of_each_set_by_itself():
     assert not built.locked
 
 
+UPPER, LOWER = ("-20 um", "-30 um", "-40 um"), ("-50 um", "-70 um", "-90 um")
+
+
+def thinned(first):
+    """Allowances of two neighbours among sun, planet and ring."""
+    both = slice(first, first + 2)
+    limits = {"upper": UPPER, "lower": LOWER}
+    return {f"{name}_thickness_allowance": [*of[both]] for name, of in limits.items()}
+
+
+def test_allowances_of_a_set_are_those_of_its_meshes():
+    """Backlash at the output by tolerances, of the short form and of two meshes with a train."""
+    whole = {
+        "upper_thickness_allowance": [*UPPER],
+        "lower_thickness_allowance": [*LOWER],
+        "centre_distance_field": "js7",
+    }
+    short = alone(SETS[0] | {"inspection": whole}, LOAD, SPEED)
+    racks = {"fillet_radius": [0.38, 0.2]}, {"fillet_radius": 0.2}
+    pairs = (("sun", "planet"), [24, 30]), (("planet", "ring"), [30, -84])
+    meshes = [
+        {
+            "bodies": [*bodies],
+            "gears": {
+                "teeth": teeth,
+                "inspection": thinned(first) | {"centre_distance_field": "js7"},
+                **racks[first],
+                **WIDTH,
+            },
+        }
+        for first, (bodies, teeth) in enumerate(pairs)
+    ]
+    train = {"input": "sun", "output": "carrier", "held": "ring", "planets": 3}
+    point = {"operation": operation(LOAD, SPEED)}
+    long = load_case({"stages": meshes, "train": train, **point, **TABLES})
+    got, want = (of(one, "reflected")["output_backlash"].values for one in (short, long))
+    assert got == pytest.approx(want, rel=1e-12, abs=1e-15)
+    row = drive(PAIR | {"inspection": thinned(0)}, SETS[0] | {"inspection": whole})
+    with_pair = of(row, "reflected")["output_backlash"].values
+    assert np.all(with_pair[1:] > got[1:]) and np.all(got[1:] > 1e-3)
+    angle = (
+        got[2] * RATIOS[0]
+    )  # by hand: both gears of a mesh thinner by the mean of their allowances
+    thin = np.array([35e-6 + 50e-6, 50e-6 + 65e-6])
+    radius = 24 * 0.5e-3 * np.cos(np.pi / 9)
+    assert angle == pytest.approx(thin.sum() * np.cos(np.pi / 9) / radius, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("gears", "words"),
+    [
+        ({"thickness_field": ["cd25", "cd24"]}, r"thickness_field: .* has 2 values; give those of sun,"),
+        ({"iso_class": [6, 6]}, r"iso_class: the list has 2 values; give those of sun, planet and ring"),
+        ({"upper_thickness_allowance": "0 um"}, r"was given without lower_thickness_allowance"),
+    ],
+)  # fmt: skip
+def test_wrong_allowances_of_a_set_are_told_with_their_key(gears, words):
+    with pytest.raises(InputError, match=rf"gears.inspection.{words}|gears.inspection.*{words}"):
+        alone(SETS[0] | {"inspection": gears}, LOAD, SPEED)
+
+
+def test_allowances_of_second_gears_stand_in_their_table():
+    """A stepped set has those of sun and planets alone beside it; the centre distance is that of all."""
+    limits = thinned(0)
+    second = {"teeth": [24, 78], "face_width": "10 mm", "inspection": {"iso_class": 6} | limits}
+    gears = {**SETS[0], "teeth": [18, 36], "second": second}
+    built = alone(gears | {"inspection": limits | {"centre_distance_field": "js7"}}, LOAD, SPEED)
+    tables = [mesh.case.gears.inspection for mesh in built.meshes]
+    assert [one.centre_distance_field for one in tables] == ["js7"] * 2
+    assert [one.iso_class for one in tables] == [None, (6.0, 6.0)]
+    assert tables[1].lower_thickness_allowance == tables[0].lower_thickness_allowance
+    three = {"thickness_field": ["cd25"] * 3}
+    with pytest.raises(
+        InputError, match=r"inspection.thickness_field: .* has 3 values, and the list"
+    ):
+        alone(gears | {"inspection": three}, LOAD, SPEED)
+
+
 FILM = {"solver": "line", "nodes": 65, "phases": 3}
 WORN = {"law": "vdi_2736", "cycles": 1e6, "rate": "1e-9 mm3/(N m)", "profile": "kept"}
 

@@ -494,6 +494,18 @@ PLANETARY = {
     **{key: BASE[key] for key in ("lubricant", "roughness")},
     "operation": {"torque": "60 N m", "speed": "3000 rpm", "temperature": "60 degC"},
 }
+DRAWN = {
+    **PLANETARY,
+    "gears": {
+        **PLANETARY["gears"],
+        "inspection": {
+            "upper_thickness_allowance": "-20 um",
+            "lower_thickness_allowance": ["-50 um", "-60 um", "-80 um"],
+            "centre_distance_field": "js7",
+            "iso_class": 6,
+        },
+    },
+}
 OF_SET = {
     **PLANETARY,
     "materials": {name: {"young": "206 GPa", "poisson": 0.3} for name in ("sun", "planet", "ring")},
@@ -541,6 +553,7 @@ BASES = {
     "worn": WORN,
     "planetary": PLANETARY,
     "materials of a set": OF_SET,
+    "drawings of a set": DRAWN,
     "3K": THREE_K,
     "train": TRAIN,
 }
@@ -561,6 +574,7 @@ WALKS = [
     ("worn", schema.WornTable, ("worn",)),
     ("planetary", planetary.PlanetaryGears, ("gears",)),
     ("materials of a set", schema.DriveMaterials, ("materials",)),
+    ("drawings of a set", planetary.InspectionOfSet, ("gears", "inspection")),
     ("3K", planetary.SecondGears, ("gears", "second")),
     ("train", schema.TrainTable, ("train",)),
 ]

@@ -382,6 +382,7 @@ OF_SET = {
     "pin_error": (["10 um", "0 um", "0 um"], 'pin_errors = ["10 um", "0 um", "0 um"]'),
     "fixed": ("ring", 'held = "ring"'),
     "z": ([24, 30, 84], "teeth = [24, 30, 84]"),
+    "quality": (6, "inspection = { iso_class = 6 }"),
 }
 
 
@@ -402,7 +403,7 @@ def test_teeth_of_a_set_each_by_itself_make_one_list():
     assert refused(SET | {"gears": rest}).endswith("is missing; write a list such as [24, 30, 84]")
 
 
-@pytest.mark.parametrize("name", ["backlash", "inspection", "deviations"])
+@pytest.mark.parametrize("name", ["backlash", "deviations"])
 def test_what_a_set_does_not_have_its_meshes_as_stages_have(name):
     value = "60 um" if name == "backlash" else {"iso_class": 6}
     assert "write its meshes as [[stages]] with a [train]" in refused(

@@ -620,16 +620,22 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
                 *("normal_backlash", "j_bn", "j_n"),
             ),
             (),
-            f"a set has no backlash by value; {_AS_STAGES} the same backlash",
+            "a set has no backlash by value; thickness allowances in [gears.inspection] are those of its "
+            f"gears, or {_AS_STAGES} the same backlash",
         ),
         Wish(
             (
-                *("inspection", "deviations", "quality", "accuracy", "accuracy_grade"),
-                *("iso_quality", "din_quality", "agma_quality", "iso_class", "modifications"),
+                *("quality", "accuracy", "accuracy_grade"),
+                *("iso_quality", "din_quality", "agma_quality", "iso_class"),
             ),
+            ("inspection",),
+            "the class of ISO 1328-1 is a key of its table [gears.inspection]",
+            _by_class,
+        ),
+        Wish(
+            ("deviations", "modifications"),
             (),
-            f"a set has no drawing dimensions, deviations or modified flanks; {_AS_STAGES} tables "
-            "inspection, deviations or modifications",
+            f"a set has no deviations or modified flanks; {_AS_STAGES} tables deviations or modifications",
         ),
     ),
     "gears.inspection": (

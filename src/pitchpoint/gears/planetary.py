@@ -7,21 +7,26 @@ from functools import partial
 from math import cos, isfinite, pi
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import ConfigDict, Field, GetJsonSchemaHandler, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical import iso_286
 from pitchpoint.gears.cylindrical.inspection import (
     Toothing,
     distance_without_backlash,
     profile_shift_sum,
 )
 from pitchpoint.gears.cylindrical.table import (
+    ALLOWANCE,
     CUTTER_TEETH,
     FROM_CENTRE_DISTANCE,
     LEAST_TIP,
     TIP,
+    TOLERANCE_CLASS,
+    Inspection,
+    read_field,
 )
 from pitchpoint.gears.table import (
     ANGLE,
@@ -36,7 +41,7 @@ from pitchpoint.gears.table import (
     WIDTH,
     Load,
 )
-from pitchpoint.input.quantities import Pair, Quantity, SIValue, count_of, shown
+from pitchpoint.input.quantities import Pair, Quantity, SIValue, count_of, named, shown
 from pitchpoint.input.tables import Table
 
 __all__ = [
@@ -182,6 +187,62 @@ class OfPlanetAndRing(Pair):
         )
 
 
+def _fields_of_each(value: Any) -> tuple[str, ...]:
+    """Fields of sun, planet and ring, of sun and planet, or one for all."""
+    every = list(value) if isinstance(value, list | tuple) else [value] * 3
+    if len(every) not in (2, 3):
+        raise InputError(
+            f"{shown(value)} has {count_of(every)}; give those of sun, planet and ring, or one for all"
+        )
+    return tuple(map(read_field, every))
+
+
+def _spelt(value: Any) -> Any:
+    """A value of a table as a file has it."""
+    if isinstance(value, tuple):
+        return [*map(_spelt, value)]
+    return value if isinstance(value, str) else SIValue(value)
+
+
+class InspectionOfSet(Table):
+    """What the drawing of each gear of a set says of its teeth, as the table of the same name of a pair does.
+
+    Lists are of sun, planet and ring, or of sun and planet of a stepped set; second gears have a table
+    of their own. The gears that are computed stay the nominal ones.
+    """
+
+    upper_thickness_allowance: Annotated[TwoOrThree, OfThree(ALLOWANCE, stepped=True)] | None = None
+    """Upper allowances of the normal tooth thickness; needed with the lower ones."""
+    lower_thickness_allowance: Annotated[TwoOrThree, OfThree(ALLOWANCE, stepped=True)] | None = None
+    """Lower allowances of the normal tooth thickness; needed with the upper ones."""
+    thickness_field: Annotated[tuple[str, ...], BeforeValidator(_fields_of_each)] | None = None
+    """Fields of the tooth thickness by DIN 3967, in place of allowances."""
+    centre_distance_deviation: Annotated[float, DEVIATION] | None = None
+    """Deviation of the centre distance to either side; none unless given."""
+    centre_distance_field: (
+        Annotated[
+            str, BeforeValidator(named(lambda: iso_286.FIELDS, "symmetrical tolerance field"))
+        ]
+        | None
+    ) = None
+    """Tolerance field of the centre distance by ISO 286, in place of a deviation."""
+    iso_class: Annotated[TwoOrThree, OfThree(TOLERANCE_CLASS, stepped=True)] | None = None
+    """Class of the tolerances by ISO 1328-1; none unless given."""
+
+    def of_pair(self, first: int) -> Tree:
+        """Table of two neighbours among sun, planet and ring, of which this is the first."""
+        each = {key: value for key, value in self if value is not None}
+        return {
+            key: _spelt(value[first : first + 2] if isinstance(value, tuple) else value)
+            for key, value in each.items()
+        }
+
+    @property
+    def of_distance(self) -> Tree:
+        """What it says of the centre distance, which all meshes have."""
+        return {key: value for key, value in self.of_pair(0).items() if key.startswith("centre")}
+
+
 class SecondGears(Table):
     """A second gear on every planet, and the ring that it meshes with: of a stepped set, or a 3K (Wolfrom).
 
@@ -201,6 +262,8 @@ class SecondGears(Table):
     """Profile shift coefficients of both; that of the ring as follows unless given."""
     tip_alteration: Annotated[tuple[float, float], OfPlanetAndRing(TIP)] | None = None
     """Tip alteration coefficients; those that keep the tip clearance unless given."""
+    inspection: Inspection | None = None
+    """Allowances, tolerances and measuring dimensions of both; none unless given."""
 
 
 def _is_two(value: Any) -> bool:
@@ -261,6 +324,8 @@ class PlanetaryGears(Table):
     """Tip thickness that shortening keeps, in modules; helical 0.25, spur 0, unless given."""
     centre_distance: Annotated[float, DISTANCE] | None = None
     """Centre distance of both meshes; that of sun and planet without backlash unless given."""
+    inspection: InspectionOfSet | None = None
+    """Allowances and tolerances of the drawings of the gears; none unless given."""
     second: SecondGears | None = None
     """Second gears of the planets and their ring, for a stepped set or a 3K; none unless given."""
     input: Body = "sun"
@@ -294,8 +359,12 @@ class PlanetaryGears(Table):
             or not _is_two(table.get("teeth"))
         ):
             return table
-        for key in _WITHOUT_RING[1:]:
-            value = table.get(key)
+        of_drawing = table.get("inspection")
+        inside = of_drawing if isinstance(of_drawing, Mapping) else {}
+        each = {key: table.get(key) for key in _WITHOUT_RING[1:]}
+        for key, value in (
+            each | {f"inspection.{key}": one for key, one in inside.items()}
+        ).items():
             if isinstance(value, list | tuple) and len(value) == 3:
                 raise InputError(
                     f"{shown(value)} has 3 values, and {shown(table['teeth'])} are teeth of sun and planet; "
@@ -339,6 +408,12 @@ class PlanetaryGears(Table):
                 rest = of_two if key == "teeth" else "one for all"
                 raise InputError(
                     f"the list has 2 values; give those of sun, planet and ring, or {rest}", key=key
+                )
+        for key, values in self.inspection or ():
+            if isinstance(values, tuple) and len(values) == 2:
+                raise InputError(
+                    "the list has 2 values; give those of sun, planet and ring, or one for all",
+                    key=f"inspection.{key}",
                 )
 
     def _checked(self, given: set[str]) -> "PlanetaryGears":
@@ -473,13 +548,18 @@ class PlanetaryGears(Table):
         planet, ring = second.teeth
         of_set = self._pair(1, [planet, -ring])
         of_first = () if self.stepped else ("cutter_teeth", "cutter_profile_shift")
-        own_keys = ("tip_alteration", *of_first)
+        own_keys = ("tip_alteration", "inspection", *of_first)
         pair = {key: value for key, value in of_set.items() if key not in own_keys}
+        inspection = self.inspection.of_distance if self.inspection else {}
+        if second.inspection is not None:
+            given = second.inspection
+            inspection |= {key: _spelt(getattr(given, key)) for key in given.model_fields_set}
         own = {"profile_shift": second.profile_shift, "tip_alteration": second.tip_alteration}
         return {
             **pair,
             "module": SIValue(second.module or self.module),
             "face_width": SIValue(min(second.face_width)),
+            **({"inspection": inspection} if inspection else {}),
             **{key: [*map(SIValue, values)] for key, values in own.items() if values is not None},
         }
 
@@ -503,6 +583,8 @@ class PlanetaryGears(Table):
         for name in (*_OF_ALL, *of_ring):
             if (value := getattr(self, name)) is not None:
                 found[name] = SIValue(value)
+        if self.inspection is not None:
+            found["inspection"] = self.inspection.of_pair(first)
         if self.centre_distance is not None or first:
             found["centre_distance"] = SIValue(self.distance)
         return found

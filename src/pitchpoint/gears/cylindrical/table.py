@@ -170,7 +170,7 @@ Limits = tuple[float, float]
 _FIELD = named(lambda: din_3967.FIELDS, "tolerance field of the tooth thickness")
 
 
-def _field(value: Any) -> str:
+def read_field(value: Any) -> str:
     """A field of DIN 3967, also with its numbers first, as drawings have it."""
     text = value.strip() if isinstance(value, str) else value
     numbers = text[:2] if isinstance(text, str) and text[:2].isdigit() else ""
@@ -191,7 +191,7 @@ class Inspection(Table):
     """Upper allowance of the normal tooth thickness; needed with the lower one."""
     lower_thickness_allowance: Annotated[tuple[float, float], Pair(ALLOWANCE)] | None = None
     """Lower allowance of the normal tooth thickness; needed with the upper one."""
-    thickness_field: Annotated[tuple[str, str], BeforeValidator(for_both(_field))] | None = None
+    thickness_field: Annotated[tuple[str, str], BeforeValidator(for_both(read_field))] | None = None
     """Fields of the tooth thickness by DIN 3967, one or a list of two, in place of allowances."""
     centre_distance_deviation: Annotated[float, DEVIATION] | None = None
     """Deviation of the centre distance to either side; none unless given."""
