@@ -149,3 +149,40 @@ def test_deviations_of_teeth_load_planets_as_the_meshes_of_both_sides_have_it():
             total / lever, path, alike.of_sun(8e-6, 0.7, angles), angles, floating=True
         )
         np.testing.assert_allclose(free, total / lever / count, rtol=1e-8)
+
+
+def test_planets_of_two_gears_bear_by_the_deviations_of_each():
+    """Gears of other base radii, thicknesses and offsets in both meshes, and pins that lie outwards."""
+    random = np.random.default_rng(5)
+    sun, ring, stiff_sun, stiff_ring = np.radians(22.0), np.radians(18.5), 4e8, 6e8
+    step, count, total = 24 / 36, 4, 9e4
+    lever = np.array([step, 1.0]) / (step * np.cos(sun) + np.cos(ring))
+    path = path_stiffness(levers=lever.tolist(), stiffnesses=(stiff_sun, stiff_ring))
+    alike = PinEquivalents(sun, ring, np.radians(20.0), step=step)
+    angles = equal_angles(count)
+    thick = random.normal(0.0, 5e-6, (2, count))
+    phases = random.uniform(0.0, 6.0, (2, count))
+    central = {"off_sun": (8e-6, 0.7), "off_ring": (6e-6, 2.9)}
+    at_sun, at_ring = (
+        closings(angles, sun, ring, thicker=thick[k], off_planet=(5e-6, phases[k]), **central)[k]
+        for k in range(2)
+    )
+    # Unknown: turn of the sun and of each planet [m at the base circle of its gear at the sun].
+    system, right = np.zeros((count + 1, count + 1)), np.zeros(count + 1)
+    for n in range(count):
+        system[n, 0], system[n, n + 1] = stiff_sun, stiff_sun + step**2 * stiff_ring
+        right[n] = step * stiff_ring * at_ring[n] - stiff_sun * at_sun[n]
+    system[count] = stiff_sun
+    system[count, 0] *= count
+    right[count] = total - stiff_sun * at_sun.sum()
+    turns = np.linalg.solve(system, right)
+    at_teeth = stiff_sun * (turns[0] + turns[1:] + at_sun)
+    assert at_teeth.min() > 0.0
+    errors = (
+        alike.of_thickness(*thick)
+        + alike.of_planet(5e-6, *phases)
+        + alike.of_sun(*central["off_sun"], angles)
+        + alike.of_ring(*central["off_ring"], angles)
+    )
+    pins = planet_forces(total / lever[0], path, errors, angles)
+    np.testing.assert_allclose(pins * lever[0], at_teeth, rtol=1e-9)

@@ -97,7 +97,7 @@ def _drawn_errors(
     """Sets by tolerance, each in a position of its gears: deviations as places of pins on their circle [m].
 
     Pins lie anywhere in their circles and thicknesses in their field alike, gears are off their axes by half
-    of their runout at any phase.
+    of their runout at any phase; both gears of stepped planets by themselves.
     """
     random = np.random.default_rng(0)
     size = (SAMPLES, angles.size)
@@ -106,16 +106,21 @@ def _drawn_errors(
         return np.asarray(random.uniform(0.0, 2.0 * np.pi, size=shape))
 
     far = (table.pin_tolerance or 0.0) / 2.0 * np.sqrt(random.uniform(size=size))
-    drawn: np.ndarray = far * np.cos(phases(size))
+    along = phases(size)
     alike = _equivalents(built)
     if alike is None:
-        return drawn
+        return np.asarray(far * np.cos(along))
+    drawn: np.ndarray = alike.of_planet(far, along + np.pi / 2.0)
+    stepped = _planet_gears(built) > 1
+
+    def thicker() -> np.ndarray:
+        return np.asarray(table.thickness_tolerance * random.uniform(-0.5, 0.5, size=size))
+
     if table.thickness_tolerance:
-        drawn += alike.of_thickness(
-            table.thickness_tolerance * random.uniform(-0.5, 0.5, size=size)
-        )
+        drawn += alike.of_thickness(thicker(), thicker() if stepped else None)
     if table.planet_runout:
-        drawn += alike.of_planet(table.planet_runout / 2.0, phases(size))
+        off = table.planet_runout / 2.0
+        drawn += alike.of_planet(off, phases(size), phases(size) if stepped else None)
     if table.central_runout:
         off, one = table.central_runout / 2.0, (SAMPLES, 1)
         drawn += alike.of_sun(off, phases(one), angles) + alike.of_ring(off, phases(one), angles)
@@ -123,17 +128,19 @@ def _drawn_errors(
 
 
 def _equivalents(built: BuiltTrain) -> PinEquivalents | None:
-    """How deviations of teeth load planets of one gear between a sun and a ring; None for others."""
+    """How deviations of teeth load planets between a sun and a ring; None for others."""
     meshes: list[Any] = [one.link.mesh for one in built.design.meshes if one.carrier != HOUSING]
     meshes.sort(key=lambda mesh: bool(mesh.internal))
-    if [bool(mesh.internal) for mesh in meshes] != [False, True] or _planet_gears(built) > 1:
+    if [bool(mesh.internal) for mesh in meshes] != [False, True]:
         return None
     sun, ring = (
         float(np.arccos(np.abs(np.sum(mesh.base_radii)) / float(mesh.centre_distance)))
         for mesh in meshes
     )
     normal, helix = float(meshes[0].pressure_angle), float(meshes[0].helix_angle)
-    return PinEquivalents(sun, ring, normal, float(np.arcsin(np.sin(helix) * np.cos(normal))))
+    base_helix = float(np.arcsin(np.sin(helix) * np.cos(normal)))
+    (_, at_sun), (at_ring, _) = (np.abs(np.asarray(mesh.base_radii)) for mesh in meshes)
+    return PinEquivalents(sun, ring, normal, base_helix, float(at_ring / at_sun))
 
 
 def sharing_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
@@ -173,23 +180,23 @@ def _sharing_of_set(built: BuiltTrain) -> xr.Dataset:
             **({} if drawn is None else {"percentile": [*PERCENTILES]}),
         },
         title="sharing of planets",
-        warnings=[*_lifted(sharing.forces), *_stepped(built)],
+        warnings=[*_lifted(sharing.forces), *_between_suns(built)],
         floating=table.floating,
         rigid_pins=int(table.pin_stiffness is None),
     )
 
 
-def _stepped(built: BuiltTrain) -> list[Doubt]:
-    """Planets of two gears, on which errors along the radius act too."""
+def _between_suns(built: BuiltTrain) -> list[Doubt]:
+    """Planets that are not between a sun and a ring, on which errors along the radius act too."""
     if _equivalents(built) is not None:
         return []
     return [
         Doubt(
-            "Errors of pins along the radius, runout and thickness of teeth are left out; on stepped planets "
-            "they load them unlike too.",
+            "Errors of pins along the radius, runout and thickness of teeth are left out; planets that are "
+            "not between a sun and a ring bear unlike by them too.",
             moves=GUESSED,
             about=("planet_load_factor",),
-            brief="Only pins along their circle load stepped planets unlike here.",
+            brief="Only pins along their circle load these planets unlike here.",
         )
     ]
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, sin
+from math import cos
 from typing import Any
 
 import numpy as np
@@ -54,15 +54,17 @@ def path_stiffness(
 
 @dataclass(frozen=True)
 class PinEquivalents:
-    """Deviations of the teeth of a simple set, each as the way by which a pin ahead loads its planet alike.
+    """Deviations of the teeth of a set, each as the way by which a pin ahead loads its planet alike.
 
-    A pin that is ahead by e opens the two meshes of its planet by e (cos α_s + cos α_r) cos β_b along the
-    normals together, and the planet turns until both carry.
+    A pin that is ahead by e opens the meshes of its planet by e cos α_s and e cos α_r along the transverse
+    normals, and the planet turns until both carry. What opens one of them alone counts by its force for a
+    unit on the pin, r/(r cos α_s + cos α_r) with the sun and 1/(r cos α_s + cos α_r) with the ring.
 
     Attributes:
         sun, ring: transverse working pressure angles of both meshes [rad].
         pressure_angle: normal pressure angle [rad].
         base_helix: helix angle on the base cylinders [rad].
+        step: base radius r of the gear of the planets in the ring over that of their gear at the sun.
 
     Source: closings of the meshes after Lin and Parker (1999), with the planet's turn eliminated.
 
@@ -79,30 +81,49 @@ class PinEquivalents:
     ring: float
     pressure_angle: float
     base_helix: float = 0.0
+    step: float = 1.0
 
     @property
-    def _opening(self) -> float:
-        return cos(self.sun) + cos(self.ring)
+    def _at_sun(self) -> float:
+        """Normal force between sun and planet for a unit on the pin along its circle."""
+        return self.step * self._at_ring
 
-    def of_thickness(self, thicker: Numbers) -> Numbers:
+    @property
+    def _at_ring(self) -> float:
+        """Normal force between planet and ring for a unit on the pin along its circle."""
+        return 1.0 / (self.step * cos(self.sun) + cos(self.ring))
+
+    def of_thickness(self, thicker: Numbers, second: Numbers = None) -> Numbers:
         """Of a planet whose teeth are thicker on the normal reference circle [m].
 
         Both flanks are ahead by half of it, along the normal by cos α_n of that.
-        """
-        return -thicker * cos(self.pressure_angle) / (self._opening * cos(self.base_helix))
 
-    def of_planet(self, offset: Numbers, phase: Numbers) -> Numbers:
-        """Of the teeth of a planet, off its pin by the offset [m] at the phase from outwards [rad]."""
-        radial = (sin(self.sun) - sin(self.ring)) / self._opening
-        return offset * (np.sin(phase) + radial * np.cos(phase))
+        Args:
+            thicker: of the gear in mesh with the sun.
+            second: of the gear in the ring; it is the same one unless given.
+        """
+        both = self._at_sun * thicker + self._at_ring * (thicker if second is None else second)
+        return -0.5 * both * cos(self.pressure_angle) / cos(self.base_helix)
+
+    def of_planet(self, offset: Numbers, phase: Numbers, second: Numbers = None) -> Numbers:
+        """Of the teeth of a planet, off its pin by the offset [m] at the phase from outwards [rad].
+
+        Args:
+            offset: of either gear.
+            phase: of the gear in mesh with the sun.
+            second: phase of the gear in the ring; it is the same one unless given.
+        """
+        behind = phase if second is None else second
+        at_sun = self._at_sun * np.sin(phase + self.sun)
+        return offset * (at_sun + self._at_ring * np.sin(behind - self.ring))
 
     def of_sun(self, offset: Numbers, phase: Numbers, angles: Numbers) -> Numbers:
         """Of a sun, off the axis by the offset [m] at the phase, for planets at the angles [rad]."""
-        return -offset * np.sin(phase - angles + self.sun) / self._opening
+        return -offset * np.sin(phase - angles + self.sun) * self._at_sun
 
     def of_ring(self, offset: Numbers, phase: Numbers, angles: Numbers) -> Numbers:
         """Of a ring, see `of_sun`."""
-        return -offset * np.sin(phase - angles - self.ring) / self._opening
+        return -offset * np.sin(phase - angles - self.ring) * self._at_ring
 
 
 def planet_forces(
