@@ -156,6 +156,8 @@ def of_stage_by_bodies(outcome: Outcome, text: str) -> str:
 
 
 def _in_bodies(record: Mapping[str, Any], text: str) -> str:
+    if not record.get("bodies"):
+        return text
     for member, body in zip(map(str, record["members"]), _by_bodies(record), strict=True):
         if member != body:
             named = show.the(body)

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from pitchpoint import units
 from pitchpoint.registry import enumerated
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -133,43 +132,32 @@ def reflected_printed(outcome: Outcome) -> Iterator[Printed]:
     yield Printed(rows=[dict(zip(_heads(data), row, strict=True)) for row in _rows(data)])
 
 
-_INERTIAS = ("body_inertia", "reflected_part", "reflected_inertia")
-
-
-def _inertias(data: xr.Dataset) -> tuple[str, float]:
-    """Unit of all inertias of the table, and what one of the usual unit is in it."""
-    usual = show.described("body_inertia").display
-    values = [
-        v for name in _INERTIAS for v in show.displayed(show.described(name), data[name]).flat
-    ]
-    _, unit = show.handy([v for v in values if np.isfinite(v)], usual)
-    return unit, units.convert(1.0, unit, "moment of inertia") / units.convert(
-        1.0, usual, "moment of inertia"
-    )
+def _columns(data: xr.Dataset) -> list[tuple[str, list[str]]]:
+    """Heads and cells of the columns of inertia, the drive last; each in a unit without powers of ten."""
+    ends = [f"at the {end}" for end in data["end"].values]
+    titles = ["inertia J", *ends]
+    parts = [data["body_inertia"].values, *data["reflected_part"].values]
+    drives = [None, *data["reflected_inertia"].values.tolist()]
+    columns = []
+    for title, part, drive in zip(titles, parts, drives, strict=True):
+        unit, cells = show.quantities(
+            "body_inertia", [*part.tolist(), *([] if drive is None else [drive])]
+        )
+        told = [cell if cell != "undefined" else "–" for cell in cells]
+        columns.append((f"{title} [{unit}]", told if drive is not None else [*told, ""]))
+    return columns
 
 
 def _heads(data: xr.Dataset) -> list[str]:
-    unit = show.unit(_inertias(data)[0])
-    ends = [f"at the {end} [{unit}]" for end in data["end"].values]
-    return ["body", f"mass m [{show.unit_of('body_mass')}]", f"inertia J [{unit}]", *ends]
+    return ["body", f"mass m [{show.unit_of('body_mass')}]", *(head for head, _ in _columns(data))]
 
 
 def _rows(data: xr.Dataset) -> list[Row]:
-    _, times = _inertias(data)
-    columns = data["body_mass"], data["body_inertia"], data["reflected_part"].T
-    each = zip(*(column.values for column in columns), strict=True)
-    rows = [
-        (
-            str(name),
-            _cell("body_mass", float(mass)),
-            _cell("body_inertia", times * float(inertia)),
-            *(_cell("reflected_part", times * float(part)) for part in parts),
-        )
-        for name, (mass, inertia, parts) in zip(data["body"].values, each, strict=True)
-    ]
-    whole = [_cell("reflected_inertia", times * float(v)) for v in data["reflected_inertia"].values]
     without = f", without {_carriers(data)}" if _carriers(data) else ""
-    return [*rows, (f"drive{without}", _cell("drive_mass", float(data["drive_mass"])), "", *whole)]
+    bodies = [*map(str, data["body"].values), f"drive{without}"]
+    masses = [*data["body_mass"].values.tolist(), float(data["drive_mass"])]
+    told = [_cell("body_mass", mass) for mass in masses]
+    return [*zip(bodies, told, *(cells for _, cells in _columns(data)), strict=True)]
 
 
 def _cell(name: str, value: float) -> str:
