@@ -308,11 +308,8 @@ def _together(first: Float[np.ndarray, " _"], second: Float[np.ndarray, " _"]) -
 
 def _onward(mesh: TrainMesh, rates: Mapping[str, float]) -> float:
     """See `Train.onward`."""
-    own = mesh.design.mesh
     against = np.array([rates[body] - rates[mesh.carrier] for body in mesh.bodies])
-    driver = np.asarray(own.driver)
-    senses = (driver @ np.asarray(own.motion)) * (driver @ against)
-    return float(own.onward * np.sign(senses))
+    return float(np.sign(np.asarray(mesh.design.mesh.passing) @ against))
 
 
 def presses_other_flanks(mesh: Mesh, torque: Float[np.ndarray, " dof"]) -> bool:

@@ -19,12 +19,13 @@ from pitchpoint.views import show
 from pitchpoint.views.figures import laws
 from pitchpoint.views.inputs import number
 from pitchpoint.views.inputs import words as input_words
-from pitchpoint.views.point import by_members, figures_by_members, ratio_words, speed_ratio
+from pitchpoint.views.point import by_members, ratio_words, speed_ratio
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import (
     OF_MESHES,
     KeyFigure,
     Page,
+    figures_by_members,
     key_figures,
     said,
     stages_together,

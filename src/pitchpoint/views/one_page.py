@@ -14,7 +14,6 @@ from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
 from pitchpoint.views.inputs import input_rows
 from pitchpoint.views.point import (
-    figures_by_members,
     named_members,
     of_stage_by_bodies,
     ratio_words,
@@ -24,6 +23,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Table,
+    figures_by_members,
     key_figures,
     made_of,
     stages_together,

@@ -1,8 +1,8 @@
 """Where a result was run, and the period of its mesh."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
@@ -13,14 +13,12 @@ from pitchpoint.results.variable import angle, length
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.inputs import given, number
-from pitchpoint.views.section import KeyFigure
 
 __all__ = [
     "OperatingPoint",
     "Period",
     "by_bodies",
     "by_members",
-    "figures_by_members",
     "member_names",
     "named_members",
     "of_geometry",
@@ -165,18 +163,6 @@ def _in_bodies(record: Mapping[str, Any], text: str) -> str:
             text = re.sub(rf"\b{member}\b", named, text)
             text = re.sub(rf"\b{member.capitalize()}\b", show.sentence(named, False), text)
     return text
-
-
-def figures_by_members(outcome: Outcome, figures: Iterable[KeyFigure]) -> list[KeyFigure]:
-    """Key figures whose names and details name members, see `by_members`."""
-    return [
-        replace(
-            figure,
-            name=by_members(outcome, figure.name),
-            detail=by_members(outcome, figure.detail),
-        )
-        for figure in figures
-    ]
 
 
 def _central(bodies: Sequence[str]) -> str:

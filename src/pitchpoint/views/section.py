@@ -14,7 +14,7 @@ from pitchpoint.results.by_stage import Label, of_stage, stages_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import Curves, Panel, curves
-from pitchpoint.views.point import by_bodies
+from pitchpoint.views.point import by_bodies, by_members
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,6 +36,7 @@ __all__ = [
     "Variants",
     "by_mesh",
     "by_variant",
+    "figures_by_members",
     "key_figure",
     "key_figures",
     "made_of",
@@ -697,6 +698,18 @@ def _as_asked(figure: KeyFigure, keys: Sequence[str]) -> KeyFigure:
     asked = any(f".{part}" in key for key in keys for part in figure.asked_by)
     order = _ASKED + 1e-3 * figure.order
     return replace(figure, order=order) if asked and figure.order > order else figure
+
+
+def figures_by_members(outcome: Outcome, figures: Iterable[KeyFigure]) -> list[KeyFigure]:
+    """Key figures whose names and details name members, see `by_members`."""
+    return [
+        replace(
+            figure,
+            name=by_members(outcome, figure.name),
+            detail=by_members(outcome, figure.detail),
+        )
+        for figure in figures
+    ]
 
 
 def stages_together(figures: "Iterable[KeyFigure]") -> list[KeyFigure]:

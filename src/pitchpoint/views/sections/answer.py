@@ -29,7 +29,6 @@ from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
 from pitchpoint.views.point import (
     by_members,
-    figures_by_members,
     of_stage_by_bodies,
     operating_point,
     speed_ratio,
@@ -44,6 +43,7 @@ from pitchpoint.views.section import (
     Page,
     Printed,
     Section,
+    figures_by_members,
     key_figure,
     key_figures,
     made_of,
