@@ -192,6 +192,8 @@ def properties(mesh):
         "driver": mesh.driver,
         "loaded": mesh.loaded,
         "period": mesh.period,
+        "onward": mesh.onward,
+        "axes": jnp.stack([one.axis for one in mesh.coordinates]),
         "contact_ratio": mesh.contact_ratio,
     }
 
@@ -598,6 +600,30 @@ def test_contact_moves_along_each_flank_as_it_rolls(family):
         )
         signs = np.sign(moved[active] * speed)
         assert np.all(signs == signs[0]), "the sense changes on the way"
+
+
+def test_flanks_bend_by_the_angle_that_their_normals_turn(family):
+    """Curvatures against arc lengths, which takes no curves: of spur teeth and discs, in their one plane."""
+    mesh, step = family.mesh, 1e-5
+    at = jax.tree.map(np.asarray, contacts_of(mesh, jnp.asarray(INSIDE)))
+    places = eqx.filter_eval_shape(lambda one: one.coordinates, mesh)
+    upright = [not one.turns or axis[2] for one, axis in zip(places, family.told.axes, strict=True)]
+    if not (touching(mesh) and all(upright)) or np.any(at.direction[2]):
+        pytest.skip("normals turn in space, or flanks are bent")
+    before, after = (
+        jax.tree.map(np.asarray, contacts_of(mesh, jnp.asarray(INSIDE + move)))
+        for move in (-step, step)
+    )
+    active = before.active & at.active & after.active
+    turned = np.cross(before.direction, after.direction, axis=0)[2] / (2.0 * step)
+    moved = (after.flank - before.flank) / (2.0 * step)
+    rates = family.told.motion * family.told.period * family.told.onward
+    for one, rate in zip(places, rates, strict=True):
+        if one.turns or rate:  # not the way along which a load presses
+            bent = at.curvature[one.member, 0] * moved[one.member]
+            own = turned - rate * one.turns
+            near = {"rtol": 1e-8, "atol": 1e-9 * np.abs(rate)}
+            np.testing.assert_allclose(np.abs(bent[active]), np.abs(own[active]), **near)
 
 
 def test_contact_lines_lie_where_the_path_has_got_to(family, curves):
