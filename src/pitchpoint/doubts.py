@@ -24,6 +24,7 @@ __all__ = [
     "fails",
     "in_percent",
     "in_stage",
+    "measured",
     "moves",
     "of_designs",
     "reworded",
@@ -156,6 +157,32 @@ def fails(sentence: str, brief: str = "") -> Doubt:
     """
     doubt = as_doubt(sentence)
     return _alike(doubt, f"{_FAILS}{doubt}", f"{_FAILS}{brief or doubt.brief}")
+
+
+_SMALLER = (("", 1.0), ("m", 1e3), ("u", 1e6), ("n", 1e9))
+"""Prefixes of units and how many there are in one."""
+
+
+def measured(value: float, unit: str) -> str:
+    """A value with four digits, in a unit with a prefix where it would need more than two zeros.
+
+    Args:
+        value: not negative [unit].
+        unit: that takes prefixes, such as "N m", "N" or "m".
+
+    Example:
+        >>> from pitchpoint.doubts import measured
+        >>> measured(0.000259, "N m"), measured(0.0171234, "N m"), measured(2e-14, "m")
+        ('0.259 mN m', '0.01712 N m', 'less than 0.001 nm')
+    """
+    for prefix, times in _SMALLER:
+        if value * times >= _LEAST or value == 0.0:
+            return f"{value * times:.4g} {prefix}{unit}"
+    return f"less than {_LEAST:g} {_SMALLER[-1][0]}{unit}"
+
+
+_LEAST = 1e-3
+"""Least number that is written without a smaller unit."""
 
 
 def in_percent(part: float) -> str:

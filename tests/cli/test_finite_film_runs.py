@@ -446,6 +446,9 @@ def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
         for name in ("largest_film_pressure", "smallest_central_film")
     )
     assert "12 of 12 contact lines touch at one end only" in first.line
+    assert first.line.startswith(
+        "A smallest film below zero: the mean planes of the rough flanks overlap"
+    )
     words = next(iter(SECTION.answer(one))).words
     assert " at least: mean planes overlap, " in words and "undefined" not in words
     page = opened(render({"default": one}))

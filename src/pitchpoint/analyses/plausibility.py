@@ -205,11 +205,12 @@ def film_of_atoms(at: AtWork) -> str | None:
     if max(thin) <= MOST:
         return None
     thinnest = min(float(run["film_thickness"][run["load"] > 0.0].min()) for run in at.runs)
+    told = f"{1e9 * thinnest:.2g} nm" if 1e12 * thinnest >= 1.0 else "less than 0.001 nm"
     return Doubt(
-        f"the film is down to {1e9 * thinnest:.2g} nm, under {100.0 * max(thin):.3g} % of the load "
+        f"the film is down to {told}, under {100.0 * max(thin):.3g} % of the load "
         f"thinner than an atom, {1e9 * ATOM:g} nm: flanks touch, and film, Λ and what follows "
         "from them say nothing",
-        brief=f"film down to {1e9 * thinnest:.2g} nm, less than an atom: flanks touch",
+        brief=f"film down to {told}, less than an atom: flanks touch",
     )
 
 

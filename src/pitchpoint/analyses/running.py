@@ -12,7 +12,7 @@ from pitchpoint.analyses.lacking import untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.schema import TEMPERATURE
-from pitchpoint.doubts import Doubt
+from pitchpoint.doubts import Doubt, measured
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.results.store import dataset, without_nan
 from pitchpoint.status import locked_or_lost, told
@@ -188,22 +188,16 @@ def _easily_started(
     if rest >= AT_REST * moving:
         return []
     kind = "force" if "driver" in built.travels else "torque"
-    unit = "N" if kind == "force" else "N m"
-    if rest < _SMALL:
-        rest, moving, unit = 1e3 * rest, 1e3 * moving, f"m{unit}"
+    told = [measured(one, "N" if kind == "force" else "N m") for one in (rest, moving)]
     return [
         Doubt(
-            f"A {kind} to start of {rest:.3g} {unit} beside {moving:.3g} {unit} in slow motion is too low: "
+            f"A {kind} to start of {told[0]} beside {told[1]} in slow motion is too low: "
             "seals and greased bearings stick at rest, and measured drives take up to many times as much, "
             "either way; a breakaway model or a breakaway_torque in [losses] says what holds them.",
             about=("starting_torque", "back_driving_torque"),
-            brief=f"{rest:.3g} {unit} to start: too low, too little holds.",
+            brief=f"{told[0]} to start: too low, too little holds.",
         )
     ]
-
-
-_SMALL = 0.01
-"""Below which a torque is told in mN m, a force in mN [N m, N]."""
 
 
 def running_axes(built: Ready) -> tuple[np.ndarray, np.ndarray]:

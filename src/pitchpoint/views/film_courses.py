@@ -527,10 +527,14 @@ _THERE = ("minimum_film", "minimum_lambda", "film_pressure")
 _CHOSEN = ("viscosity_law", "density_law", "shear_law", "asperities")
 
 
+_OVERLAP = "A smallest film below zero: the mean planes of the rough flanks overlap, and asperities carry there."
+
+
 def printed(title: str, data: xr.Dataset) -> Iterator[Printed]:
     """What the screen shows of films: their figures, then friction and losses beside those of laws."""
     row = {head(name, data): shown(name, float(data[name]), data) for name in _first(data)}
-    yield Printed(title, [row], counted(data))
+    below = _OVERLAP if float(data["smallest_film"]) < 0.0 else ""
+    yield Printed(title, [row], " ".join(filter(None, (below, counted(data)))))
     rows = [{"friction by": "films", **_row(data, [*_BESIDE], ())}]
     if "mean_line_loss" in data:
         rows.append({"friction by": LINES, **_row(data, [*_OF_LINES.values()], (), [*_OF_LINES])})

@@ -21,6 +21,7 @@ __all__ = [
     "handy",
     "number",
     "one_line",
+    "points",
     "pretty",
     "quantities",
     "quantity",
@@ -294,6 +295,17 @@ _DIFFERENCES = (
 )
 _OF_DIFFERENCES = 1e-12
 """What rounding leaves of differences of dimensions of a large gear [m, rad]."""
+
+
+def points(part: float) -> str:
+    """A difference of efficiencies in percentage points; one that says nothing is told to be small.
+
+    Example:
+        >>> points(0.0123), points(-8.195e-6)
+        ('1.23 percentage points', 'less than 0.001 percentage points')
+    """
+    small = 0.0 < abs(100.0 * part) < 10.0**_SMALLEST
+    return f"{'less than 0.001' if small else number(100.0 * part)} percentage points"
 
 
 def span(low: str, high: str, values: Sequence[float], of: Any = None) -> str:

@@ -110,18 +110,7 @@ def motion_answer(outcome: Outcome) -> str:
 def _taken(data: xr.Dataset) -> str:
     """What vibration takes of the efficiency, to digits that say something."""
     taken = float(data["efficiency_difference"])
-    return f"which is {_points(abs(taken))} {'more' if taken >= 0.0 else 'less'}"
-
-
-def _points(difference: float) -> str:
-    """Difference of efficiencies in percentage points, to a thousandth of one."""
-    points = 100.0 * difference
-    if 0.0 < abs(points) < _LEAST_POINTS:
-        return f"under {_LEAST_POINTS} percentage points"
-    return f"{show.number(points)} percentage points"
-
-
-_LEAST_POINTS = 0.001
+    return f"which is {show.points(abs(taken))} {'more' if taken >= 0.0 else 'less'}"
 
 
 def _parts(data: xr.Dataset) -> str:
@@ -274,7 +263,7 @@ _OF_MODES = ("natural_frequency", "modal_damping_ratio")
 def _cell(data: xr.Dataset, name: str) -> str:
     value = float(data[name])
     if name == "efficiency_difference" and np.isfinite(value):
-        return _points(value)
+        return show.points(value)
     return show.quantity(name, value, of=data) if np.isfinite(value) else "none"
 
 

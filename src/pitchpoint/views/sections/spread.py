@@ -110,7 +110,7 @@ def _within(outcome: Outcome) -> str:
         )
     return (
         f"The friction laws that apply give {span}: the model counts for "
-        f"{show.number(100 * (values[high] - values[low]))} percentage points."
+        f"{show.points(values[high] - values[low])}."
     )
 
 
