@@ -463,6 +463,7 @@ def compare(
     """
     from pitchpoint.runs.designs import wanted
 
+    _demand_names(designs)
     if len(designs) > 1:
         if variant is not None:
             raise InputError("goes with one case; of several write case@variant", key="--variant")
@@ -479,6 +480,18 @@ def compare(
         raise InputError("goes with several designs; a print is told in full", key="--full")
     one = wanted(designs[0])
     _compare_with_print(one.case, variant or one.variant, json_)
+
+
+_BETWEEN = ("vs", "vs.", "and", "with", "to", "against")
+"""Words that people put between designs."""
+
+
+def _demand_names(designs: list[str]) -> None:
+    """InputError for a word between designs, or designs in one word, where no file has that name."""
+    for one in designs:
+        if (one.lower() in _BETWEEN or "," in one) and not os.path.exists(one):
+            told = "is no design; name them one after the other: pitchpoint compare A B"
+            raise InputError(f"{visible(shorten(one))} {told}")
 
 
 def _compared_designs(
@@ -909,7 +922,7 @@ def new(
         ),
     ],
     ratio: Annotated[
-        float | None,
+        str | None,
         typer.Option(
             help="Of strain_wave, planetary and 3K: teeth for this ratio, input over output."
         ),
@@ -941,9 +954,21 @@ def new(
     from pitchpoint.sizing.for_ratio import case_for_ratio
 
     _write(
-        case_for_ratio(family, ratio, torque=torque, planets=planets),
+        case_for_ratio(family, _ratio(ratio), torque=torque, planets=planets),
         output,
     )
+
+
+def _ratio(text: str) -> float:
+    """A ratio as it is written: 80, or 80:1."""
+    from pitchpoint.input.quantities import shown
+
+    first, colon, second = text.partition(":")
+    try:
+        return float(first) / (float(second) if colon else 1.0)
+    except (ValueError, ZeroDivisionError):
+        told = f"{shown(text)} is no ratio; write the input over the output, --ratio 80"
+        raise InputError(told, key="--ratio") from None
 
 
 def _write(text: str, path: Path | None) -> None:

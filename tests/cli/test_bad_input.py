@@ -1653,6 +1653,10 @@ OTHER_CALLS = {
     "new spur --ratio 3": "is for strain_wave, planetary and 3K; leave it out for spur",
     "new planetary --ratio 2": "2 is no ratio of one planetary set with 3 planets, which reaches",
     "new planetary --torque 5": "goes with --ratio",
+    "new planetary --ratio 5/1": '--ratio: "5/1" is no ratio; write the input over the output',
+    "new harmonic --ratio 100": "is no family of gears; did you mean strain_wave?",
+    "compare pair.toml vs other.toml": "vs is no design; name them one after the other",
+    "compare pair.toml,other.toml": "is no design; name them one after the other",
     "new pair.toml": "'pair.toml' is a file and no family of gears; write new spur -o FILE",
 }
 

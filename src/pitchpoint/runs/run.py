@@ -386,7 +386,9 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
     demand_arguments(folder=folder)
     where = Path(folder)
     if not os.path.isfile(where / RUN):  # be the name longer than any file's
-        told = "holds no result of pitchpoint; give a folder that pitchpoint run wrote"
+        above = os.path.isfile(where.parent / RUN) and os.path.isdir(where)
+        asked = f"{where.parent}, the folder" if above else "a folder"
+        told = f"holds no result of pitchpoint; give {asked} that pitchpoint run wrote"
         raise InputError(told, file=str(folder))
     paths = {name: where / name / MANIFEST for name in Record.read(where / RUN).variants}
     opened = {name: _opened(path) for name, path in paths.items() if path.is_file()}

@@ -121,6 +121,7 @@ def case_for_ratio(
     """
     named = next((one for one in FOR_RATIO if letters(one) == letters(family)), None)
     if named is None:
+        template(family)  # says what a family is, where this is none
         told = f"{', '.join(FOR_RATIO[:-1])} and {FOR_RATIO[-1]}"
         raise InputError(f"is for {told}; leave it out for {family}", key="ratio")
     if not isfinite(ratio):

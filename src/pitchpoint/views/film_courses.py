@@ -527,7 +527,7 @@ _THERE = ("minimum_film", "minimum_lambda", "film_pressure")
 _CHOSEN = ("viscosity_law", "density_law", "shear_law", "asperities")
 
 
-_OVERLAP = "A smallest film below zero: the mean planes of the rough flanks overlap, and asperities carry there."
+_OVERLAP = "A smallest film below zero: the mean planes of the rough flanks overlap; asperities carry there."
 
 
 def printed(title: str, data: xr.Dataset) -> Iterator[Printed]:
