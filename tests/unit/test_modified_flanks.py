@@ -435,3 +435,14 @@ def test_over_the_path_stands_what_the_highest_load_makes_of_the_face() -> None:
     shown = np.isfinite(pressure)
     np.testing.assert_allclose(place[shown], [0.2, 0.6])
     np.testing.assert_allclose(pressure[shown], [30.0, 90.0])
+
+
+def test_no_undercut_limit_is_told_of_a_ring() -> None:
+    one = pair(gears__teeth=[20, -70], gears__profile_shift=[0.3, 0.1], gears__addendum=[1.0, 0.8])
+    rows = {
+        row["key"]: row for row in input_rows({"inputs": resolved(one.built({}), one.document())})
+    }
+    assert rows["gear 1, undercut limit"]["value"] == "-0.16981"
+    assert not [
+        key for key in rows if key.endswith("undercut limit") and not key.startswith("gear 1")
+    ]

@@ -419,6 +419,11 @@ def _dimensions(built: Built) -> Iterator[Row]:
     for name in _DIMENSIONS:
         if name in known:
             variable = VARIABLES.get(name) or VARIABLES[f"{name}_1"]
+            if name == "undercut_limit" and getattr(built.design.mesh, "internal", False):
+                # No rack cuts a ring.
+                limit = np.asarray(known[name]).tolist()[0]
+                yield _row(DIMENSIONS, f"gear_1.{name}", limit, variable.kind, mark)
+                continue
             yield _row(DIMENSIONS, name, known[name], variable.kind, mark)
     cut = built.following.get("generating_shift")
     if cut is not None:
