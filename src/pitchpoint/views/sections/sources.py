@@ -6,7 +6,7 @@ from typing import Any
 from pitchpoint.cases.record import sources_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.inputs import set_for_run
-from pitchpoint.views.section import Block, Drawn, Heading, Page, Section
+from pitchpoint.views.section import Block, Drawn, Page, Section
 
 __all__ = ["SOURCES"]
 
@@ -15,7 +15,6 @@ def _blocks(page: Page) -> Iterator[Block]:
     sources = sources_of([one.manifest for one in page.outcomes.values()])
     if sources:
         yield Drawn("sources.html.jinja", {"sources": sources})
-    yield Heading("This result")
     yield Drawn(
         "files.html.jinja",
         {
