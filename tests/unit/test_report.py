@@ -42,7 +42,7 @@ from pitchpoint.views.path import path_of
 from pitchpoint.views.picture import Body, Picture, picture_of
 from pitchpoint.views.point import period_of
 from pitchpoint.views.report import render, write_report
-from pitchpoint.views.section import KeyFigure, Paragraph, naming, told_of_variants
+from pitchpoint.views.section import KeyFigure, Page, Paragraph, naming, told_of_variants
 from pitchpoint.views.sections import compared as comparison
 from pitchpoint.views.sections.answer import ANSWER, summary
 from pitchpoint.views.sections.back_driving import back_driving_figure
@@ -51,6 +51,7 @@ from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.path import loss_places, loss_sentence
 from pitchpoint.views.sections.sliding import specific_sliding
 from pitchpoint.views.sections.spread import spread_sentence
+from pitchpoint.views.sections.studies import _warnings as study_warnings
 from pitchpoint.views.sections.studies import study_panels
 from pitchpoint.views.sections.teeth import dimensions
 
@@ -1159,3 +1160,16 @@ def test_what_a_result_of_another_build_lacks_is_said_with_how_to_make_it_anew(
     assert "lacks: mesh load factor (mesh_load_factor). Make it anew: " in page
     assert "<code>pitchpoint run FOLDER/physical/manifest.json</code>" in page
     assert "(efficiency). Make it anew: " in page
+
+
+def test_a_warning_of_several_studies_is_said_once() -> None:
+    def with_study(title: str, *told: str) -> Outcome:
+        study = xr.Dataset(attrs={"title": title, **stored(told)})
+        return Outcome({"warnings": []}, {f"study_{title}": study})
+
+    several = {"warm": with_study("Load", "Teeth jam."), "cold": with_study("Load", "Teeth jam.")}
+    assert study_warnings(Page(several, {})) == ["warm and cold, Load: Teeth jam."]
+    apart = {"warm": with_study("Load", "Teeth jam."), "cold": with_study("Speed", "Teeth jam.")}
+    assert study_warnings(Page(apart, {})) == ["warm, Load; cold, Speed: Teeth jam."]
+    alone = {"default": with_study("Load", "Teeth jam.", "Oil boils.")}
+    assert study_warnings(Page(alone, {})) == ["Load: Teeth jam.", "Load: Oil boils."]

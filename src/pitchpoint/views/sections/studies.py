@@ -11,6 +11,7 @@ from pitchpoint.analyses.figures import CONTACT, MAIN, RATING, covered, of_conta
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.doubts import apart, doubts_of
+from pitchpoint.registry import enumerated
 from pitchpoint.results.chosen_units import unit_in_use
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.runs.run import Outcome
@@ -363,17 +364,29 @@ def _blocks(page: Page) -> Iterator[Block]:
 
 
 def _warnings(page: Page) -> list[str]:
-    """Sentences of the studies, each with its variant and title."""
-    return [
-        f"{f'{variant}, ' if page.several else ''}{text}"
-        for variant, outcome in page.outcomes.items()
-        for text in _warns(outcome)
-    ]
+    """Sentences of the studies, each with all the variants and titles that it is about."""
+    about: dict[str, dict[str, list[str]]] = {}
+    for variant, outcome in page.outcomes.items():
+        for title, sentence in _warns(outcome):
+            about.setdefault(sentence, {}).setdefault(title, []).append(variant)
+    return [f"{_about(titles, page.several)}: {told}" for told, titles in about.items()]
 
 
-def _warns(outcome: Outcome) -> list[str]:
+def _about(of_titles: dict[str, list[str]], several: bool) -> str:
+    """Titles of studies behind the variants in which a sentence is about them."""
+    by_variants: dict[str, list[str]] = {}
+    for title, variants in of_titles.items():
+        by_variants.setdefault(enumerated(variants) if several else "", []).append(title)
+    return "; ".join(
+        f"{f'{variants}, ' if variants else ''}{'; '.join(titles)}"
+        for variants, titles in by_variants.items()
+    )
+
+
+def _warns(outcome: Outcome) -> list[tuple[str, str]]:
+    """Titles of studies and their sentences."""
     return [
-        f"{data.attrs['title']}: {text}"
+        (str(data.attrs["title"]), text)
         for name, data in outcome.parts.items()
         if is_study(name)
         for text in apart(doubts_of(data.attrs))["warnings"]
