@@ -27,6 +27,8 @@ def faults_of_the_screen(outcomes: Mapping[str, Outcome], width: int = 80) -> It
         if len(line) > width:
             yield f"{len(line)} characters: {line}"
         # Wider lines leave room for more of a kind.
-        counted = line.endswith("in the report.") or re.search(r"[;,] (and )?\d+ more\b|^and \d+ more\b", line)
+        counted = line.endswith("in the report.") or re.search(
+            r"[;,] (and )?\d+ more\b|^and \d+ more\b", line
+        )
         if not counted and (cut := {*NUMBER.findall(line)} - whole):
             yield f"{', '.join(cut)} is a part of a number: {line}"

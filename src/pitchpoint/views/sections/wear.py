@@ -98,8 +98,8 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
             "Changes with 1 % more of an input alone, by derivatives along the steps of the march: of the "
             "turns to the depth at its end (life), of the depth after as many turns, and of the largest "
             "depth that a turn wears off flanks as new. Dimensions that follow from others follow; "
-            "temperatures count from absolute zero; less than 0.05 % is left out. Derivatives hold near the "
-            "case: where another pair comes to carry they jump.",
+            f"temperatures count from absolute zero; less than {_DEPENDS:g} % is left out. Derivatives hold "
+            "near the case: where another pair comes to carry they jump.",
             "note",
         )
         yield Table(["1 % more of", "life", "depth", "depth per turn, new"], rows, compact=True)
@@ -241,7 +241,7 @@ def _flank(name: str, data: xr.Dataset, member: int) -> Figure:
     place, _ = _places(data, member)
     top = float(display("worn_depth", data["deepest_wear"].values[:, member].max()))
     look = layout(
-        f"{titled(place, data)} [{show.unit_of(place)}]",
+        show.axis_title(place, data),
         short_axis("worn_depth", data),
         yaxis={"range": [1.05 * top or 1.0, 0.0]},
     )
