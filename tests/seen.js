@@ -19,7 +19,7 @@
   }
 
   // Columns behind the edge of a narrow window, but for tables whose first one stays where the others pass.
-  if (width <= 500 && !height) for (const one of document.querySelectorAll(".scroll:not(:has(> .wide))")) {
+  if (!height) for (const one of document.querySelectorAll(width > 500 ? ".scroll" : ".scroll:not(:has(> .wide))")) {
     if (shown(one) && one.scrollWidth > one.clientWidth + 1) faults.push("behind the edge of the window: " + name(one));
   }
 

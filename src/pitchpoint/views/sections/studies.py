@@ -65,7 +65,7 @@ _WITHOUT = "Without friction the efficiency is 100 %, and the torque has no ripp
 _WIDE = 5
 """Columns from beyond which a table is a wide one."""
 
-_MOST = 12
+_MOST = 10
 """Columns of quantities that a page has room for; those beyond stand in a table of their own."""
 
 _FEW = 3
