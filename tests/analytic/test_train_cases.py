@@ -645,6 +645,18 @@ def test_a_train_that_cannot_run_is_refused_in_a_sentence(changes, words):
         load_case(tree)
 
 
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("held", "one body alone is held; with two of them held nothing moves"),
+        ("floating", "one body alone floats"),
+    ],
+)
+def test_several_bodies_held_or_floating_are_refused_in_a_sentence(key, words):
+    with pytest.raises(InputError, match=words):
+        load_case({"gears": SET | {key: ["sun", "ring"]}, **TABLES})
+
+
 def test_what_else_stands_beside_a_set_is_told():
     stages = [{"gears": gears([23, 61])}, {"gears": SET | {"family": "epicyclic"}}]
     with pytest.raises(InputError, match=r"epicyclic. is no family .* did you mean planetary"):

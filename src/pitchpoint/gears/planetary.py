@@ -270,6 +270,15 @@ def _is_two(value: Any) -> bool:
     return isinstance(value, list | tuple) and len(value) == 2
 
 
+_DOES = {
+    "input": "is turned",
+    "output": "takes the load",
+    "held": "is held; with two of them held nothing moves",
+    "floating": "floats; the others bear the load",
+}
+"""What bodies do of which there is one, by key."""
+
+
 class PlanetaryGears(Table):
     """A planetary gear set: a sun, planets on a carrier, and a ring around them, of one module.
 
@@ -348,6 +357,18 @@ class PlanetaryGears(Table):
     """Runout F_r of sun and ring, each about the axis of the carrier."""
     pin_stiffness: Annotated[float, STIFFNESS] | None = None
     """Stiffness of a pin and its bearing along the circle; rigid unless given."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_body_each(cls, table: Any) -> Any:
+        """The table; InputError for several bodies where one is turned, loaded, held or floats."""
+        for key, does in _DOES.items() if isinstance(table, Mapping) else ():
+            value = table.get(key)
+            if isinstance(value, list | tuple):
+                raise InputError(
+                    f"{shown(value)} has {count_of(value)}, and one body alone {does}", key=key
+                )
+        return table
 
     @model_validator(mode="before")
     @classmethod
