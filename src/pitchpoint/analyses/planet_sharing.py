@@ -113,11 +113,9 @@ def _drawn_errors(
     drawn: np.ndarray = alike.of_planet(far, along + np.pi / 2.0)
     stepped = _planet_gears(built) > 1
 
-    def thicker() -> np.ndarray:
-        return np.asarray(table.thickness_tolerance * random.uniform(-0.5, 0.5, size=size))
-
-    if table.thickness_tolerance:
-        drawn += alike.of_thickness(thicker(), thicker() if stepped else None)
+    if field := table.thickness_tolerance:
+        first, *second = random.uniform(-field / 2.0, field / 2.0, size=(1 + stepped, *size))
+        drawn += alike.of_thickness(first, *second)
     if table.planet_runout:
         off = table.planet_runout / 2.0
         drawn += alike.of_planet(off, phases(size), phases(size) if stepped else None)
