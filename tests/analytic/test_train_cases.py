@@ -89,6 +89,17 @@ def test_meshes_carry_more_by_the_losses_behind_them():
     assert held + found["mean_input_torque"] == pytest.approx(60.0, rel=1e-9)
 
 
+def test_planets_are_pulled_outwards_by_the_mass_of_their_gears():
+    """Discs of the inspection, both of a stepped planet."""
+    second = {"teeth": [24, 78], "face_width": "10 mm"}
+    of_two = {**SET, "teeth": [18, 36], "second": second}
+    for gears, distance in ((SET, 27e-3), (of_two, 27e-3)):
+        built = load_case({"gears": gears, **TABLES})
+        first, last = (inspection_part(mesh)["disc_mass"].values for mesh in built.meshes)
+        mass = max(first[1], last[0]) if gears is SET else first[1] + last[0]
+        assert float(built.design.pull) == pytest.approx(distance * mass, rel=1e-9)
+
+
 @pytest.mark.whole
 def test_bearings_of_planets_and_seals_take_their_part():
     """The pin bears two tangential forces; torques from rest go either way, with the band of what holds."""

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from test_train import POINT, TO_CARRIER, constant, design, meshes, models
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jnp
 from pitchpoint.drive.assembly import equal_angles, planet_phases
 from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.efficiency.drag import Drag
@@ -133,6 +133,12 @@ def test_pins_carry_what_the_carrier_takes_and_central_bearings_nothing():
     mesh = train.meshes[0].design.mesh
     pin = 100.0 / 3 / float(mesh.centre_distance)
     assert figures(train, 0.0)["bearing_load"] == pytest.approx([pin, 0.0, 0.0], rel=1e-9, abs=1e-9)
+    # Planets of 2 kg mm are pulled outwards at right angles to that.
+    pulled = replace(train, pull=array(2e-3))
+    outwards = 2e-3 * (WILLIS * float(POINT.speed)) ** 2
+    both = figures(pulled, 0.0)["bearing_load"]
+    assert both == pytest.approx([np.hypot(pin, outwards), 0.0, 0.0], rel=1e-9, abs=1e-9)
+    assert outwards > 1.0 and float(pulled.driven_backwards().pull) == 2e-3
     # One planet alone puts its force on the sun, and that of its pin on the carrier.
     lone = figures(planetary([QUIET] * 3, places, count=1), 0.0)["bearing_load"]
     on_sun = 1.5 * pin / cos(radians(20.0))

@@ -26,6 +26,7 @@ from pitchpoint.drive.kinematics import HOUSING, Ends, Link, body_rates
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.train import Train, gear_train, presses_other_flanks
 from pitchpoint.errors import InputError
+from pitchpoint.gears.bodies import disc
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials.solids import SolidRecord
@@ -189,9 +190,45 @@ def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
                 for name, loss in case.losses.items()
             ],
             braked=braked,
+            pull=_pull(case, built),
         )
     except InputError as error:
         raise error.at(key=error.key or "train") from None
+
+
+def _pull(case: DriveCase, built: Sequence[Built]) -> float:
+    """Mass of a planet times the radius on which it goes around [kg m].
+
+    Its gears are discs as wide as their mesh, from bore to reference circle; of one in two meshes the
+    heavier one.
+    """
+    train = case.train
+    assert train is not None
+    masses: dict[tuple[str, float, int], float] = {}
+    radius = 0.0
+    for one, link in zip(
+        built, _links(case, train, [each.design.mesh for each in built]), strict=True
+    ):
+        if train.planet not in link.bodies:
+            continue
+        member = link.bodies.index(train.planet)
+        gear, radius = link.gears[member], float(one.dimensions["centre_distance"])
+        masses[gear] = max(masses.get(gear, 0.0), _mass(one, member))
+    return radius * sum(masses.values())
+
+
+def _mass(built: Built, member: int) -> float:
+    """Mass of a planet in one of its meshes as a disc [kg]."""
+    mesh: Any = built.design.mesh
+    module = float(mesh.module)
+    outer = abs(float(mesh.teeth[member])) * module / 2.0 / np.cos(float(mesh.helix_angle))
+    cut = float(mesh.dedendum[member] - mesh.profile_shift[member] - mesh.infeed[member])
+    return disc(
+        density=float(built.design.solids[member].density),
+        width=float(mesh.face_width),
+        outer=outer,
+        inner=(outer - module * cut) / float(mesh.rim_ratio[member]),
+    )[0]
 
 
 _OF_A_GEAR = ("profile_shift", "addendum", "dedendum", "fillet_radius", "infeed")

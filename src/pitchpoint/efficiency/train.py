@@ -92,8 +92,8 @@ class Train(eqx.Module):
         loaded: body that takes the power; static.
         drag: places beside the teeth where two bodies brake each other, at every planet where one of them is
             one; their `between` counts these two. A bearing bears what the teeth put on its body: that of a
-            planet on its carrier all of it, one in the housing what does not cancel around it, several meshes
-            side by side each by itself.
+            planet on its carrier all of it and the centrifugal force, one in the housing what does not cancel
+            around it, several meshes side by side each by itself.
         angles: at which planets stand about the axis of their carrier, zero at places without one [rad].
         turns: times in a period that each planet comes to where another one was: what they do together
             repeats as often.
@@ -102,6 +102,8 @@ class Train(eqx.Module):
         planets: bodies of which there are as many as copies of their meshes; static.
         braked: the two bodies of each place, of which the housing may be one; static.
         alike: False if planets stand so that none ever comes to where another one was; static.
+        pull: mass of a planet times the radius on which it goes around, for the centrifugal force on its
+            bearing [kg m].
     """
 
     meshes: tuple[TrainMesh, ...]
@@ -116,6 +118,7 @@ class Train(eqx.Module):
     planets: tuple[str, ...] = eqx.field(static=True)
     braked: tuple[tuple[str, str], ...] = eqx.field(static=True)
     alike: bool = eqx.field(static=True)
+    pull: Float[Array, ""] = eqx.field(default_factory=lambda: array(0.0))
 
     def __repr__(self) -> str:
         return brief(self)
@@ -169,6 +172,7 @@ class Train(eqx.Module):
             angles=np.asarray(self.angles)[: max(one.copies for one in self.meshes)],
             drag=self.drag,
             braked=self.braked,
+            pull=float(self.pull),
         )
 
     def rows(self) -> list[tuple[str, int]]:
@@ -191,6 +195,7 @@ def gear_train(
     angles: Float[np.ndarray, " planet"] | None = None,
     drag: Sequence[Drag] = (),
     braked: Sequence[tuple[str, str]] = (),
+    pull: float = 0.0,
 ) -> Train:
     """A train of meshes that turn together.
 
@@ -204,6 +209,7 @@ def gear_train(
         angles: at which planets stand about the axis of their carrier [rad]; by default there is one.
         drag: places beside the teeth where power is lost, see `Train.drag`.
         braked: the two bodies of each, the housing among them.
+        pull: mass of a planet times the radius on which it goes around [kg m].
 
     Raises:
         InputError: see `train_torques`; a mesh that would press its other flanks, or has losses of its
@@ -254,6 +260,7 @@ def gear_train(
         tuple(planets),
         tuple(braked),
         exchange is not None,
+        array(pull),
     )
 
 

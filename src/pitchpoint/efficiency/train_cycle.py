@@ -530,7 +530,8 @@ def _places(
         rate = drag.between @ rates
         turns = jnp.abs(rate) > NO_TURNING * jnp.sum(jnp.abs(rates))
         sense = jnp.where(turns, jnp.sign(rate), 0.0)
-        load = drag.preload + _borne(train, every, forces, bodies) * (drag.bearing.name != "none")
+        borne = _borne(train, every, forces, bodies, operation.speed)
+        load = drag.preload + borne * (drag.bearing.name != "none")
         speed = jnp.abs(rate) * operation.speed
         torque = drag.torque(speed=speed, load=load, kinematic_viscosity=viscosity)
         there = _there(train, every, bodies)
@@ -552,12 +553,16 @@ def _there(train: Train, every: Sequence[_Meshing], bodies: tuple[str, str]) -> 
 
 
 def _borne(
-    train: Train, every: Sequence[_Meshing], forces: Sequence[Copies], bodies: tuple[str, str]
+    train: Train,
+    every: Sequence[_Meshing],
+    forces: Sequence[Copies],
+    bodies: tuple[str, str],
+    speed: Float[Array, ""],
 ) -> OfPlanets:
-    """Size of what teeth put on the bearing between two bodies, of each planet that it is in [N].
+    """Size of what is on the bearing between two bodies, of each planet that it is in [N].
 
-    From the forces of a planet in all its meshes, added as vectors; of central bodies and of the carrier from
-    those of all planets around them, which cancel as far as planets share alike.
+    From the forces of a planet in all its meshes and the centrifugal one, added as vectors; of central bodies
+    and of the carrier from those of all planets around them, which cancel as far as planets share alike.
     """
     nothing = jnp.zeros((1, forces[0].shape[-1]))
     pairs = list(zip(every, forces, strict=True))
@@ -568,7 +573,9 @@ def _borne(
         if body in train.planets
     ]
     if any(body in train.planets for body in bodies):
-        return _size(sum(on_planets[1:], on_planets[0]))
+        carrier = next(one.mesh.carrier for one in every if one.mesh.carrier != HOUSING)
+        outward = train.pull * (train.rates[carrier] * speed) ** 2
+        return _size(sum(on_planets[1:], on_planets[0]).at[0].add(outward))
     if HOUSING not in bodies:
         return nothing
     (body,) = (name for name in bodies if name != HOUSING)
