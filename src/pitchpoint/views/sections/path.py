@@ -24,6 +24,7 @@ from pitchpoint.views.figures import (
 )
 from pitchpoint.views.lines import REGIMES, SHORT, Points, gapped, regimes, titled, values_of
 from pitchpoint.views.path import PathOfContact, marks, path_of
+from pitchpoint.views.point import named_members
 from pitchpoint.views.section import Block, Page, Paragraph, Section
 from pitchpoint.views.where_lost import where_lost
 
@@ -216,7 +217,7 @@ def loss_sentence(shares: Mapping[tuple[str, str], float], path: PathOfContact) 
 def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
     """What the letters mean for this contact ratio and driver."""
     first = next(iter(outcomes.values()))
-    path, members = path_of(first), first.manifest["members"]
+    path, members = path_of(first), named_members(first)
     notes = [_letters(path, members[1])]
     if path.helical:
         notes.append(
