@@ -47,8 +47,7 @@ def matrix() -> list[dict[str, str]]:
     samples["several stages"] = drives + [_drive(sample_of(turning[0]), one) for one in asked]
     deviating = {"gears.deviations.iso_class": 6}
     pins = {"gears.pin_tolerance": "20 um"}
-    set_of = load_case(str(_PLANETARY), settings=_OF_OUTPUT | pins)
-    samples["planetary"] = [set_of, *map(_train, ({}, deviating, *asked))]
+    samples["planetary"] = [*map(_set, (pins, *asked)), _train(deviating)]
     return [
         {"analysis": analysis.name, "title": analysis.title}
         | {name: _why_not(analysis, cases) for name, cases in samples.items()}
@@ -68,6 +67,11 @@ def _drive(sample: Path, settings: Mapping[str, Any] = MappingProxyType({})) -> 
     tree["stages"][1] |= {key: gears[key] for key in ("gears", "dynamics") if key in gears}
     inside = {f"stages.2.{key}": value for key, value in settings.items()}
     return load_case(tree, settings=_OF_OUTPUT | inside)
+
+
+def _set(settings: Mapping[str, Any]) -> Ready:
+    """A planetary set in a file of its own."""
+    return load_case(str(_PLANETARY), settings=_OF_OUTPUT | {**settings})
 
 
 def _train(settings: Mapping[str, Any]) -> Ready:
