@@ -297,6 +297,18 @@ _KINDS: dict[str, _Kind] = {
     "thermal resistance": _Kind(
         "a thermal resistance", "0.06 K m2/W", {"K m2/W": "kelvin*meter**2/watt"}
     ),
+    "resistance to heat": _Kind("a resistance to heat", "1.5 K/W", {"K/W": "kelvin/watt"}),
+    "heat capacity": _Kind(
+        "a heat capacity", "400 J/K", {"J/K": "joule/kelvin", "kJ/K": "kilojoule/kelvin"}
+    ),
+    "torque constant": _Kind(
+        "a torque constant",
+        "0.1 N m/A",
+        {"N m/A": "newton*meter/ampere", "mN m/A": "millinewton*meter/ampere"},
+    ),
+    "electrical resistance": _Kind(
+        "an electrical resistance", "0.5 ohm", {"ohm": "ohm", "mohm": "milliohm"}
+    ),
     "line load": _Kind(
         "a load per length",
         "150 N/mm",

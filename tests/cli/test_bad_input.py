@@ -30,6 +30,7 @@ from pitchpoint.cases.document import resolve
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.variant import Variant
 from pitchpoint.cases.worn import gears_digest
+from pitchpoint.duty_cycle import table as duty_table
 from pitchpoint.errors import InputError
 from pitchpoint.gears import planetary
 from pitchpoint.gears import table as every
@@ -482,6 +483,29 @@ def worn_file(gears: dict[str, Any]) -> str:
 
 
 _FOLDER = tempfile.TemporaryDirectory()
+DUTY = {key: BASE[key] for key in ("lubricant", "roughness", "operation")}
+DUTY |= {"gears": WORN["gears"], "loss_map": {"quadrants": 4}}
+
+
+def cycle_file(name: str, text: str) -> str:
+    """A file of loads over time."""
+    path = Path(_FOLDER.name) / name
+    path.write_text(text, "utf-8")
+    return str(path)
+
+
+DUTY |= {
+    "duty": {
+        "file": cycle_file("cycle.csv", "time [s], torque [N m], speed [rpm]\n0, 9, 9\n1, 9, 9\n"),
+        "motor": {"torque_constant": "0.1 N m/A", "resistance": "0.5 ohm"},
+        "lives": {"output": {"torque": "40 N m", "revolutions": 1e7}},
+        "heat": {
+            "gears": "case",
+            "bodies": {"case": {"heat_capacity": "400 J/K", "largest_temperature": "90 degC"}},
+            "resistances": {"air": {"between": ["case", "ambient"], "resistance": "0.5 K/W"}},
+        },
+    }
+}
 WORN |= {"worn": {"file": worn_file(WORN["gears"]), "cycles": 1e5}}
 
 PLANETARY = {
@@ -551,6 +575,7 @@ BASES = {
     "torus": TORUS,
     "rig": RIG,
     "worn": WORN,
+    "duty": DUTY,
     "planetary": PLANETARY,
     "materials of a set": OF_SET,
     "drawings of a set": DRAWN,
@@ -572,6 +597,7 @@ WALKS = [
     ("rig", ball_on_disc.BallOnDiscRig, ("gears",)),
     ("rig", schema.HeightTables, ("film", "heights")),
     ("worn", schema.WornTable, ("worn",)),
+    ("duty", duty_table.DutyTable, ("duty",)),
     ("planetary", planetary.PlanetaryGears, ("gears",)),
     ("materials of a set", schema.DriveMaterials, ("materials",)),
     ("drawings of a set", planetary.InspectionOfSet, ("gears", "inspection")),
@@ -1257,6 +1283,7 @@ def test_the_walk_reaches_every_table() -> None:
             strain_wave,
             torus,
             wear_table,
+            duty_table,
         )
         for each in vars(module).values()
         if isinstance(each, type) and issubclass(each, BaseModel)

@@ -17,10 +17,16 @@ import pytest
 import sound
 import xarray as xr
 
+import pitchpoint as pp
 from pitchpoint import cli
 from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.analysis import silent
-from pitchpoint.analyses.figures import HOLDING_BANDS, held_at_operation, standstill_figures
+from pitchpoint.analyses.figures import (
+    HOLDING_BANDS,
+    duty_figures,
+    held_at_operation,
+    standstill_figures,
+)
 from pitchpoint.analyses.four_quadrants import (
     loss_beside,
     loss_of_output,
@@ -29,16 +35,21 @@ from pitchpoint.analyses.four_quadrants import (
 )
 from pitchpoint.analyses.loss_map import maps
 from pitchpoint.analyses.operation import BACK_DRIVING, OPERATION
+from pitchpoint.analyses.registry import DUTY as DUTY_CYCLE
 from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.analyses.running import BANDS, RUNNING, from_rest
 from pitchpoint.cases.built_drive import Ready
+from pitchpoint.cases.document import read
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import header, module
+from pitchpoint.runs.jobs import chosen_jobs, jobs
 from pitchpoint.runs.run import Outcome, describe, keep, load_case, open_result
 from pitchpoint.views import show
+from pitchpoint.views.registry import DUTY as DUTY_SECTION
 from pitchpoint.views.sections.beside import BESIDE
+from pitchpoint.views.sections.duty import operating_points
 from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -802,6 +813,96 @@ def test_a_duty_cycle_is_told_by_the_map(
         "cycle.csv: temperature: 673.15 K, which are 400 degC, is no temperature"
         in capsys.readouterr().err
     )
+
+
+CYCLE = "duration [s], torque [N m], speed [rpm], temperature [degC]\n"
+STEPS = "2, 20, 60, 40\n1, 20, -60, 50\n3, 10, 0, 50\n"
+DUTY = """
+[duty]
+file = "cycle.csv"
+[duty.motor]
+torque_constant = "0.1 N m/A"
+resistance = "0.5 ohm"
+[duty.lives.output]
+torque = "40 N m"
+revolutions = 1e6
+"""
+
+
+def on_duty(folder: Path, steps: str = STEPS, more: str = "", changed: str = PAIR) -> Variant:
+    """The pair with a duty cycle beside its case file."""
+    (folder / "cycle.csv").write_text(CYCLE + steps)
+    (folder / "pair.toml").write_text(f'title = "a joint"\n{changed}{MOVING}{DUTY}{more}')
+    return Variant(read(folder / "pair.toml"), "pair.toml", "default")
+
+
+def test_a_run_answers_with_its_duty_cycle(
+    moving: tuple[Ready, Outcome], folder: Path, tmp_path: Path
+) -> None:
+    built = on_duty(tmp_path).built({})
+    assert DUTY_CYCLE.why_not(built) is None
+    part = DUTY_CYCLE.joined(built, [moving[1].parts[FOUR_QUADRANTS.name]])
+    beside = pp.duty(
+        pp.open_result(folder),
+        tmp_path / "cycle.csv",
+        motor=pp.Motor(torque_constant=0.1, resistance=0.5),
+        lives={"output": pp.RatedLife(40.0, 1e6)},
+        teeth=True,
+    )
+    xr.testing.assert_equal(part, beside)
+    assert part.attrs["first_to_fail"] == beside.attrs["first_to_fail"] == "bearing output"
+    told = duty_figures({DUTY_CYCLE.name: part})[DUTY_CYCLE.name]
+    assert told["lost_energy"] == float(part["lost_energy"]) and told["left_out"]
+    made = replace(moving[1], parts={**moving[1].parts, DUTY_CYCLE.name: part})
+    facts = {fact.name: fact for fact in DUTY_SECTION.answer(made)}
+    assert facts["Fails first"].value == "bearing output"
+    figure = operating_points("duty", made)
+    dots = figure.data[1]
+    np.testing.assert_allclose(dots["x"], [60.0, -60.0, 0.0], rtol=1e-4, atol=1e-12)
+    assert dots["y"] == [20.0, 20.0, 10.0] and "oil at 40" in figure.note
+    (printed,) = DUTY_SECTION.screen(made)
+    assert [row[""] for row in printed.rows][-1] == "Fails first"
+
+
+def test_a_duty_cycle_brings_the_map_that_it_reads(tmp_path: Path) -> None:
+    made = on_duty(tmp_path)
+    assert [job.name for job in chosen_jobs(made, {}, ["duty"])] == ["four_quadrants", "duty"]
+    assert chosen_jobs(made, {}, ["duty"])[1].pieces == ()
+
+
+@pytest.mark.parametrize(
+    ("steps", "more", "changed", "told"),
+    [
+        ("2, 20, 60, nan\n", "", PAIR, '"cycle.csv": temperature: sample 1 is nan'),
+        ("2, 20, 60, 400\n", "", PAIR, '"cycle.csv": temperature: 673.15 K'),
+        ("2, 900, 60, 40\n", "", PAIR, "1 of 1 samples lie beyond the loss map"),
+        (
+            STEPS,
+            "",
+            PAIR.replace("quadrants = 4", ""),
+            r"duty: asks for the loss map .* quadrants = 4",
+        ),
+        (
+            STEPS,
+            '[duty.heat]\ngears = "a"\nbodies.b.heat_capacity = "1 J/K"\n'
+            'resistances.c = { between = ["b", "ambient"], resistance = "1 K/W" }\n',
+            PAIR,
+            "duty.heat.gears: the network has no body 'a', but b",
+        ),
+        (
+            STEPS,
+            '[duty.heat]\ngears = "b"\nbodies.b.heat_capacity = "1 J/K"\n'
+            'resistances.c = { between = ["a", "ambient"], resistance = "1 K/W" }\n',
+            PAIR,
+            "duty.heat.resistances: a resistance is between two of b, ambient",
+        ),
+    ],
+)
+def test_a_duty_cycle_that_cannot_be_is_told_before_its_map(
+    tmp_path: Path, steps: str, more: str, changed: str, told: str
+) -> None:
+    with pytest.raises(InputError, match=told):
+        jobs(on_duty(tmp_path, steps, more, changed), {})
 
 
 def test_files_of_the_map_say_what_is_doubtful_of_it(moving: tuple[Ready, Outcome]) -> None:

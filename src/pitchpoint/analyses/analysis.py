@@ -12,6 +12,7 @@ from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, Ready
 from pitchpoint.cases.schema import Study
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import Doubt, doubts_of, stored
+from pitchpoint.errors import InputError
 from pitchpoint.registry import Deferred
 from pitchpoint.results.by_stage import Label, as_label, by_stage, of_stage, stages_of
 from pitchpoint.results.variable import Variable
@@ -65,6 +66,11 @@ def of_gears_with(key: str, told: str) -> Callable[[Built], str | None]:
         return None if has_key(built, key) else Unasked(told)
 
     return lacks
+
+
+def _of_no_piece(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
+    """InputError for a piece of what reads another part."""
+    raise InputError("this part is computed of another part of the result and has no pieces")
 
 
 @dataclass(frozen=True)
@@ -158,14 +164,16 @@ class Analysis(Entry):
 
     Attributes:
         compute: dataset of a piece, told a callback for progress. It needs nothing but the case and the
-            piece, so that another process can compute it.
+            piece, so that another process can compute it. What reads another part has none.
         pieces: where the pieces lie, in order; one that is the whole by default.
         joined: the whole dataset from its pieces.
+        reads: name of a part that it is computed of, which `joined` has in place of pieces.
         onward: of a march, the next piece after the last one as computed, None at its end; it begins after
             `pieces`.
     """
 
-    compute: Deferred[Callable[[Any, Piece, Progress], xr.Dataset]] = Deferred()
+    reads: str = ""
+    compute: Deferred[Callable[[Any, Piece, Progress], xr.Dataset]] = Deferred(_of_no_piece)
     pieces: Deferred[Callable[[Any], Iterable[Piece]]] = Deferred(_whole)
     joined: Deferred[Callable[[Any, Sequence[xr.Dataset]], xr.Dataset]] = Deferred(_only)
     onward: Deferred[Callable[[Any, xr.Dataset, Progress], xr.Dataset | None] | None] = Deferred(

@@ -316,6 +316,19 @@ def held_at_operation(data: xr.Dataset) -> dict[str, dict[str, Any]]:
     }
 
 
+def duty_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Energies, torques and lives over the duty cycle, and which part fails first.
+
+    Args:
+        parts: of a result.
+    """
+    data = parts.get("duty")
+    if data is None:
+        return {}
+    numbers = {str(n): without_nan(float(data[n])) for n in data if data[n].ndim == 0}
+    return {"duty": {**numbers, **{n: data.attrs[n] for n in ("first_to_fail", "left_out")}}}
+
+
 def standstill_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     """Torques that hold the load of the operating point at rest, and how near the map is, by law.
 

@@ -12,6 +12,7 @@ from pitchpoint.loading.registry import LOAD_SHARING
 __all__ = [
     "no_bodies",
     "no_deviations",
+    "no_duty",
     "no_joint",
     "no_pins",
     "no_quadrants",
@@ -150,6 +151,19 @@ def no_quadrants(built: Ready) -> str | None:
     if why_not is None and (asked is None or asked.quadrants != 4):
         return Unasked("loss_map.quadrants = 4 asks for it")
     return why_not or without_films(built)
+
+
+def no_duty(built: Ready) -> str | None:
+    """Why there is no duty cycle; InputError for one that its map will not hold."""
+    why_not = untransmitted(built)
+    if why_not is None and built.case.duty is None:
+        return Unasked("[duty] asks for it")
+    why_not = why_not or no_quadrants(built)
+    if why_not is None:
+        from pitchpoint.analyses.duty import demand_in_map
+
+        demand_in_map(built)
+    return why_not
 
 
 def no_deviations(built: Built) -> str | None:

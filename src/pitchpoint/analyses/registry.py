@@ -15,6 +15,7 @@ from pitchpoint.analyses.films import FILM, FILM_SQUEEZE, FINITE_FILM
 from pitchpoint.analyses.lacking import (
     no_bodies,
     no_deviations,
+    no_duty,
     no_joint,
     no_pins,
     no_quadrants,
@@ -123,6 +124,15 @@ FOUR_QUADRANTS = Analysis(
     joined="pitchpoint.analyses.four_quadrants:joined_quadrants",
     figures=standstill_figures,
 )
+DUTY = Analysis(
+    name="duty",
+    title="duty cycle",
+    of="drive",
+    lacks=no_duty,
+    reads=FOUR_QUADRANTS.name,
+    joined="pitchpoint.analyses.duty:duty_of_map",
+    figures="pitchpoint.analyses.figures:duty_figures",
+)
 
 ANALYSES: Registry[Analysis | Several] = Registry(
     "analysis",
@@ -155,6 +165,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     LOSS_MAP,
     BACK_DRIVING,
     FOUR_QUADRANTS,
+    DUTY,
 )
 
 

@@ -773,6 +773,11 @@ def _check_parts(
         _check_models(case, mesh, wrong)
     if used is not None:
         wrong.tried(_check_hardness, case, used)
+    if case.duty is not None:
+        from pitchpoint.cases.duty import duty_inputs
+
+        travels = case.gears.load == "force"
+        wrong.tried(duty_inputs, case.duty, case.operation.temperature, travels=travels)
     if case.strength is not None and used is not None:
         from pitchpoint.cases.strength import check_strength
 

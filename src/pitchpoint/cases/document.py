@@ -35,7 +35,12 @@ __all__ = [
     "unknown_variant",
 ]
 
-_NAMING_FILES = (("film", "heights", "*"), ("worn",), ("stages", "*", "film", "heights", "*"))
+_NAMING_FILES = (
+    ("film", "heights", "*"),
+    ("worn",),
+    ("duty",),
+    ("stages", "*", "film", "heights", "*"),
+)
 """Places of the tables that name files; a star stands for every table there."""
 
 MAX_BYTES = 1_000_000

@@ -60,6 +60,7 @@ _TABLES = (
     "worn",
     "strength",
     "loss_map",
+    "duty",
     OUTPUT,
     "formulas",
 )
@@ -163,11 +164,19 @@ def _digests(built: Built) -> Iterator[Row]:
     held = Provenance("derived", note="SHA-256 of what the file holds")
     if built.case.worn is not None:
         yield _row("worn", "digest", digest_of(built.case.worn.file), "", held)
+    yield from _digest_of_duty(built)
     heights = None if built.case.film is None else built.case.film.heights
     for name in MEMBERS:
         one = getattr(heights, name, None)
         if one is not None:
             yield _row("film", f"heights.{name}.digest", digest_of(one.file), "", held)
+
+
+def _digest_of_duty(built: Ready) -> Iterator[Row]:
+    """What tells a load over time in a file from any other."""
+    if built.case.duty is not None:
+        held = Provenance("derived", note="SHA-256 of what the file holds")
+        yield _row("duty", "digest", digest_of(built.case.duty.file), "", held)
 
 
 def _of_films(built: Ready) -> dict[str, Followed]:
@@ -210,6 +219,7 @@ def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
             yield from _models(built, document)
         elif hasattr(built.case, table):
             yield from (row for row in _rows(built.case, document, table) if row["value"] != "")
+    yield from _digest_of_duty(built)
 
 
 def _models(built: BuiltDrive, document: Document) -> Iterator[Row]:
@@ -355,10 +365,15 @@ def _followed(found: Any) -> Followed:
 def _leaves(table: Any) -> Iterator[tuple[str, Any]]:
     """Dotted keys and values of a table and of the tables in it; None for what is left open."""
     for key, value in dict(table or {}).items():
-        if isinstance(value, BaseModel):
+        if isinstance(value, BaseModel) or _are_tables(value):
             yield from ((f"{key}.{name}", one) for name, one in _leaves(value))
         else:
             yield key, value
+
+
+def _are_tables(value: Any) -> bool:
+    """True for tables by names of the user's own, be there none."""
+    return isinstance(value, dict) and all(isinstance(one, BaseModel) for one in value.values())
 
 
 def _of_study(name: str, study: Study, document: Document) -> Iterator[Row]:

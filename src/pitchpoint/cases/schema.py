@@ -32,6 +32,7 @@ from pitchpoint.contact.registry import (
     USUAL_SUMMITS,
     SummitConstants,
 )
+from pitchpoint.duty_cycle.table import DutyTable
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import CollectedInputError, Complaints, InputError, shorten
@@ -1591,6 +1592,8 @@ class Case(Table):
     """Further computations with changed inputs, by names of one's own."""
     loss_map: LossMap | None = None
     """Axes of the loss map; up to 1.5 times the operating point unless given."""
+    duty: DutyTable | None = None
+    """Asks for energy, torques, lives and heat over a duty cycle of the output; none unless given."""
     output: Output | None = None
     """Units in which results are shown; usual ones unless given."""
     formulas: Formulas | None = None
@@ -1801,6 +1804,8 @@ class DriveCase(Table):
     """Further computations with changed inputs, by names of one's own."""
     loss_map: LossMap | None = None
     """Axes of the loss map; up to 1.5 times the operating point unless given."""
+    duty: DutyTable | None = None
+    """Asks for energy, torques, lives and heat over a duty cycle of the output; none unless given."""
     output: Output | None = None
     """Units in which results are shown; usual ones unless given."""
     targets: Targets = ()
@@ -2104,8 +2109,11 @@ def _check_load(case: Case | DriveCase, gears: GearsTable | PlanetaryGears) -> N
 
 
 def _check_quadrants(case: Case | DriveCase) -> None:
-    """InputError unless there are speeds between the lowest and the largest of a map of four quadrants."""
+    """InputError unless a duty cycle has its map, and a map of four quadrants speeds between its ends."""
     asked = case.loss_map
+    if case.duty is not None and (asked is None or asked.quadrants != 4):
+        told = "asks for the loss map of the output; give [loss_map] with quadrants = 4 too"
+        raise InputError(told, key="duty")
     if asked is None or asked.quadrants != 4:
         return
     largest = 1.5 * case.operation.speed if asked.speed is None else asked.speed

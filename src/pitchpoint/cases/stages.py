@@ -161,6 +161,10 @@ def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
     wrong.demand_none()
     made = _together(case, built, [one.document for one in alone])
     _check_map(made)
+    if case.duty is not None:
+        from pitchpoint.cases.duty import duty_inputs
+
+        duty_inputs(case.duty, case.operation.temperature, travels="loaded" in made.travels)
     bearing = without_bearing(made.places, lacks_bearing=made.lacks_bearing)
     return replace(made, told=(*made.told, *bearing))
 

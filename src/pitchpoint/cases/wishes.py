@@ -1012,7 +1012,8 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             ("duty_cycle", "spectrum", "load_spectrum", "load_cases", "collective", "duty"),
             (),
             "an operating point is one load at one speed; each further one is a table [variants.NAME], or a "
-            'step of --sweep operation.torque="10 N m:60 N m:6"',
+            'step of --sweep operation.torque="10 N m:60 N m:6"; a load over time is the file of a '
+            "table [duty]",
         ),
         Wish(
             ("oil_temperature", "ambient_temperature", "oil_temp", "temp"),

@@ -1,6 +1,6 @@
 """Parts of a result to compute: the analyses of a case, with their pieces."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,7 +15,7 @@ from pitchpoint.errors import Complaints, InputError, shorten
 from pitchpoint.input.quantities import shown
 from pitchpoint.registry import nearest
 
-__all__ = ["Job", "chosen_jobs", "job_of", "jobs"]
+__all__ = ["Job", "chosen_jobs", "job_of", "jobs", "with_read"]
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,9 @@ class Job:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """Descriptions of the pieces, in order; a long sweep has several."""
+        """Descriptions of the pieces, in order; a long sweep has several, what reads another part none."""
+        if self.analysis.reads:
+            return ()
         return tuple({"analysis": self.name, **each} for each in self.analysis.pieces(self.built))
 
     @property
@@ -105,12 +107,28 @@ def chosen_jobs(variant: Variant, studies: Mapping[str, Study], names: Sequence[
     if isinstance(names, str) or not names:
         told = 'analyses are a list of names of parts, ["operation", "cycle"]'
         raise InputError(f"{shown(names)} was given; {told}", file=variant.name)
-    chosen = jobs(variant, studies, names)
+    chosen = jobs(variant, studies, [*with_read(names)])
     if missing := {*names} - {job.name for job in chosen}:
         every = [job.name for job in jobs(variant, studies)]
         for name in sorted(missing, key=[*names].index):
             _demand_part(name, every, variant)
     return chosen
+
+
+def with_read(names: Iterable[str]) -> set[str]:
+    """Names of parts, with those of the parts that they are computed of.
+
+    Args:
+        names: of parts and studies.
+
+    Example:
+        >>> sorted(with_read(["duty"]))
+        ['duty', 'four_quadrants']
+    """
+    known = dict(ANALYSES)
+    asked = {*names}
+    read = (known[name] for name in asked & known.keys())
+    return asked | {one.reads for one in read if isinstance(one, Analysis) and one.reads}
 
 
 def _parts(entry: Analysis | Several, subject: Subject) -> list[Analysis]:

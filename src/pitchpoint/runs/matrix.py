@@ -93,7 +93,10 @@ def _asking(sample: str) -> list[Ready]:
     return [built, *films, *worn, *maps]
 
 
-_OF_OUTPUT = {"loss_map.quadrants": 4}
+_OF_OUTPUT = {
+    "loss_map.quadrants": 4,
+    "duty.file": str(resources.files("pitchpoint.cases") / "at_rest.csv"),
+}
 
 
 _WEAR = {"wear.law": "vdi_2736", "wear.cycles": 1e6, "wear.rate": "1e-9 mm3/(N m)"}

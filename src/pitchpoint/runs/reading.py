@@ -81,7 +81,7 @@ def _recorded(path: Path, own: ChosenLaws, settings: Mapping[str, Any]) -> Varia
         tree = record.tree
     except InputError as error:
         raise error.at(file=name) from None
-    told = (*record.warning, *_other_heights(record, settings), *_other_wear(record, settings))
+    told = (*record.warning, *_other_heights(record, settings), *_other_inputs(record, settings))
     return Variant(
         tree, name, record.variant, recorded=record.case, warnings=told, folder=path.parent
     )
@@ -96,10 +96,12 @@ def _other_heights(record: Manifest, settings: Mapping[str, Any]) -> Iterator[st
             yield from _other_file(record, key.removesuffix("digest"), "heights")
 
 
-def _other_wear(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
-    """That a file holds other worn flanks than when the record was made, unless settings name one."""
-    if not any(key.split(".")[0] == "worn" for key in settings):
-        yield from _other_file(record, "worn.", "worn flanks")
+def _other_inputs(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
+    """That files hold other wear or loads than when the record was made, unless settings name others."""
+    replaced = {key.split(".")[0] for key in settings}
+    for table, what in (("worn", "worn flanks"), ("duty", "loads over time")):
+        if table not in replaced:
+            yield from _other_file(record, f"{table}.", what)
 
 
 def _by_key(record: Manifest) -> dict[str, Any]:

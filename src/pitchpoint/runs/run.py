@@ -18,7 +18,7 @@ from pitchpoint._jax import double_precision, jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Unasked
 from pitchpoint.analyses.comparison import compare, demand_parts
 from pitchpoint.analyses.plausibility import unlikely
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.registry import ANALYSES, DUTY
 from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
@@ -65,7 +65,7 @@ from pitchpoint.results.store import (
 )
 from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.case import Case, CaseLike, as_case, held
-from pitchpoint.runs.jobs import Job, chosen_jobs, job_of, jobs
+from pitchpoint.runs.jobs import Job, chosen_jobs, job_of, jobs, with_read
 from pitchpoint.runs.python_values import demand_arguments
 
 if TYPE_CHECKING:
@@ -275,7 +275,8 @@ def run_variant(
         _hand_over(variant, outcome.manifest["title"], folder, studies)
     for job in work:
         mark = _mark(variant, built, rows, job)
-        outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
+        part = _part(job, variant, mark, folder, progress, outcome.parts)
+        outcome.parts[job.name] = part
         if not is_study(job.name):
             outcome.tell([*doubts_of(part.attrs), *unlikely(built, outcome.parts)])
         _note(outcome, folder, finished=False)
@@ -308,7 +309,7 @@ def compute_alone(
     job = Job(analysis, built)
     rows = inputs.input_rows(built, variant.document())
     mark = fingerprint(_mark(variant, built, rows, job), told)
-    return _part(job, variant, mark, folder, progress)
+    return _part(job, variant, mark, folder, progress, {})
 
 
 def _of_design(variant: Variant, built: Ready) -> list[str]:
@@ -567,15 +568,15 @@ def rows_of(
     if not built.case.targets:
         told = "has no targets to compare with; give several designs, or a published case"
         raise InputError(told, file=made.name)
-    needed = {target.reads for target in built.case.targets}
+    needed = with_read({target.reads for target in built.case.targets})
     work = jobs(made, {})
     demand_parts(built.case.targets, [job.name for job in work], made.name)
-    parts = {}
+    parts: dict[str, xr.Dataset] = {}
     chosen = [job for job in work if job.name in needed]
     with (watch or _unwatched)(None) as progress:
         progress.expect(len(chosen))
         for job in chosen:
-            parts[job.name] = _part(job, made, "", None, progress)
+            parts[job.name] = _part(job, made, "", None, progress, parts)
     return compare(built.case.targets, parts, made.name)
 
 
@@ -627,6 +628,7 @@ def _opened(path: Path) -> Outcome:
 def _mark(variant: Variant, built: Ready, rows: Sequence[inputs.Row], job: Job) -> str:
     """Digest of the inputs of a part, out of their rows: the same for a case and for its record."""
     study = inputs.STUDIES
+    rows = [row for row in rows if row["table"] != DUTY.name or job.name == DUTY.name]
     given = [
         [row["table"], row["key"], row["value"]]
         for row in rows
@@ -644,7 +646,7 @@ def _mark(variant: Variant, built: Ready, rows: Sequence[inputs.Row], job: Job) 
 def _names_file(row: Mapping[str, Any]) -> bool:
     """True for the name of a file: what it holds counts, see `_digests`, not where it lies."""
     *above, last = f"{row['table']}.{row['key']}".split(".")
-    return last == "file" and bool({"film", "worn"} & {*above})
+    return last == "file" and bool({"film", "worn", "duty"} & {*above})
 
 
 def _digests(rows: Sequence[inputs.Row]) -> list[str]:
@@ -653,8 +655,14 @@ def _digests(rows: Sequence[inputs.Row]) -> list[str]:
 
 
 def _part(
-    job: Job, variant: Variant, mark: str, folder: Path | None, progress: Progress
+    job: Job,
+    variant: Variant,
+    mark: str,
+    folder: Path | None,
+    progress: Progress,
+    before: Mapping[str, xr.Dataset],
 ) -> xr.Dataset:
+    """A part, computed or read; `before` are parts that are there already."""
     labels = {"case": variant.label, "variant": variant.variant, "fingerprint": mark}
     whole = None if folder is None else folder / f"{job.name}.nc"
     found = None if variant.own else _found(whole, mark)
@@ -664,11 +672,12 @@ def _part(
             _drop_pieces(folder, job.name)  # of a run that was killed while it removed them
         return found
     bound_programs()  # those of the parts before
-    pieces: list[xr.Dataset] = []
+    pieces = [before[job.analysis.reads]] if job.analysis.reads else []
     for piece in _pieces(job, variant, labels, folder, progress):
         pieces.append(piece)
         progress.points(sum(map(_points, pieces)))
-    data = job.joined(pieces)
+    with _told_of(variant):
+        data = job.joined(pieces)
     data.attrs.update(labels)
     _keep(data, whole)
     if folder is not None:

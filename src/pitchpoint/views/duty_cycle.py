@@ -9,7 +9,7 @@ from pitchpoint.views import show
 from pitchpoint.views.first_screen import Line, aligned
 from pitchpoint.views.section import KeyFigure
 
-__all__ = ["FIRST", "duty_screen", "first_to_fail"]
+__all__ = ["FIRST", "cycle_figures", "cycle_words", "duty_screen", "first_to_fail"]
 
 FIRST = "Fails first"
 """Name of the line on the part with the shortest life."""
@@ -22,19 +22,32 @@ def duty_screen(data: xr.Dataset, width: int) -> list[Line]:
         data: see `duty_dataset`.
         width: of the screen [characters].
     """
-    count = data.sizes["time"]
     title = f"{data.attrs['case']} ({data.attrs['variant']}), friction {data.attrs['law']}"
-    low, high = (float(end(data["temperature"])) for end in (xr.DataArray.min, xr.DataArray.max))
-    degrees = show.span("temperature", "temperature", (low, high), data)
-    cycle = f"duty cycle of {_value(data, 'duration')}, {count} samples, oil {degrees}"
     return [
         Line(title, "title"),
-        Line(show.first_clauses(cycle, width)),
-        *aligned([*_figures(data)], width),
+        Line(show.first_clauses(cycle_words(data), width)),
+        *aligned([*cycle_figures(data)], width),
     ]
 
 
-def _figures(data: xr.Dataset) -> Iterator[KeyFigure]:
+def cycle_words(data: xr.Dataset) -> str:
+    """Length, samples and temperatures of a duty cycle in words.
+
+    Args:
+        data: see `duty_dataset`.
+    """
+    low, high = (float(end(data["temperature"])) for end in (xr.DataArray.min, xr.DataArray.max))
+    degrees = show.span("temperature", "temperature", (low, high), data)
+    return f"duty cycle of {_value(data, 'duration')}, {data.sizes['time']} samples, oil {degrees}"
+
+
+def cycle_figures(data: xr.Dataset) -> Iterator[KeyFigure]:
+    """What the cycle takes, loses and asks of the driver, with what fails first at the end.
+
+    Args:
+        data: see `duty_dataset`.
+    """
+
     def of(name: str) -> str:
         return _value(data, name)
 

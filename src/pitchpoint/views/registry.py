@@ -172,6 +172,16 @@ MOTION = Section(
     answer=of_part("motion", "pitchpoint.views.sections.motion:motion_facts"),
     screen=of_part("motion", "pitchpoint.views.sections.motion:motion_printed"),
 )
+DUTY = Section(
+    name="duty",
+    title="Duty cycle",
+    short="Duty cycle",
+    order=720.0,
+    parts=("duty",),
+    blocks="pitchpoint.views.sections.duty:duty_blocks",
+    answer=of_part("duty", "pitchpoint.views.sections.duty:duty_facts"),
+    screen=of_part("duty", "pitchpoint.views.sections.duty:duty_printed"),
+)
 
 SECTIONS: Registry[Section] = Registry(
     "section",
@@ -206,6 +216,7 @@ SECTIONS: Registry[Section] = Registry(
     FORMULAS,
     LOSS_MAP,
     FOUR_QUADRANTS,
+    DUTY,
     COMPARED,
     ISSUES,
     MODELS,

@@ -32,7 +32,7 @@ from pitchpoint.views.section import (
 from pitchpoint.views.sections.beside import starts_doubtfully
 from pitchpoint.views.sections.loss_map import Chart, map_panel
 
-__all__ = ["FOUR_QUADRANTS"]
+__all__ = ["FOUR_QUADRANTS", "OF_OUTPUT"]
 
 OF_OUTPUT = Chart(
     "four_quadrants",

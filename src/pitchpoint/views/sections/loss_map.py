@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import ceil, floor, log10
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,7 @@ from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section
 
-__all__ = ["LOSS_MAP", "Chart", "efficiency_panel", "map_panel"]
+__all__ = ["LOSS_MAP", "Chart", "efficiency_panel", "map_figure", "map_panel"]
 
 _SEEN = 1e-4
 """Difference, over the larger of two values, that four digits tell."""
@@ -84,7 +85,7 @@ def map_panel(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart = OF_
     _, variant, position, law = choices[first]
     even = {name: words for name in chart.shown if (words := _even(name, outcomes, chart))}
     figures = [
-        _figure(name, outcomes[variant], chart, law, position, _scale(name, outcomes, chart))
+        map_figure(name, outcomes[variant], chart, law, position, _scale(name, outcomes, chart))
         for name in chart.shown
         if name not in even
     ]
@@ -210,14 +211,24 @@ def _thinned(known: np.ndarray) -> np.ndarray:
     return np.unique(np.linspace(places[0], places[-1], count).round().astype(int))
 
 
-def _figure(
+def map_figure(
     name: str,
     outcome: Outcome,
     chart: Chart,
     law: int,
     temperature: int,
-    scale: Mapping[str, float],
+    scale: Mapping[str, float] = MappingProxyType({}),
 ) -> Figure:
+    """Heat map of a quantity with the operating point.
+
+    Args:
+        name: of the quantity.
+        outcome: that has the map.
+        chart: which map it is.
+        law: position of the friction law.
+        temperature: position of the temperature of the oil.
+        scale: ends of the colour scale, `zmin` and `zmax`; those of the values unless given.
+    """
     data, fact, (across, up) = outcome.parts[chart.part], operating_point(outcome), chart.axes
     unit, units = show.unit_of(name, data), [show.unit_of(one, data) for one in chart.axes]
     speed = fact.speed * float(data.attrs.get("speed_ratio", 1.0))

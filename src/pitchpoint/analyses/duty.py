@@ -1,0 +1,79 @@
+"""Energy, torques, lives and heat over the duty cycle of a case, of its loss map of the output."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.four_quadrants import (
+    both,
+    celsius,
+    quadrant_axes,
+    speed_ratio,
+    table_of,
+)
+from pitchpoint.analyses.strength import rating_inputs
+from pitchpoint.analyses.tooth_life import tooth_life
+from pitchpoint.cases.built_drive import Ready
+from pitchpoint.cases.duty import DutyInputs, duty_inputs
+from pitchpoint.duty_cycle.cycle import duty_dataset
+from pitchpoint.duty_cycle.energy import demand_inside
+from pitchpoint.efficiency.loss_table import LossTable
+from pitchpoint.errors import InputError
+
+__all__ = ["demand_in_map", "duty_of_map"]
+
+
+def duty_of_map(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """The duty cycle of a case under its first friction law.
+
+    Args:
+        built: the case.
+        parts: the loss map of the output, alone.
+    """
+    (data,) = parts
+    asked = _asked(built)
+    moves = bool((np.abs(asked.history.speed) * np.abs(asked.history.torque)).any())
+    rated = moves and bool(rating_inputs(built))
+    return duty_dataset(
+        table_of(data),
+        asked.history,
+        motor=asked.motor,
+        lives=asked.lives,
+        heating=asked.heating,
+        teeth=tooth_life(built, asked.history) if rated else None,
+        travels="loaded" in built.travels,
+        warnings=(),
+    )
+
+
+def demand_in_map(built: Ready) -> None:
+    """InputError for a duty cycle that the loss map of a case will not hold, before that is computed.
+
+    Args:
+        built: the case.
+    """
+    asked, (loads, speeds, degrees) = _asked(built), quadrant_axes(built)
+    history = asked.history
+    if asked.heating is not None:  # whose temperatures are not known yet
+        history = history.at_temperature(np.full(history.time.size, degrees[0]))
+    empty = LossTable(
+        torques=both(loads).tolist(),
+        speeds=(speeds * speed_ratio(built)).tolist(),
+        temperatures=celsius(degrees).tolist(),
+        loss_torques={},
+        speed_ratio=speed_ratio(built),
+    )
+    if "loaded" in built.travels:
+        empty = empty._replace(units=("N", "m/s", "N m"))
+    try:
+        demand_inside(empty, history)
+    except InputError as error:
+        raise InputError(error.message, key="duty.file") from None
+
+
+def _asked(built: Ready) -> DutyInputs:
+    table = built.case.duty
+    if table is None:
+        raise InputError("the case has no [duty]")
+    return duty_inputs(table, float(built.operation.temperature), travels="loaded" in built.travels)
