@@ -69,7 +69,7 @@ def test_tables_of_the_package_are_as_near_as_they_say(tmp_path: Path) -> None:
     found, table = tables(path.read_text("utf-8")), table_of(made.parts["four_quadrants"])
     assert sorted(found) == [20.0, 40.0, 60.0]
     said = re.findall(r"^the map .*\) +(\S+) +(\S+) +\S+ % +\d+$", "\n".join(lost), re.MULTILINE)
-    nodes = loss_nodes(table, temperature=40.0)
+    nodes = loss_nodes(table, temperature=313.15)
     rows = found[40.0]
     torque, speed = nodes.torque * 0.02, nodes.speed * 50.0
     quick = lossy_torque(rows, torque, speed)

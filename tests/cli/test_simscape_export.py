@@ -23,10 +23,10 @@ def test_a_linear_lookup_is_the_map(tmp_path: Path) -> None:
     random = np.random.default_rng(2)
     points = random.uniform([-60.0, np.log(0.01), 20.0], [60.0, np.log(4.0), 60.0], (500, 3))
     joint = joint_model(made)
-    expected = joint.loss_torque(points[:, 0], np.exp(points[:, 1]), points[:, 2])
+    expected = joint.loss_torque(points[:, 0], np.exp(points[:, 1]), points[:, 2] + 273.15)
     np.testing.assert_allclose(table(points), expected, rtol=1e-9)
     driver = (points[:, 0] + table(points)) * held["speed_ratio"]
-    there = joint.driver_torque(points[:, 0], np.exp(points[:, 1]), points[:, 2])
+    there = joint.driver_torque(points[:, 0], np.exp(points[:, 1]), points[:, 2] + 273.15)
     np.testing.assert_allclose(driver, there, atol=1e-9)
     assert str(held["title"]) == visible(TITLE)
     assert (float(held["ratio"]), str(held["units"]["torque"])) == (-50.0, "N m")

@@ -63,13 +63,13 @@ def test_errors_are_those_of_the_driver_by_quadrant_and_range() -> None:
     def alike(torque: np.ndarray, speed: np.ndarray, degree: np.ndarray) -> np.ndarray:
         return np.asarray(2.0 + 0.10 * abs(torque))
 
-    within = MapRange((6.0, 30.0), (0.1, 1.0), (40.0, 40.0))
+    within = MapRange((6.0, 30.0), (0.1, 1.0), (313.15, 313.15))
     drives, driven = law_errors(table, loss_nodes(table, within=within), alike)
     assert (drives.quadrants, driven.quadrants) == ("I, III", "II, IV")
     assert drives.largest < 1e-15
     assert driven.largest == pytest.approx(0.02 * 30.0 / 50.0)
     assert driven.mean == pytest.approx(0.02 * 18.0 / 50.0)
     assert driven.share == pytest.approx(0.02 * 30.0 / (30.0 - 2.0 - 3.6))
-    whole = law_errors(table, loss_nodes(table, temperature=40.0), alike)
+    whole = law_errors(table, loss_nodes(table, temperature=313.15), alike)
     assert whole[1].largest == pytest.approx(0.02 * 60.0 / 50.0)
     assert (whole[0].points, whole[1].points, whole[1].locked) == (4, 2, 0)

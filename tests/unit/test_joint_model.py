@@ -18,7 +18,11 @@ def test_torques_are_those_of_the_map_in_all_quadrants() -> None:
         lost = float(plain(np.array(way * torque), np.array(abs(speed)), np.array(40.0)))
         assert joint.loss_torque(torque, speed) == pytest.approx(lost, rel=1e-12)
         assert joint.driver_torque(torque, speed) == pytest.approx((torque + way * lost) / 50.0)
-    rest = joint.holding_band(30.0, 60.0)
+    with pytest.raises(
+        InputError, match=r"60 K, .* is no temperature of an oil; plain numbers are in K"
+    ):
+        joint.holding_band(30.0, 60.0)
+    rest = joint.holding_band(30.0, 333.15)
     assert (rest.lowest, rest.highest) == pytest.approx(
         ((30.0 - 5.6 * 0.96) / 50.0, (30.0 + 5.0 * 0.96) / 50.0)
     )
@@ -73,7 +77,7 @@ def test_ranges_that_somebody_names() -> None:
     assert within is not None
     assert within.torque == (5.0, 30.0)
     assert within.speed == pytest.approx((np.pi / 3.0, np.pi))
-    assert within.temperature == (40.0, 40.0)
+    assert within.temperature == (313.15, 313.15)
     assert part_of_map(joint) is None
     for told, texts in (
         ("beyond the map, which ends at 60 N m", ("5 N m:90 N m", None)),

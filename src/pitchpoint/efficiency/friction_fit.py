@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import least_squares, lsq_linear
 
 from pitchpoint.efficiency.loss_table import LossTable
@@ -97,7 +98,7 @@ class MapRange:
     Attributes:
         torque: without sign [torque of the output].
         speed: without sign, above zero [speed of the output].
-        temperature: [degC].
+        temperature: [K].
     """
 
     torque: tuple[float, float]
@@ -206,6 +207,11 @@ def _bounded(columns: np.ndarray, lost: np.ndarray) -> np.ndarray:
     return factors
 
 
+def _celsius(kelvins: ArrayLike) -> np.ndarray:
+    """Temperatures in degC without the rounding of the difference."""
+    return np.asarray(np.round(np.asarray(kelvins, float) - 273.15, 9))
+
+
 def loss_nodes(
     table: LossTable,
     law: str = "",
@@ -219,15 +225,16 @@ def loss_nodes(
         table: the map.
         law: of friction; the first one by default.
         within: for even steps over a part of it; all values of the table by default, without those at rest.
-        temperature: for this one alone [degC].
+        temperature: for this one alone [K]; points have degC as the table.
     """
     torques, speeds, degrees = table.torques, table.speeds[1:], table.temperatures
     if within is not None:
         amounts = np.linspace(*within.torque, STEPS)
         torques = sorted({*amounts.tolist(), *(-amounts).tolist()})
         speeds = np.geomspace(*within.speed, STEPS).tolist()
-        degrees = sorted({*np.linspace(*within.temperature, 3).tolist()})
-    degrees = degrees if temperature is None else [temperature]
+        degrees = sorted({*_celsius(np.linspace(*within.temperature, 3)).tolist()})
+    if temperature is not None:
+        degrees = [float(_celsius(temperature))]
     torque, speed, degree = (
         one.ravel() for one in np.meshgrid(torques, speeds, degrees, indexing="ij")
     )

@@ -73,7 +73,9 @@ def write_fmu(given: Simulated, folder: Path) -> HandedOver:
     demand_room(given.joint.table, "--fmu")
     joint = given.joint
     lost = lost_lines(
-        given, lambda torque, speed, degree: joint.loss_torque(torque, speed, degree), BESIDE
+        given,
+        lambda torque, speed, degree: joint.loss_torque(torque, speed, degree + 273.15),
+        BESIDE,
     )
     sources = _sources(given)
     binaries = _binary(given, sources)

@@ -148,7 +148,7 @@ def _package(given: Simulated, tables: dict[float, list[LossyRow]], lost: list[s
         "name, Joint puts inertia, wind-up and backlash around one. Nobody compiled this file: it was "
         "made by the grammar of the language, and its tables were checked against the map."
     )
-    locks = joint.holding_band(given.load, given.temperature).locked
+    locks = joint.holding_band(given.load, given.kelvins).locked
     paragraphs = [*heading(given, what), *([LOCKS] if locks else []), "\n".join(lost)]
     remark = "\n".join(f"// {line}" for one in paragraphs for line in _lines(one))
     gears = "".join(_gear(given, degree, rows) for degree, rows in tables.items())

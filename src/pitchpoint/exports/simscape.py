@@ -43,7 +43,9 @@ def write_simscape(given: Simulated, folder: Path) -> HandedOver:
 
     joint = given.joint
     lost = lost_lines(
-        given, lambda torque, speed, degree: joint.loss_torque(torque, speed, degree), BESIDE
+        given,
+        lambda torque, speed, degree: joint.loss_torque(torque, speed, degree + 273.15),
+        BESIDE,
     )
     image = io.BytesIO()
     savemat(image, _content(given), long_field_names=True, do_compression=True, oned_as="column")

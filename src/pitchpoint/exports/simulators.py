@@ -85,7 +85,7 @@ class Simulated(NamedTuple):
         outcome: the result.
         joint: of it.
         load: at which friction without load is right [torque of the output].
-        temperature: [degC].
+        temperature: as the files have it [degC].
         within: part of the map that counts, or None for all of it.
     """
 
@@ -96,9 +96,14 @@ class Simulated(NamedTuple):
     within: MapRange | None
 
     @property
+    def kelvins(self) -> float:
+        """The temperature as the joint takes it [K]."""
+        return self.temperature + 273.15
+
+    @property
     def fit(self) -> FrictionFit:
         """Friction with constant, load and speed nearest to the map."""
-        return self.joint.fit(temperature=self.temperature, within=self.within)
+        return self.joint.fit(temperature=self.kelvins, within=self.within)
 
     @property
     def name(self) -> str:
@@ -165,7 +170,7 @@ def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
         raise InputError(told, key=key) from None
     load = quantity_of(asked.load, joint.units["torque"], "--load")
     warm = quantity_of(asked.temperature, "K", "--temperature")
-    degree = joint.temperature if warm is None else round(warm - 273.15, 9)
+    degree = round((joint.temperature if warm is None else warm) - 273.15, 9)
     for value, axis, of, text in (
         (load or 0.0, joint.table.torques, "--load", asked.load),
         (degree, joint.table.temperatures, "--temperature", asked.temperature),
@@ -173,7 +178,7 @@ def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
         if not axis[0] <= value <= axis[-1]:
             ends = f"{max(axis[0], 0.0):.6g} to {axis[-1]:.6g}"
             raise InputError(f"{shown(text)} is beyond the map, which goes from {ends}", key=of)
-    within = part_of_map(joint, asked.torque_range, asked.speed_range, degree)
+    within = part_of_map(joint, asked.torque_range, asked.speed_range, warm)
     return Simulated(outcome, joint, joint.load if load is None else load, degree, within)
 
 
@@ -243,11 +248,11 @@ def _row(place: str, error: LawError) -> str:
 def _range_words(given: Simulated) -> str:
     within = given.within
     assert within is not None
-    (low, high), (slow, fast), (degree, _) = within.torque, within.speed, within.temperature
+    (low, high), (slow, fast) = within.torque, within.speed
     unit = given.joint.units
     return (
         f"The range: {low:.4g} to {high:.4g} {unit['torque']}, {slow:.4g} to {fast:.4g} {unit['speed']}, "
-        f"{degree:.4g} degC."
+        f"{given.temperature:.4g} degC."
     )
 
 
@@ -257,14 +262,14 @@ def friction_at_load(given: Simulated) -> FrictionFit:
     Where friction locks the drive against the load, the constant holds it instead.
     """
     joint, within = given.joint, given.within
-    nodes = loss_nodes(joint.table, joint.law, within=within, temperature=given.temperature)
+    nodes = loss_nodes(joint.table, joint.law, within=within, temperature=given.kelvins)
     speeds = np.unique(nodes.speed)
     torque, speed = (
         v.ravel() for v in np.meshgrid([-given.load, given.load], speeds, indexing="ij")
     )
-    lost = np.asarray(joint.loss_torque(torque, speed, given.temperature))
+    lost = np.asarray(joint.loss_torque(torque, speed, given.kelvins))
     stuck = np.isnan(lost)
-    alone = np.asarray(joint.loss_torque(0.0 * torque, speed, given.temperature))
+    alone = np.asarray(joint.loss_torque(0.0 * torque, speed, given.kelvins))
     lost = np.where(stuck, LOCKED_SHARE * given.load + np.nan_to_num(alone), lost)
     if stuck.any():
         return FrictionFit(float(lost[stuck].max()), 0.0, 0.0, 0.0)
@@ -279,7 +284,7 @@ def holding_friction(given: Simulated, moving: float) -> float:
         moving: friction in motion, below which it is not, as simulators ask.
     """
     joint, ratio = given.joint, given.joint.table.speed_ratio
-    rest = joint.holding_band(given.load, given.temperature)
+    rest = joint.holding_band(given.load, given.kelvins)
     both = [rest.highest / ratio - given.load, given.load - rest.lowest / ratio]
     known = [one for one in both if math.isfinite(one)]
     stuck = [LOCKED_SHARE * given.load] if len(known) < 2 else []

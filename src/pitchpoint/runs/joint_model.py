@@ -11,6 +11,7 @@ import xarray as xr
 from pitchpoint import units
 from pitchpoint.analyses.four_quadrants import celsius, table_of
 from pitchpoint.analyses.registry import FOUR_QUADRANTS
+from pitchpoint.duty_cycle.history import demand_kelvins
 from pitchpoint.efficiency.friction_fit import (
     FrictionFit,
     LawError,
@@ -91,7 +92,7 @@ class JointModel:
         law: of friction, by name.
         load: torque of operation at the output [torque].
         speed: of operation at the output [speed].
-        temperature: of operation [degC].
+        temperature: of operation [K]; the table has degC.
         inertia: of all bodies of the drive at the output, without the motor [kg m2 or kg].
         rotor_inertia: of the motor at the driver, which somebody gave [kg m2 or kg].
         wind_up: torque over wind-up.
@@ -158,7 +159,7 @@ class JointModel:
         point = {
             "load": table.torques[-1],
             "speed": table.speeds[-1],
-            "temperature": table.temperatures[0],
+            "temperature": table.temperatures[0] + 273.15,
         }
         maybe = dict.fromkeys(_MAYBE)
         limits = {"largest_torque": table.torques[-1], "largest_speed": table.speeds[-1]}
@@ -197,7 +198,7 @@ class JointModel:
         Args:
             torque: of the output on its load, of either sign.
             speed: of the output, of either sign, not zero.
-            temperature: [degC]; that of operation by default.
+            temperature: [K]; that of operation by default.
 
         Returns:
             Numbers or arrays; NaN where friction locks the drive, and at rest.
@@ -216,9 +217,9 @@ class JointModel:
 
         Args:
             torque: of the output on its load.
-            temperature: [degC]; that of operation by default.
+            temperature: [K]; that of operation by default.
         """
-        return self.table.at_rest(torque, self._degree(temperature), self.law)
+        return self.table.at_rest(torque, float(self._degree(temperature)), self.law)
 
     def fit(
         self,
@@ -230,11 +231,11 @@ class JointModel:
         """Constant, proportional and viscous friction nearest to the map, see `fit_friction`.
 
         Args:
-            temperature: [degC]; that of operation by default.
+            temperature: [K]; that of operation by default.
             within: part of the map that counts; all of it by default.
             stribeck: True for a part that falls with speed too.
         """
-        at = self._degree(temperature)
+        at = self.temperature if temperature is None else temperature
         nodes = loss_nodes(self.table, self.law, within=within, temperature=at)
         return fit_friction(nodes.torque, nodes.speed, nodes.lost, stribeck=stribeck)
 
@@ -252,7 +253,11 @@ class JointModel:
         return [*_told(self)]
 
     def _degree(self, temperature: Any) -> Any:
-        return self.temperature if temperature is None else temperature
+        """Temperatures in degC, as the table has them."""
+        warm = np.asarray(self.temperature if temperature is None else temperature, float)
+        for kelvins in (warm.min(), warm.max()):
+            demand_kelvins(float(kelvins), "temperature", "an oil")
+        return celsius(warm)
 
     def _at(self, torque: Any, speed: Any, temperature: Any) -> Any:
         return self.table.at_many(torque, speed, self._degree(temperature), self.law)
@@ -323,7 +328,7 @@ def joint_model(
         law=name,
         load=float(data.attrs["load"]),
         speed=_operating_speed(record, speed, ratio),
-        temperature=float(celsius(np.asarray(float(data.attrs["degree"])))),
+        temperature=float(data.attrs["degree"]),
         rotor_inertia=rotor,
         limits={"largest_torque": table.torques[-1], "largest_speed": speed},
         lacks=lacks,
@@ -343,7 +348,7 @@ def part_of_map(
     Args:
         joint: of the map.
         torque, speed: least and largest amount at the output, "1 N m:20 N m".
-        temperature: [degC]; that of operation by default.
+        temperature: [K]; that of operation by default.
 
     Returns:
         None where neither is given.
