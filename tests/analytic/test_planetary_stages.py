@@ -601,9 +601,8 @@ def test_what_a_set_in_a_row_does_not_have_is_told_with_its_operating_point():
     [
         ({"driver": "sun"}, {}, "stages.1.driver", "what drives a planetary set is input"),
         ({"turn": "90 deg"}, {}, "stages.1.turn", "leave it out"),
-        ({"film": {"solver": "line"}}, {}, "stages.1.film", "a file of this set alone"),
         ({"wear": {"law": "archard_1953", "cycles": 1e6, "coefficient": 1e-6}}, {},
-         "stages.1.wear", "a file of this set alone"),
+         "stages.1.wear.profile", "share the load by their gaps"),
         ({"bodies": ["sun", "planet"]}, {}, "stages.1.bodies", "without a table [train]"),
         ({"gears": {**SETS[0], "teeth": [24, 30, 80]}}, {}, "stages.1.gears", ""),
         ({"gears": {**SETS[0], "planets": 5}}, {}, "stages.1.gears.planets", "fit"),
