@@ -329,9 +329,11 @@ def test_a_drive_of_stages_tells_ratio_output_speed_and_what_is_doubtful_of_a_st
     (outcome,) = outcomes.values()
     by_name = {one.name: one.detail for one in key_figures(in_order(), outcome)}
     assert re.match(
-        r"later losses add 1\.1 % at roots, 0\.\d+ % at flanks; at gear 2 of stage 1; no ",
+        r"later losses add 0\.\d+ % \(roots 1\.1 %\); at gear 2 of stage 1; no ",
         by_name["Stress of roots"],
     )
+    assert any(line.startswith("Torsional stiffness") for line in lines)
+    assert not any(line.startswith("Backlash") for line in lines)  # no allowance is given
     rows = {row[""]: row["default"] for row in beside_each_other(outcomes)}
     assert rows["Ratio"] == "9.77117" and rows["Backlash at the output"].endswith(" nominal")
     manifest = {**outcome.manifest, "stages": [dict(one) for one in outcome.manifest["stages"]]}

@@ -75,7 +75,7 @@ def _above(mesh: Built, torque: float) -> Iterator[Doubt]:
             f"under which stresses of roots are {roots} higher and those of flanks {flanks}.",
             moves=more,
             about=("root_stress", "contact_stress"),
-            brief=f"later losses add {roots} at roots, {flanks} at flanks.",
+            brief=f"later losses add {flanks} (roots {roots}).",
         )
 
 

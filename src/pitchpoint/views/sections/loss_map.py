@@ -254,12 +254,8 @@ def map_figure(
         "mode": "markers",
         "x": rounded(display(across, [speed], data)),
         "y": rounded(display(up, [fact.torque], data)),
-        "marker": {
-            "symbol": "x",
-            "size": 10,
-            "color": "#fff",
-            "line": {"color": "#222", "width": 1.5},
-        },
+        # The number of a contour can be read inside.
+        "marker": {"symbol": "circle-open", "size": 20, "color": "#222", "line": {"width": 2}},
         "hovertemplate": "operating point<extra></extra>",
     }
     return Figure(
@@ -267,7 +263,7 @@ def map_figure(
         titled(name, data),
         [heat, point],
         layout(show.axis_title(across, data), show.axis_title(up, data)),
-        f"The cross marks the operating point.{_beginning(name, data, chart, shown)}{same}",
+        f"The ring marks the operating point.{_beginning(name, data, chart, shown)}{same}",
     )
 
 

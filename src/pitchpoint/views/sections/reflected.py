@@ -85,7 +85,7 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         value = " to ".join(_cell("output_backlash", end) for end in ends)
         unit = show.unit_of("output_backlash")
         yield KeyFigure(
-            59.0,
+            _NONE_ALLOWED if max(map(abs, ends)) < _NO_PLAY else 59.0,
             "Backlash at the output",
             f"{value} {unit}",
             _whence(data, nominal),
@@ -109,6 +109,12 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         yield KeyFigure(79.5, "Torsional stiffness", "not asked", how)
 
 
+_NO_PLAY = 1e-9
+"""Backlash below which no allowance can have been given [rad]."""
+_NONE_ALLOWED = 79.7
+"""Place of such a backlash among key figures: behind what is computed."""
+
+
 def _whence(data: xr.Dataset, nominal: float) -> str:
     """By what the backlash at the output is, and which stages have no tolerances in it."""
     if not _by_tolerances(data):
@@ -122,7 +128,7 @@ def _whence(data: xr.Dataset, nominal: float) -> str:
 
 def _of_nominal(backlash: float) -> str:
     """What goes with a backlash without tolerances."""
-    none = abs(backlash) < 1e-9
+    none = abs(backlash) < _NO_PLAY
     return "nominal: no allowance is given" if none else "nominal, the input held"
 
 
