@@ -88,13 +88,6 @@
     });
   }
 
-  // Plots of figures that stand side by side, one of which begins lower than the other.
-  if (!height) for (const one of document.querySelectorAll(".figures > figure:has(.plot) + figure:has(.plot)")) {
-    const [plot, before] = [one, one.previousElementSibling].map((figure) => figure.querySelector(".plot"));
-    const beside = box(one).left > box(one.previousElementSibling).right - 1;
-    if (shown(plot) && shown(before) && beside && Math.abs(box(plot).top - box(before).top) > 1) faults.push(`figure ${plot.id}: lower or higher than the one beside it`);
-  }
-
   const light = (colour) => {
     const [r, g, b] = colour.match(/[\d.]+/g).map((v) => v / 255).map((v) => (v > 0.03928 ? ((v + 0.055) / 1.055) ** 2.4 : v / 12.92));
     return 0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05;

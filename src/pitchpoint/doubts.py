@@ -159,7 +159,7 @@ def fails(sentence: str, brief: str = "") -> Doubt:
     return _alike(doubt, f"{_FAILS}{doubt}", f"{_FAILS}{brief or doubt.brief}")
 
 
-_SMALLER = (("", 1.0), ("m", 1e3), ("u", 1e6), ("n", 1e9))
+_SMALLER = (("", 1.0), ("m", 1e3), ("µ", 1e6), ("n", 1e9))
 """Prefixes of units and how many there are in one."""
 
 

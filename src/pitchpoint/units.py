@@ -396,7 +396,7 @@ _POWER = re.compile(r"(?<=[A-Za-z])\^(?=-?\d)")
 _FORCE, _LENGTH = "N|gf|lbf|ozf", "m|in|ft"
 _WORD = (
     rf"(?:da|[TGMkhdcmunp])?(?:(?:{_FORCE})[kdcmunp]?(?:{_LENGTH})|{_FORCE}|{_LENGTH}|kp|tf|g|lb|oz|t|l|L"
-    r"|Pa|bar|psi|ksi|kip|atm|s|min|h|d|Hz|rpm|rps|rev|turn|rad|grad|gon|deg[CFR]?|arcmin|arcsec|K|W|Wh|J|hp|P|St|mol)"
+    r"|Pa|bar|psi|ksi|kip|atm|s|min|h|d|Hz|rpm|rps|rev|turn|rad|grad|gon|deg[CFR]?|arcmin|arcsec|K|W|Wh|J|hp|P|St|mol|A|V|ohm)"
 )
 _OTHERWISE = {
     "degC": ("c", "celsius", "deg c", "° c"),

@@ -260,6 +260,7 @@ def thinned(first):
     return {f"{name}_thickness_allowance": [*of[both]] for name, of in limits.items()}
 
 
+@pytest.mark.whole
 def test_allowances_of_a_set_are_those_of_its_meshes():
     """Backlash at the output by tolerances, of the short form and of two meshes with a train."""
     whole = {

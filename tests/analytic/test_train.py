@@ -118,6 +118,7 @@ def test_orders_that_phases_cancel_do_not_reach_the_sun():
     assert min(order(found, number) for number in (3, 6)) > 1e-5
 
 
+@pytest.mark.whole
 def test_a_third_of_the_period_stands_for_all_of_it():
     """Where planets come to each other's places; forces of each over the rest are those of the others."""
     train = planetary((25, 29, 83), equal_angles(3))

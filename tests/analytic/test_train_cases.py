@@ -237,6 +237,38 @@ def test_pins_of_other_planets_are_refused_in_a_sentence(changes, words):
     assert words in str(caught.value)
 
 
+def drawn_load_factors(tree):
+    data = ANALYSES["planet_sharing"].compute(load_case(tree), {}, lambda *_: None)
+    assert data.sizes["planet"] == 3
+    return data["drawn_planet_load_factor"].values
+
+
+def test_three_planets_share_by_drawn_tolerances():
+    """Fewer planets than places for them."""
+    drawn = drawn_load_factors({"gears": SET | {"pin_tolerance": "2 um"}, **TABLES})
+    assert 1.0 < drawn[0] < drawn[-1] < 3.0
+
+
+@pytest.mark.whole
+def test_planets_share_alike_in_whatever_order_the_bodies_of_a_mesh_are_named():
+    train = {
+        "input": "sun",
+        "output": "carrier",
+        "held": "ring",
+        "planets": 3,
+        "planet_runout": "9 um",
+    }
+    ring = {"bodies": ["planet", "ring"], "gears": gears([30, -84])}
+    orders = (["sun", "planet"], [24, 30]), (["planet", "sun"], [30, 24])
+    first, second = (
+        drawn_load_factors(
+            {"stages": [{"bodies": bodies, "gears": gears(teeth)}, ring], "train": train, **TABLES}
+        )
+        for bodies, teeth in orders
+    )
+    np.testing.assert_allclose(first, second, rtol=1e-9)
+
+
 @pytest.mark.whole
 def test_planets_of_a_stepped_set_behind_a_pair_share_its_load():
     stages = [

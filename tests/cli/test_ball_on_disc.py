@@ -162,7 +162,7 @@ def test_the_report_shows_the_contact_and_leaves_out_what_gears_have(outcome: Ou
     assert "Under the friction law" not in body  # whose figures are those above
     assert "normal force" in json.dumps(payload(page))
     body, absent = body.split('id="absent"')
-    assert "Loss map, Four quadrants (nothing is transmitted by a test rig)" in absent
+    assert "Loss map, Four quadrants, Duty cycle (nothing is transmitted by a test rig)" in absent
     for heading in ("base pitch", "back-driving", "Loss map", "Load sharing</dt>", "None"):
         assert heading not in body, heading
     assert render({"one": outcome, "two": outcome})

@@ -10,8 +10,10 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 from pitchpoint.analyses.tooth_life import cycles_to_failure, load_classes
+from pitchpoint.cases.duty import _heating
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
 from pitchpoint.duty_cycle.energy import driver_course, energies, mean_load
+from pitchpoint.duty_cycle.first_failure import first_failure
 from pitchpoint.duty_cycle.heat import ThermalNetwork
 from pitchpoint.duty_cycle.history import (
     LoadHistory,
@@ -22,6 +24,7 @@ from pitchpoint.duty_cycle.history import (
 )
 from pitchpoint.duty_cycle.life import BALL, ROLLER, SCATTER, RatedLife, system_life
 from pitchpoint.duty_cycle.motor import COPPER, Motor
+from pitchpoint.duty_cycle.table import HeatTable
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.views.duty_cycle import first_to_fail
@@ -210,6 +213,37 @@ def test_the_part_that_fails_first_is_the_one_of_the_shortest_life() -> None:
     assert first_to_fail(bare, 0.0).detail == "not compared: teeth, bearings, heat, wear"
 
 
+def test_lives_of_like_names_are_all_compared_and_unloaded_flanks_endure_nothing() -> None:
+    lives = xr.Dataset(
+        {"bearing_life": ("bearing", [1e7, 9e7])}, {"bearing": ["output", "bearing output"]}
+    )
+    assert first_failure(lives)[:3] == ("bearing output", 1e7, 2)
+    both = {"flank_life": math.nan, "back_flank_life": math.inf, "root_life": math.nan}
+    plastic = xr.Dataset(
+        {name: (("mesh", "gear"), [[life]]) for name, life in both.items()},
+        {"mesh": [""], "gear": ["gear 1"]},
+    )
+    assert first_failure(plastic).compared == 0
+    assert "other teeth" in first_failure(plastic).left_out
+    steel = plastic.map(lambda life: xr.full_like(life, 1e9)).assign_attrs(unrated=1)
+    assert "other teeth" in first_failure(steel).left_out
+
+
+def test_resistances_side_by_side_carry_together() -> None:
+    table = HeatTable.model_validate(
+        {
+            "gears": "g",
+            "bodies": {"g": {"heat_capacity": "9 J/K"}},
+            "resistances": {
+                "fan": {"between": ["g", "ambient"], "resistance": "1 K/W"},
+                "plate": {"between": ["ambient", "g"], "resistance": "2 K/W"},
+            },
+        }
+    )
+    network = _heating(table).network
+    assert network.steady({"g": 10.0})[0] - network.ambient == pytest.approx(10.0 / 1.5, rel=1e-12)
+
+
 @pytest.mark.parametrize(("most", "fails"), [(1.0, "heat of drive"), (-1.0, "")])
 def test_a_body_that_gets_too_hot_fails_at_once(most: float, fails: str) -> None:
     network = ThermalNetwork({"drive": 1e9}, {("drive", "ambient"): 0.8}, ambient=293.15)
@@ -338,6 +372,7 @@ def test_a_motor_that_is_too_small_is_told() -> None:
     ("capacities", "resistances", "says"),
     [
         ({}, {}, "needs one body"),
+        ({"ambient": 1.0}, {}, '"ambient" is the air around'),
         ({"a": 0.0}, {("a", "ambient"): 1.0}, "0.0 was given for a"),
         ({"a": 1.0}, {("a", "b"): 1.0}, "between two of a, ambient"),
         ({"a": 1.0}, {("a", "a"): 1.0}, "between two of a, ambient"),

@@ -454,6 +454,14 @@ def test_sentences_on_a_mesh_of_a_train_name_its_bodies():
     rim = of_stage_by_bodies(train, "stage 2: gear 2: a rim; gear 1 too")
     assert rim == "stage 2: ring: a rim; the planet too"
     assert of_stage_by_bodies(train, "stage 1: gear 2: a rim") == "stage 1: gear 2: a rim"
+    named = {**mesh, "bodies": "gear 2 and gear 3", "stages": [{**mesh, "number": "2 (of a set)"}]}
+    other = Mock(spec=Outcome, manifest=named)
+    assert by_bodies(other, 'gear 1 drives gear 2 of "gear 2.csv"') == (
+        'gear 2 drives gear 3 of "gear 2.csv"'
+    )
+    assert of_stage_by_bodies(other, "stage 2 (of a set): gear 2 turns") == (
+        "stage 2 (of a set): the ring turns"
+    )
     pair = Mock(spec=Outcome, manifest={"members": ["gear 1", "gear 2"]})
     assert by_bodies(pair, "tip of gear 2") == "tip of gear 2"
 

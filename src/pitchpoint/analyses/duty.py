@@ -13,7 +13,7 @@ from pitchpoint.analyses.four_quadrants import (
     table_of,
 )
 from pitchpoint.analyses.strength import rating_inputs
-from pitchpoint.analyses.tooth_life import tooth_life
+from pitchpoint.analyses.tooth_life import load_classes, tooth_life
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.duty import DutyInputs, duty_inputs
 from pitchpoint.duty_cycle.cycle import duty_dataset
@@ -33,8 +33,7 @@ def duty_of_map(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """
     (data,) = parts
     asked = _asked(built)
-    moves = bool((np.abs(asked.history.speed) * np.abs(asked.history.torque)).any())
-    rated = moves and bool(rating_inputs(built))
+    rated = bool(load_classes(asked.history).way.size) and bool(rating_inputs(built))
     return duty_dataset(
         table_of(data),
         asked.history,

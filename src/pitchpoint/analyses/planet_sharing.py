@@ -80,7 +80,7 @@ def shared(built: BuiltTrain) -> Sharing:
         stiffnesses=[slopes[k] for k in meshes],
         pin_stiffness=table.pin_stiffness or np.inf,
     )
-    angles, floating = np.asarray(train.angles), bool(table.floating)
+    angles, floating = np.asarray(train.angles)[:count], bool(table.floating)
     errors = np.array(table.pin_errors or [0.0] * count)
     forces = planet_forces(total, stiffness, errors, angles, floating=floating)
     drawn = None
@@ -127,8 +127,9 @@ def _drawn_errors(
 
 def _equivalents(built: BuiltTrain) -> PinEquivalents | None:
     """How deviations of teeth load planets between a sun and a ring; None for others."""
-    meshes: list[Any] = [one.link.mesh for one in built.design.meshes if one.carrier != HOUSING]
-    meshes.sort(key=lambda mesh: bool(mesh.internal))
+    trains = [one for one in built.design.meshes if one.carrier != HOUSING]
+    trains.sort(key=lambda one: bool(one.link.mesh.internal))
+    meshes: list[Any] = [one.link.mesh for one in trains]
     if [bool(mesh.internal) for mesh in meshes] != [False, True]:
         return None
     sun, ring = (
@@ -137,7 +138,11 @@ def _equivalents(built: BuiltTrain) -> PinEquivalents | None:
     )
     normal, helix = float(meshes[0].pressure_angle), float(meshes[0].helix_angle)
     base_helix = float(np.arcsin(np.sin(helix) * np.cos(normal)))
-    (_, at_sun), (at_ring, _) = (np.abs(np.asarray(mesh.base_radii)) for mesh in meshes)
+    (planet,) = built.design.planets
+    at_sun, at_ring = (
+        float(np.abs(np.asarray(one.link.mesh.base_radii))[one.bodies.index(planet)])
+        for one in trains
+    )
     return PinEquivalents(sun, ring, normal, base_helix, float(at_ring / at_sun))
 
 

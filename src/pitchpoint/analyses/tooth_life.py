@@ -110,7 +110,8 @@ def tooth_life(built: Ready, history: LoadHistory) -> xr.Dataset:
     Returns:
         Over `mesh` and `gear`: damage of the working and of the back flank, of the root, which both load, and
         lives; NaN for plastics, whose lines are others. Load factors are those at the load and speed of each
-        class, K_A is left as the case has it: 1 where the history is the whole load.
+        class, K_A is left as the case has it: 1 where the history is the whole load. The attribute `unrated`
+        counts the meshes whose teeth ISO 6336 does not rate.
 
     Raises:
         InputError: the drive has no teeth that ISO 6336 rates, or nothing moves under load.
@@ -136,7 +137,8 @@ def tooth_life(built: Ready, history: LoadHistory) -> xr.Dataset:
         name.replace("damage", "life"): (("mesh", "gear"), lives[:, :, at])
         for at, name in enumerate(names)
     }
-    return dataset(data, {"mesh": labels, "gear": ["gear 1", "gear 2"]})
+    coordinates = {"mesh": labels, "gear": ["gear 1", "gear 2"]}
+    return dataset(data, coordinates, unrated=len(built.meshes) - len(every))
 
 
 def _damage(inputs: tuple[Any, ...], built: Ready, classes: LoadClasses) -> Floats:

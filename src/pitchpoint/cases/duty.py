@@ -1,6 +1,7 @@
 """The duty cycle of a case as it is computed: its file read, its motor, lives and resistances built."""
 
 import os
+from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -10,7 +11,7 @@ from pitchpoint.duty_cycle.heat import ThermalNetwork
 from pitchpoint.duty_cycle.history import LoadHistory, read_history
 from pitchpoint.duty_cycle.life import RatedLife
 from pitchpoint.duty_cycle.motor import Motor
-from pitchpoint.duty_cycle.table import DutyTable, HeatTable, MotorTable
+from pitchpoint.duty_cycle.table import DutyTable, HeatTable, MotorTable, ResistanceTable
 from pitchpoint.errors import InputError, shorten, visible
 
 __all__ = ["DutyInputs", "duty_inputs"]
@@ -83,7 +84,7 @@ def _heating(table: HeatTable) -> Heating:
     try:
         network = ThermalNetwork(
             {name: body.heat_capacity for name, body in table.bodies.items()},
-            {one.between: one.resistance for one in table.resistances.values()},
+            _between(table.resistances.values()),
             table.ambient,
         )
         limits = {
@@ -95,3 +96,12 @@ def _heating(table: HeatTable) -> Heating:
     except InputError as error:
         key = "bodies" if error.key in ("capacities", "limits") else error.key
         raise InputError(error.message, key=f"duty.heat.{key}") from None
+
+
+def _between(tables: Iterable[ResistanceTable]) -> dict[tuple[str, str], float]:
+    """Resistances by the two names that they join; those side by side as what they are together [K/W]."""
+    conductances: dict[tuple[str, str], float] = {}
+    for one in tables:
+        first, second = sorted(one.between)
+        conductances[first, second] = conductances.get((first, second), 0.0) + 1.0 / one.resistance
+    return {names: 1.0 / conductance for names, conductance in conductances.items()}

@@ -62,10 +62,10 @@ def height_maps(table: FilmTable, *, moving: bool = False) -> tuple[HeightMap, .
     )
 
 
-def digest_of(file: str) -> str:
-    """Digest of what a file holds; empty where it cannot be read."""
+def digest_of(file: str, largest: int = MOST_BYTES) -> str:
+    """Digest of what a file holds; empty where it cannot be read, or holds more bytes than the largest."""
     try:
-        return digest(Path(file), MOST_BYTES)
+        return digest(Path(file), largest)
     except InputError:
         return ""
 

@@ -175,8 +175,10 @@ def _digests(built: Built) -> Iterator[Row]:
 def _digest_of_duty(built: Ready) -> Iterator[Row]:
     """What tells a load over time in a file from any other."""
     if built.case.duty is not None:
+        from pitchpoint.duty_cycle.history import LARGEST
+
         held = Provenance("derived", note="SHA-256 of what the file holds")
-        yield _row("duty", "digest", digest_of(built.case.duty.file), "", held)
+        yield _row("duty", "digest", digest_of(built.case.duty.file, LARGEST), "", held)
 
 
 def _of_films(built: Ready) -> dict[str, Followed]:

@@ -2327,10 +2327,31 @@ def with_meshes(document: Document) -> Document:
                 key=key,
             )
     gears = planetary_of(document)
+    _demand_one_for_all(document)
     of_each = {key: tree[key] for key in _OF_EACH_MESH if key in tree}
     meshes = _with_materials(gears.meshes(), document)
     stages = {str(number): {**one, **of_each} for number, one in enumerate(meshes, 1)}
     return replace(document, tree={**tree, STAGES: stages, "train": _Followed(gears.train())})
+
+
+_OF_MEMBERS = {"film": ("heights",), "wear": ("coefficient", "engagements", "hardness", "rate")}
+"""Keys of those tables with a value for each of the two gears of a mesh."""
+
+
+def _demand_one_for_all(document: Document) -> None:
+    """InputError for values of two gears, of which a planetary set has three or more kinds."""
+    for table, keys in _OF_MEMBERS.items():
+        own = document.tree.get(table)
+        for key in keys if isinstance(own, Mapping) else ():
+            value = own.get(key)
+            unlike = isinstance(value, list) and any(one != value[0] for one in value)
+            if unlike or isinstance(value, Mapping):
+                raise InputError(
+                    "is one value for sun, planets and rings of a planetary set; for different ones write "
+                    "its meshes as [[stages]]",
+                    file=document.name,
+                    key=f"{table}.{key}",
+                )
 
 
 def _is_sound(materials: Mapping[str, Any]) -> bool:

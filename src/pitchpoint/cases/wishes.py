@@ -510,7 +510,7 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             "the oil has a table [lubricant]",
         ),
         Wish(
-            ("load", "loads", "duty", "operating_point"),
+            ("load", "loads", "operating_point"),
             ("operation",),
             "load, speed and temperature have a table [operation]",
         ),

@@ -6,15 +6,15 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-__all__ = ["LEFT_OUT", "FirstFailure", "first_failure"]
+__all__ = ["WITHOUT_LIFE", "FirstFailure", "first_failure"]
 
 _TEETH = {"flank": "flank_life", "back flank": "back_flank_life", "root": "root_life"}
 """Parts of a tooth with the variable of their life."""
 
 
-LEFT_OUT = {
-    "teeth": "Lives of teeth were not asked for.",
-    "other teeth": "Some teeth have no life here: ISO 6336 has no lines of their materials, as of plastics.",
+WITHOUT_LIFE = {
+    "teeth": "No life of teeth: not asked for, not rated by ISO 6336, or none moves under load.",
+    "other teeth": "Some teeth have no life here: ISO 6336 rates cylindrical gears, and no plastics.",
     "bearings": "No bearing or wave generator was given with its rated life.",
     "heat": "No body was given with a largest temperature, so that none gets too hot.",
     "wear": "Wear has no life here: its depth is that of the operating point.",
@@ -29,7 +29,7 @@ class FirstFailure(NamedTuple):
         part: its name; empty where all endure, and where no life is known.
         life: of it; 0 where a body is too hot, infinite where all endure, NaN where none is known [s].
         compared: number of parts whose lives are known.
-        left_out: keys of `LEFT_OUT`, of what has no life here.
+        left_out: keys of `WITHOUT_LIFE`, of what has no life here.
     """
 
     part: str
@@ -43,7 +43,8 @@ def first_failure(data: xr.Dataset, limits: Mapping[str, float] | None = None) -
 
     Args:
         data: with `bearing_life` over `bearing`, lives of teeth over `mesh` and `gear`, `body_temperature`
-            over `time` and `body`; any of them may be missing.
+            over `time` and `body`; any of them may be missing. An attribute `unrated` above 0 tells that
+            teeth of other meshes have no life.
         limits: largest temperatures of bodies by name [K]; one that gets hotter fails at once.
 
     Example:
@@ -52,25 +53,20 @@ def first_failure(data: xr.Dataset, limits: Mapping[str, float] | None = None) -
         >>> first_failure(xr.Dataset(lives, {"bearing": ["input", "output"]}))[:3]
         ('bearing output', 10000000.0, 2)
     """
-    lives = {**_of_bodies(data, limits or {}), **dict(_of_bearings(data)), **dict(_of_teeth(data))}
-    known = {name: life for name, life in lives.items() if not np.isnan(life)}
-    left_out = tuple(_left_out(data, limits or {}, len(known) < len(lives)))
+    lives = [*_of_bodies(data, limits or {}), *_of_bearings(data), *_of_teeth(data)]
+    known = [(name, life) for name, life in lives if not np.isnan(life)]
+    unknown = len(known) < len(lives) or bool(data.attrs.get("unrated"))
+    left_out = tuple(_left_out(data, limits or {}, unknown))
     if not known:
         return FirstFailure("", float("nan"), 0, left_out)
-    part, life = min(known.items(), key=lambda item: item[1])
+    part, life = min(known, key=lambda item: item[1])
     return FirstFailure("" if np.isinf(life) else part, life, len(known), left_out)
 
 
-def _of_bodies(data: xr.Dataset, limits: Mapping[str, float]) -> dict[str, float]:
-    hottest = {
-        body: float(data["body_temperature"].sel(body=body).max())
-        for body in limits
-        if "body_temperature" in data
-    }
-    return {
-        f"heat of {body}": 0.0 if degrees > limits[body] else float("inf")
-        for body, degrees in hottest.items()
-    }
+def _of_bodies(data: xr.Dataset, limits: Mapping[str, float]) -> Iterator[tuple[str, float]]:
+    for body, limit in limits.items() if "body_temperature" in data else ():
+        hottest = float(data["body_temperature"].sel(body=body).max())
+        yield f"heat of {body}", 0.0 if hottest > limit else float("inf")
 
 
 def _of_bearings(data: xr.Dataset) -> Iterator[tuple[str, float]]:
@@ -83,10 +79,15 @@ def _of_bearings(data: xr.Dataset) -> Iterator[tuple[str, float]]:
 
 
 def _of_teeth(data: xr.Dataset) -> Iterator[tuple[str, float]]:
-    for part, variable in _TEETH.items():
-        if variable in data:
-            for (row, column), place in _places(data):
-                yield f"{part} of {place}", float(data[variable].values[row, column])
+    there = {part: variable for part, variable in _TEETH.items() if variable in data}
+    for at, place in _places(data) if there else ():
+        lives = {part: float(data[variable].values[at]) for part, variable in there.items()}
+        flanks = {part for part in lives if part.endswith("flank")}
+        if any(
+            np.isnan(lives[part]) for part in flanks
+        ):  # the one without load would endure for ever
+            lives |= dict.fromkeys(flanks, np.nan)
+        yield from ((f"{part} of {place}", life) for part, life in lives.items())
 
 
 def _places(data: xr.Dataset) -> Iterator[tuple[tuple[int, int], str]]:

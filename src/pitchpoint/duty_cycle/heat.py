@@ -66,6 +66,11 @@ class ThermalNetwork:
     def __post_init__(self) -> None:
         if not self.capacities:
             raise InputError("needs one body at least", key="capacities")
+        if AMBIENT in self.capacities:
+            raise InputError(
+                f'"{AMBIENT}" is the air around, whose temperature is given; a body has another name',
+                key="capacities",
+            )
         for body, capacity in self.capacities.items():
             if not 0.0 < capacity < np.inf:
                 raise InputError(

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = [
+    "LARGEST",
     "LoadHistory",
     "demand_kelvins",
     "history_of_table",
@@ -28,7 +29,7 @@ Floats = NDArray[np.float64]
 _COLDEST, _HOTTEST = 150.0, 600.0
 """Temperatures of an oil that are plausible [K]; below lies what was meant in degC."""
 
-_LARGEST = 1 << 28
+LARGEST = 1 << 28
 """Bytes of a file; ten million samples have some 200 MB."""
 
 
@@ -193,7 +194,7 @@ def read_history(path: Path, temperature: float, *, travels: bool = False) -> Lo
 
     import pandas as pd
 
-    text = content(path, _LARGEST).decode("utf-8-sig", "replace")
+    text = content(path, LARGEST).decode("utf-8-sig", "replace")
     first = text.partition("\n")[0]
     apart = max(",;\t", key=first.count)
     comma = apart != "," and "." not in text

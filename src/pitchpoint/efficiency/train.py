@@ -134,8 +134,7 @@ class Train(eqx.Module):
 
     def onward(self, mesh: TrainMesh) -> Float[Array, ""]:
         """Sense in which the phase of a mesh runs: one, or minus one."""
-        own = mesh.design.mesh
-        return own.onward * jnp.sign((own.driver @ own.motion) * (own.driver @ self.motion(mesh)))
+        return jnp.sign(mesh.design.mesh.passing @ self.motion(mesh))
 
     @property
     def period(self) -> Float[Array, ""]:

@@ -86,9 +86,11 @@ class MeshState(eqx.Module):
 
     @property
     def contact_force_ratio(self) -> Nodes:
-        """Largest normal force of a copy over that without friction; one where it carries nothing."""
-        ratios = jnp.where(self.nominal > 0.0, jnp.abs(self.force) / self.nominal, 1.0)
-        return jnp.max(ratios, axis=0)
+        """Largest normal force of a copy over that without friction; one where none carries."""
+        carries = self.nominal > 0.0
+        ratios = jnp.abs(self.force) / jnp.where(carries, self.nominal, 1.0)
+        largest = jnp.max(jnp.where(carries, ratios, 0.0), axis=0)
+        return jnp.where(jnp.any(carries, axis=0), largest, 1.0)
 
 
 class TrainCycle(eqx.Module):

@@ -149,7 +149,11 @@ class Mesh(eqx.Module):
         drives = number_of(member, names)
         if np.asarray(self.driver)[drives]:
             return self
-        if not np.asarray(self.loaded)[drives] or has(self, turned_rates):
+        if has(self, turned_rates):
+            raise InputError(
+                f"bodies here have motors of their own; the {names[drives]} drives none"
+            )
+        if not np.asarray(self.loaded)[drives]:
             raise InputError(f"the {names[drives]} is fixed and cannot drive")
         return dataclasses.replace(self, driver=self.loaded, loaded=self.driver)
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import cos, isfinite, pi
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
@@ -366,7 +366,9 @@ class PlanetaryGears(Table):
             value = table.get(key)
             if isinstance(value, list | tuple):
                 raise InputError(
-                    f"{shown(value)} has {count_of(value)}, and one body alone {does}", key=key
+                    f"{shown(value)} has {count_of(value)}, and one body alone {does}; write one of "
+                    f"{', '.join(get_args(Body))}",
+                    key=key,
                 )
         return table
 

@@ -236,6 +236,7 @@ class JointModel:
             stribeck: True for a part that falls with speed too.
         """
         at = self.temperature if temperature is None else temperature
+        _demand_kelvins(at, *_ends(within))
         nodes = loss_nodes(self.table, self.law, within=within, temperature=at)
         return fit_friction(nodes.torque, nodes.speed, nodes.lost, stribeck=stribeck)
 
@@ -246,6 +247,7 @@ class JointModel:
             law: lost torque over torque along the motion, speed and temperature [degC].
             within: part of the map that counts; all of it by default.
         """
+        _demand_kelvins(*_ends(within))
         return law_errors(self.table, loss_nodes(self.table, self.law, within=within), law)
 
     def lines(self) -> list[str]:
@@ -255,12 +257,21 @@ class JointModel:
     def _degree(self, temperature: Any) -> Any:
         """Temperatures in degC, as the table has them."""
         warm = np.asarray(self.temperature if temperature is None else temperature, float)
-        for kelvins in (warm.min(), warm.max()):
-            demand_kelvins(float(kelvins), "temperature", "an oil")
+        _demand_kelvins(warm.min(), warm.max())
         return celsius(warm)
 
     def _at(self, torque: Any, speed: Any, temperature: Any) -> Any:
         return self.table.at_many(torque, speed, self._degree(temperature), self.law)
+
+
+def _demand_kelvins(*temperatures: float) -> None:
+    for kelvins in temperatures:
+        demand_kelvins(float(kelvins), "temperature", "an oil")
+
+
+def _ends(within: MapRange | None) -> tuple[float, ...]:
+    """Temperatures at which a part of a map ends; none of all of it."""
+    return () if within is None else tuple(within.temperature)
 
 
 _MAYBE = (

@@ -147,22 +147,29 @@ def by_bodies(outcome: Outcome, text: str) -> str:
 
 def of_stage_by_bodies(outcome: Outcome, text: str) -> str:
     """A text that begins with its stage, with the bodies of that in place of the members of its mesh."""
-    begun = re.match(r"[Ss]tage (\d+)\b[^:]*: ", text)
-    stages = outcome.manifest.get("stages", ()) if begun else ()
-    own = [one for one in stages if begun and str(one["number"]) == begun[1]]
+    stages = outcome.manifest.get("stages", ()) if text[1:].startswith("tage ") else ()
+    own = [one for one in stages if text[1:].startswith(f"tage {one['number']}: ")]
     return _in_bodies(own[0], text) if own else text
 
 
 def _in_bodies(record: Mapping[str, Any], text: str) -> str:
     if not record.get("bodies"):
         return text
-    for member, body in zip(map(str, record["members"]), _by_bodies(record), strict=True):
-        if member != body:
-            named = show.the(body)
-            text = re.sub(rf": {member}(?=: )", f": {body}", text)
-            text = re.sub(rf"\b{member}\b", named, text)
-            text = re.sub(rf"\b{member.capitalize()}\b", show.sentence(named, False), text)
-    return text
+    bodies = dict(zip(map(str, record["members"]), _by_bodies(record), strict=True))
+    bodies = {member: body for member, body in bodies.items() if member != body}
+    if not bodies:
+        return text
+
+    def named(at: re.Match[str]) -> str:
+        if at["member"] is None:  # quoted, as a name of the user's
+            return at[0]
+        body = bodies.get(at["member"]) or bodies[f"{at['member'][0].lower()}{at['member'][1:]}"]
+        if at["label"]:
+            return f": {body}"
+        return show.the(body) if at["member"] in bodies else show.sentence(show.the(body), False)
+
+    every = "|".join(re.escape(name) for own in bodies for name in (own, own.capitalize()))
+    return re.sub(rf'"[^"]*"|(?P<label>: (?=(?:{every}): ))?\b(?P<member>{every})\b', named, text)
 
 
 def _central(bodies: Sequence[str]) -> str:

@@ -277,11 +277,17 @@ def _typeset(words: str) -> "markupsafe.Markup":
     return Markup(show.subscripts(show.pretty(str(escape(words)))))
 
 
-def _breakable(words: str) -> "markupsafe.Markup":
-    """Words, escaped, with indices set low, that break after an underscore of a name, and within no unit."""
+def _breakable(words: str, *, symbols: bool = True) -> "markupsafe.Markup":
+    """Words, escaped, that break after an underscore of a name, and within no unit.
+
+    Args:
+        words: with symbols whose indices are set low, unless they are names alone, as of files.
+        symbols: False for such names.
+    """
     from markupsafe import Markup, escape
 
-    whole = show.subscripts(_IN_UNIT.sub("\u00a0", str(escape(words))))
+    whole = _IN_UNIT.sub("\u00a0", str(escape(words)))
+    whole = show.subscripts(whole) if symbols else whole
     return Markup(whole.replace("_", "_<wbr>"))
 
 

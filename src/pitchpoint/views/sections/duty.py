@@ -7,7 +7,7 @@ from math import ceil
 import numpy as np
 import xarray as xr
 
-from pitchpoint.duty_cycle.first_failure import LEFT_OUT
+from pitchpoint.duty_cycle.first_failure import WITHOUT_LIFE
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.duty_cycle import cycle_figures, cycle_words, first_to_fail
@@ -55,7 +55,7 @@ def operating_points(name: str, outcome: Outcome) -> Figure:
     law = laws(data).index(str(cycle.attrs["law"]))
     drawn = map_figure("mean_efficiency", outcome, OF_OUTPUT, law, place)
     degree = level("temperature", float(data["temperature"].values[place]))
-    thinned = f", every {step}th of them" if step > 1 else ""
+    thinned = f", one in {step} of them" if step > 1 else ""
     told = f"Dots are the operating points of the cycle{thinned}; oil at {degree}."
     return replace(drawn, name=name, data=[drawn.data[0], points], note=told)
 
@@ -78,7 +78,7 @@ def _of_variant(place: int, outcome: Outcome) -> Iterator[Block]:
     if "bearing" in data.coords:
         yield _lives(data)
     out = filter(None, str(data.attrs["left_out"]).split(", "))
-    yield Paragraph(" ".join(LEFT_OUT[key] for key in out), "note")
+    yield Paragraph(" ".join(WITHOUT_LIFE[key] for key in out), "note")
     figure = operating_points(f"duty_{place}", outcome)
     yield Panel("Operating points over the efficiency", [figure])
 

@@ -487,7 +487,8 @@ def _rigid(data: xr.Dataset) -> str:
 def _assumed(data: xr.Dataset) -> str:
     """On how many sizes that nobody gave a stiffness rests, in few words; empty if on none."""
     told = str(data.attrs.get("brief", "")).partition(" are not in it; ")[2]
-    return f"{told.split()[0]} sizes assumed" if told else ""
+    count = told.partition(" ")[0]
+    return f"{count} size{'s' * (count != '1')} assumed" if told else ""
 
 
 _OF_SLOPES = 3
