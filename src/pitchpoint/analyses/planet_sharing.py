@@ -127,9 +127,9 @@ def _drawn_errors(
 
 def _equivalents(built: BuiltTrain) -> PinEquivalents | None:
     """How deviations of teeth load planets between a sun and a ring; None for others."""
-    trains = [one for one in built.design.meshes if one.carrier != HOUSING]
+    trains: list[Any] = [one for one in built.design.meshes if one.carrier != HOUSING]
     trains.sort(key=lambda one: bool(one.link.mesh.internal))
-    meshes: list[Any] = [one.link.mesh for one in trains]
+    meshes = [one.link.mesh for one in trains]
     if [bool(mesh.internal) for mesh in meshes] != [False, True]:
         return None
     sun, ring = (

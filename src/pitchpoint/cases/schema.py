@@ -2342,8 +2342,9 @@ def _demand_one_for_all(document: Document) -> None:
     """InputError for values of two gears, of which a planetary set has three or more kinds."""
     for table, keys in _OF_MEMBERS.items():
         own = document.tree.get(table)
-        for key in keys if isinstance(own, Mapping) else ():
-            value = own.get(key)
+        held = own if isinstance(own, Mapping) else {}
+        for key in keys:
+            value = held.get(key)
             unlike = isinstance(value, list) and any(one != value[0] for one in value)
             if unlike or isinstance(value, Mapping):
                 raise InputError(
