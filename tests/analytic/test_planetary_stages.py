@@ -604,6 +604,8 @@ def test_what_a_set_in_a_row_does_not_have_is_told_with_its_operating_point():
         ({"turn": "90 deg"}, {}, "stages.1.turn", "leave it out"),
         ({"wear": {"law": "archard_1953", "cycles": 1e6, "coefficient": 1e-6}}, {},
          "stages.1.wear.profile", "share the load by their gaps"),
+        ({"wear": {"law": "archard_1953", "cycles": 1e6, "hardness": ["1 GPa", "2 GPa"]}}, {},
+         "stages.1.wear.hardness", "one value for sun, planets and rings"),
         ({"bodies": ["sun", "planet"]}, {}, "stages.1.bodies", "without a table [train]"),
         ({"gears": {**SETS[0], "teeth": [24, 30, 80]}}, {}, "stages.1.gears", ""),
         ({"gears": {**SETS[0], "planets": 5}}, {}, "stages.1.gears.planets", "fit"),
