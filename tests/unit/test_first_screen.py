@@ -31,7 +31,7 @@ from pitchpoint.views.first_screen import (
 )
 from pitchpoint.views.point import by_bodies, by_members, member_names, of_stage_by_bodies
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import KeyFigure, Page, Table, key_figures
+from pitchpoint.views.section import KeyFigure, Page, Table, key_figures, told_of_variants
 from pitchpoint.views.sections import answer, beside
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.strength import strength_rows
@@ -464,6 +464,20 @@ def test_sentences_on_a_mesh_of_a_train_name_its_bodies():
     )
     pair = Mock(spec=Outcome, manifest={"members": ["gear 1", "gear 2"]})
     assert by_bodies(pair, "tip of gear 2") == "tip of gear 2"
+
+
+def test_designs_beside_each_other_name_the_bodies_of_their_own():
+    pair = {"number": 1, "members": ["gear 1", "gear 2"]}
+    designs = {
+        name: Mock(
+            spec=Outcome, manifest={"stages": [stage], "warnings": ["Stage 1: gear 2 bends."]}
+        )
+        for name, stage in (("set", pair | {"bodies": "sun and planet"}), ("drive", pair))
+    }
+    assert told_of_variants(designs, "warnings", of_stage_by_bodies) == {
+        "Stage 1: the planet bends.": ["set"],
+        "Stage 1: gear 2 bends.": ["drive"],
+    }
 
 
 def test_values_and_axes_have_a_unit_without_powers_of_ten():

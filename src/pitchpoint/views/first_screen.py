@@ -254,9 +254,8 @@ def _key_figures(outcome: Outcome) -> list[KeyFigure]:
 
 def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
     """Briefs of all variants, each once and the worst of each first, those of some with their variants."""
-    first = next(iter(outcomes.values()))
     told = told_of_variants(
-        outcomes, kind, lambda text: by_members(first, show.pretty(as_doubt(text).brief))
+        outcomes, kind, lambda one, text: by_members(one, show.pretty(as_doubt(text).brief))
     )
     return [
         text if len(names) == len(outcomes) else f"{_few(names, len(outcomes))}: {text}"

@@ -195,8 +195,7 @@ def _standing(page: Page) -> Table | None:
 
 def _doubts(page: Page) -> list[str]:
     """Warnings of all, each once, with the names of those that have it where not all do."""
-    named = partial(of_stage_by_bodies, next(iter(page.outcomes.values())))
-    of = told_of_variants(page.outcomes, "warnings", named)
+    of = told_of_variants(page.outcomes, "warnings", of_stage_by_bodies)
     everyone = len(page.outcomes)
     return [t if len(of[t]) == everyone else f"{', '.join(of[t])}: {t}" for t in of]
 

@@ -661,20 +661,22 @@ def _settled(block: Block) -> Block:
 
 
 def told_of_variants(
-    outcomes: Mapping[str, Outcome], kind: str, told: Callable[[str], str] = str
+    outcomes: Mapping[str, Outcome],
+    kind: str,
+    told: Callable[[Outcome, str], str] = lambda _, text: text,
 ) -> dict[str, list[str]]:
     """Sentences on what fails or is doubtful, each once with its variants, the worst of each variant first.
 
     Args:
         outcomes: by variant.
         kind: "implausible" or "warnings".
-        told: how a sentence is told, where not as it is; those that are told alike are one.
+        told: how a sentence of an outcome is told, where not as it is; those that are told alike are one.
     """
     variants: dict[str, list[str]] = {}
     for row in zip_longest(*(outcome.manifest[kind] for outcome in outcomes.values())):
-        for variant, text in zip(outcomes, row, strict=True):
+        for (variant, outcome), text in zip(outcomes.items(), row, strict=True):
             if text is not None:
-                variants.setdefault(told(text), []).append(variant)
+                variants.setdefault(told(outcome, text), []).append(variant)
     return variants
 
 

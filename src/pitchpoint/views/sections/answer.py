@@ -79,10 +79,9 @@ AVERAGES = {
 
 def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
-    named = partial(of_stage_by_bodies, next(iter(page.outcomes.values())))
     values = {
         "variants": variants,
-        "warnings": (warnings := told_of_variants(page.outcomes, "warnings", named)),
+        "warnings": (warnings := told_of_variants(page.outcomes, "warnings", of_stage_by_bodies)),
         "first_doubt": show.first_clauses(next(iter(warnings), ""), _SUMMED_UP),
         "several": page.several,
         "designs": page.designs,
