@@ -320,7 +320,7 @@ def test_an_interrupted_map_goes_on_where_it_was(tmp_path: Path) -> None:
     job = next(job for job in jobs(made, {}) if job.name == "loss_map")
 
     def compute(after: int, folder: Path | None = tmp_path) -> xr.Dataset:
-        return running._part(job, made, "mark", folder, Interrupted(after))
+        return running._part(job, made, "mark", folder, Interrupted(after), {})
 
     whole = compute(0, None)
     with pytest.raises(KeyboardInterrupt):
