@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from pitchpoint.contact.hertz import line_pressure
-from pitchpoint.efficiency.summary import first_points, stacks
+from pitchpoint.efficiency.summary import of_stacks, stacks
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.rated_pair import bare
@@ -109,8 +109,7 @@ def rating(
     ends: Any = (nan, nan),
 ) -> Found:
     one = [(pair, jnp.asarray(np.array(ends)), asked, loads, of, finish)]
-    ((rows, used),) = stacks(one, ROWS)
-    found = first_points(ratings(*rows), used)
+    found = of_stacks((ratings(*rows), used) for rows, used in stacks(one, ROWS))
     return {name: values[0] for name, values in found.items()}
 
 

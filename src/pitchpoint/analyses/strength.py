@@ -18,7 +18,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.cases.strength import MESH_LOAD
 from pitchpoint.doubts import Doubt, fails, in_stage
-from pitchpoint.efficiency.summary import first_points, groups_alike, stacks, whole_of
+from pitchpoint.efficiency.summary import groups_alike, of_stacks, stacks, whole_of
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import bare, ends_at_tips, rated_pair
 from pitchpoint.programs import program
@@ -200,9 +200,7 @@ def rated_rows(rows: Sequence[Any]) -> Numbers:
     Args:
         rows: each a mesh and what is asked of it.
     """
-    return whole_of(
-        [first_points(ratings(_bare(one[0]), *one[1:]), used) for one, used in stacks(rows, ROWS)]
-    )
+    return of_stacks((ratings(_bare(one[0]), *one[1:]), used) for one, used in stacks(rows, ROWS))
 
 
 def _ratings(pairs: Sequence[Built]) -> list[Numbers]:

@@ -27,7 +27,7 @@ from pitchpoint.dynamics.vibration import (
     transmission_figures,
 )
 from pitchpoint.efficiency.quasi_static import Design, Operation
-from pitchpoint.efficiency.summary import first_points, stacks, whole_of
+from pitchpoint.efficiency.summary import of_stacks, stacks
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action
@@ -262,11 +262,8 @@ def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str
     parts = [(*_excited(design, point, terms, own), own.backlash) for design, point, own in inputs]
     grid = _grid(parts, inputs[0][2].orders)
     parting = separating(built)
-    return whole_of(
-        [
-            first_points(_read(one, grid, parting, reading), used)
-            for one, used in stacks(parts, TOGETHER)
-        ]
+    return of_stacks(
+        (_read(one, grid, parting, reading), used) for one, used in stacks(parts, TOGETHER)
     )
 
 

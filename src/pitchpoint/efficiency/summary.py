@@ -50,11 +50,11 @@ if TYPE_CHECKING:
 __all__ = [
     "at_points",
     "engaged",
-    "first_points",
     "groups_alike",
     "heat",
     "loss_factor",
     "mean_friction",
+    "of_stacks",
     "stacks",
     "summarise",
     "summary",
@@ -236,11 +236,8 @@ def summarise(
     prepared = list(_prepared(points, models))
     if models.law.films is not None:
         return _by_films(prepared, models, progress)
-    return whole_of(
-        [
-            first_points(_figures(one, models), used)
-            for one, used in stacks(prepared, CHUNK, progress)
-        ]
+    return of_stacks(
+        (_figures(one, models), used) for one, used in stacks(prepared, CHUNK, progress)
     )
 
 
@@ -266,8 +263,7 @@ def at_points(design: Design, operation: Operation, models: Models) -> dict[str,
         )
         return found
 
-    chunks = [some(start) for start in range(0, count, CHUNK)]
-    return first_points(whole_of(chunks), count)
+    return of_stacks((some(start), count - start) for start in range(0, count, CHUNK))
 
 
 def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
@@ -293,11 +289,8 @@ def _by_films(
         doubts.append("; ".join(getattr(one, "brief", "") or one for one in found.warnings))
         if progress is not None:
             progress(done)
-    told = whole_of(
-        [
-            first_points(_summaries(one[0], one[1], alone, models.film), used)
-            for one, used in stacks(rows)
-        ]
+    told = of_stacks(
+        (_summaries(one[0], one[1], alone, models.film), used) for one, used in stacks(rows)
     )
     each = {
         "turns_code": [one.code for one in ends],
@@ -397,9 +390,14 @@ def stacks(
             progress(start + len(part))
 
 
-def first_points(found: Mapping[str, Any], used: int) -> dict[str, np.ndarray]:
-    """Of the results of a stack, each quantity [point ...], those of points that count."""
-    return {name: np.asarray(values)[:used] for name, values in found.items()}
+def of_stacks(results: Iterable[tuple[Mapping[str, Any], int]]) -> dict[str, np.ndarray]:
+    """Results of stacks, each quantity [point ...] and how many points count, as those of all points."""
+    return whole_of(
+        [
+            {name: np.asarray(values)[:used] for name, values in found.items()}
+            for found, used in results
+        ]
+    )
 
 
 def groups_alike(trees: Iterable[Any]) -> list[list[int]]:

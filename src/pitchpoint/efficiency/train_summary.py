@@ -12,7 +12,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.efficiency.drag import at_rest
 from pitchpoint.efficiency.quasi_static import Models, Operation, events_of, power_ratio
 from pitchpoint.efficiency.rows import CHUNK
-from pitchpoint.efficiency.summary import first_points, stacks, whole_of
+from pitchpoint.efficiency.summary import of_stacks, stacks
 from pitchpoint.efficiency.train import Train
 from pitchpoint.efficiency.train_cycle import NODES_OF_TRAINS, MeshState, TrainCycle, train_cycle
 from pitchpoint.errors import InputError
@@ -58,11 +58,8 @@ def train_figures(
             f"{MOST_BYTES / 1e9:g} GB of memory; take fewer slices of their contact lines with models.slices",
             key="models.slices",
         )
-    found = whole_of(
-        [
-            first_points(_figures(one[0], one[1], laws), used)
-            for one, used in stacks(points, size, progress)
-        ]
+    found = of_stacks(
+        (_figures(one[0], one[1], laws), used) for one, used in stacks(points, size, progress)
     )
     near = nearest_to_jamming(*(found.pop(name) for name in ("levers", "largest_friction", "lost")))
     return {
