@@ -130,11 +130,11 @@ class Train(eqx.Module):
 
     def motion(self, mesh: TrainMesh) -> Float[Array, " dof"]:
         """Rates of the coordinates of a mesh against their carrier for a unit speed of the train."""
-        return jnp.stack([self.rates[body] - self.rates[mesh.carrier] for body in mesh.bodies])
+        return _motion(mesh, self.rates)
 
     def onward(self, mesh: TrainMesh) -> Float[Array, ""]:
         """Sense in which the phase of a mesh runs: one, or minus one."""
-        return jnp.sign(mesh.design.mesh.passing @ self.motion(mesh))
+        return _onward(mesh, self.rates)
 
     @property
     def period(self) -> Float[Array, ""]:
@@ -291,7 +291,7 @@ def _exchange(
         return all(
             _together(
                 np.broadcast_to(np.asarray(one.phases)[: one.copies], (count,)),
-                float(one.phases[0]) + _onward(one, rates) * one.periods * ahead,
+                float(one.phases[0]) + float(_onward(one, rates)) * one.periods * ahead,
             )
             for one in meshes
         )
@@ -312,10 +312,18 @@ def _together(first: Float[np.ndarray, " _"], second: Float[np.ndarray, " _"]) -
     return bool(np.max(np.abs(apart - np.round(apart))) < TOGETHER)
 
 
-def _onward(mesh: TrainMesh, rates: Mapping[str, float]) -> float:
+Rates = Mapping[str, float] | Mapping[str, Float[Array, ""]]
+"""Rate of each body."""
+
+
+def _motion(mesh: TrainMesh, rates: Rates) -> Float[Array, " dof"]:
+    """See `Train.motion`."""
+    return jnp.stack([jnp.asarray(rates[body] - rates[mesh.carrier]) for body in mesh.bodies])
+
+
+def _onward(mesh: TrainMesh, rates: Rates) -> Float[Array, ""]:
     """See `Train.onward`."""
-    against = np.array([rates[body] - rates[mesh.carrier] for body in mesh.bodies])
-    return float(np.sign(np.asarray(mesh.design.mesh.passing) @ against))
+    return jnp.sign(mesh.design.mesh.passing @ _motion(mesh, rates))
 
 
 def presses_other_flanks(mesh: Mesh, torque: Float[np.ndarray, " dof"]) -> bool:
