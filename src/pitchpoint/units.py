@@ -35,6 +35,7 @@ __all__ = [
     "UnitError",
     "comma_readings",
     "convert",
+    "degrees_celsius",
     "example",
     "hardness_scale",
     "is_quotient",
@@ -585,6 +586,20 @@ def convert(
     """
     scale, offset = _factors(kind, spelled(unit, kind))
     return (value_si - float(offset)) / float(scale)
+
+
+def degrees_celsius(kelvins: "NDArray[np.floating[Any]]") -> "NDArray[Any]":
+    """Temperatures in degC, without the rounding of the difference.
+
+    Args:
+        kelvins: of any shape [K].
+
+    Example:
+        >>> import numpy as np
+        >>> degrees_celsius(np.array([313.15, 333.15])).tolist()
+        [40.0, 60.0]
+    """
+    return convert(kelvins, "degC", "temperature").round(9)
 
 
 def spelled(unit: str, kind: str) -> str:

@@ -7,7 +7,6 @@ import xarray as xr
 
 from pitchpoint.analyses.four_quadrants import (
     both,
-    celsius,
     quadrant_axes,
     speed_ratio,
     table_of,
@@ -20,6 +19,7 @@ from pitchpoint.duty_cycle.cycle import duty_dataset
 from pitchpoint.duty_cycle.energy import demand_inside
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
+from pitchpoint.units import degrees_celsius
 
 __all__ = ["demand_in_map", "duty_of_map"]
 
@@ -59,7 +59,7 @@ def demand_in_map(built: Ready) -> None:
     empty = LossTable(
         torques=both(loads).tolist(),
         speeds=(speeds * speed_ratio(built)).tolist(),
-        temperatures=celsius(degrees).tolist(),
+        temperatures=degrees_celsius(degrees).tolist(),
         loss_torques={},
         speed_ratio=speed_ratio(built),
     )

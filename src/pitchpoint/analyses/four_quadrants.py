@@ -10,7 +10,6 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
-from pitchpoint import units
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.figures import ERRORS, HOLDING, HOLDING_BANDS
 from pitchpoint.analyses.finer_map import finer_map
@@ -23,6 +22,7 @@ from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
+from pitchpoint.units import degrees_celsius
 
 __all__ = [
     "both",
@@ -544,7 +544,8 @@ def _off_half_way(
     else:
         torque = -(torque + lost)
     places = (
-        np.broadcast_to(one, lost.shape) for one in (torque, speeds[:, None], celsius(degrees))
+        np.broadcast_to(one, lost.shape)
+        for one in (torque, speeds[:, None], degrees_celsius(degrees))
     )
     torque, speed, degree = places
     return _off(table, lost, torque, speed, degree), torque
@@ -604,7 +605,7 @@ def _table(axes: Mapping[Any, Any], lost: Values, ratio: float) -> LossTable:
     torques, speeds, degrees = (np.asarray(axes[name], float) for name in _DIMS[1:])
     # In degC: values between even ones are even too, where those of rounded kelvins are not.
     torques, speeds, degrees, lost = finer_map(
-        torques, speeds[speeds >= 0.0], celsius(degrees), lost
+        torques, speeds[speeds >= 0.0], degrees_celsius(degrees), lost
     )
     return LossTable(
         torques=torques.tolist(),
@@ -613,17 +614,6 @@ def _table(axes: Mapping[Any, Any], lost: Values, ratio: float) -> LossTable:
         loss_torques=dict(zip(map(str, np.asarray(axes["law"])), lost.tolist(), strict=True)),
         speed_ratio=ratio,
     )
-
-
-def celsius(degrees: np.ndarray) -> np.ndarray:
-    """Temperatures [K] in degC, without the rounding of the difference.
-
-    Example:
-        >>> import numpy as np
-        >>> celsius(np.array([313.15, 333.15])).tolist()
-        [40.0, 60.0]
-    """
-    return np.round(units.convert(degrees, "degC", "temperature"), 9)
 
 
 def _coarse(built: Ready, errors: Mapping[str, np.ndarray]) -> Iterator[Doubt]:

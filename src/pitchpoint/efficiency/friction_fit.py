@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.optimize import least_squares, lsq_linear
 
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
+from pitchpoint.units import degrees_celsius
 
 __all__ = ["FrictionFit", "LawError", "MapRange", "fit_friction", "law_errors", "loss_nodes"]
 
@@ -207,11 +207,6 @@ def _bounded(columns: np.ndarray, lost: np.ndarray) -> np.ndarray:
     return factors
 
 
-def _celsius(kelvins: ArrayLike) -> np.ndarray:
-    """Temperatures in degC without the rounding of the difference."""
-    return np.asarray(np.round(np.asarray(kelvins, float) - 273.15, 9))
-
-
 def loss_nodes(
     table: LossTable,
     law: str = "",
@@ -232,9 +227,9 @@ def loss_nodes(
         amounts = np.linspace(*within.torque, STEPS)
         torques = sorted({*amounts.tolist(), *(-amounts).tolist()})
         speeds = np.geomspace(*within.speed, STEPS).tolist()
-        degrees = sorted({*_celsius(np.linspace(*within.temperature, 3)).tolist()})
+        degrees = sorted({*degrees_celsius(np.linspace(*within.temperature, 3)).tolist()})
     if temperature is not None:
-        degrees = [float(_celsius(temperature))]
+        degrees = [float(degrees_celsius(np.asarray(temperature)))]
     torque, speed, degree = (
         one.ravel() for one in np.meshgrid(torques, speeds, degrees, indexing="ij")
     )

@@ -71,12 +71,7 @@ def write_fmu(given: Simulated, folder: Path) -> HandedOver:
         InputError: the map is too large for a file of source.
     """
     demand_room(given.joint.table, "--fmu")
-    joint = given.joint
-    lost = lost_lines(
-        given,
-        lambda torque, speed, degree: joint.loss_torque(torque, speed, degree + 273.15),
-        BESIDE,
-    )
+    lost = lost_lines(given, given.loss_of_map, BESIDE)
     sources = _sources(given)
     binaries = _binary(given, sources)
     if not binaries:

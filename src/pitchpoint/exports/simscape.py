@@ -41,12 +41,7 @@ def write_simscape(given: Simulated, folder: Path) -> HandedOver:
     """
     from scipy.io import savemat
 
-    joint = given.joint
-    lost = lost_lines(
-        given,
-        lambda torque, speed, degree: joint.loss_torque(torque, speed, degree + 273.15),
-        BESIDE,
-    )
+    lost = lost_lines(given, given.loss_of_map, BESIDE)
     image = io.BytesIO()
     savemat(image, _content(given), long_field_names=True, do_compression=True, oned_as="column")
     write_bytes(folder / "joint.mat", image.getvalue())

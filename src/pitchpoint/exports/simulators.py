@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from textwrap import fill, wrap
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from pitchpoint.input.quantities import shown
 from pitchpoint.results.store import make_folder
 from pitchpoint.runs.joint_model import JointModel, joint_model, part_of_map, quantity_of
 from pitchpoint.runs.run import Outcome
+from pitchpoint.units import degrees_celsius
 
 __all__ = [
     "TARGETS",
@@ -100,6 +101,10 @@ class Simulated(NamedTuple):
         """The temperature as the joint takes it [K]."""
         return self.temperature + 273.15
 
+    def loss_of_map(self, torque: Any, speed: Any, degree: Any) -> Any:
+        """Torque that the joint loses by its map, at temperatures in degC as a law of loss has them."""
+        return self.joint.loss_torque(torque, speed, degree + 273.15)
+
     @property
     def fit(self) -> FrictionFit:
         """Friction with constant, load and speed nearest to the map."""
@@ -170,7 +175,7 @@ def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
         raise InputError(told, key=key) from None
     load = quantity_of(asked.load, joint.units["torque"], "--load")
     warm = quantity_of(asked.temperature, "K", "--temperature")
-    degree = round((joint.temperature if warm is None else warm) - 273.15, 9)
+    degree = float(degrees_celsius(np.asarray(joint.temperature if warm is None else warm)))
     for value, axis, of, text in (
         (load or 0.0, joint.table.torques, "--load", asked.load),
         (degree, joint.table.temperatures, "--temperature", asked.temperature),

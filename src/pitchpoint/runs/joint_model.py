@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.analyses.four_quadrants import celsius, table_of
+from pitchpoint.analyses.four_quadrants import table_of
 from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.duty_cycle.history import demand_kelvins
 from pitchpoint.efficiency.friction_fit import (
@@ -26,6 +26,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
 from pitchpoint.runs.run import Outcome
+from pitchpoint.units import degrees_celsius
 
 __all__ = [
     "AngleWaves",
@@ -258,7 +259,7 @@ class JointModel:
         """Temperatures in degC, as the table has them."""
         warm = np.asarray(self.temperature if temperature is None else temperature, float)
         _demand_kelvins(warm.min(), warm.max())
-        return celsius(warm)
+        return degrees_celsius(warm)
 
     def _at(self, torque: Any, speed: Any, temperature: Any) -> Any:
         return self.table.at_many(torque, speed, self._degree(temperature), self.law)
