@@ -161,15 +161,14 @@ def _of_mesh(built: Built, document: Document) -> Iterator[Row]:
 
 def _digests(built: Built) -> Iterator[Row]:
     """What tells the content of files with heights and with worn flanks from any other."""
-    held = Provenance("derived", note="SHA-256 of what the file holds")
     if built.case.worn is not None:
-        yield _row("worn", "digest", digest_of(built.case.worn.file), "", held)
+        yield _digest("worn", "digest", digest_of(built.case.worn.file))
     yield from _digest_of_duty(built)
     heights = None if built.case.film is None else built.case.film.heights
     for name in MEMBERS:
         one = getattr(heights, name, None)
         if one is not None:
-            yield _row("film", f"heights.{name}.digest", digest_of(one.file), "", held)
+            yield _digest("film", f"heights.{name}.digest", digest_of(one.file))
 
 
 def _digest_of_duty(built: Ready) -> Iterator[Row]:
@@ -177,8 +176,13 @@ def _digest_of_duty(built: Ready) -> Iterator[Row]:
     if built.case.duty is not None:
         from pitchpoint.duty_cycle.history import LARGEST
 
-        held = Provenance("derived", note="SHA-256 of what the file holds")
-        yield _row("duty", "digest", digest_of(built.case.duty.file, LARGEST), "", held)
+        yield _digest("duty", "digest", digest_of(built.case.duty.file, LARGEST))
+
+
+def _digest(table: str, key: str, digest: str) -> Row:
+    return _row(
+        table, key, digest, "", Provenance("derived", note="SHA-256 of what the file holds")
+    )
 
 
 def _of_films(built: Ready) -> dict[str, Followed]:

@@ -1,7 +1,7 @@
 """From a case of meshes that turn together, as a planetary set, to their flanks, loads and phases."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -202,19 +202,22 @@ def _pull(case: DriveCase, built: Sequence[Built]) -> float:
     Its gears are discs as wide as their mesh, from bore to reference circle; of one in two meshes the
     heavier one.
     """
-    train = case.train
-    assert train is not None
     masses: dict[tuple[str, float, int], float] = {}
     radius = 0.0
-    for one, link in zip(
-        built, _links(case, train, [each.design.mesh for each in built]), strict=True
-    ):
-        if train.planet not in link.bodies:
-            continue
-        member = link.bodies.index(train.planet)
+    for one, link, member in _of_planets(case, built):
         gear, radius = link.gears[member], float(one.dimensions["centre_distance"])
         masses[gear] = max(masses.get(gear, 0.0), _mass(one, member))
     return radius * sum(masses.values())
+
+
+def _of_planets(case: DriveCase, built: Sequence[Built]) -> Iterator[tuple[Built, Link, int]]:
+    """Meshes of a train in which planets are, with the number of the planet in each."""
+    train = case.train
+    assert train is not None
+    links = _links(case, train, [one.design.mesh for one in built])
+    for one, link in zip(built, links, strict=True):
+        if train.planet in link.bodies:
+            yield one, link, link.bodies.index(train.planet)
 
 
 def _mass(built: Built, member: int) -> float:
@@ -369,14 +372,9 @@ def _fits(phases: Callable[[int], list[np.ndarray]], count: int) -> bool:
 
 def _worn_twice(case: DriveCase, built: Sequence[Built]) -> bool:
     """True where one flank of the planets is pressed in two meshes."""
-    train = case.train
-    assert train is not None
     pressed = Counter(
-        (link.gears[link.bodies.index(train.planet)], getattr(one.case.gears, "flank", ""))
-        for link, one in zip(
-            _links(case, train, [one.design.mesh for one in built]), built, strict=True
-        )
-        if train.planet in link.bodies
+        (link.gears[member], getattr(one.case.gears, "flank", ""))
+        for one, link, member in _of_planets(case, built)
     )
     return any(count > 1 for count in pressed.values())
 

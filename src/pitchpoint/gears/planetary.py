@@ -12,7 +12,6 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical import iso_286
 from pitchpoint.gears.cylindrical.inspection import (
     Toothing,
     distance_without_backlash,
@@ -25,6 +24,7 @@ from pitchpoint.gears.cylindrical.table import (
     LEAST_TIP,
     TIP,
     TOLERANCE_CLASS,
+    CentreField,
     Inspection,
     read_field,
 )
@@ -41,7 +41,7 @@ from pitchpoint.gears.table import (
     WIDTH,
     Load,
 )
-from pitchpoint.input.quantities import Pair, Quantity, SIValue, count_of, named, shown
+from pitchpoint.input.quantities import Pair, Quantity, SIValue, count_of, shown
 from pitchpoint.input.tables import Table
 
 __all__ = [
@@ -219,12 +219,7 @@ class InspectionOfSet(Table):
     """Fields of the tooth thickness by DIN 3967, in place of allowances."""
     centre_distance_deviation: Annotated[float, DEVIATION] | None = None
     """Deviation of the centre distance to either side; none unless given."""
-    centre_distance_field: (
-        Annotated[
-            str, BeforeValidator(named(lambda: iso_286.FIELDS, "symmetrical tolerance field"))
-        ]
-        | None
-    ) = None
+    centre_distance_field: CentreField | None = None
     """Tolerance field of the centre distance by ISO 286, in place of a deviation."""
     iso_class: Annotated[TwoOrThree, OfThree(TOLERANCE_CLASS, stepped=True)] | None = None
     """Class of the tolerances by ISO 1328-1; none unless given."""

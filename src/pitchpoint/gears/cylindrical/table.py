@@ -177,6 +177,12 @@ def read_field(value: Any) -> str:
     return _FIELD(f"{text[2:].strip()}{numbers}" if numbers else text)
 
 
+CentreField = Annotated[
+    str, BeforeValidator(named(lambda: iso_286.FIELDS, "symmetrical tolerance field"))
+]
+"""Field of a centre distance by ISO 286."""
+
+
 class Inspection(Table):
     """What the drawing of each gear says of its teeth; the gears that are computed stay the nominal ones.
 
@@ -195,12 +201,7 @@ class Inspection(Table):
     """Fields of the tooth thickness by DIN 3967, one or a list of two, in place of allowances."""
     centre_distance_deviation: Annotated[float, DEVIATION] | None = None
     """Deviation of the centre distance to either side; none unless given."""
-    centre_distance_field: (
-        Annotated[
-            str, BeforeValidator(named(lambda: iso_286.FIELDS, "symmetrical tolerance field"))
-        ]
-        | None
-    ) = None
+    centre_distance_field: CentreField | None = None
     """Tolerance field of the centre distance by ISO 286, in place of a deviation."""
     span_teeth: Annotated[tuple[float, float], Pair(SPAN)] | None = None
     """Teeth k under a span; those that touch nearest to mid-flank unless given."""
