@@ -378,7 +378,7 @@ def _first_screen(outcomes: "dict[str, Outcome]", report: Path, *, tables: bool)
         _table(beside_each_other(outcomes), ("", *outcomes))
     for rows in swept_beside(outcomes) if tables else ():
         _table(rows, tuple(rows[0]))
-        if note := extrapolated_note(rows):
+        if note := extrapolated_note(row.values() for row in rows):
             console.print(note, style="dim")
 
 

@@ -83,9 +83,8 @@ def _of_teeth(data: xr.Dataset) -> Iterator[tuple[str, float]]:
     for at, place in _places(data) if there else ():
         lives = {part: float(data[variable].values[at]) for part, variable in there.items()}
         flanks = {part for part in lives if part.endswith("flank")}
-        if any(
-            np.isnan(lives[part]) for part in flanks
-        ):  # the one without load would endure for ever
+        # The flank without load would endure for ever.
+        if any(np.isnan(lives[part]) for part in flanks):
             lives |= dict.fromkeys(flanks, np.nan)
         yield from ((f"{part} of {place}", life) for part, life in lives.items())
 

@@ -71,8 +71,7 @@ def duty_blocks(page: Page) -> Iterator[Block]:
 
 def _of_variant(place: int, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts[_PART]
-    words = cycle_words(data)
-    yield Paragraph(f"{words[0].upper()}{words[1:]}.")
+    yield Paragraph(show.sentence(cycle_words(data)))
     rows = [[row.name, row.value, row.detail] for row in cycle_figures(data)]
     yield Table(["", "value", ""], rows, caption="Over the duty cycle")
     if "bearing" in data.coords:

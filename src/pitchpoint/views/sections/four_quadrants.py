@@ -30,7 +30,7 @@ from pitchpoint.views.section import (
     by_variant,
 )
 from pitchpoint.views.sections.beside import starts_doubtfully
-from pitchpoint.views.sections.loss_map import Chart, map_panel
+from pitchpoint.views.sections.loss_map import Chart, map_blocks, map_panel
 
 __all__ = ["FOUR_QUADRANTS", "OF_OUTPUT"]
 
@@ -69,10 +69,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Paragraph(told, "note")
     if alone := covered([one.parts for one in there.values()]):
         yield Paragraph(alone, "note")
-    panel = map_panel(there, page.curves, OF_OUTPUT)
-    if panel.note:
-        yield Paragraph(panel.note)
-    yield panel
+    yield from map_blocks(map_panel(there, page.curves, OF_OUTPUT))
     yield Heading("Held at rest")
     banded = any(
         HOLDING_BANDS[HOLDING[0]][0] in one.parts[OF_OUTPUT.part] for one in there.values()

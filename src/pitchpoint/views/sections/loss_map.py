@@ -36,7 +36,7 @@ from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section
 
-__all__ = ["LOSS_MAP", "Chart", "efficiency_panel", "map_figure", "map_panel"]
+__all__ = ["LOSS_MAP", "Chart", "efficiency_panel", "map_blocks", "map_figure", "map_panel"]
 
 _SEEN = 1e-4
 """Difference, over the larger of two values, that four digits tell."""
@@ -84,17 +84,28 @@ def map_panel(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart = OF_
     first = min(range(len(choices)), key=lambda at: choices[at][0])
     _, variant, position, law = choices[first]
     even = {name: words for name in chart.shown if (words := _even(name, outcomes, chart))}
+    drawn = replace(chart, shown=tuple(name for name in chart.shown if name not in even))
     figures = [
         map_figure(name, outcomes[variant], chart, law, position, _scale(name, outcomes, chart))
-        for name in chart.shown
-        if name not in even
+        for name in drawn.shown
     ]
-    menu = [_choice(outcomes, known, chart, *choice[1:]) for choice in choices]
+    menu = [_choice(outcomes, known, drawn, *choice[1:]) for choice in choices]
     menus = _menus(outcomes, known, chart) if len(choices) > 1 else []
     if not figures:
         menu, menus, first = [], [], 0
     told = " ".join(even.values())
     return Panel(chart.title, figures, [], menu, told, menu="Shown for", menus=menus, at=first)
+
+
+def map_blocks(panel: Panel) -> Iterator[Block]:
+    """The heat maps of a panel below what is the same everywhere.
+
+    Args:
+        panel: see `map_panel`.
+    """
+    if panel.note:
+        yield Paragraph(panel.note)
+    yield panel
 
 
 def _even(name: str, outcomes: Mapping[str, Outcome], chart: Chart) -> str:
@@ -183,7 +194,7 @@ def _choice(
     curve = known[variant, laws(data)[law]]
     degree = level("temperature", float(data["temperature"].values[position]))
     changes: dict[str, list[Any]] = {}
-    for name in (one for one in chart.shown if not _even(one, outcomes, chart)):
+    for name in chart.shown:
         heat = _heat(name, data, chart, law, position)
         restyled = {**heat, **_contours(heat["z"])}
         changes[f"{chart.name}_{name}"] = [{k: [values] for k, values in restyled.items()}, {}, [0]]
@@ -415,10 +426,7 @@ def _blocks(page: Page) -> Iterator[Block]:
     )
     if alone := covered([one.parts for one in there.values()]):
         yield Paragraph(alone, "note")
-    panel = map_panel(there, page.curves)
-    if panel.note:
-        yield Paragraph(panel.note)
-    yield panel
+    yield from map_blocks(map_panel(there, page.curves))
     lines = efficiency_panel({n: one for n, one in there.items() if _lossy(one)}, page.curves)
     if lines.figures:
         yield Heading("Efficiency against load, speed and temperature")

@@ -1,6 +1,6 @@
 """Figures and tables of the studies of a case."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -151,8 +151,7 @@ def _table(studies: list[Seen], note: str, *, lossless: bool, named: bool) -> It
     titles = (show.axis_title(name, like) for name in columns)
     heads = ["Study", "Friction law", _swept(like)[1] if swept else "", *titles]
     rows = [row for seen in studies for row in _rows(seen, columns)]
-    if any(cell.endswith(OUTSIDE) for row in rows for cell in row):
-        note = " ".join(filter(None, (note, f"{OUTSIDE} {OF_MARK}")))
+    note = " ".join(filter(None, (note, extrapolated_note(rows))))
     shown = [k for k in range(len(heads)) if (named or swept or k) and (swept or k != _PLACE)]
     same = [k for k in shown if k != _PLACE and len(rows) > 1 and len({r[k] for r in rows}) == 1]
     kept = [k for k in shown if k not in same]
@@ -405,7 +404,8 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     for name, data in outcome.parts.items():
         if is_swept(name, data):
             rows = swept_rows(data)
-            yield Printed(str(data.attrs["title"]), rows, extrapolated_note(rows))
+            note = extrapolated_note(row.values() for row in rows)
+            yield Printed(str(data.attrs["title"]), rows, note)
 
 
 OUTSIDE = "†"
@@ -418,9 +418,9 @@ def marked(name: str, words: str, data: xr.Dataset, law: int, point: int) -> str
     return f"{words}{OUTSIDE}" if outside and name == "mean_efficiency" else words
 
 
-def extrapolated_note(rows: Sequence[Mapping[str, str]]) -> str:
-    """What the mark means; empty where it stands in no cell."""
-    there = any(cell.endswith(OUTSIDE) for row in rows for cell in row.values())
+def extrapolated_note(rows: Iterable[Iterable[str]]) -> str:
+    """What the mark means; empty where it stands in no cell of some rows."""
+    there = any(cell.endswith(OUTSIDE) for row in rows for cell in row)
     return f"{OUTSIDE} {OF_MARK}" if there else ""
 
 
