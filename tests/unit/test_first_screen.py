@@ -77,8 +77,8 @@ def test_a_sweep_that_was_asked_for_stands_below_the_answer(pair: dict[str, Outc
     beyond = swept.assign(extrapolated=(("law", "point"), np.array([[True, False]])))
     ((first, second),) = swept_beside(run(beyond))
     assert first["efficiency [%]"] == "98†" and second["efficiency [%]"] == "–"
-    assert "out of its range" in extrapolated_note([first, second])
-    assert extrapolated_note([second]) == ""
+    assert "out of its range" in extrapolated_note([first.values(), second.values()])
+    assert extrapolated_note([second.values()]) == ""
     assert swept_beside(run(xr.concat([swept] * 13, "point", data_vars="all"))) == []
     assert swept_beside(pair) == []
 
