@@ -118,9 +118,9 @@ def timed(work: Callable[[], object]) -> float:
 
 def one_case(own: Design, bearings: bool) -> float:
     """How many times as long the rival takes."""
-    moves, rates = moving(own, bearings), SPEED * np.asarray(own.mesh.motion)
+    moves, rates = moving(own, bearings), SPEED * np.asarray(own.motion)
     size = moves.mass.shape[0]
-    cycle = float(own.mesh.period) / SPEED
+    cycle = float(own.period) / SPEED
     times = np.linspace(0.0, SIZES.cycles * cycle, 2 * SIZES.cycles + 1)
     ours = partial(transient, moves, times, rate=np.pad(rates, (0, size - 2)))
     first = timed(ours)
@@ -164,14 +164,14 @@ def drawn(own: Design, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     rng = np.random.default_rng(0)
     loads, speeds = LOAD * rng.uniform(0.5, 1.5, count), SPEED * rng.uniform(0.8, 1.2, count)
     starts = np.zeros((count, 12))
-    starts[:, 6:8] = speeds[:, None] * np.asarray(own.mesh.motion)
+    starts[:, 6:8] = speeds[:, None] * np.asarray(own.motion)
     return np.stack([DRIVE * loads, loads], axis=1), speeds, starts
 
 
 def two_cycles(own: Design, bearings: bool) -> Callable[..., tuple[jax.Array, jax.Array]]:
     """Rates of both bodies after two mesh cycles, and steps, from torques and the speed of the driver."""
-    moves, motion = moving(own, bearings), np.asarray(own.mesh.motion)
-    times = array(np.linspace(0.0, 2.0 * float(own.mesh.period) / SPEED, 3))
+    moves, motion = moving(own, bearings), np.asarray(own.motion)
+    times = array(np.linspace(0.0, 2.0 * float(own.period) / SPEED, 3))
 
     def single(given: tuple[jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
         torque, speed = given
@@ -191,7 +191,7 @@ def many(own: Design, bearings: bool, count: int) -> None:
     repeats = min(SIZES.repeats, 3)
     torques, speeds, starts = drawn(own, count)
     single = two_cycles(own, bearings)
-    span = 2.0 * float(own.mesh.period) / SPEED
+    span = 2.0 * float(own.period) / SPEED
     ways = {
         "side by side": eqx.filter_jit(jax.vmap(single)),
         "in turn": eqx.filter_jit(partial(jax.lax.map, single)),

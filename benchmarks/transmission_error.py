@@ -30,13 +30,16 @@ from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.steady_state import steady_state
 from pitchpoint.dynamics.system import System
 from pitchpoint.dynamics.vibration import Vibrating, excitation, frequency_ratio, system
+from pitchpoint.efficiency.quasi_static import Design as Gears
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import terms_of
+from pitchpoint.materials import lubricants
 from pitchpoint.materials.solids import Solid
+from pitchpoint.materials.surfaces import Roughness
 
 jax.config.update("jax_enable_x64", True)
 
@@ -45,6 +48,7 @@ SOLIDS = (
     Solid(young=3.54e9, poisson=0.4, density=1140.0),
 )
 TERMS = terms_of("beam_foundation_weber")
+OIL, SMOOTH = lubricants.find("pao-vg-220").build(), Roughness.from_composite_rq(0.4e-6)
 SPEED = 1800.0 * np.pi / 30.0
 AGREE = 1e-4
 """Largest deviation of a figure from the rival's at a tight tolerance."""
@@ -96,8 +100,11 @@ def excited(pair: CylindricalPair, design: Design) -> Excited:
     none = jnp.zeros(0)
     inertia = plain_inertia(own, jnp.stack([solid.density for solid in SOLIDS]))
     vibrating = Vibrating(inertia, design.damping_ratio, none, none, orders=())
-    found = mesh_stiffness(own, SOLIDS, TERMS, design.torque)
-    moved = system(own, vibrating, found.mean, Operation(design.torque, SPEED, jnp.asarray(300.0)))
+    between = Gears(own, SOLIDS, OIL, SMOOTH)
+    found = mesh_stiffness(own, between.loaded, SOLIDS, TERMS, design.torque)
+    moved = system(
+        between, vibrating, found.mean, Operation(design.torque, SPEED, jnp.asarray(300.0))
+    )
     return found, moved, excitation(found, vibrating)
 
 

@@ -76,9 +76,12 @@ def drives(count: int) -> Given:
         return jnp.broadcast_to(values, (count, *jnp.shape(values)))
 
     both, oil, rough, own = jax.tree.map(many, rest)
+    driver, loaded = (many(array(end)) for end in np.eye(2))
     point = rng.uniform(30.0, 90.0, count), np.full(count, 157.0), np.full(count, 330.0)
     return (
-        Design(jax.tree.map(jnp.asarray, group.mesh), both, oil, rough),
+        Design(
+            jax.tree.map(jnp.asarray, group.mesh), both, oil, rough, driver=driver, loaded=loaded
+        ),
         Operation(*map(jnp.asarray, point)),
         WearModel(archard_1953, own),
     )
@@ -93,7 +96,7 @@ def of(given: Given, number: int) -> Given:
 @eqx.filter_jit
 def springs_of(design: Design, operation: Operation, contacts: Contacts) -> jax.Array:
     """Compliance of each pair of teeth."""
-    given = design.mesh, contacts, design.solids, MODELS.compliance
+    given = design.mesh, design.loaded, contacts, design.solids, MODELS.compliance
     return compliance(*given, operation.load).of_teeth(contacts)
 
 
@@ -103,8 +106,8 @@ def as_rival(given: Given) -> rival.Pair:
     start, cells = as_new(design, operation, MODELS, parts=PARTS, count=CELLS)
     mesh, contacts = design.mesh, start.contacts
     springs = springs_of(design, operation, contacts)
-    speed = np.einsum("kdpsn,d->kpn", contacts.surface, mesh.motion)
-    arm = float(np.abs(np.einsum("dpsn,d->psn", contacts.normal, mesh.loaded)).max())
+    speed = np.einsum("kdpsn,d->kpn", contacts.surface, design.motion)
+    arm = float(np.abs(np.einsum("dpsn,d->psn", contacts.normal, design.loaded)).max())
     return rival.Pair(
         weight=np.asarray(start.weight),
         active=np.asarray(contacts.active[:, 0]),

@@ -5,6 +5,7 @@ import numpy as np
 
 from pitchpoint._jax import jnp
 from pitchpoint.efficiency.quasi_static import Design, contacts_at, coupling
+from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wound_up
@@ -32,13 +33,13 @@ def passing(mesh, phases):
 
 def wound(mesh, part, torque, terms=WEBER):
     """Equilibrium of a part at a torque."""
-    return wound_up(mesh, (STEEL, STEEL), terms, jnp.asarray(torque), *part)
+    return wound_up(mesh, mesh_ends(mesh)[1], (STEEL, STEEL), terms, jnp.asarray(torque), *part)
 
 
 @eqx.filter_jit
 def yielding(mesh, contacts, body, load, force):
     """How far tooth and body yield at each contact to the forces."""
-    yields = compliance(mesh, contacts, (STEEL, STEEL), WEBER, load, body)
+    yields = compliance(mesh, mesh_ends(mesh)[1], contacts, (STEEL, STEEL), WEBER, load, body)
     each = force[:, 0]
     return (
         jnp.einsum("ij...,j...->i...", yields.body, each) + yields.of_teeth(contacts)[:, 0] * each

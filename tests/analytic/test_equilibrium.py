@@ -287,6 +287,9 @@ def contacts(path, gap=0.0, active=True):
     )
 
 
+LOADED = np.array([0.0, 0.0, 1.0])
+
+
 def mesh(separate):
     """As much of a mesh as the models look at."""
     return _Looked(separate)
@@ -297,9 +300,8 @@ class _Looked(Mesh):
     contact_ratio: ClassVar[jax.Array] = jnp.asarray(1.5)
     shape: ClassVar[str] = "line"
     surfaces = ((), ())
-    driver = body = other_flanks = events = relation = pitch = passing = None
+    body = other_flanks = events = relation = pitch = passing = None
     coordinates = rigid_contacts = spots = None
-    loaded = np.array([0.0, 0.0, 1.0])
 
 
 way.register(_Looked, lambda looked: WAVE if looked.separate else ACTION)
@@ -315,7 +317,7 @@ def by_stiffness(contacts, yields, *, separate):
 
 def test_shares_by_stiffness_with_and_without_clearances():
     stiffness = jnp.asarray([1e9, 2e9, 3e9, 4e9]).reshape(4, 1, 1)
-    yields = Compliance(stiffness, None, jnp.asarray([0.5]))
+    yields = Compliance(stiffness, None, jnp.asarray([0.5]), LOADED)
     touching = contacts([0.0, 0.01, 0.02, 0.03])
     plain = by_stiffness(touching, yields, separate=False)
     np.testing.assert_array_equal(plain, np.array([1e9, 2e9, 3e9, 4e9]) / 1e10)
@@ -324,7 +326,7 @@ def test_shares_by_stiffness_with_and_without_clearances():
     apart = contacts([0.0, 0.01, 0.02, 0.03], gap=np.reshape([0.0, 1e-6, 0.0, 1.0], (4, 1, 1)))
     share = by_stiffness(apart, yields, separate=True)
     np.testing.assert_allclose(share, [0.25, 0.0, 0.75, 0.0], atol=1e-12)
-    heavy = Compliance(stiffness, None, jnp.asarray([0.02 * 1e7 * 6.0 * 1e-5]))
+    heavy = Compliance(stiffness, None, jnp.asarray([0.02 * 1e7 * 6.0 * 1e-5]), LOADED)
     force = np.array([1.0, 2.0, 3.0]) * 1e7
     approach = (6e2 + force[1] * 1e-6) / force.sum()
     force = force * (approach - np.array([0.0, 1e-6, 0.0]))
@@ -336,7 +338,7 @@ def test_a_body_that_couples_pairs_evens_out_their_loads():
     """Two of three pairs that sit on one soft body carry less than the one beside it."""
     body = np.zeros((3, 3, 1))
     body[:2, :2] = 1e-7
-    yields = Compliance(jnp.full((3, 1, 1), 1e9), jnp.asarray(body), jnp.asarray([2.0]))
+    yields = Compliance(jnp.full((3, 1, 1), 1e9), jnp.asarray(body), jnp.asarray([2.0]), LOADED)
     share = by_stiffness(contacts([0.0] * 3), yields, separate=False)
     # 1/k = 1e-7: the two move by (1e-7 + 2e-7) f, the third by 1e-7 f.
     np.testing.assert_allclose(share, [0.2, 0.2, 0.6], rtol=1e-12)

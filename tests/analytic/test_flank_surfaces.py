@@ -15,6 +15,7 @@ from pitchpoint.contact.modifications import Crowning, EndRelief, LeadSlope, Rel
 from pitchpoint.contact.surface import Spot, with_surfaces
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.cylindrical.modified import Modifications, modified
+from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import terms_of
@@ -163,9 +164,9 @@ def events_of(mesh):
 
 @eqx.filter_jit
 def wound(mesh, loads, phases):
-    found = wind_up(mesh, (STEEL, STEEL), TERMS, loads[:, None], phases[None])
+    found = wind_up(mesh, mesh_ends(mesh)[1], (STEEL, STEEL), TERMS, loads[:, None], phases[None])
     contacts = mesh.contacts(phases)
-    yields = compliance(mesh, contacts, (STEEL, STEEL), TERMS, jnp.ones(()))
+    yields = compliance(mesh, mesh_ends(mesh)[1], contacts, (STEEL, STEEL), TERMS, jnp.ones(()))
     springs = 1.0 / yields.of_teeth(contacts)
     return found, contacts, springs
 

@@ -75,7 +75,7 @@ def test_a_chain_multiplies_its_ratios():
 
 def test_a_rack_travels_behind_a_pair():
     table = {"family": "rack_and_pinion", "teeth": 20, "module": "2 mm", "face_width": "20 mm"}
-    rack = built_gears(RackAndPinionGears.model_validate(table), "pinion", 1)[0]
+    rack = built_gears(RackAndPinionGears.model_validate(table), 1)[0]
     links = [link(20, 40, ("motor", "pinion")), Link(rack, ("pinion", "rack"))]
     assert body_rates(links, Ends({"motor": 10.0}))["rack"] == pytest.approx(
         -10.0 / 2 * 0.02, rel=1e-14

@@ -8,6 +8,7 @@ import pytest
 from sound import pair
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.iso_6336_stiffness import estimate
@@ -51,7 +52,8 @@ sections_of = eqx.filter_jit(tooth_sections)
 
 def stiffness(mesh, model=FULL, solids=BOTH_STEEL, load=200.0, slices=12, line="integrated"):
     terms = terms_of(model, line)
-    return jax.device_get(_stiffness(plain(mesh, slices), solids, terms, jnp.asarray(load)))
+    pair = plain(mesh, slices)
+    return jax.device_get(_stiffness(pair, mesh_ends(pair)[1], solids, terms, jnp.asarray(load)))
 
 
 def plastic(name, model=BEAM, slices=12, line="integrated"):
@@ -61,7 +63,7 @@ def plastic(name, model=BEAM, slices=12, line="integrated"):
 @eqx.filter_jit
 def _shares(mesh, terms, load, phase):
     contacts = mesh.contacts(phase)
-    yields = compliance(mesh, contacts, BOTH_STEEL, terms, load)
+    yields = compliance(mesh, mesh_ends(mesh)[1], contacts, BOTH_STEEL, terms, load)
     return LOAD_SHARING["from_stiffness"].function(contacts, mesh, yields), contacts, mesh
 
 
@@ -293,7 +295,7 @@ def test_steel_spur_pair_beside_the_standard(rim_ratio, single, mean):
     """
     mesh = dataclasses.replace(SPUR, rim_ratio=jnp.full(2, rim_ratio))
     load = 3e5 * float(mesh.face_width) * float(mesh.gears[1].reference_radius)
-    standard, warnings = estimate(mesh, BOTH_STEEL, jnp.asarray(load))
+    standard, warnings = estimate(mesh, mesh_ends(mesh)[1], BOTH_STEEL, jnp.asarray(load))
     assert warnings == ()
     assert standard["standard_single_stiffness"] / 20e-3 == pytest.approx(11.487e9, rel=1e-4)
     found = stiffness(mesh, FULL, load=load)
@@ -307,7 +309,9 @@ def test_steel_spur_pair_beside_the_standard(rim_ratio, single, mean):
 
 
 def test_estimate_of_the_standard_says_where_it_does_not_hold():
-    found, warnings = estimate(GP["GP1"], (STEEL, PA66), jnp.asarray(5.355))
+    found, warnings = estimate(
+        GP["GP1"], mesh_ends(GP["GP1"])[1], (STEEL, PA66), jnp.asarray(5.355)
+    )
     # By the reference calculation at 8.2 N/mm, with 207 GPa for the pinion.
     assert found["standard_stiffness"] == pytest.approx(3.04e6, abs=6e3)
     assert found["standard_stiffness"] / found["standard_single_stiffness"] == pytest.approx(
@@ -324,7 +328,9 @@ def test_estimate_of_the_standard_takes_the_load_of_the_driven_gear():
 
     def single(line_load):
         torque = jnp.asarray(line_load * 20e-3 * radius)
-        return estimate(SPUR, BOTH_STEEL, torque)[0]["standard_single_stiffness"]
+        return estimate(SPUR, mesh_ends(SPUR)[1], BOTH_STEEL, torque)[0][
+            "standard_single_stiffness"
+        ]
 
     assert single(100e3) == pytest.approx(single(400e3), rel=1e-12)
     assert single(50e3) / single(100e3) == pytest.approx(0.5**0.25, rel=1e-12)
@@ -352,4 +358,4 @@ def test_internal_pair_is_stiffer_than_the_external_one_of_equal_teeth(degrees):
 
 def test_standard_gives_no_estimate_for_internal_pairs():
     internal = pair((20, -60), profile_shift=(0.3, -0.3), **RACK)
-    assert estimate(internal, BOTH_STEEL, jnp.asarray(200.0)) == ({}, ())
+    assert estimate(internal, mesh_ends(internal)[1], BOTH_STEEL, jnp.asarray(200.0)) == ({}, ())

@@ -68,12 +68,12 @@ def torus():
         "face_width": ["15 mm", "20 mm"],
         "torus_radius": ["35 mm", "55 mm"],
     }
-    return built_gears(TorusGears.model_validate(table), "gear 1", 6)[0]
+    return built_gears(TorusGears.model_validate(table), 6)[0]
 
 
 SPUR = design_of(spur())
 ACTION = np.asarray(line_of_action(SPUR.mesh))
-MOTION = np.asarray(SPUR.mesh.motion)
+MOTION = np.asarray(SPUR.motion)
 ORDERS = (1, 2)
 
 
@@ -155,7 +155,7 @@ def test_parametric_work_of_a_period_is_that_of_springs_that_change_while_presse
 def test_a_driver_with_inertia_keeps_its_mean_speed_under_a_constant_torque():
     found = steady_motion(alone(INERTIA[0], mesh_damping=array(2000.0)), SPEED, GRID)
     assert found.status.code == Code.SOLVED
-    period = float(SPUR.mesh.period) / SPEED
+    period = float(SPUR.period) / SPEED
     assert float(found.time[-1, -1]) == pytest.approx(period, rel=1e-10)
     assert np.ptp(found.rate[0]) > 1e-3
     assert float(found.mean(found.rate[0])) == pytest.approx(SPEED, rel=1e-10)
@@ -238,7 +238,7 @@ def test_energy_of_a_transient_closes_with_every_effect(combination):
         drive = motor(stall_torque=100.0, no_load_speed=1.2 * SPEED, inertia=1e-3)
         bodies = dataclasses.replace(drive, support=across(2.0, 2e8, 4e3)), bearing(6e-3, 20.0, 4.0)
     rate = np.pad(SPEED * MOTION, (0, 4))
-    times = np.linspace(0.0, 3.3 * float(SPUR.mesh.period) / SPEED, 60)
+    times = np.linspace(0.0, 3.3 * float(SPUR.period) / SPEED, 60)
     found = transient(moving(bodies, **given), times, rate=rate)
     energy, force = found.energy, np.asarray(found.found.force)
     assert found.status.code == Code.SOLVED

@@ -13,6 +13,7 @@ from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import built_gears
+from pitchpoint.gears.nominal_motion import mesh_ends, nominal_motion, nominal_period
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.registry import LOAD_SHARING
@@ -36,7 +37,7 @@ def table(**values):
 
 
 def built(**values):
-    return built_gears(table(**values), "pinion", 6)
+    return built_gears(table(**values), 6)
 
 
 def rack(**values):
@@ -53,12 +54,14 @@ def test_a_rack_goes_by_the_pitch_circle_in_a_turn():
 
 @program
 def dimensions(mesh):
+    driver, loaded = mesh_ends(mesh)
+    motion = nominal_motion(mesh, driver, loaded)
     return {
         **main_dimensions(mesh),
-        "motion": mesh.motion,
-        "period": mesh.period,
+        "motion": motion,
+        "period": nominal_period(mesh, motion),
         "contact_ratio": mesh.contact_ratio,
-        "reference": pitch_point(mesh),
+        "reference": pitch_point(mesh, driver),
     }
 
 

@@ -55,7 +55,7 @@ def answers(mesh, load):
 MESHES = {
     "spur": pair(),
     "helical": pair(20.0),
-    "helical, right flank, wheel drives": pair(20.0, right_flank=True, driver=2),
+    "helical, right flank": pair(20.0, right_flank=True),
     "ring": pair(teeth=(20, -60), profile_shift=(0.3, 0.2), fillet_radius=(0.38, 0.2)),
 }
 

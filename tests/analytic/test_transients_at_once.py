@@ -14,7 +14,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.status import Code
 
 TIMES = array(np.linspace(0.0, 0.01, 21))
-RATE = SPEED * np.asarray(PAIR.mesh.motion)
+RATE = SPEED * np.asarray(PAIR.motion)
 
 
 def free(load=LOAD, **given):

@@ -204,7 +204,7 @@ def test_the_mean_depth_is_that_of_the_guideline_for_plastics():
     found, _ = of_pair("equal")
     built = pair("equal")
     mesh = built.design.mesh
-    line, (_, tips) = mesh.line, jax.device_get((mesh.period, mesh.line.limits))
+    line, (_, tips) = mesh.line, jax.device_get((built.design.period, mesh.line.limits))
     pitch, place = float(line.base_pitch), float(line.pitch_position)
     parts = np.array([place - tips[0], tips[1] - place])
     z1, z2 = (abs(float(z)) for z in mesh.teeth)

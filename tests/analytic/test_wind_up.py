@@ -14,6 +14,7 @@ from pitchpoint.contact.surface import Spot, Waves
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.gears.pairs import of_pairs
 from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.drive import places
@@ -66,8 +67,8 @@ SPRING = 1e9 * 0.01
 def springs(monkeypatch):
     """Three equal pairs at each end of the axis, the second and the third of them with a clearance."""
 
-    def compliance(mesh, contacts, solids, terms, load, body):
-        return Compliance(jnp.full(contacts.path.shape, 1e9), None, load)
+    def compliance(mesh, loaded, contacts, solids, terms, load, body):
+        return Compliance(jnp.full(contacts.path.shape, 1e9), None, load, loaded)
 
     at = contacts(np.zeros((6, 1, 1)), GAPS + ARM * 3e-5, SLIPS)
     pressed = jnp.asarray([0.1, 0.2, 0.3, 0.4, 0.5, 0.6]).reshape(6, 1, 1)
@@ -80,9 +81,8 @@ def springs(monkeypatch):
         body=Mock(
             spec=GearBody,
             inner_load=lambda contacts: zones * pressed,
-            in_series=lambda solids: {},
+            in_series=lambda solids, loaded: {},
         ),
-        loaded=LOADED,
     )
 
 
@@ -90,7 +90,7 @@ def test_springs_that_come_to_carry_one_after_the_other(springs):
     turned = np.linspace(0.0, 1.013e-3, 41)
     force = SPRING * np.maximum(ARM * turned - GAPS, 0.0)
     load = (ARM * force).sum(axis=(0, 1))
-    solve = eqx.filter_jit(lambda *at: wind_up(springs, (STEEL, STEEL), TERMS, *at))
+    solve = eqx.filter_jit(lambda *at: wind_up(springs, LOADED, (STEEL, STEEL), TERMS, *at))
     found = solve(jnp.asarray(load), jnp.zeros(1))
     np.testing.assert_allclose(found.wind_up, turned, rtol=1e-10, atol=1e-15)
     np.testing.assert_allclose(found.touch, 3e-5, rtol=1e-12)
@@ -115,7 +115,7 @@ def test_springs_that_come_to_carry_one_after_the_other(springs):
 
 @eqx.filter_jit
 def _wind_up(mesh, load, phase):
-    return wind_up(mesh, (STEEL, STEEL), TERMS, load, phase)
+    return wind_up(mesh, mesh_ends(mesh)[1], (STEEL, STEEL), TERMS, load, phase)
 
 
 def wound_up(mesh, loads):
@@ -153,7 +153,7 @@ def test_wind_up_stiffness_and_pairs_grow_with_the_torque(found):
 
 
 def test_torque_is_carried_alike_at_both_ends_of_the_axis(found, drive, at):
-    arm = np.abs(np.asarray(along(at.normal, drive.loaded)))
+    arm = np.abs(np.asarray(along(at.normal, mesh_ends(drive)[1])))
     torque = (found.force * arm[:, :, None]).sum(axis=(0, 1))
     np.testing.assert_allclose(torque, found.load, rtol=1e-11)
     np.testing.assert_allclose(found.inner_load[0], found.inner_load[1], rtol=1e-9)
@@ -176,7 +176,7 @@ def test_without_torque_the_first_pairs_touch(drive, found, at):
     np.testing.assert_array_equal(zero.force, 0.0)
     assert np.all(zero.stiffness > 0.5 * found.stiffness[0])
     assert np.all(zero.stiffness <= found.stiffness[0])
-    play = at.gap / np.abs(along(at.normal, np.asarray(drive.loaded)))
+    play = at.gap / np.abs(along(at.normal, np.asarray(mesh_ends(drive)[1])))
     first = play <= zero.touch[0] + 1e-7 * play[at.active].max()
     pairs = np.asarray(of_pairs(drive, (first & at.active).any(axis=1) * 1.0)) > 0.0
     np.testing.assert_array_equal(zero.loaded_pairs[0], pairs.sum(axis=0))
@@ -188,13 +188,17 @@ def test_branches_are_in_balance_with_friction(found, drive, at):
     """Turning the loaded member alone with its torque of the branch asks for the forces without friction."""
     mu, force = 0.08, found.force[..., 0]
     at = jax.tree.map(lambda x: x[..., :1], at)
-    side = float(np.sign(np.sum(along(at.normal, drive.loaded) * force[..., :1])))
+    side = float(np.sign(np.sum(along(at.normal, mesh_ends(drive)[1]) * force[..., :1])))
     loop = hysteresis(found, mu)
 
     @jax.jit
     def force_of(load, sense):
         share = force / force.sum(axis=(0, 1))
-        given = {"motion": sense * side * drive.loaded, "loaded": drive.loaded, "load": load}
+        given = {
+            "motion": sense * side * mesh_ends(drive)[1],
+            "loaded": mesh_ends(drive)[1],
+            "load": load,
+        }
         return balance(at, share, **given, friction=lambda x: jnp.full_like(x, mu)).force
 
     for sense, branch in ((1.0, loop.loading), (-1.0, loop.unloading)):
@@ -212,11 +216,12 @@ SPUR = build_cylindrical_pair(
 
 @eqx.filter_jit
 def of_pair(mesh, load):
-    stiffness = mesh_stiffness(mesh, (STEEL, STEEL), TERMS, load)
+    loaded = mesh_ends(mesh)[1]
+    stiffness = mesh_stiffness(mesh, loaded, (STEEL, STEEL), TERMS, load)
     at = stiffness.phase.ravel()
-    found = wind_up(mesh, (STEEL, STEEL), TERMS, load, at)
+    found = wind_up(mesh, loaded, (STEEL, STEEL), TERMS, load, at)
     other = mesh.other_flanks.contacts(at)
-    arm = jnp.abs(along(other.normal, mesh.loaded))
+    arm = jnp.abs(along(other.normal, loaded))
     return stiffness, found, touch(other.gap, arm, other.active)
 
 
@@ -284,8 +289,8 @@ def errors(deviations, load, gap=0.0):
 def _errors(deviations, load, gap):
     at = two_zones(gap)
     added = added_gap(tuple((one,) for one in deviations), spots(at))
-    yields = Compliance(jnp.full(at.path.shape, 1e9), None, jnp.full(SAMPLES, load))
-    return kinematic_error(at, yields, LOADED, added)
+    yields = Compliance(jnp.full(at.path.shape, 1e9), None, jnp.full(SAMPLES, load), LOADED)
+    return kinematic_error(at, yields, added)
 
 
 def lines(values):

@@ -57,6 +57,7 @@ def passing(request):
     """Contacts of one zone, one row for each quantity, with the positions of their flanks."""
     form = FORMS[request.param]
     mesh = build(form=form)
+    usual = design(mesh)
     phases = np.concatenate([PHASE - MOVE, PHASE, PHASE + MOVE])
     found, raw = jax.tree.map(np.asarray, seen(mesh, jnp.asarray(phases)))
 
@@ -91,7 +92,8 @@ def passing(request):
         curvature=zone(found.curvature[:, 0]),
         gap=zone(found.gap),
         moved=zone(found.flank, after) - zone(found.flank, before),
-        motion=np.asarray(mesh.motion),
+        motion=np.asarray(usual.motion),
+        period=float(usual.period),
     )
 
 
@@ -148,7 +150,7 @@ def test_contact_of_touching_teeth_moves_along_both_flanks_as_it_rolls(passing):
     smooth &= at.space.smooth(at.height, np.abs(at.moved[1]) + 1e-6)
     assert smooth.sum() >= 2
     speeds = np.tensordot(at.motion, at.surface, axes=(0, 1))
-    ratio = at.moved[:, smooth] / speeds[:, smooth] / (2.0 * MOVE * float(at.mesh.period))
+    ratio = at.moved[:, smooth] / speeds[:, smooth] / (2.0 * MOVE * at.period)
     for along_one, most, middle in zip(ratio, (9e-3, 0.3), (5e-5, 2e-3), strict=True):
         # Lengths on the groove are those of chords between its nodes.
         error = np.abs(along_one - np.sign(along_one[0]))
@@ -250,8 +252,8 @@ def through_the_chain(design, operation, models):
 
 
 DRIVES = {
-    f"{fixed} fixed, {driver} drives": {"fixed": fixed, "driver": driver}
-    for fixed, driver in permutations(MEMBERS, 2)
+    f"{fixed} fixed, {driver} drives": {"driver": driver, "loaded": loaded}
+    for fixed, driver, loaded in permutations(MEMBERS)
 } | {
     "involute": {"form": FORMS["involute"]},
     "odd number of teeth": {"teeth": (201, 203)},
@@ -266,16 +268,17 @@ DRIVES = {
     ],
 )
 def running(request):
-    mesh = build(**DRIVES[request.param])
-    carried = 0.2 if mesh.loaded[0] else 20.0
+    given = dict(DRIVES[request.param])
+    ends = [given.pop(key) for key in ("driver", "loaded") if key in given]
+    mesh = build(**given)
+    drive = design(mesh).driven_by(*ends or MEMBERS[:2])
+    carried = 0.2 if drive.loaded[0] else 20.0
     operation = Operation(*map(jnp.asarray, (carried, SPEED, 320.0)))
     smooth, rough = (
-        SimpleNamespace(
-            **jax.tree.map(np.asarray, through_the_chain(design(mesh), operation, models(mu)))
-        )
+        SimpleNamespace(**jax.tree.map(np.asarray, through_the_chain(drive, operation, models(mu))))
         for mu in (0.0, 0.07)
     )
-    motion, loaded = np.asarray(mesh.motion), np.asarray(mesh.loaded)
+    motion, loaded = np.asarray(drive.motion), np.asarray(drive.loaded)
     return SimpleNamespace(
         mesh=mesh, smooth=smooth, rough=rough, carried=carried, motion=motion, loaded=loaded
     )

@@ -44,7 +44,7 @@ TIGHT = 1e-13
 
 
 def design():
-    mesh = built_gears(TorusGears.model_validate(TABLE), "gear 1", 6)[0]
+    mesh = built_gears(TorusGears.model_validate(TABLE), 6)[0]
     oil = lubricants.find("pao-vg-220").build()
     return Design(mesh, (STEEL, STEEL), oil, Roughness.from_composite_rq(0.8e-6))
 

@@ -20,6 +20,7 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.surface import Waves
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import CylindricalGears
+from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.gears.pairs import largest_radius
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.strain_wave.design import check_strain_wave
@@ -277,12 +278,12 @@ def demand_same(one: Any, other: Any) -> None:
 @pytest.mark.parametrize("fixed", ["circular spline", "flexspline", "wave generator"])
 def test_a_drive_driven_by_another_member_is_the_one_that_the_file_would_give(fixed: str) -> None:
     one = drive(gears__fixed=fixed)
-    mesh, drivers = one.built({}).design.mesh, one.built({}).case.gears.drivers
-    for driver in drivers:
-        asked = one.built({"operation.driver": driver})
-        demand_same(mesh.driven_by(driver), asked.design.mesh)
-    with pytest.raises(InputError, match=f"the {fixed} is fixed and cannot drive"):
-        mesh.driven_by(fixed)
+    usual = one.built({})
+    first, other = usual.case.gears.drivers
+    assert (usual.driver, usual.loaded) == (first, other)
+    demand_same(usual.design.backwards, one.built({"operation.driver": other}).design)
+    with pytest.raises(InputError, match=f'"{fixed}" is fixed'):
+        one.built({"operation.driver": fixed})
 
 
 @pytest.mark.parametrize(("teeth", "addendum"), [([23, 61], 1.0), ([20, -70], [1.0, 0.8])])
@@ -291,13 +292,13 @@ def test_a_pair_driven_by_its_wheel_is_the_one_that_the_file_would_give(
 ) -> None:
     short = {"gears.teeth": teeth, "gears.addendum": addendum}
     pair = Variant(PAIR, "pair.toml", "default", short)
-    wheel = pair.built({"operation.driver": "gear 2"}).design.mesh
-    demand_same(pair.built({}).design.mesh.driven_by("gear 2"), wheel)
-    demand_same(wheel.driven_by(0), pair.built({}).design.mesh)
+    wheel, pinion = pair.built({"operation.driver": "gear 2"}).design, pair.built({}).design
+    demand_same(pinion.backwards, wheel)
+    demand_same(wheel.backwards, pinion)
     with pytest.raises(
         InputError, match="'ring' is no member of this drive; use one of gear 1, gear 2"
     ):
-        wheel.driven_by("ring")
+        mesh_ends(wheel.mesh, "ring")
 
 
 def test_backwards_plastic_teeth_are_as_warm_as_that_point_makes_them() -> None:

@@ -275,7 +275,7 @@ def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> Non
     data, mesh = stiffness_part(built), built.design.mesh
     contacts, load = mesh.contacts(jnp.asarray(data["phase"].values)), jnp.asarray(50.0)
     terms = terms_of("beam_hertz")
-    found = wound_up(mesh, built.design.solids, terms, load, contacts, None)
+    found = wound_up(mesh, built.design.loaded, built.design.solids, terms, load, contacts, None)
     arm = abs(float(mesh.base_radii[1]))
     error = np.asarray(found.wind_up + found.touch) * arm
     np.testing.assert_allclose(data["static_transmission_error"], error, rtol=1e-9)

@@ -26,6 +26,12 @@ from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.nominal_motion import (
+    mesh_ends,
+    nominal_motion,
+    nominal_period,
+    phase_sense,
+)
 from pitchpoint.gears.pairs import way
 from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
@@ -836,13 +842,12 @@ OUTSIDE = {
 }
 
 
-def shown(**changes: Any) -> Outcome:
+def shown(driver: int = 1, **changes: Any) -> Outcome:
     """A result that holds nothing but the teeth of a pair."""
     pair = build_cylindrical_pair(
         module=0.002, pressure_angle=np.deg2rad(20.0), face_width=0.016, **changes
     )
-    driver = f"gear {changes.get('driver', 1)}"
-    outcome = drawn_teeth(pair, FAMILY, driver, ["gear 1", "gear 2"])
+    outcome = drawn_teeth(pair, FAMILY, f"gear {driver}", ["gear 1", "gear 2"])
     outcome.manifest["inputs"] += entries(
         {"gears.module": 0.002, "gears.profile_shift": [0.74, -0.05]}
     )
@@ -856,8 +861,8 @@ RACK = RackAndPinionGears.model_validate(
 
 def racked(driver: str = "pinion") -> Outcome:
     """A result that holds nothing but the teeth of a rack and pinion."""
-    mesh, _ = RACK_FAMILY.build(RACK, "pinion", 2)
-    return drawn_teeth(mesh.driven_by(driver), RACK_FAMILY, driver, ["pinion", "rack"])
+    mesh, _ = RACK_FAMILY.build(RACK, 2)
+    return drawn_teeth(mesh, RACK_FAMILY, driver, ["pinion", "rack"])
 
 
 def drawn_teeth(mesh: Mesh, family: Family, driver: str, members: list[str]) -> Outcome:
@@ -868,6 +873,7 @@ def drawn_teeth(mesh: Mesh, family: Family, driver: str, members: list[str]) -> 
         dict(family.coordinates),
         title="teeth",
     )
+    motion = nominal_motion(mesh, *mesh_ends(mesh, driver))
     teeth["points"].attrs.update(way(mesh).attributes(members))
     inputs = {
         "operation.torque": 5.0,
@@ -878,11 +884,11 @@ def drawn_teeth(mesh: Mesh, family: Family, driver: str, members: list[str]) -> 
         "inputs": entries(inputs),
         "driver": driver,
         "members": members,
-        "motion": mesh.motion.tolist(),
-        "period": float(mesh.period),
+        "motion": motion.tolist(),
+        "period": float(nominal_period(mesh, motion)),
         "travels": ["driver"] if driver == "rack" else [],
         "pitch": "base pitch",
-        "against": f"{driver} drives" if mesh.onward < 0.0 else "",
+        "against": f"{driver} drives" if phase_sense(mesh, motion) < 0.0 else "",
     }
     return Outcome(manifest, {"teeth": teeth})
 

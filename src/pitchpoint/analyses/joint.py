@@ -136,9 +136,9 @@ def _torsion(built: Built) -> _Torsion:
     each, body = wound_ups(built, known, torques)
     found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
     at = RATED if rated else 0
-    weight, mesh = np.asarray(known.weight), built.design.mesh
+    weight = np.asarray(known.weight)
     ripple = np.exp(-2j * np.pi * np.asarray(known.phase)) * weight
-    play = np.asarray(kinematic_play(mesh, known.contacts, known.phase, body)) @ weight
+    play = np.asarray(kinematic_play(built.design, known.contacts, known.phase, body)) @ weight
     slope = 1.0 / ((1.0 / found.stiffness) @ weight)
     turned, carried, slopes = map(array, _found(np.stack([found.wind_up @ weight, torques, slope])))
     curve = WindUpCurve(turned, carried, slopes, array(max(play, 0.0)))
@@ -164,9 +164,9 @@ def _found(points: np.ndarray) -> np.ndarray:
 
 def _sliding(built: Built, known: Any, force: np.ndarray) -> Sliding:
     """Friction of all flanks at the operating point, gathered in parts of equal count by their rates."""
-    mesh = built.design.mesh
+    design = built.design
     slip = jax.device_get(known.contacts).slip_arm
-    ways: Any = jax.device_get((mesh.loaded, mesh.motion))
+    ways: Any = jax.device_get((design.loaded, design.motion))
     own, nominal = (np.asarray(along(slip, way)) for way in ways)
     held = (force * np.abs(own) * np.asarray(known.weight)).ravel()
     rate = np.abs(nominal / np.where(own != 0.0, own, np.inf)).ravel()

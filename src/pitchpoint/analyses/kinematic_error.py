@@ -16,12 +16,11 @@ from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.doubts import Doubt
+from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.gears.family import Turning
-from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.compliance import Compliance, compliance
 from pitchpoint.loading.kinematic_error import KinematicError, added_gap, kinematic_error
 from pitchpoint.loading.tooth_compliance import Terms
-from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import looping_program, program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
@@ -49,7 +48,6 @@ class _Period(eqx.Module):
 
     contacts: Contacts
     yields: Compliance
-    loaded: Float[Array, " dof"]
 
 
 def kinematic_error_part(
@@ -68,13 +66,13 @@ def kinematic_error_part(
     design, gears = built.design, built.case.gears
     load = array(np.full((1, 1), built.case.operation.load))
     phases = PHASES if design.mesh.body.couples else FEW_PAIRS
-    period = _period(design.mesh, design.solids, built.terms, load, phases)
+    period = _period(design, built.terms, load, phases)
     teeth = np.asarray(gears.tooth_numbers)
     solved: list[np.ndarray] = []
 
     def over(own: Surfaces, count: int) -> np.ndarray:
         done, found = sum(one.shape[1] for one in solved), []
-        for piece in _pieces(design.mesh, period, own, count):
+        for piece in _pieces(design, period, own, count):
             found.append(piece)
             progress(done + min(len(found) * TEETH, count) * phases)
         solved.append(np.concatenate(found, axis=1)[:, : count * phases])
@@ -153,11 +151,13 @@ def _together(
     return np.take(own, np.arange(teeth * phases), axis=1, mode="wrap")
 
 
-def _pieces(mesh: Mesh, period: _Period, deviations: Surfaces, count: int) -> Iterator[np.ndarray]:
+def _pieces(
+    design: Design, period: _Period, deviations: Surfaces, count: int
+) -> Iterator[np.ndarray]:
     phases = period.contacts.path.shape[-1]
     for start in range(0, count, TEETH):
         turned = start + np.arange(TEETH)[:, None] + np.arange(phases) / phases
-        added = _added(mesh, period, deviations, array(turned))
+        added = _added(design, period, deviations, array(turned))
         found = jax.device_get(_errors(period, added))
         each = (found.geometric, found.elastic_mean, found.under_load)
         yield np.stack([values.ravel() for values in each])
@@ -171,24 +171,22 @@ def _amplitudes(errors: np.ndarray, orders: int) -> np.ndarray:
 
 
 @program
-def _period(
-    mesh: Mesh, solids: tuple[Solid, Solid], terms: Terms, load: Array, phases: int
-) -> _Period:
-    contacts = mesh.contacts(mesh.onward * jnp.arange(phases)[None] / phases)
-    yields = compliance(mesh, contacts, solids, terms, load)
-    return _Period(contacts, yields, mesh.loaded)
+def _period(design: Design, terms: Terms, load: Array, phases: int) -> _Period:
+    contacts = design.mesh.contacts(design.onward * jnp.arange(phases)[None] / phases)
+    yields = compliance(design.mesh, design.loaded, contacts, design.solids, terms, load)
+    return _Period(contacts, yields)
 
 
 @program
 def _added(
-    mesh: Mesh, period: _Period, deviations: Surfaces, turned: Float[Array, "tooth phase"]
+    design: Design, period: _Period, deviations: Surfaces, turned: Float[Array, "tooth phase"]
 ) -> Float[Array, "pair slice tooth phase"]:
-    return added_gap(deviations, mesh.spots(period.contacts, mesh.onward * turned))
+    return added_gap(deviations, design.mesh.spots(period.contacts, design.onward * turned))
 
 
 @looping_program
 def _errors(period: _Period, added: Float[Array, "pair slice tooth phase"]) -> KinematicError:
-    return kinematic_error(period.contacts, period.yields, period.loaded, added)
+    return kinematic_error(period.contacts, period.yields, added)
 
 
 _FOUND: WeakKeyDictionary[Built, xr.Dataset] = WeakKeyDictionary()

@@ -136,7 +136,7 @@ def _mean(moving: Moving, ratio: Array) -> tuple[Array, Array]:
     spring = along_action(whole, line)
     damping = modal_damping(mass[None, None], spring[None, None], ratio)[0, 0]
     contacts, _ = jax.vmap(moving.passage.at)(moving.passage.edges[:-1])
-    sliding = jax.vmap(lambda one: along(one.slip_arm, mesh.motion))(contacts)
+    sliding = jax.vmap(lambda one: along(one.slip_arm, moving.design.motion))(contacts)
     fastest = jnp.max(jnp.where(contacts.active, jnp.abs(sliding), 0.0))
     return damping, fastest
 

@@ -215,7 +215,8 @@ def _asked(built: Built) -> tuple[Any, ...]:
     """A pair as `rated` takes it."""
     mesh, given, table = built.design.mesh, built.rated, built.case.strength
     ends = np.full(2, nan) if ends_at_tips(mesh) else jax.device_get(_path_ends(mesh))
-    duty = given.duty(built.operation, None if table is None else table.life)
+    life = None if table is None else table.life
+    duty = given.duty(built.operation, life, built.design.driver)
     return mesh, ends, duty, given.factors, given.strengths, given.finish
 
 

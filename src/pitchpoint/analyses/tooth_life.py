@@ -13,6 +13,7 @@ from pitchpoint.analyses.strength import rated_rows, rating_inputs
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.duty_cycle.history import LoadHistory
 from pitchpoint.errors import InputError
+from pitchpoint.gears.nominal_motion import nominal_motion
 from pitchpoint.results.store import dataset
 
 __all__ = ["LoadClasses", "cycles_to_failure", "load_classes", "tooth_life"]
@@ -153,7 +154,9 @@ def _damage(inputs: tuple[Any, ...], built: Ready, classes: LoadClasses) -> Floa
     output_rate = float(built.operation.speed) * built.output_rate
     # Turns of the driver of this mesh for a way of the output, at the ratio of the operating point.
     turns = classes.way * float(duty.speed) / abs(output_rate) / (2.0 * np.pi)
-    own = np.abs(np.asarray(mesh.motion)) * np.asarray(duty.engagements)
+    own = np.abs(np.asarray(nominal_motion(mesh, duty.driver, 1.0 - duty.driver))) * np.asarray(
+        duty.engagements
+    )
     cycles = turns[:, None] * own
     working = classes.torque[:, None] > 0.0
     parts = []

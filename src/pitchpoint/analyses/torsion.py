@@ -338,7 +338,7 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
     return {
         "phase": phase[::SHOWN],
         "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
-        "kinematic_play": np.asarray(kinematic_play(design.mesh, known.contacts, known.phase, body))
+        "kinematic_play": np.asarray(kinematic_play(design, known.contacts, known.phase, body))
         @ weight,
         "angular_transmission_error": approach[:, ::SHOWN],
         "angular_transmission_error_range": np.ptp(approach, axis=-1),
@@ -401,7 +401,7 @@ def wound_ups(
     mesh, solids, body = design.mesh, design.solids, known.body
     if body is None:
         body = coupling(mesh.body, solids, known.contacts)
-    given = mesh, solids, built.terms
+    given = mesh, design.loaded, solids, built.terms
     each: list[Any] = []
     for torque in torques:
         if each and isinstance(
@@ -425,11 +425,12 @@ def _by_balls(
     built: Built, contacts: Contacts, weight: np.ndarray, as_they_stand: float
 ) -> dict[str, np.ndarray]:
     """Wind-up at the operating point with the balls elsewhere less that as they stand; none without balls."""
-    mesh, solids = built.design.mesh, built.design.solids
+    design = built.design
+    mesh, solids = design.mesh, design.solids
     other = mesh.body.elsewhere
     if other is None:
         return {}
-    given = mesh, solids, built.terms, array(built.case.operation.load)
+    given = mesh, design.loaded, solids, built.terms, array(built.case.operation.load)
     found = wound_up(*given, contacts, coupling(other, solids, contacts))
     return {"wind_up_by_balls": np.asarray(found.wind_up) @ weight - as_they_stand}
 
@@ -449,7 +450,7 @@ def _parts(
     """Parts of the wind-up over the torques, by name; those that yield [rad]."""
     if not design.mesh.body.couples:
         return {}
-    under = jax.device_get(body_parts(design.mesh, design.solids, contacts, found))
+    under = jax.device_get(body_parts(design.mesh, design.loaded, design.solids, contacts, found))
     teeth = {"teeth": found.of_teeth, "gaps between the teeth": found.of_gaps}
     every = {name: values @ weight for name, values in (teeth | under).items()}
     return {name: values for name, values in every.items() if values.any()}
@@ -473,7 +474,7 @@ def _drag_at_rest(
     temperature: Float[Array, ""],
 ) -> Float[Array, " node"]:
     viscosity = design.lubricant.kinematic_viscosity(temperature)
-    drags, loaded = at_rest(design.drag), design.mesh.loaded
+    drags, loaded = at_rest(design.drag), design.loaded
     total = jnp.zeros(force.shape[2:])
     for drag, load in zip(drags, bearing_loads(drags, design.mesh, contacts, force), strict=True):
         torque = drag.torque(speed=jnp.zeros(()), load=load, kinematic_viscosity=viscosity)
@@ -488,15 +489,16 @@ def _zone_load(loads: np.ndarray) -> dict[str, np.ndarray]:
 
 @program
 def kinematic_play(
-    mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"], body: Body | None
+    design: Design, contacts: Contacts, phase: Float[Array, " node"], body: Body | None
 ) -> Array:
     """Rotation of the loaded member between first touch of its flanks on either side [rad]."""
+    mesh = design.mesh
     other = mesh.other_flanks
-    both = (mesh, contacts), (other, contacts if other is mesh else other.contacts(phase))
+    both = contacts, contacts if other is mesh else other.contacts(phase)
     return sum(
         (
-            touch(opened(at.gap, body), jnp.abs(along(at.normal, one.loaded)), at.active)
-            for one, at in both
+            touch(opened(at.gap, body), jnp.abs(along(at.normal, design.loaded)), at.active)
+            for at in both
         ),
         jnp.zeros(()),
     )

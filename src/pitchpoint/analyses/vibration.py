@@ -105,7 +105,9 @@ def stiffness_part(built: Built) -> xr.Dataset:
         name: (lanes if np.ndim(values) == 2 else ("node",)[: np.ndim(values)], values)
         for name, values in found.items()
     }
-    standard, told = estimate(built.design.mesh, built.design.solids, built.operation.load)
+    standard, told = estimate(
+        built.design.mesh, built.design.loaded, built.design.solids, built.operation.load
+    )
     data |= {name: ((), value) for name, value in standard.items()}
     lost = [] if status is None else status_sentences(status.code, _AT_PHASE)
     return dataset(
@@ -124,12 +126,12 @@ def _stiffness(
 ) -> tuple[dict[str, Array], Status | None]:
     """Values by name, and what became of the equilibrium behind them, if any."""
     mesh, load = design.mesh, operation.load
-    found = mesh_stiffness(mesh, design.solids, terms, load)
+    found = mesh_stiffness(mesh, design.loaded, design.solids, terms, load)
     contacts = mesh.contacts(found.phase)
     length = jnp.sum(jnp.where(contacts.active, contacts.weight, 0.0), axis=1)
     entered = found.phase + jnp.arange(found.single.shape[0])[:, None, None]
     single, total = found.along_action, found.total
-    error = found.approach * jnp.abs(line_of_action(mesh) @ mesh.loaded)
+    error = found.approach * jnp.abs(line_of_action(mesh) @ design.loaded)
     mean = jnp.sum(total * found.weight)
     lanes = {"entered": entered, "pair_stiffness": single, "line_length": length}
     whole = {
@@ -190,7 +192,7 @@ def resonance_part(built: Built) -> xr.Dataset:
     own = vibrating_of(built)
     parts = [(*_excited(built.design, point, built.terms, own), own.backlash) for point in points]
     grid = _grid(parts, own.orders, "dynamics.speeds.start")
-    periods = built.design.mesh.period / jnp.asarray(speeds)
+    periods = built.design.period / jnp.asarray(speeds)
     runs = [
         [jax.device_get(_sweep(*part, order, grid, separating(built))) for part in parts]
         for order in (periods, periods[::-1])

@@ -6,7 +6,6 @@ from functools import cached_property, lru_cache, reduce
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
-import equinox as eqx
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
@@ -59,7 +58,14 @@ from pitchpoint.gears.contact_lines import line_of_action, pitch_point
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.families import Gears, built_gears, family_of
 from pitchpoint.gears.family import Family, Followed
-from pitchpoint.gears.mesh import Mesh, has
+from pitchpoint.gears.mesh import Mesh, bodies_of, has
+from pitchpoint.gears.nominal_motion import (
+    mesh_ends,
+    nominal_motion,
+    nominal_period,
+    phase_sense,
+    speed_ratio,
+)
 from pitchpoint.gears.pairs import touching, way
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.input.quantities import Quantity
@@ -257,7 +263,7 @@ class Built:
         if int(found.status.code) == Code.LOCKED:
             return known  # friction locks the mesh, which the computation says
         loss = {name: float(getattr(found, name)) for name in ("mean_friction", "loss_factor")}
-        return _of_solids(known, heated(case, cold.design.mesh, cool, loss))
+        return _of_solids(known, heated(case, cold.design, cool, loss))
 
     @property
     def heated(self) -> list[str]:
@@ -441,7 +447,9 @@ class Built:
 
     @cached_property
     def _of_mesh(self) -> dict[str, dict[str, Any]]:
-        found: dict[str, dict[str, Any]] = jax.tree.map(np.asarray, _numbers(self.design.mesh))
+        found: dict[str, dict[str, Any]] = jax.tree.map(
+            np.asarray, _numbers(self.design.mesh, self.design.driver, self.design.loaded)
+        )
         return found
 
     @property
@@ -491,7 +499,8 @@ class Built:
     @cached_property
     def ends(self) -> tuple[float, float]:
         """Rates of the driver and of the loaded member, in the sense that presses the flanks that touch."""
-        return ends_of(self.design.mesh)
+        first, last = (float(self.nominal[end] @ self.nominal["motion"]) for end in _ENDS)
+        return first, last
 
     @property
     def step(self) -> float:
@@ -550,7 +559,7 @@ class Built:
     @cached_property
     def bodies(self) -> tuple[Coordinate, ...]:
         """Coordinates of the mesh without their places."""
-        return _bodies(*_form(self.design.mesh))
+        return bodies_of(self.design.mesh)
 
     @cached_property
     def travels(self) -> frozenset[End]:
@@ -606,7 +615,7 @@ class Built:
         other = replace(
             self,
             case=self.case.model_copy(update={"operation": point}),
-            design=replace(self.design, mesh=self.design.mesh.driven_by(self.loaded)),
+            design=self.design.backwards,
             operation=operation_at(point),
         )
         return other.warmed
@@ -627,28 +636,18 @@ class Built:
 _ENDS: tuple[End, ...] = ("driver", "loaded")
 
 
-def _form(mesh: Mesh) -> tuple[Any, tuple[Any, ...]]:
-    """Structure of a mesh, and shapes of its arrays."""
-    leaves, structure = jax.tree.flatten(mesh)
-    return structure, tuple(
-        jax.ShapeDtypeStruct(leaf.shape, leaf.dtype) if eqx.is_array(leaf) else leaf
-        for leaf in leaves
-    )
-
-
-@lru_cache(maxsize=64)
-def _bodies(structure: Any, leaves: tuple[Any, ...]) -> tuple[Coordinate, ...]:
-    """Coordinates of meshes of one form: traced once, and never compiled."""
-    found: tuple[Coordinate, ...] = eqx.filter_eval_shape(
-        lambda mesh: mesh.coordinates, jax.tree.unflatten(structure, leaves)
-    )
-    return found
-
-
-def ends_of(mesh: Mesh) -> tuple[float, float]:
+def ends_of(case: Case, mesh: Mesh) -> tuple[float, float]:
     """Rates of the driver and of the loaded member of a mesh."""
-    motion = np.asarray(mesh.motion)
-    return float(np.asarray(mesh.driver) @ motion), float(np.asarray(mesh.loaded) @ motion)
+    ends = _ends(case, mesh)
+    motion = np.asarray(nominal_motion(mesh, *ends))
+    first, last = (float(np.asarray(end) @ motion) for end in ends)
+    return first, last
+
+
+def _ends(case: Case, mesh: Mesh) -> tuple[jax.Array, jax.Array]:
+    """Who drives and who is loaded, see `mesh_ends`."""
+    driver = case.operation.driver
+    return mesh_ends(mesh, driver, case.gears.loaded_member(driver))
 
 
 def operation_at(point: Operating) -> Operation:
@@ -674,6 +673,7 @@ def build(case: Case, document: Document, own: ChosenLaws = ()) -> Built:
     if wrong or oil is None or gears is None or used is None:
         raise wrong.error
     mesh, warnings = gears
+    driver, loaded = _ends(case, mesh)
     design = Design(
         mesh=mesh,
         solids=(used[0].solid, used[1].solid),
@@ -681,6 +681,8 @@ def build(case: Case, document: Document, own: ChosenLaws = ()) -> Built:
         roughness=_roughness(case.roughness),
         drag=drags(case.losses, case.bodies, {mesh.body.inner_bearing}),
         elliptic=ELLIPTIC_CONTACT[case.models.elliptic_contact],
+        driver=driver,
+        loaded=loaded,
     )
     told = [*warnings, *_yielding(case, mesh), *_of_oil(oil)]
     told += _half_of_a_line(case.lubricant)
@@ -698,8 +700,7 @@ def build(case: Case, document: Document, own: ChosenLaws = ()) -> Built:
 
 def gears_of(case: Case, wrong: Complaints) -> tuple[Mesh, tuple[str, ...]] | None:
     """Mesh of a case and what is to be said of it; None, with a complaint, where it cannot be built."""
-    given = case.gears, case.operation.driver, int(case.models.slices)
-    return wrong.under("gears").tried(built_gears, *given)
+    return wrong.under("gears").tried(built_gears, case.gears, int(case.models.slices))
 
 
 def check_alone(document: Document, wrong: Complaints) -> None:
@@ -720,8 +721,7 @@ def check_alone(document: Document, wrong: Complaints) -> None:
     for key, table in tables.items():
         gears = None if wrong.of(key) else _sound(_GEARS, table)
         if gears is not None:
-            usual = gears.drivers[0], int(Choices().slices)
-            wrong.under(key).tried(built_gears, gears, *usual)
+            wrong.under(key).tried(built_gears, gears, int(Choices().slices))
     oil = None if wrong.of("lubricant") else _sound(_OIL, document.tree.get("lubricant"))
     if oil is not None:
         wrong.tried(_lubricant, oil, document)
@@ -935,7 +935,7 @@ def _under(
 
 def tooth_size(mesh: Mesh) -> float | None:
     """Module of the teeth [m], which is about the height that their flanks have; None without teeth."""
-    found = jax.device_get(_numbers(mesh)["dimensions"]).get("module")
+    found = jax.device_get(_numbers(mesh, *mesh_ends(mesh))["dimensions"]).get("module")
     return None if found is None else float(found)
 
 
@@ -1264,20 +1264,22 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
 
 
 @program
-def _numbers(mesh: Mesh) -> dict[str, dict[str, Any]]:
+def _numbers(mesh: Mesh, driver: jax.Array, loaded: jax.Array) -> dict[str, dict[str, Any]]:
     """Dimensions and nominal motion, which every case asks for."""
+    motion = nominal_motion(mesh, driver, loaded)
     nominal = {
-        "motion": mesh.motion,
-        "driver": mesh.driver,
-        "loaded": mesh.loaded,
-        "period": mesh.period,
-        "onward": mesh.onward,
+        "motion": motion,
+        "driver": driver,
+        "loaded": loaded,
+        "period": nominal_period(mesh, motion),
+        "onward": phase_sense(mesh, motion),
         "events": mesh.events(),
-        "pitch_line_speed": pitch_point(mesh).pitch_line_speed
+        "pitch_line_speed": pitch_point(mesh, driver).pitch_line_speed
         if has(mesh, pitch_point)
         else jnp.zeros(()),
     }
-    return {"dimensions": main_dimensions(mesh), "nominal": nominal}
+    dimensions = main_dimensions(mesh) | speed_ratio(mesh, driver, loaded)
+    return {"dimensions": dimensions, "nominal": nominal}
 
 
 _modulus, _sections = program(reduced_modulus), program(tooth_sections)

@@ -12,12 +12,12 @@ from pitchpoint.cases.document import Document
 from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import Case, Materials, SolidValues
 from pitchpoint.doubts import GUESSED, LEFT_OUT, REMARKED, Doubt, fails
+from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.efficiency.warm_teeth import Heated
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import pitch_point
-from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials import solids
 from pitchpoint.materials.data import Datum, Status
 from pitchpoint.materials.solids import Solid, SolidRecord, celsius, heat_failure
@@ -190,7 +190,7 @@ def surrounded(used: Used, temperature: float) -> Used:
     return first, second
 
 
-def heated(case: Case, mesh: Mesh, used: Used, found: Mapping[str, float]) -> Used:
+def heated(case: Case, design: Design, used: Used, found: Mapping[str, float]) -> Used:
     """Materials with plastic gears at the temperature of their tooth roots.
 
     The tooth yields most in its root and body, so the temperature there sets its modulus.
@@ -205,7 +205,7 @@ def heated(case: Case, mesh: Mesh, used: Used, found: Mapping[str, float]) -> Us
         InputError: the temperature is outside what is known of a material.
     """
     first, second = (
-        _warm(case, mesh, used, gear, found) if used[gear].plastic else used[gear]
+        _warm(case, design, used, gear, found) if used[gear].plastic else used[gear]
         for gear in (0, 1)
     )
     return first, second
@@ -260,11 +260,13 @@ def datum(value: float, key: str, document: Document) -> Datum:
     return Datum(value=value, status=cast("Status", mark.status), note=mark.note)
 
 
-def _warm(case: Case, mesh: Mesh, used: Used, gear: int, found: Mapping[str, float]) -> SolidInUse:
-    pair, point, gears = pitch_point(mesh), case.operation, case.gears
+def _warm(
+    case: Case, design: Design, used: Used, gear: int, found: Mapping[str, float]
+) -> SolidInUse:
+    pair, point, gears = pitch_point(design.mesh, design.driver), case.operation, case.gears
     temperature = TOOTH_TEMPERATURE[case.models.tooth_temperature].function(
         ambient=point.temperature,
-        power=point.load * abs(float(mesh.loaded @ mesh.motion)) * point.speed,
+        power=point.load * abs(float(design.loaded @ design.motion)) * point.speed,
         friction=found["mean_friction"],
         loss_factor=found["loss_factor"],
         face_width=pair.width,

@@ -377,7 +377,7 @@ def _mesh_alone(one: Case) -> Mesh:
 def _turns(stage: _Stage, document: Document) -> tuple[float, float]:
     """Rates of the driver and of the loaded end of a stage; of a set of bodies for one of its input."""
     if isinstance(stage.case, Case):
-        return ends_of(_mesh(stage.case, stage.number, document))
+        return ends_of(stage.case, _mesh(stage.case, stage.number, document))
     return 1.0, _in_stage(
         document, stage.number, partial(_rate_of_output, stage.case, stage.document)
     )

@@ -91,16 +91,18 @@ class Rated:
             *dict.fromkeys(printed),
         )
 
-    def duty(self, point: Operation, life: float | None) -> Duty:
+    def duty(self, point: Operation, life: float | None, driver: Array) -> Duty:
         """What the pair has to bear.
 
         Args:
             point: torque on the driven gear, speed of the driving gear.
             life: time under load [s]; None if the teeth are to endure.
+            driver: one for the gear that drives.
         """
         flank, root = self.endured
         time, engagements = nan if life is None else life, self.table.engagements or (1.0, 1.0)
-        return Duty(point.load, point.speed, flank, root, array(time), array(engagements))
+        ends = array(time), array(engagements), driver
+        return Duty(point.load, point.speed, flank, root, *ends)
 
 
 def check_strength(case: Case, used: Used) -> None:

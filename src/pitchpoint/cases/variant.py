@@ -85,7 +85,7 @@ class Variant:
         """Cases with some values changed, or what is wrong with them; their gears are built together."""
         read = [_or_error(self._read, each) for each in changes]
         build_together(
-            (case.gears, case.operation.driver, int(case.models.slices))
+            (case.gears, int(case.models.slices))
             for case, _ in (one for one in read if not isinstance(one, InputError))
             if isinstance(case, Case)
         )

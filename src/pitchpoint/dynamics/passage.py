@@ -192,7 +192,7 @@ def on_springs(
     Returns:
         Stiffness of each slice along its normal, zero out of contact [N/m].
     """
-    found = springs(design.mesh, contacts, design.solids, terms, load)
+    found = springs(design.mesh, design.loaded, contacts, design.solids, terms, load)
     return replace(contacts, gap=found.gap), found.stiffness
 
 

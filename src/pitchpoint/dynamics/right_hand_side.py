@@ -206,10 +206,10 @@ def contact_forces(moving: Moving, place: Coordinates, rate: Coordinates) -> Con
         moving: mesh and bodies.
         place, rate: of all coordinates.
     """
-    mesh = moving.design.mesh
+    design = moving.design
     turned = _driving(moving, place)
-    phase = moving.phase + mesh.onward / mesh.period * turned
-    beside = place - column(moving.padded(mesh.motion), place) * turned
+    phase = moving.phase + design.onward / design.period * turned
+    beside = place - column(moving.padded(design.motion), place) * turned
     return forces_beside(moving, _engaged(moving, phase), phase, beside, rate)
 
 
@@ -237,10 +237,10 @@ def forces_beside(
 
     From a spring and a damper side by side, cut where together they would pull.
     """
-    (own, springs), mesh = engaged, moving.design.mesh
-    contacts = on_all_coordinates(own, mesh.coordinates, moving.bodies)
-    leaning = _leaning(mesh, own)
-    pace = mesh.onward / mesh.period * _driving(moving, rate)
+    (own, springs), design = engaged, moving.design
+    contacts = on_all_coordinates(own, design.mesh.coordinates, moving.bodies)
+    leaning = _leaning(design.mesh, own)
+    pace = design.onward / design.period * _driving(moving, rate)
     apart, parting = (leaning * value for value in _error(moving, phase, pace))
     stretch = _lanes(contacts.normal, beside) - contacts.gap - apart
     roll_arm = _on_mesh(own.roll_arm, contacts)
@@ -348,9 +348,9 @@ def kinetic(moving: Moving, rate: Coordinates) -> Each:
 
 def _driving(moving: Moving, values: Coordinates) -> Each:
     """That of the driver, in its nominal sense."""
-    mesh = moving.design.mesh
-    own: Each = jnp.tensordot(moving.padded(mesh.driver), values, axes=1)
-    return own * (mesh.driver @ mesh.motion)
+    design = moving.design
+    own: Each = jnp.tensordot(moving.padded(design.driver), values, axes=1)
+    return own * (design.driver @ design.motion)
 
 
 def _engaged(moving: Moving, phase: Each) -> tuple[Contacts, Lanes]:
@@ -439,7 +439,7 @@ def conditions_at(
     """
     driving = _driving(moving, rate)
     slow = jnp.abs(driving) < moving.slowest
-    lifted = rate + column(moving.padded(moving.design.mesh.motion), rate) * jnp.where(
+    lifted = rate + column(moving.padded(moving.design.motion), rate) * jnp.where(
         slow, moving.slowest - driving, 0.0
     )
     point = replace(moving.operation, speed=jnp.maximum(jnp.abs(driving), moving.slowest))

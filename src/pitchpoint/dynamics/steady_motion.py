@@ -387,9 +387,9 @@ class _Turning:
         self.tolerance = tolerance
         self.moving, self.speed, self.cycles = moving, speed, cycles
         self.passage: Passage = moving.passage
-        mesh = moving.design.mesh
-        self.driver, self.motion = _driver(moving), moving.padded(mesh.motion)
-        self.way, self.onward = mesh.period, mesh.onward
+        design = moving.design
+        self.driver, self.motion = _driver(moving), moving.padded(design.motion)
+        self.way, self.onward = design.period, design.onward
         self.held = jnp.isinf(jnp.sum(jnp.where(self.driver > 0.0, moving.mass, 0.0)))
         self.size = 2 * moving.mass.shape[0]
         self.nominal = self.motion * speed
@@ -649,7 +649,7 @@ def _described(
     account = _account(turning, beside, rate, found, given[turning.size :])
     torque = torques(moving, jnp.zeros_like(turned), beside, rate, found)
     mesh = moving.design.mesh
-    loaded, dof = moving.padded(mesh.loaded), len(mesh.coordinates)
+    loaded, dof = moving.padded(moving.design.loaded), len(mesh.coordinates)
     action = line_of_action(mesh) if has(mesh, line_of_action) else found.line[:dof, 0, 0]
     values: dict[str, Any] = {
         "turned": turned,
@@ -734,7 +734,7 @@ def _arrays(moving: Moving) -> Moving:
 
 
 def _driver(moving: Moving) -> Float[Array, " coordinate"]:
-    return moving.padded(moving.design.mesh.driver)
+    return moving.padded(moving.design.driver)
 
 
 def _ratio(out: Array, put_in: Array) -> Array:

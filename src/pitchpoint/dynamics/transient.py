@@ -161,10 +161,10 @@ def _apart(events: np.ndarray, known: np.ndarray, nearest: float) -> np.ndarray:
 @program
 def _course(moving: Moving, place: Vector, rate: Vector) -> tuple[Array, Array, Array, Array]:
     """Phase at the start, periods in a second, whether these are prescribed, and phases of the events."""
-    mesh = moving.design.mesh
+    design = moving.design
     found = contact_forces(moving, place, rate)
-    driver = moving.padded(mesh.driver)
-    pace = mesh.onward / mesh.period * (driver @ rate) * (mesh.driver @ mesh.motion)
+    driver = moving.padded(design.driver)
+    pace = design.onward / design.period * (driver @ rate) * (design.driver @ design.motion)
     held = jnp.isinf(driver @ jnp.where(driver > 0.0, moving.mass, 0.0))
     return found.phase, pace, held, _edges(moving)
 

@@ -11,7 +11,6 @@ from pitchpoint.dynamics.steady_state import separating_steady_state, steady_sta
 from pitchpoint.dynamics.system import System, modal_damping, reduced_mass
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.gears.contact_lines import line_of_action
-from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import Terms
 
@@ -73,25 +72,25 @@ def excitation(stiffness: MeshStiffness, vibrating: Vibrating) -> Excitation:
 
 
 def system(
-    mesh: Mesh, vibrating: Vibrating, mean_stiffness: Float[Array, ""], operation: Operation
+    design: Design, vibrating: Vibrating, mean_stiffness: Float[Array, ""], operation: Operation
 ) -> System:
     """Mass, damping and load along the line of action at one operating point.
 
     Args:
-        mesh: a family with a line of action.
+        design: of a family with a line of action.
         vibrating: inertia and damping ratio.
         mean_stiffness: of the mesh along the line of action [N/m].
         operation: load and speed.
 
     Source: Atanasiu et al. (2011), eqs. 10, 12 and 13, the last with the indices in their places.
     """
-    action = line_of_action(mesh)
+    action = line_of_action(design.mesh)
     mass = reduced_mass(vibrating.inertia, action).reshape(1, 1)
     return System(
         mass=mass,
         damping=modal_damping(mass, mean_stiffness.reshape(1, 1), vibrating.damping_ratio),
-        load=(operation.load / jnp.abs(action @ mesh.loaded)).reshape(1),
-        period=mesh.period / operation.speed,
+        load=(operation.load / jnp.abs(action @ design.loaded)).reshape(1),
+        period=design.period / operation.speed,
     )
 
 
@@ -117,8 +116,10 @@ def excited(
     """
     # A segment between events may be a whole period long, and each order has to be resolved in it.
     count = _NODES + 4 * max(vibrating.orders, default=0)
-    stiffness = mesh_stiffness(design.mesh, design.solids, terms, operation.load, count)
-    moved = system(design.mesh, vibrating, stiffness.mean, operation)
+    stiffness = mesh_stiffness(
+        design.mesh, design.loaded, design.solids, terms, operation.load, count
+    )
+    moved = system(design, vibrating, stiffness.mean, operation)
     return stiffness, moved, excitation(stiffness, vibrating)
 
 

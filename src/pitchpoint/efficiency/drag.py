@@ -144,6 +144,7 @@ def resistance(
     mesh: Mesh,
     contacts: Contacts,
     *,
+    motion: Float[Array, " dof"],
     speed: Each,
     kinematic_viscosity: Each,
 ) -> Callable[[Lanes], Float[Array, "dof *#b"]]:
@@ -153,6 +154,7 @@ def resistance(
         drags: places where they arise, at least one.
         mesh: any family.
         contacts: of the mesh.
+        motion: rates of its coordinates for a unit speed of the driver.
         speed: of the driver [rad/s].
         kinematic_viscosity: of the lubricant [m2/s].
 
@@ -166,10 +168,10 @@ def resistance(
     def torques(load: Lanes) -> Float[Array, "dof *#b"]:
         pressed = bearing_loads(drags, mesh, contacts, load)
         every = [
-            _on_bodies(drag, mesh.motion, speed, held, kinematic_viscosity)
+            _on_bodies(drag, motion, speed, held, kinematic_viscosity)
             for drag, held in zip(drags, pressed, strict=True)
         ]
-        return jnp.stack([sum(one[k] for one in every) for k in range(mesh.motion.shape[0])])
+        return jnp.stack([sum(one[k] for one in every) for k in range(motion.shape[0])])
 
     return torques
 

@@ -59,14 +59,14 @@ class MeshLink(DriveLink):
     @property
     def ends(self) -> tuple[int, int]:
         """See `DriveLink`."""
-        mesh = self.design.mesh
-        first, last = (self.shafts[int(np.argmax(on))] for on in (mesh.driver, mesh.loaded))
+        ends = self.design.driver, self.design.loaded
+        first, last = (self.shafts[int(np.argmax(on))] for on in ends)
         return first, last
 
     @property
     def step(self) -> Float[Array, ""]:
         """See `DriveLink`."""
-        return jnp.abs(self.design.mesh.loaded @ self.design.mesh.motion)
+        return jnp.abs(self.design.loaded @ self.design.motion)
 
     @property
     def touching(self) -> bool:
@@ -75,14 +75,13 @@ class MeshLink(DriveLink):
 
     def senses(self, before: float) -> tuple[float, float]:
         """See `DriveLink`."""
-        mesh = self.design.mesh
-        first, last = (float(jnp.sign(mesh.motion @ end)) for end in (mesh.driver, mesh.loaded))
+        ends, motion = (self.design.driver, self.design.loaded), self.design.motion
+        first, last = (float(jnp.sign(motion @ end)) for end in ends)
         return first, last
 
     def driven_backwards(self) -> "MeshLink":
         """See `DriveLink`."""
-        mesh = self.design.mesh.driven_by(self.shafts.index(self.ends[1]))
-        return replace(self, design=replace(self.design, mesh=mesh))
+        return replace(self, design=self.design.backwards)
 
     def under_load(
         self,

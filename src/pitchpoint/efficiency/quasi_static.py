@@ -18,6 +18,7 @@ from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.mesh import Mesh, has
+from pitchpoint.gears.nominal_motion import mesh_ends, nominal_motion, nominal_period, phase_sense
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.pairs import touching
 from pitchpoint.gears.period import between
@@ -80,6 +81,8 @@ class Design(eqx.Module):
         roughness: of both flanks.
         drag: places beside the teeth where power is lost; none by default.
         elliptic: how an elliptic contact follows from its load; static.
+        driver: one for the coordinate that drives, zero elsewhere; by default see `mesh_ends`.
+        loaded: one for the coordinate whose load is prescribed, zero elsewhere; what is left stands still.
     """
 
     mesh: Mesh
@@ -88,6 +91,12 @@ class Design(eqx.Module):
     roughness: Roughness
     drag: tuple[Drag, ...] = ()
     elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT[USUAL_ELLIPSE])
+    driver: Float[Arrays, " dof"] = eqx.field(default=None)
+    loaded: Float[Arrays, " dof"] = eqx.field(default=None)
+
+    def __post_init__(self) -> None:
+        if self.driver is None and self.loaded is None:
+            self.driver, self.loaded = mesh_ends(self.mesh)
 
     def __repr__(self) -> str:
         return brief(self)
@@ -96,6 +105,31 @@ class Design(eqx.Module):
     def modulus(self) -> Float[Array, ""]:
         """Reduced modulus E' [Pa], 2/E' = sum of (1 - nu^2)/E over both members."""
         return reduced_modulus(*self.solids)
+
+    @property
+    def motion(self) -> Float[Array, " dof"]:
+        """Rates of the coordinates of the mesh for a unit rate of the driver, see `nominal_motion`."""
+        return nominal_motion(self.mesh, self.driver, self.loaded)
+
+    @property
+    def period(self) -> Float[Array, ""]:
+        """Motion of the driver in one period [rad or m]."""
+        return nominal_period(self.mesh, self.motion)
+
+    @property
+    def onward(self) -> Float[Array, ""]:
+        """Sense in which the phase runs while the drive turns on: one, or minus one."""
+        return phase_sense(self.mesh, self.motion)
+
+    @property
+    def backwards(self) -> "Design":
+        """The same, driven by the member that is loaded, in the sense that presses the same flanks."""
+        return replace(self, driver=self.loaded, loaded=self.driver)
+
+    def driven_by(self, driver: str | int, loaded: str | int | None = None) -> "Design":
+        """The same between other members, see `mesh_ends`."""
+        first, last = mesh_ends(self.mesh, driver, loaded)
+        return replace(self, driver=first, loaded=last)
 
     def conditions(
         self,
@@ -119,7 +153,7 @@ class Design(eqx.Module):
         """
         oil, temperature, mesh = self.lubricant, operation.temperature, self.mesh
         # Per radian of the driver: laws keep the speed as a factor on axes of its own.
-        motion = mesh.motion if rates is None else rates / operation.speed
+        motion = self.motion if rates is None else rates / operation.speed
         return Conditions(
             contacts=contacts,
             load=load,
@@ -138,7 +172,7 @@ class Design(eqx.Module):
             roughness_ra=self.roughness.mean_ra,
             roughness_rq=self.roughness.composite_rq,
             hardness=jnp.minimum(*(solid.hardness for solid in self.solids)),
-            reference=pitch_point(mesh) if has(mesh, pitch_point) else None,
+            reference=pitch_point(mesh, self.driver) if has(mesh, pitch_point) else None,
             elliptic=self.elliptic,
         )
 
@@ -266,7 +300,7 @@ class Models(eqx.Module):
         """
         mesh, yields = design.mesh, None
         if self.sharing.by_stiffness:
-            given = mesh, contacts, design.solids, self.compliance
+            given = mesh, design.loaded, contacts, design.solids, self.compliance
             yields = compliance(*given, load, body, teeth)
         return self.sharing.function(contacts, mesh, yields)
 
@@ -365,7 +399,13 @@ def shares_at(
         body: compliance of what is under the teeth, where it couples them.
     """
     if models.sharing.function is from_stiffness:
-        given = design.mesh, design.solids, models.compliance, jnp.asarray(load, float)
+        given = (
+            design.mesh,
+            design.loaded,
+            design.solids,
+            models.compliance,
+            jnp.asarray(load, float),
+        )
         return wound_up(*given, contacts, body).share
     return _shares(design, contacts, load, models.without_friction, body)
 
@@ -525,10 +565,10 @@ def state(
 
 def _unloaded(design: Design, operation: Operation, contacts: Contacts, share: Lanes) -> Conditions:
     """Conditions at the contacts before it is known what each of them carries."""
-    mesh, oil, temperature = design.mesh, design.lubricant, operation.temperature
+    oil, temperature = design.lubricant, operation.temperature
     drag = _drag(design, operation, contacts, oil.kinematic_viscosity(temperature))
-    carried = tooth_load(contacts, loaded=mesh.loaded, load=operation.load, drag=drag)
-    arm = jnp.abs(total(share * along(contacts.normal, mesh.loaded)))
+    carried = tooth_load(contacts, loaded=design.loaded, load=operation.load, drag=drag)
+    arm = jnp.abs(total(share * along(contacts.normal, design.loaded)))
     return design.conditions(
         contacts, operation, load=jnp.zeros_like(share), nominal_load=carried / arm
     )
@@ -544,8 +584,7 @@ def _balance(
     quick: bool = False,
 ) -> Balance:
     """Forces under the friction law: all that a state asks of it."""
-    mesh = design.mesh
-    given = design, operation, unloaded.contacts, share, unloaded, mesh.motion, mesh.loaded
+    given = design, operation, unloaded.contacts, share, unloaded, design.motion, design.loaded
     guess = None
     if quick:
         single = jax.tree.map(_single, given)
@@ -555,16 +594,16 @@ def _balance(
 
 def _state(design: Design, operation: Operation, unloaded: Conditions, found: Balance) -> State:
     """What follows from the forces."""
-    mesh, at_contact = design.mesh, replace(unloaded, load=found.load)
-    driver = mesh.driver * jnp.sign(mesh.driver @ mesh.motion)
-    putting, taking = (1.0 - mesh.loaded) * mesh.motion, mesh.loaded * mesh.motion
+    at_contact, motion, loaded = replace(unloaded, load=found.load), design.motion, design.loaded
+    driver = design.driver * jnp.sign(design.driver @ motion)
+    putting, taking = (1.0 - loaded) * motion, loaded * motion
     return State(
         contacts=unloaded.contacts,
         conditions=at_contact,
         balance=found,
         sliding_loss=found.load * found.friction * as_array(at_contact.sliding),
         rolling_loss=2.0 * found.rolling * as_array(at_contact.entrainment),
-        drag_loss=along(found.drag, mesh.motion) * operation.speed,
+        drag_loss=along(found.drag, motion) * operation.speed,
         input_torque=along(found.torque, driver),
         input_power=along(found.torque, putting) * operation.speed,
         output_power=-along(found.torque, taking) * operation.speed,
@@ -613,6 +652,7 @@ def _drag(
         design.drag,
         design.mesh,
         contacts,
+        motion=design.motion,
         speed=operation.speed,
         kinematic_viscosity=kinematic_viscosity,
     )

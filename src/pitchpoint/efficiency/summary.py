@@ -36,6 +36,7 @@ from pitchpoint.efficiency.rows import (
 )
 from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.nominal_motion import speed_ratio
 from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.reactions import radial_and_axial
@@ -87,8 +88,8 @@ def loss_factor(design: Design, models: Models, engaged: Engagement | None = Non
         share = equal(contacts, mesh)
     else:
         weight, contacts, share = engaged.weight, engaged.contacts, engaged.share
-    sliding = jnp.abs(along(contacts.slip_arm, mesh.motion))
-    arm = jnp.abs(along(contacts.normal, mesh.driver))
+    sliding = jnp.abs(along(contacts.slip_arm, design.motion))
+    arm = jnp.abs(along(contacts.normal, design.driver))
     presses = jnp.any(arm > 0.0)
     return jnp.where(
         presses, total(share * sliding / jnp.where(presses, arm, 1.0)) @ weight, jnp.nan
@@ -111,6 +112,7 @@ def summary(design: Design, result: Cycle, factor: Array) -> dict[str, Array]:
     acting, limit = result.nearest_to_jamming
     return {
         **_by_gear(main_dimensions(design.mesh)),
+        **speed_ratio(design.mesh, design.driver, design.loaded),
         "contact_ratio": design.mesh.contact_ratio,
         "loss_factor": factor,
         "mean_loss": result.mean_loss,

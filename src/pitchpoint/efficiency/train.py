@@ -17,6 +17,7 @@ from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.nominal_motion import nominal_period, phase_sense
 from pitchpoint.gears.period import TOGETHER
 
 __all__ = ["Train", "TrainMesh", "gear_train", "presses_other_flanks"]
@@ -140,8 +141,7 @@ class Train(eqx.Module):
     def period(self) -> Float[Array, ""]:
         """Turn of the driving body in which all meshes come together again [rad]."""
         first = self.meshes[0]
-        own = first.design.mesh
-        return first.periods * own.period / jnp.abs(own.driver @ self.motion(first))
+        return first.periods * nominal_period(first.design.mesh, self.motion(first))
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -236,7 +236,7 @@ def gear_train(
                 design,
                 array(_padded(starts, starts[0])),
                 array(float(len(starts))),
-                array(abs(float(design.mesh.loaded @ torque))),
+                array(abs(float(design.loaded @ torque))),
                 link.bodies,
                 link.carrier,
                 periods,
@@ -323,7 +323,7 @@ def _motion(mesh: TrainMesh, rates: Rates) -> Float[Array, " dof"]:
 
 def _onward(mesh: TrainMesh, rates: Rates) -> Float[Array, ""]:
     """See `Train.onward`."""
-    return jnp.sign(mesh.design.mesh.passing @ _motion(mesh, rates))
+    return phase_sense(mesh.design.mesh, _motion(mesh, rates))
 
 
 def presses_other_flanks(mesh: Mesh, torque: Float[np.ndarray, " dof"]) -> bool:
@@ -333,7 +333,7 @@ def presses_other_flanks(mesh: Mesh, torque: Float[np.ndarray, " dof"]) -> bool:
         mesh: any family.
         torque: on its coordinates [N m or N].
     """
-    return float(mesh.driver @ torque) * float(mesh.driver @ mesh.motion) < 0.0
+    return float(mesh.relation @ torque) < 0.0
 
 
 def _check_mesh(link: Link, design: Design, torque: Float[np.ndarray, " dof"]) -> None:
@@ -356,7 +356,7 @@ def _periods(links: Sequence[Link], rates: Mapping[str, float]) -> list[int]:
     for link in links:
         mesh = link.mesh
         against = [rates[body] - rates[link.carrier] for body in link.bodies]
-        each.append(abs(float(mesh.driver @ np.array(against)) / float(mesh.period)))
+        each.append(1.0 / float(nominal_period(mesh, jnp.array(against))))
     fastest = max(each)
     parts = [Fraction(one / fastest).limit_denominator(MOST_PERIODS) for one in each]
     whole = lcm(*(part.denominator for part in parts))

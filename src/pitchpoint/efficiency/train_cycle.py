@@ -260,16 +260,16 @@ class _Meshing:
     ) -> None:
         self.mesh, self.models = mesh, models
         self.planets, self.there = train.planets, mesh.there[:, None]
-        pair, turned = mesh.design.mesh, train.onward(mesh) * mesh.periods * phase
-        self.contacts: Contacts = pair.contacts(mesh.phases[:, None] + turned)
+        design, turned = mesh.design, train.onward(mesh) * mesh.periods * phase
+        self.contacts: Contacts = design.mesh.contacts(mesh.phases[:, None] + turned)
         motion = train.motion(mesh)
-        speed = jnp.abs(pair.driver @ motion) * operation.speed
-        self.driving = pair.driver * jnp.sign(pair.driver @ motion)
+        speed = jnp.abs(design.driver @ motion) * operation.speed
+        self.driving = design.driver * jnp.sign(design.driver @ motion)
         self.operation = Operation(
             mesh.carried / mesh.count * operation.load, speed, operation.temperature
         )
-        self.share = models.share(mesh.design, self.contacts, self.operation.load)
-        arm = jnp.abs(total(self.share * along(self.contacts.normal, pair.loaded)))
+        self.share = models.share(design, self.contacts, self.operation.load)
+        arm = jnp.abs(total(self.share * along(self.contacts.normal, design.loaded)))
         self.rates = motion * operation.speed
         self.carry(self.operation.load / arm)
         self.either: Bool[Array, "..."] = jnp.asarray(bool(train.drag))

@@ -157,12 +157,12 @@ def _temperatures(
     loss: Float[Array, "2"], design: Design, operation: Operation, heated: Heated
 ) -> ToothTemperature:
     """Temperatures of flanks and roots of both gears for a loss [K]."""
-    mesh, around = design.mesh, operation.temperature
-    reference = pitch_point(mesh)
+    around = operation.temperature
+    reference = pitch_point(design.mesh, design.driver)
     each = [
         heated.function(
             ambient=around,
-            power=operation.load * jnp.abs(mesh.loaded @ mesh.motion) * operation.speed,
+            power=operation.load * jnp.abs(design.loaded @ design.motion) * operation.speed,
             friction=loss[0],
             loss_factor=loss[1],
             face_width=reference.width,

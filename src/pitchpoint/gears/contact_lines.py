@@ -213,8 +213,12 @@ way.register(InvoluteMesh, lambda _: ACTION)
 
 
 @singledispatch
-def pitch_point(mesh: Any) -> PitchPoint:
+def pitch_point(mesh: Any, driver: Float[Arrays, " dof"]) -> PitchPoint:
     """Values at the pitch point of a mesh.
+
+    Args:
+        mesh: any family.
+        driver: one for the coordinate that drives, zero elsewhere.
 
     Raises:
         TypeError: its gears have none, see `has`.

@@ -77,43 +77,43 @@ MOST_KEPT = 1024
 MANY = 16
 """Different gears from which on programs for many pay: they are others than that for one."""
 
-_KEPT: "dict[tuple[GearsTable, str, int], Made | InputError]" = {}
+_KEPT: "dict[tuple[GearsTable, int], Made | InputError]" = {}
 
 
-def built_gears(gears: GearsTable, driver: str, slices: int) -> "Made":
+def built_gears(gears: GearsTable, slices: int) -> "Made":
     """Mesh and its warnings; a sweep that leaves the gears alone builds them once.
 
     Raises:
         InputError: gears that cannot run, with the key inside their table.
     """
-    key = gears, driver, slices
+    key = gears, slices
     found = _KEPT.get(key)
     if found is None:
-        found = family_of(type(gears)).build(gears, driver, slices)
+        found = family_of(type(gears)).build(gears, slices)
         _keep({key: found})
     if isinstance(found, InputError):
         raise found
     return found
 
 
-def build_together(asked: "Iterable[tuple[GearsTable, str, int]]") -> None:
+def build_together(asked: "Iterable[tuple[GearsTable, int]]") -> None:
     """Build gears at once that `built_gears` is asked for next, as far as their family does so.
 
     Args:
-        asked: tables with driver and slices.
+        asked: tables with slices.
     """
     groups: dict[Any, list[GearsTable]] = {}
     for key in dict.fromkeys(asked):
         if key not in _KEPT:
             groups.setdefault((type(key[0]), *key[1:]), []).append(key[0])
-    for (table, driver, slices), gears in groups.items():
+    for (table, slices), gears in groups.items():
         together = family_of(table).together
         if together is not None and len(gears) > MANY:
-            keys = ((one, driver, slices) for one in gears)
-            _keep(dict(zip(keys, together(gears, driver, slices), strict=True)))
+            keys = ((one, slices) for one in gears)
+            _keep(dict(zip(keys, together(gears, slices), strict=True)))
 
 
-def _keep(made: "Mapping[tuple[GearsTable, str, int], Made | InputError]") -> None:
+def _keep(made: "Mapping[tuple[GearsTable, int], Made | InputError]") -> None:
     _KEPT.update(made)
     for key in [*_KEPT][: max(len(_KEPT) - MOST_KEPT, 0)]:
         _KEPT.pop(key, None)

@@ -68,7 +68,7 @@ class Family:
     """What a case asks of a family beside what every mesh answers.
 
     Attributes:
-        build: mesh and warnings from the table, the name of the driver and the number of slices;
+        build: mesh and warnings from the table and the number of slices;
             InputError for gears that cannot run, with the key inside the table.
         following: values that the table leaves open, as the mesh has them, by key inside the table; those
             that follow by a rule to be told as `Followed`.
@@ -83,7 +83,7 @@ class Family:
             None where they are built one by one.
     """
 
-    build: Callable[[Any, str, int], Made]
+    build: Callable[[Any, int], Made]
     following: Callable[[Any, Any], dict[str, Any]] = lambda gears, mesh: {}
     deviations: Callable[[Any, Any], Surfaces] = lambda gears, mesh: ((), ())
     turning: Turning = Turning()
@@ -91,7 +91,7 @@ class Family:
     coordinates: Mapping[str, Any] = field(default_factory=dict)
     bodies: Callable[[Any, Any, Sequence[float]], tuple[list[MassInertia], str]] | None = None
     of_materials: Callable[[Any, Solids, Records], tuple[str, ...]] = lambda *_: ()
-    together: Callable[[Sequence[Any], str, int], list[Made | InputError]] | None = None
+    together: Callable[[Sequence[Any], int], list[Made | InputError]] | None = None
 
 
 WAVES = 4

@@ -7,6 +7,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.materials.solids import Solid
 
@@ -59,11 +60,14 @@ class GearBody(eqx.Module):
         """
         return {}
 
-    def in_series(self, solids: tuple[Solid, Solid]) -> dict[str, Float[Array, ""]]:
+    def in_series(
+        self, solids: tuple[Solid, Solid], loaded: Float[Arrays, " dof"]
+    ) -> dict[str, Float[Array, ""]]:
         """What yields behind the teeth and carries the whole load, by name.
 
         Args:
             solids: material of each member.
+            loaded: one for the coordinate that carries the load, zero elsewhere.
 
         Returns:
             Movement of the loaded coordinate for a unit load on it [rad/(N m) or m/N].

@@ -1,25 +1,22 @@
 """What every gear family answers."""
 
 import abc
-import dataclasses
-from functools import singledispatch
+from functools import lru_cache
 from typing import Any, Self, final
 
 import equinox as eqx
-import numpy as np
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax
 from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
 from pitchpoint.contact.worn import new_and_worn, with_worn
-from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.coordinates import Coordinate, number_of
+from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.gear_body import GearBody
 
-__all__ = ["Mesh", "has", "turned_rates"]
+__all__ = ["Mesh", "bodies_of", "has"]
 
 
 class Mesh(eqx.Module):
@@ -31,13 +28,9 @@ class Mesh(eqx.Module):
 
     Attributes:
         shape: of the class; that of all its contacts.
-        driver: one for the coordinate that drives, zero elsewhere.
-        loaded: one for the coordinate whose load is prescribed, zero elsewhere; what is left stands still.
     """
 
     shape: eqx.AbstractClassVar[Shape]
-    driver: eqx.AbstractVar[Float[Arrays, " dof"]]
-    loaded: eqx.AbstractVar[Float[Arrays, " dof"]]
 
     def __repr__(self) -> str:
         return brief(self)
@@ -69,7 +62,7 @@ class Mesh(eqx.Module):
     @property
     @abc.abstractmethod
     def coordinates(self) -> tuple[Coordinate, ...]:
-        """The bodies and their axes, in the order of `motion`."""
+        """The bodies and their axes, in the order of `relation`."""
 
     @final
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
@@ -113,60 +106,26 @@ class Mesh(eqx.Module):
     def passing(self) -> Float[Array, " dof"]:
         """Factors of the rates of the coordinates, whose sum is the rate at which engagements pass."""
 
-    @final
-    @property
-    def motion(self) -> Float[Array, " dof"]:
-        """Nominal rates of the coordinates for a unit rate of the driver, which presses the flanks."""
-        turned, relation = turned_rates(self), self.relation
-        return turned - (relation @ turned) / (relation @ self.loaded) * self.loaded
 
-    @final
-    @property
-    def period(self) -> Float[Array, ""]:
-        """Motion of the driver in one period [rad or m]."""
-        return self.pitch / jnp.abs(self.passing @ self.motion)
-
-    @final
-    @property
-    def onward(self) -> Float[Array, ""]:
-        """Sense in which the phase runs while the drive turns on: one, or minus one."""
-        return jnp.sign(self.passing @ self.motion)
-
-    @final
-    def driven_by(self, member: str | int) -> Self:
-        """The same drive with another member driving, in the sense that presses the same flanks.
-
-        A fixed member stays fixed; the one that drove carries the load.
-
-        Args:
-            member: name of a body, or number of its coordinate.
-
-        Raises:
-            InputError: it cannot drive.
-        """
-        places = eqx.filter_eval_shape(lambda mesh: mesh.coordinates, self)
-        names = tuple(place.body for place in places)
-        drives = number_of(member, names)
-        if np.asarray(self.driver)[drives]:
-            return self
-        if has(self, turned_rates):
-            raise InputError(
-                f"bodies here have motors of their own; the {names[drives]} drives none"
-            )
-        if not np.asarray(self.loaded)[drives]:
-            raise InputError(f"the {names[drives]} is fixed and cannot drive")
-        return dataclasses.replace(self, driver=self.loaded, loaded=self.driver)
-
-
-@singledispatch
-def turned_rates(mesh: Any) -> Float[Array, " dof"]:
-    """Rates of the coordinates that are turned from outside, zero of the others.
+def bodies_of(mesh: Mesh) -> tuple[Coordinate, ...]:
+    """Coordinates of a mesh without their places: of each form of a mesh they are traced once.
 
     Args:
-        mesh: any family; that of most turns its driver alone.
+        mesh: any family.
     """
-    rates: Array = mesh.driver * jnp.sign(mesh.relation @ mesh.driver)
-    return rates
+    leaves, structure = jax.tree.flatten(mesh)
+    shapes = (
+        jax.ShapeDtypeStruct(leaf.shape, leaf.dtype) if hasattr(leaf, "dtype") else leaf
+        for leaf in leaves
+    )
+    return _bodies(structure, tuple(shapes))
+
+
+@lru_cache(maxsize=64)
+def _bodies(structure: Any, leaves: tuple[Any, ...]) -> tuple[Coordinate, ...]:
+    shape = jax.tree.unflatten(structure, leaves)
+    found: tuple[Coordinate, ...] = eqx.filter_eval_shape(lambda mesh: mesh.coordinates, shape)
+    return found
 
 
 def has(mesh: Mesh, question: Any) -> bool:

@@ -85,7 +85,7 @@ class StandardPair(eqx.Module):
         helix_angle: [rad].
         transverse_contact_ratio: eps_alpha.
         face_width: [m].
-        reference_arm: radius on which the load of the driven coordinate acts at the reference circle [m].
+        reference_radii: of the reference circles, positive [m].
     """
 
     virtual_teeth: Float[Array, "2"]
@@ -95,7 +95,7 @@ class StandardPair(eqx.Module):
     helix_angle: Float[Array, ""]
     transverse_contact_ratio: Float[Array, ""]
     face_width: Float[Array, ""]
-    reference_arm: Float[Array, ""]
+    reference_radii: Float[Array, "2"]
 
 
 @singledispatch

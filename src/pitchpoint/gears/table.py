@@ -167,6 +167,14 @@ class GearsTable(Table):
         """Members that may drive, the usual one first."""
         return self.members
 
+    def loaded_member(self, driver: str) -> str | None:
+        """Member that is loaded while another one drives; None where there is no choice, see `mesh_ends`.
+
+        Args:
+            driver: its name.
+        """
+        return None
+
     @property
     def relative_torques(self) -> Mapping[str, float]:
         """Torques [N m] or forces [N] of the members without losses, up to a common factor."""

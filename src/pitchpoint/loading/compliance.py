@@ -5,6 +5,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body, opened
 from pitchpoint.gears.tooth_section import tooth_sections
@@ -21,12 +22,14 @@ class Compliance(eqx.Module):
         stiffness: of each slice per length of contact line [N/m2].
         body: how far a unit force on one lane (pair and slice, flattened) moves another, both along
             their normals [m/N]; None where bodies under the teeth do not couple them.
-        load: that the driven coordinate carries [N m or N].
+        load: that the loaded coordinate carries [N m or N].
+        loaded: one for that coordinate, zero elsewhere.
     """
 
     stiffness: Float[Array, "pair slice *#b"]
     body: Body | None
     load: Float[Array, "*#b"]
+    loaded: Float[Arrays, " dof"]
 
     def of_teeth(self, contacts: Contacts) -> Float[Array, "pair slice *b"]:
         """Compliance of each lane by itself [m/N].
@@ -48,6 +51,7 @@ class Compliance(eqx.Module):
 
 def compliance(
     mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
     contacts: Contacts,
     solids: tuple[Solid, Solid],
     terms: Terms,
@@ -59,6 +63,7 @@ def compliance(
 
     Args:
         mesh: a family whose members have teeth.
+        loaded: one for the coordinate that carries the load, zero elsewhere.
         contacts: of the mesh.
         solids: material of each member.
         terms: of the model of tooth compliance.
@@ -68,29 +73,29 @@ def compliance(
     """
     if body is None and mesh.body.couples:
         body = mesh.body.compliance(contacts, solids)
-    return Compliance(
-        stiffness=slice_stiffness(mesh, contacts, solids, terms, load, teeth), body=body, load=load
-    )
+    stiffness = slice_stiffness(mesh, loaded, contacts, solids, terms, load, teeth)
+    return Compliance(stiffness=stiffness, body=body, load=load, loaded=loaded)
 
 
 def mean_line_load(
-    mesh: Mesh, contacts: Contacts, load: Float[Array, "*#b"]
+    loaded: Float[Arrays, " dof"], contacts: Contacts, load: Float[Array, "*#b"]
 ) -> Float[Array, "*#b"]:
     """Load per length if all contact lines carried the same [N/m].
 
     Args:
-        mesh: any family.
+        loaded: one for the coordinate that carries the load, zero elsewhere.
         contacts: of the mesh.
         load: that the driven coordinate carries [N m or N].
 
-    From the balance of the driven coordinate under one load per length on all contact lines.
+    From the balance of the loaded coordinate under one load per length on all contact lines.
     """
-    arms = jnp.abs(along(contacts.normal, mesh.loaded))
+    arms = jnp.abs(along(contacts.normal, loaded))
     return load / total(jnp.where(contacts.active, contacts.weight * arms, 0.0))
 
 
 def slice_stiffness(
     mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
     contacts: Contacts,
     solids: tuple[Solid, Solid],
     terms: Terms,
@@ -101,6 +106,7 @@ def slice_stiffness(
 
     Args:
         mesh: a family whose members have teeth.
+        loaded: one for the coordinate that carries the load, zero elsewhere.
         contacts: of the mesh.
         solids: material of each member.
         terms: of the model of tooth compliance.
@@ -109,5 +115,5 @@ def slice_stiffness(
     """
     if teeth is None:
         teeth = teeth_at(contacts, tooth_sections(mesh), solids, terms)
-    line_load = mean_line_load(mesh, contacts, load)
+    line_load = mean_line_load(loaded, contacts, load)
     return unit_stiffness(contacts, teeth, solids, terms, line_load)

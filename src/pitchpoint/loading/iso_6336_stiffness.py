@@ -9,6 +9,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.doubts import REMARKED, Doubt, in_percent
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import StandardPair, standard_pair
 from pitchpoint.materials.solids import Solid
@@ -150,12 +151,16 @@ def mesh_stiffness_beta(*, alpha: Float[Array, "*b"]) -> Float[Array, "*b"]:
 
 
 def estimate(
-    mesh: Mesh, solids: tuple[Solid, Solid], load: Float[Array, ""]
+    mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
+    solids: tuple[Solid, Solid],
+    load: Float[Array, ""],
 ) -> tuple[dict[str, float], tuple[str, ...]]:
     """Stiffness of a pair of solid gears by the standard, and where it lies outside what that covers.
 
     Args:
         mesh: any family; none but external cylindrical pairs have an estimate.
+        loaded: one for the coordinate that carries the load, zero elsewhere.
         solids: materials.
         load: that the driven coordinate carries [N m].
 
@@ -166,7 +171,7 @@ def estimate(
     """
     if eqx.filter_eval_shape(standard_pair, mesh) is None:
         return {}, ()
-    found, single, total = jax.device_get(_estimate(mesh, solids, load))
+    found, single, total = jax.device_get(_estimate(mesh, loaded, solids, load))
     warnings = range_warnings(
         virtual_teeth=(float(found.virtual_teeth[0]), float(found.virtual_teeth[1])),
         profile_shift=(float(found.profile_shift[0]), float(found.profile_shift[1])),
@@ -181,7 +186,10 @@ def estimate(
 
 @program
 def _estimate(
-    mesh: Mesh, solids: tuple[Solid, Solid], load: Float[Array, ""]
+    mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
+    solids: tuple[Solid, Solid],
+    load: Float[Array, ""],
 ) -> tuple[StandardPair, Float[Array, ""], Float[Array, ""]]:
     pair = standard_pair(mesh)
     assert pair is not None
@@ -198,7 +206,7 @@ def _estimate(
         young=jnp.stack([solid.young for solid in solids]),
         rack=rack_factor(dedendum=jnp.mean(pair.dedendum), pressure_angle=pair.pressure_angle),
         blank=jnp.asarray(1.0),
-        specific_load=load / pair.reference_arm / pair.face_width,
+        specific_load=load / jnp.sum(loaded * pair.reference_radii) / pair.face_width,
     )
     total = mesh_stiffness_alpha(single=single, contact_ratio=pair.transverse_contact_ratio)
     return pair, single * pair.face_width, total * pair.face_width

@@ -45,9 +45,7 @@ def added_gap(deviations: Surfaces, spots: tuple[Spot, Spot]) -> Lanes:
     return first + second
 
 
-def kinematic_error(
-    contacts: Contacts, yields: Compliance, loaded: Float[Array, " dof"], added: Lanes
-) -> KinematicError:
+def kinematic_error(contacts: Contacts, yields: Compliance, added: Lanes) -> KinematicError:
     """Rotation of the loaded member by deviations: of rigid teeth, their elastic mean, and under load.
 
     It is positive in the sense of the load, so where material is missing the loaded member lies back.
@@ -59,7 +57,6 @@ def kinematic_error(
     Args:
         contacts: of the mesh; those of one period serve all teeth, with an axis of length one for them.
         yields: how the pairs yield, and the load of the loaded member.
-        loaded: one for that member.
         added: separation of the flanks by deviations [m].
 
     Returns:
@@ -69,7 +66,7 @@ def kinematic_error(
     does on the rotation.
     """
     teeth = yields.of_teeth(contacts)
-    given = {"arm": jnp.abs(along(contacts.normal, loaded)), "active": contacts.active}
+    given = {"arm": jnp.abs(along(contacts.normal, yields.loaded)), "active": contacts.active}
 
     gaps = yields.gap(contacts)
 

@@ -73,6 +73,7 @@ class MeshStiffness(eqx.Module):
 
 def mesh_stiffness(
     mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
     solids: tuple[Solid, Solid],
     terms: Terms,
     load: Float[Array, ""],
@@ -82,6 +83,7 @@ def mesh_stiffness(
 
     Args:
         mesh: a family whose members have teeth and a line of action.
+        loaded: one for the coordinate that carries the load, zero elsewhere.
         solids: material of each member.
         terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
@@ -92,7 +94,7 @@ def mesh_stiffness(
     events = mesh.events()
     phase, weight = nodes(events, count)
     contacts = mesh.contacts(phase)
-    found = springs(mesh, contacts, solids, terms, load)
+    found = springs(mesh, loaded, contacts, solids, terms, load)
     each = jnp.where(found.loaded, found.stiffness, 0.0)
     if found.state is not None:
         each = jnp.where(jnp.isfinite(found.approach), each, jnp.nan)

@@ -104,7 +104,7 @@ def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Compliance | None) 
         yielding.of_teeth(contacts),
         yielding.body,
         gap=yielding.gap(contacts),
-        arm=jnp.abs(along(contacts.normal, mesh.loaded)),
+        arm=jnp.abs(along(contacts.normal, yielding.loaded)),
         active=contacts.active,
         load=yielding.load,
     ).share

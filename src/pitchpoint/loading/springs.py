@@ -5,6 +5,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.compliance import Compliance, compliance
@@ -41,6 +42,7 @@ class Springs(eqx.Module):
 
 def springs(
     mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
     contacts: Contacts,
     solids: tuple[Solid, Solid],
     terms: Terms,
@@ -55,6 +57,7 @@ def springs(
 
     Args:
         mesh: a family whose members have teeth.
+        loaded: one for the coordinate that carries the load, zero elsewhere.
         contacts: of the mesh.
         solids: material of each member.
         terms: of the model of tooth compliance.
@@ -63,31 +66,32 @@ def springs(
     From the derivative of the equilibrium with respect to the load, see `equilibrium`.
     """
     load = jnp.asarray(load, float)
-    arm = jnp.abs(along(contacts.normal, mesh.loaded))
-    yields, change = _with_change(mesh, contacts, solids, terms, load)
+    arm = jnp.abs(along(contacts.normal, loaded))
+    yields, change = _with_change(mesh, loaded, contacts, solids, terms, load)
     own, gap = yields.of_teeth(contacts), yields.gap(contacts)
     if touching(mesh) and yields.body is None:
         state = None
         unit = jnp.where(contacts.active, arm / own, 0.0)
         approach = load / total(unit * arm)
-        force, loaded = unit * approach, contacts.active
+        force, carries = unit * approach, contacts.active
     else:
         given = {"gap": gap, "arm": arm, "active": contacts.active}
         state = equilibrium(own, yields.body, **given, load=load)
-        approach, force, loaded = state.approach, state.force, state.loaded
-    changed = total(jnp.where(loaded, arm * force * change, 0.0))
+        approach, force, carries = state.approach, state.force, state.loaded
+    changed = total(jnp.where(carries, arm * force * change, 0.0))
     softer = 1.0 + changed / jnp.where(load > 0.0, load, 1.0)
     return Springs(
         stiffness=jnp.where(contacts.active, 1.0 / (softer * own), 0.0),
-        gap=gap + jnp.where(loaded, (1.0 - softer) * own * force, 0.0),
+        gap=gap + jnp.where(carries, (1.0 - softer) * own * force, 0.0),
         approach=approach,
-        loaded=loaded,
+        loaded=carries,
         state=state,
     )
 
 
 def _with_change(
     mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
     contacts: Contacts,
     solids: tuple[Solid, Solid],
     terms: Terms,
@@ -96,7 +100,7 @@ def _with_change(
     """How contacts yield, and the relative change of their compliance for one of the load."""
 
     def stiffness(load: Float[Array, "*#b"]) -> tuple[Lanes, Compliance]:
-        yields = compliance(mesh, contacts, solids, terms, load)
+        yields = compliance(mesh, loaded, contacts, solids, terms, load)
         return yields.stiffness, yields
 
     of_load, change, yields = jax.jvp(stiffness, (load,), (load,), has_aux=True)

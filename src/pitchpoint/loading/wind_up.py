@@ -76,6 +76,7 @@ class Hysteresis(eqx.Module):
 
 def wind_up(
     mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
     solids: tuple[Solid, Solid],
     terms: Terms,
     load: Each,
@@ -87,6 +88,7 @@ def wind_up(
 
     Args:
         mesh: a family with teeth.
+        loaded: one for the coordinate that carries the load, zero elsewhere.
         solids: material of each member.
         terms: of the model of tooth compliance.
         load: of the driven coordinate, not negative, broadcast against the phases [N m or N].
@@ -100,13 +102,13 @@ def wind_up(
     From the equilibrium of its contacts, see `equilibrium`, and its derivative with respect to the load.
     """
     contacts = mesh.contacts(phase) if contacts is None else contacts
-    arm = jnp.abs(along(contacts.normal, mesh.loaded))
+    arm = jnp.abs(along(contacts.normal, loaded))
     load = jnp.broadcast_to(load, jnp.broadcast_shapes(jnp.shape(load), jnp.shape(phase)))
     given = {"arm": arm, "active": contacts.active}
-    behind = sum(mesh.body.in_series(solids).values(), jnp.zeros(()))
+    behind = sum(mesh.body.in_series(solids, loaded).values(), jnp.zeros(()))
 
     def approach(torque: Each) -> tuple[Each, tuple[Equilibrium, Arrays, Arrays]]:
-        yields = compliance(mesh, contacts, solids, terms, torque, body)
+        yields = compliance(mesh, loaded, contacts, solids, terms, torque, body)
         own, gap = yields.of_teeth(contacts), yields.gap(contacts)
         found = equilibrium(own, yields.body, gap=gap, **given, load=torque)
         return found.approach + behind * torque, (found, own, gap)
@@ -116,7 +118,7 @@ def wind_up(
     found, own, gap = aux
     free = jnp.broadcast_to(touch(gap, **given), moved.shape)
     closed = jnp.where(contacts.active, gap - arm * free, 0.0)
-    slip = jnp.abs(along(contacts.slip_arm, mesh.loaded))
+    slip = jnp.abs(along(contacts.slip_arm, loaded))
     return WindUp(
         load=load,
         wind_up=moved - free,
@@ -144,12 +146,17 @@ def _over(work: Each, load: Each) -> Each:
 
 @program
 def body_parts(
-    mesh: Mesh, solids: tuple[Solid, Solid], contacts: Contacts, found: WindUp
+    mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
+    solids: tuple[Solid, Solid],
+    contacts: Contacts,
+    found: WindUp,
 ) -> dict[str, Float[Array, "load *b"]]:
     """Parts of the wind-up by what lies under and behind the teeth, by name [rad or m].
 
     Args:
         mesh: a family with teeth.
+        loaded: one for the coordinate that carries the load, zero elsewhere.
         solids: material of each member.
         contacts: of the mesh.
         found: wind-up at several loads, an axis in front, at all phases of these contacts.
@@ -162,7 +169,7 @@ def body_parts(
         return mesh.body.parts(contacts, solids, one.force, one.balls)
 
     under = {part: _over(work, found.load) for part, work in jax.vmap(works)(found).items()}
-    behind = {part: each * found.load for part, each in mesh.body.in_series(solids).items()}
+    behind = {part: each * found.load for part, each in mesh.body.in_series(solids, loaded).items()}
     names = (*under, *(part for part in behind if part not in under))
     none = jnp.zeros(found.load.shape)
     return {part: under.get(part, none) + behind.get(part, none) for part in names}
@@ -171,6 +178,7 @@ def body_parts(
 @looping_program
 def wound_up(
     mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
     solids: tuple[Solid, Solid],
     terms: Terms,
     load: Float[Array, ""],
@@ -182,7 +190,7 @@ def wound_up(
     Arguments and result as in `wind_up`.
     """
     loads = jnp.broadcast_to(load, contacts.path.shape[2:])
-    return wind_up(mesh, solids, terms, loads, loads, contacts, body)
+    return wind_up(mesh, loaded, solids, terms, loads, loads, contacts, body)
 
 
 def hysteresis(

@@ -36,7 +36,8 @@ def readings(point: Point) -> dict[str, float]:
     assert isinstance(mesh, StrainWave)
     found = of_sharp_flank(mesh)
     own = jax.device_get(_branches(mesh))["clearance"]  # where its rounded tip reaches its mate
-    rate = float(found["phase_rate"])
+    wave, flexspline, _ = np.asarray(point.design.motion)
+    rate = abs(float(flexspline - wave))
     (deep, outer), (r_deep, r_outer) = found["angle"], found["radius"]
     entrainment = found["rolling"][0] + found["sliding"][0] / 2.0
     speed = np.abs(entrainment) * rate * float(point.operation.speed)
@@ -73,8 +74,7 @@ def of_sharp_flank(mesh: StrainWave) -> dict[str, np.ndarray]:
     Returns:
         Their arc length from the root `along` [m], flank angle `lean` [rad], `angle` from the long axis
         [rad], relative `radius` with its sign [m], speeds of the contact over the flank and of the material
-        along it, `rolling` and `sliding` [m/rad]; NaN where a branch leaves a point out. `phase_rate` is
-        that of the wave past the teeth over the driver's.
+        along it, `rolling` and `sliding` [m/rad]; NaN where a branch leaves a point out.
     """
     sharp = replace(mesh, flank=replace(mesh.flank.unrelieved, tip_rounding=1e-6 * mesh.module))
     found: dict[str, np.ndarray] = jax.device_get(_branches(sharp))
@@ -104,7 +104,6 @@ def _branches(mesh: StrainWave) -> dict[str, Array]:
     width, _ = mesh.groove.width_and_slope(jnp.real(at.place))
     clearance = (width - jnp.imag(at.place)) * jnp.cos(at.direction)
     return {
-        "phase_rate": jnp.abs(mesh.motion[1] - mesh.motion[0]),
         "angle": angle,
         "radius": 1.0 / at.relative_curvature,
         "along": along,

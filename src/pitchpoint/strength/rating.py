@@ -11,6 +11,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.nominal_motion import nominal_motion
 from pitchpoint.gears.rated_pair import RatedPair, rated_pair
 from pitchpoint.loading import iso_6336_stiffness
 from pitchpoint.materials.solids import Solid
@@ -50,6 +51,7 @@ class Duty(eqx.Module):
         cycles_flank, cycles_root: load cycles of both gears that their life factors count, without a life.
         life: time under load, whose cycles count [s]; not a number where none is asked.
         engagements: of a tooth of each gear in one turn of it.
+        driver: one for the gear that drives, zero for the other one.
     """
 
     load: One
@@ -58,6 +60,7 @@ class Duty(eqx.Module):
     cycles_root: Both
     life: One = eqx.field(default_factory=lambda: np.array(nan))
     engagements: Both = eqx.field(default_factory=lambda: np.ones(2))
+    driver: Both = eqx.field(default_factory=lambda: np.array([1.0, 0.0]))
 
 
 class Factors(eqx.Module):
@@ -175,15 +178,16 @@ def rated(
     pair = rated_pair(mesh)
     pair = dataclasses.replace(pair, path_ends=_or(path_ends, pair.path_ends))
     reference = jnp.abs(pair.reference_radii)
-    force = duty.load / jnp.sum(mesh.loaded * reference)
-    speed = duty.speed * jnp.abs(mesh.motion[0]) * reference[0]
-    return rate(pair, force, speed, _counted(mesh, duty), factors, strengths, finish)
+    force = duty.load / jnp.sum((1.0 - duty.driver) * reference)
+    motion = nominal_motion(mesh, duty.driver, 1.0 - duty.driver)
+    speed = duty.speed * jnp.abs(motion[0]) * reference[0]
+    return rate(pair, force, speed, _counted(motion, duty), factors, strengths, finish)
 
 
-def _counted(mesh: Mesh, duty: Duty) -> Duty:
+def _counted(motion: Float[Array, "2"], duty: Duty) -> Duty:
     """The duty with the cycles of the life that is asked."""
     endless = jnp.isnan(duty.life)
-    turns = jnp.abs(mesh.motion) * duty.speed * jnp.where(endless, 0.0, duty.life) / (2.0 * jnp.pi)
+    turns = jnp.abs(motion) * duty.speed * jnp.where(endless, 0.0, duty.life) / (2.0 * jnp.pi)
     counted = turns * duty.engagements
     flank, root = (
         jnp.where(endless, many, counted) for many in (duty.cycles_flank, duty.cycles_root)

@@ -428,7 +428,7 @@ def travelled(
     """
     smooth = models.holding(jnp.zeros((1, 1, 1)))
     at = state(design, operation, known.phase, smooth, engaged=known).conditions
-    lasts = known.weight * design.mesh.period / at.speed
+    lasts = known.weight * design.period / at.speed
     speeds = [jnp.broadcast_to(as_array(v), at.load.shape) for v in (at.speed_a, at.speed_b)]
     return at, jnp.abs(jnp.stack(speeds)) * lasts
 
@@ -630,17 +630,17 @@ def wear_of(
         cells: on both flanks.
         known: contacts of a period and what they carry.
     """
-    mesh = design.mesh
+    period = design.period
     at, ways = travelled(design, operation, models, known)
     contacts = at.contacts
     carries = contacts.active & (at.load > 0.0)
     friction = jnp.zeros_like(at.load) if wear.bodies is None else models.coefficient(at)
     rates = wear.rates(at, operation.temperature, friction)
     # Per turn of the driver, and of each flank: engagements of a period go round among all flanks.
-    periods = 2.0 * jnp.pi / mesh.period
-    lasts = known.weight * mesh.period / at.speed
+    periods = 2.0 * jnp.pi / period
+    lasts = known.weight * period / at.speed
     slid = jnp.where(carries, at.load * as_array(at.sliding), 0.0) * lasts
-    turns = wear.mates * periods / flanks_in_turn(mesh)
+    turns = wear.mates * periods / flanks_in_turn(design.mesh)
     gone = jnp.stack([turns[k] * rate * slid for k, rate in enumerate(rates)])
     along = jnp.stack([_spread(at, way, known.weight) for way in ways])
     depths = _laid(cells, at, along, gone)
@@ -649,7 +649,7 @@ def wear_of(
         rubbed = jnp.stack([turns[k] * rate for k, rate in enumerate(rates)]) * jnp.where(
             carries, at.line_load, 0.0
         )
-        slid_over = as_array(at.sliding) * mesh.period / at.speed
+        slid_over = as_array(at.sliding) * period / at.speed
         passed, held = ways / known.weight, along - ways
         values = jnp.stack([rubbed, slid_over + jnp.zeros_like(rubbed), passed, held])
         places = _of_places(_at_places(values, cells.nearest, known.nodes))

@@ -11,6 +11,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import contacts_at
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.nominal_motion import mesh_ends, nominal_motion
 from pitchpoint.gears.tooth_section import chebyshev_nodes, tooth_sections
 from pitchpoint.programs import program
 from pitchpoint.wear.history import Cells, Start
@@ -162,7 +163,10 @@ def backlash_growth(
 
 def _beside_pitch_line(mesh: Mesh, start: Start) -> Bool[np.ndarray, "place slice"]:
     """Places on slices beside which the sliding turns along a line, of all positions but where paths end."""
-    slip = jax.device_get(along(start.contacts.slip_arm, mesh.motion))
+    motion = nominal_motion(
+        mesh, *mesh_ends(mesh)
+    )  # turns of sliding stand where they are, whoever drives
+    slip = jax.device_get(along(start.contacts.slip_arm, motion))
     turns = np.sign(slip[:, 1:]) != np.sign(slip[:, :-1])
     beside = np.zeros(slip.shape, dtype=bool)
     beside[:, 1:] |= turns

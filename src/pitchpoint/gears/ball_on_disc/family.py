@@ -11,7 +11,7 @@ from pitchpoint.gears.mesh import Mesh
 __all__ = ["FAMILY"]
 
 
-def _ball_on_disc(rig: BallOnDiscRig, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
+def _ball_on_disc(rig: BallOnDiscRig, slices: int) -> tuple[Mesh, tuple[str, ...]]:
     across = rig.transverse_radius or rig.ball_radius
     mesh = BallOnDisc(
         radius=array([rig.ball_radius, across]),

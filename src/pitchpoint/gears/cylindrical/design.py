@@ -65,7 +65,6 @@ def build_cylindrical_pair(
     infeed: tuple[float, float] = (0.0, 0.0),
     cutter_teeth: float | None = None,
     cutter_shift: float | None = None,
-    driver: int = 1,
     right_flank: bool = False,
     slices: int = SLICES,
 ) -> CylindricalPair:
@@ -85,7 +84,6 @@ def build_cylindrical_pair(
         rim_ratio: root radius over bore radius of each gear; outer over root radius of a ring.
         infeed: x_E - x, by which both gears are cut beyond their profile shifts; tips stay where they are.
         cutter_teeth, cutter_shift: z_0 and x_0 of the pinion cutter of a ring; both or none.
-        driver: 1 or 2, the gear that drives.
         right_flank: True if the right flanks of both gears touch.
         slices: of each contact line, for helical gears; even, or one for its middle alone.
 
@@ -272,10 +270,7 @@ def _opened(given: Values, helical: bool, internal: bool) -> CylindricalPair:
         "rim_ratio": np.broadcast_to(rims, of_both.shape),
         "crossing": np.stack([angle, angle], axis=-1),
     }
-    first = (np.asarray(values.pop("driver"))[..., None] == 1) == np.array([True, False])
     flags = {
-        "driver": first * 1.0,
-        "loaded": ~first * 1.0,
         "right_flank": np.asarray(values.pop("right_flank"), dtype=bool),
     }
     static: dict[str, Any] = {

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
-from functools import partial
 from math import nan
 from typing import Any
 
@@ -44,37 +43,37 @@ USUAL_TIP = 0.25
 """Tip thickness of helical teeth that is kept where none is given, in normal modules."""
 
 
-def _cylindrical(gears: CylindricalGears, driver: str, slices: int) -> Made:
+def _cylindrical(gears: CylindricalGears, slices: int) -> Made:
     try:
-        pair = build_cylindrical_pair(**_given(gears, driver), slices=slices)
+        pair = build_cylindrical_pair(**_given(gears), slices=slices)
         pair = with_bores(pair, gears.bore_diameter)
         _check_field(pair, gears)
         told = check_cylindrical(pair, least_backlash=_least_backlash(gears, pair))
     except (UnsoundPairError, CollectedInputError) as error:
-        raise _with_cures(error, gears, driver) from None
+        raise _with_cures(error, gears) from None
     return _made(pair, gears, slices, told)
 
 
-def _with_cures(error: InputError, gears: CylindricalGears, driver: str) -> InputError:
+def _with_cures(error: InputError, gears: CylindricalGears) -> InputError:
     """A refusal with changes of the table after which it runs, behind the last of several sentences."""
     from pitchpoint.gears.cylindrical.cures import cures, told_with_cures  # few gears are refused
 
-    values = _given(gears, driver)
+    values = _given(gears)
     values["least_tip_thickness"] = values["least_tip"]
     every = error.errors if isinstance(error, CollectedInputError) else (error,)
     remedies = [
         one for each in every if isinstance(each, UnsoundPairError) for one in each.remedies
     ]
-    changes = cures(gears, remedies, values, partial(_running, driver=driver))
+    changes = cures(gears, remedies, values, _running)
     told = copy(every[-1])
     told.message, told.cures = told_with_cures(told.message, changes), changes
     return told if len(every) == 1 else CollectedInputError([*every[:-1], told])
 
 
-def _running(gears: CylindricalGears, driver: str) -> CylindricalPair | None:
+def _running(gears: CylindricalGears) -> CylindricalPair | None:
     """The pair if it runs well."""
     try:
-        pair = build_cylindrical_pair(**_given(gears, driver), slices=1)
+        pair = build_cylindrical_pair(**_given(gears), slices=1)
     except InputError:
         return None
     return pair if runs_well(pair, least_backlash=_least_backlash(gears, pair)) else None
@@ -98,12 +97,12 @@ def _least_backlash(gears: CylindricalGears, pair: CylindricalPair) -> float:
 
 
 def _cylindrical_together(
-    tables: Sequence[CylindricalGears], driver: str, slices: int
+    tables: Sequence[CylindricalGears], slices: int
 ) -> list[Made | InputError]:
     """The same for many tables; those that leave other values open are built apart from each other."""
     found: dict[int, Made | InputError] = {}
     groups: dict[frozenset[str], list[int]] = {}
-    given = [_given(gears, driver) for gears in tables]
+    given = [_given(gears) for gears in tables]
     for number, values in enumerate(given):
         groups.setdefault(frozenset(key for key in values if values[key] is None), []).append(
             number
@@ -218,7 +217,7 @@ def _shortened(pair: CylindricalPair, gears: CylindricalGears) -> list[str]:
     ]
 
 
-def _given(gears: CylindricalGears, driver: str) -> dict[str, Any]:
+def _given(gears: CylindricalGears) -> dict[str, Any]:
     """Arguments of `build_cylindrical_pair` by name."""
     ring = gears.teeth[1] < 0
     dedendum, fillet = usual_depths(
@@ -242,7 +241,6 @@ def _given(gears: CylindricalGears, driver: str) -> dict[str, Any]:
         "infeed": gears.infeed,
         "cutter_teeth": gears.cutter_teeth,
         "cutter_shift": None if gears.cutter_teeth is None else gears.cutter_profile_shift,
-        "driver": 2 if driver == "gear 2" else 1,
         "right_flank": gears.flank == "right",
     }
 

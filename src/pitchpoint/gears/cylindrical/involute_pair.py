@@ -178,7 +178,6 @@ class InvolutePair(InvoluteMesh):
         face_width: common to both [m].
         centre_distance: in operation, positive [m].
         rim_ratio: root radius over bore radius (outer over root radius of a ring), for each gear.
-        driver, loaded: see `Mesh`; the same flanks touch, whichever gear drives.
         follows: static; whether centre distance (without backlash) and tip alterations (rack's tip
             clearance) follow from the other dimensions.
         shortened: for each gear whether its tip is shortened to `least_tip`; static.
@@ -222,8 +221,6 @@ class InvolutePair(InvoluteMesh):
     face_width: Float[Arrays, ""]
     centre_distance: Float[Arrays, ""]
     rim_ratio: Float[Arrays, "2"]
-    driver: Float[Arrays, "2"]
-    loaded: Float[Arrays, "2"]
     right_flank: Bool[Arrays, ""]
     follows: tuple[bool, bool] = eqx.field(static=True)
     shortened: tuple[bool, bool] = eqx.field(static=True)
@@ -664,10 +661,10 @@ def _line_of_action(pair: InvolutePair) -> Float[Array, "2"]:
 
 
 @pitch_point.register
-def _pitch_point(pair: InvolutePair) -> PitchPoint:
+def _pitch_point(pair: InvolutePair, driver: Float[Arrays, "2"]) -> PitchPoint:
     """Values at the pitch point C."""
     line = pair.line
-    speed = jnp.sum(pair.driver * jnp.abs(line.working_radii))
+    speed = jnp.sum(driver * jnp.abs(line.working_radii))
     first, second = line.pitch_position, line.tangent_length - line.pitch_position
     return PitchPoint(
         width=pair.face_width,

@@ -84,7 +84,7 @@ def _standard_pair(pair: CylindricalPair) -> StandardPair | None:
         helix_angle=pair.helix_angle,
         transverse_contact_ratio=pair.transverse_contact_ratio,
         face_width=pair.face_width,
-        reference_arm=jnp.sum(pair.loaded * radii),
+        reference_radii=radii,
     )
 
 

@@ -28,7 +28,7 @@ RIM_RATIO = 1.0 / 0.3
 """Root radius over bore radius of the pinion where no bore is given."""
 
 
-def _build(gears: RackAndPinionGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
+def _build(gears: RackAndPinionGears, slices: int) -> tuple[Mesh, tuple[str, ...]]:
     mesh, limit, ratio = _complete(_mesh(gears, slices))
     if gears.profile_shift < float(limit):
         pinion = replace(mesh.pinion, undercut=True)
@@ -60,8 +60,6 @@ def _mesh(gears: RackAndPinionGears, slices: int) -> RackAndPinion:
         distance=array(gears.mounting_distance or nan),
         rim_ratio=array(RIM_RATIO),
         moved_mass=array(gears.mass or nan),
-        driver=array([1.0, 0.0]),
-        loaded=array([0.0, 1.0]),
         right_flank=array(gears.flank == "right"),
         helical=helical,
         lanes=2,

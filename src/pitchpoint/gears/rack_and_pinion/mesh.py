@@ -100,7 +100,6 @@ class RackAndPinion(InvoluteMesh):
         distance: from the pinion's axis to the reference line of the rack [m].
         rim_ratio: root radius over bore radius of the pinion.
         moved_mass: of the rack and what it carries [kg]; NaN where it is not known.
-        driver, loaded: see `Mesh`; the same flanks touch, whether pinion or rack drives.
         helical: False if the helix angle is zero; static.
         lanes: static count of pairs held, at least the contact ratio rounded up.
         slices: static count of slices of each contact line; even, or one.
@@ -113,8 +112,6 @@ class RackAndPinion(InvoluteMesh):
     distance: Float[Array, ""]
     rim_ratio: Float[Array, ""]
     moved_mass: Float[Array, ""]
-    driver: Float[Array, "2"]
-    loaded: Float[Array, "2"]
     right_flank: Bool[Array, ""]
     helical: bool = eqx.field(static=True)
     lanes: int = eqx.field(static=True)
@@ -335,10 +332,10 @@ def _line_of_action(mesh: RackAndPinion) -> Float[Array, "2"]:
 
 
 @pitch_point.register
-def _pitch_point(mesh: RackAndPinion) -> PitchPoint:
+def _pitch_point(mesh: RackAndPinion, driver: Float[Arrays, "2"]) -> PitchPoint:
     """Values at the pitch point C, where the rack is straight."""
     line = mesh.line
-    speed = mesh.driver @ jnp.stack([mesh.pinion.reference_radius, jnp.ones(())])
+    speed = driver @ jnp.stack([mesh.pinion.reference_radius, jnp.ones(())])
     return PitchPoint(
         width=mesh.face_width,
         line_length=mesh.face_width / line.slope,

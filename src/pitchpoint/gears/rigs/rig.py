@@ -3,7 +3,6 @@
 import abc
 from typing import ClassVar, Self
 
-import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
@@ -12,7 +11,8 @@ from pitchpoint.contact.surface import Spot
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.gear_body import GearBody
-from pitchpoint.gears.mesh import Mesh, turned_rates
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.nominal_motion import turned_rates, usual_ends
 from pitchpoint.gears.pairs import flanks_in_turn
 
 __all__ = ["Rig"]
@@ -26,12 +26,6 @@ class Rig(Mesh):
     """
 
     body: ClassVar[GearBody] = GearBody()
-    driver: Float[Array, "3"] = eqx.field(
-        default_factory=lambda: jnp.array([1.0, 0.0, 0.0]), kw_only=True
-    )
-    loaded: Float[Array, "3"] = eqx.field(
-        default_factory=lambda: jnp.array([0.0, 0.0, 1.0]), kw_only=True
-    )
 
     @property
     def other_flanks(self) -> Self:
@@ -64,6 +58,11 @@ class Rig(Mesh):
         """Rate of body 1, which is turned on its own, for a unit rate of body 0."""
 
     @property
+    def rates(self) -> Float[Array, "3"]:
+        """Of both bodies, each by its own motor, for a unit rate of body 0; the approach stands still."""
+        return jnp.stack([jnp.asarray(1.0), self.other_rate, jnp.asarray(0.0)])
+
+    @property
     def _approach(self) -> Coordinate:
         """The way along which the load presses body 1 on body 0."""
         return Coordinate("load", self._frame[0], -self._frame[1], 1, turns=False)
@@ -84,11 +83,11 @@ class Rig(Mesh):
             Spot(
                 flank=flank,
                 across=contacts.width,
-                angle=jnp.broadcast_to(-rate * self.period * phase, lanes),
+                angle=jnp.broadcast_to(-rate * self.pitch * phase, lanes),
                 tooth=jnp.zeros(lanes, int),
                 leaning=jnp.ones(lanes),
             )
-            for flank, rate in zip(contacts.flank, self.motion[:2], strict=True)
+            for flank, rate in zip(contacts.flank, self.rates[:2], strict=True)
         )
         return first, second
 
@@ -112,7 +111,7 @@ class Rig(Mesh):
         point, direction, tangent = _everywhere(self._frame, lanes)
         turn = jnp.mod(phase, 1.0)[None, None]
         surface = jnp.zeros((2, 3)).at[0, 0].set(arms[0]).at[1, 1].set(arms[1])
-        speeds = surface @ self.motion
+        speeds = surface @ self.rates
         return Contacts(
             active=jnp.ones(lanes, bool),
             path=turn,
@@ -120,9 +119,9 @@ class Rig(Mesh):
             weight=jnp.broadcast_to(length, lanes),
             curvature=_everywhere(curvature, lanes),
             surface=_everywhere(surface, lanes),
-            normal=_everywhere(self.loaded, lanes),
+            normal=_everywhere(self.relation, lanes),
             gap=zero,
-            flank=_everywhere(speeds * self.period, lanes) * turn,
+            flank=_everywhere(speeds * self.pitch, lanes) * turn,
             point=point,
             direction=direction,
             tangent=tangent,
@@ -137,14 +136,20 @@ def _everywhere(values: Float[Array, "..."], lanes: tuple[int, ...]) -> Float[Ar
     )
 
 
+@usual_ends.register
+def _usual_ends(rig: Rig) -> tuple[int, int]:
+    """The load presses, and moves nothing."""
+    return 0, 2
+
+
 @turned_rates.register
-def _turned_rates(rig: Rig) -> Float[Array, "3"]:
-    """Both bodies, each by its own motor."""
-    return jnp.stack([jnp.asarray(1.0), rig.other_rate, jnp.asarray(0.0)])
+def _turned_rates(rig: Rig, driver: Float[Arrays, "3"]) -> Float[Array, "3"]:
+    """Both bodies."""
+    return rig.rates
 
 
 @flanks_in_turn.register
 def _flanks_in_turn(rig: Rig) -> Float[Array, "2"]:
     """Ways that a body rolls in one period of body 0, over its circumference."""
-    rates = rig.motion[:2]
+    rates = rig.rates[:2]
     return jnp.abs(rates[0] / jnp.where(rates == 0.0, jnp.nan, rates))

@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.strain_wave import MEMBERS
@@ -36,7 +37,6 @@ class StrainWaveBody(GearBody):
         bearing: balls that take the place of that support; None without.
         series: what yields behind them.
         teeth: numbers of both splines z1, z2.
-        loaded: one for the member that carries the load.
     """
 
     couples: ClassVar[bool] = True
@@ -48,7 +48,6 @@ class StrainWaveBody(GearBody):
     bearing: BallBearing | None
     series: InSeries
     teeth: Float[Array, "2"]
-    loaded: Float[Array, "3"]
 
     @property
     def yielding(self) -> tuple[str, str]:
@@ -67,9 +66,11 @@ class StrainWaveBody(GearBody):
             ", ".join([*outside, "housing and shafts outside"]),
         )
 
-    def in_series(self, solids: tuple[Solid, Solid]) -> dict[str, Float[Array, ""]]:
+    def in_series(
+        self, solids: tuple[Solid, Solid], loaded: Float[Arrays, "3"]
+    ) -> dict[str, Float[Array, ""]]:
         """Bottom of the cup, flange, shaft of the wave generator, circular spline given by value."""
-        return self.series.by_part(solids[0], left_behind(self.teeth), self.loaded)
+        return self.series.by_part(solids[0], left_behind(self.teeth), loaded)
 
     def compliance(self, contacts: Contacts, solids: tuple[Solid, Solid]) -> Body:
         """The flexspline's rim couples all its teeth, and so does a circular spline that yields."""

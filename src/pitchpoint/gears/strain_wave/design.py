@@ -15,7 +15,6 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.doubts import Doubt, fails, in_percent
 from pitchpoint.errors import InputError
 from pitchpoint.gears.designs import Designs, Faults, Group, Number, check_counts
-from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing
 from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for, survey
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
@@ -112,8 +111,6 @@ def build_strain_wave(
     bottom_clearance: float = 0.15,
     edges_carry: bool = False,
     backlash: float = 0.0,
-    fixed: str = "circular spline",
-    driver: str = "wave generator",
     groove: InvoluteForm | None = None,
 ) -> StrainWave:
     """Strain wave gear with a wave generator of two lobes.
@@ -146,8 +143,6 @@ def build_strain_wave(
             modules.
         edges_carry: True if the rounding of the flexspline's tips may carry; it sweeps in any case.
         backlash: play on the circumference beyond the groove that just lets the teeth through [m].
-        fixed: member that does not turn.
-        driver: member that drives; the third carries the load.
         groove: an involute circular spline; by default the flank that the flexspline's teeth sweep.
 
     Raises:
@@ -381,13 +376,10 @@ def _planned(
     bottom_clearance: float,
     edges_carry: bool,
     backlash: float,
-    fixed: str,
-    driver: str,
     groove: InvoluteForm | None,
 ) -> _Plan:
     """What follows without the groove; arguments as in `build_strain_wave`."""
     z1, z2 = _checked_teeth(teeth)
-    _check_roles(fixed, driver)
     w0 = deflection * module * (z2 - z1) / 2.0
     rim = _rim(walls, module, z1, w0) if rim_thickness is None else rim_thickness
     sizes = (tip_rounding, tip_relief, relief_length, bottom_clearance, RIDGE)
@@ -434,8 +426,6 @@ def _planned(
         "tips": tips,
         "edges_carry": edges_carry,
         "backlash": array(backlash),
-        "driver": array([float(name == driver) for name in MEMBERS]),
-        "loaded": array([float(name not in {driver, fixed}) for name in MEMBERS]),
         "conjugate": groove is None,
         "odd": z1 % 2 == 1,
     }
@@ -821,15 +811,6 @@ def _check_as_given(*sizes: float) -> None:
                 "out, or leave the flanks of the circular spline to the flexspline's sweep",
                 key=name,
             )
-
-
-def _check_roles(fixed: str, driver: str) -> None:
-    for name, member in (("fixed", fixed), ("driver", driver)):
-        if member not in MEMBERS:
-            raise InputError(f"'{member}' is no member; use one of {', '.join(MEMBERS)}", key=name)
-    if fixed == driver:
-        others = " or ".join(name for name in MEMBERS if name != fixed)
-        raise InputError(f"the {driver} is fixed and cannot drive; use {others}", key="driver")
 
 
 def _weights(shape: str | tuple[float, ...], angle: float, relative: float) -> np.ndarray:

@@ -147,7 +147,6 @@ class StrainWave(Mesh):
         backlash: play between the flanks beyond the groove that just lets the teeth through, on
             the circumference [m]. It opens all gaps alike, so losses have one derivative by it on
             both sides, at no play too.
-        driver, loaded: see `Mesh`.
         held: pairs in each of both zones.
         surveyed: rigid teeth along the wave, as they follow from all these.
         edges_carry: True if the rounding of the flexspline's tips may carry; static.
@@ -172,8 +171,6 @@ class StrainWave(Mesh):
     tip_height: Float[Array, ""]
     tips: Tips
     backlash: Float[Array, ""]
-    driver: Float[Array, "3"]
-    loaded: Float[Array, "3"]
     held: Float[Array, ""]
     surveyed: Survey
     edges_carry: bool = eqx.field(static=True)
@@ -224,11 +221,6 @@ class StrainWave(Mesh):
     def tooth_angle(self) -> Float[Array, ""]:
         """Angle of one pitch of the flexspline [rad]."""
         return 2.0 * jnp.pi / self.teeth[0]
-
-    @property
-    def ratio(self) -> Float[Array, ""]:
-        """Speed of the driver over that of the loaded member, with its sign."""
-        return jnp.asarray((self.driver @ self.motion) / (self.loaded @ self.motion))
 
     @property
     def relation(self) -> Float[Array, "3"]:
@@ -302,11 +294,18 @@ class StrainWave(Mesh):
         raw = self.raw_contacts(phase)
         # Teeth that carry only because others yield do not close on the nominal motion. In a steady
         # state no energy goes into the travelling pattern of strains, so that part does no work.
-        inner = self.motion - jnp.mean(self.motion)
-        elastic = along(raw.normal, self.motion) / (inner @ inner)
+        motion = self._passing_over
+        inner = motion - jnp.mean(motion)
+        elastic = along(raw.normal, motion) / (inner @ inner)
         return dataclasses.replace(
             raw, normal=raw.normal - jnp.stack([elastic * rate for rate in inner])
         )
+
+    @property
+    def _passing_over(self) -> Float[Array, "3"]:
+        """Rates while the wave passes over a circular spline that is held."""
+        wave, flexspline, _ = self.relation
+        return jnp.stack([jnp.ones(()), -wave / flexspline, jnp.zeros(())])
 
     def raw_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts with the arms of rigid teeth: before the elastic part is taken out of the normal arms."""
@@ -362,7 +361,6 @@ class StrainWave(Mesh):
             bearing=self.bearing,
             series=self.series,
             teeth=self.teeth,
-            loaded=self.loaded,
         )
 
     @property
@@ -688,10 +686,9 @@ def _section(
 
 @main_dimensions.register
 def _main_dimensions(drive: StrainWave) -> dict[str, Float[Array, "..."]]:
-    """Speed ratio, deflection, radii and the depth to which the teeth reach into each other."""
+    """Deflection, radii and the depth to which the teeth reach into each other."""
     return {
         "module": drive.module,
-        "speed_ratio": jnp.abs(drive.ratio),
         "deflection": drive.line.deflection,
         "neutral_radius": drive.line.radius,
         "engagement_depth": drive.groove.high - drive.groove.low,

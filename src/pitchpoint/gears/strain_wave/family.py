@@ -49,7 +49,7 @@ _KEYS = {
 """Keys of the table by arguments of the builder that have other names."""
 
 
-def _strain_wave(gears: StrainWaveGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
+def _strain_wave(gears: StrainWaveGears, slices: int) -> tuple[Mesh, tuple[str, ...]]:
     wave, cup, groove = gears.wave_generator, gears.flexspline, gears.circular_spline
     try:
         drive = build_strain_wave(
@@ -75,8 +75,6 @@ def _strain_wave(gears: StrainWaveGears, driver: str, slices: int) -> tuple[Mesh
             bottom_clearance=gears.bottom_clearance,
             edges_carry=gears.edges == "carry",
             backlash=gears.backlash,
-            fixed=gears.fixed,
-            driver=driver,
             groove=_involute(groove) if isinstance(groove, InvoluteGroove) else None,
         )
     except InputError as error:

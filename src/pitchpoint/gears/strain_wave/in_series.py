@@ -10,6 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.gears.strain_wave.proportions import DIMENSIONS, PROPORTIONS
 from pitchpoint.materials.solids import Solid
@@ -105,7 +106,7 @@ class InSeries(eqx.Module):
         return cls(array(0.0), array([0.0] * len(cls.parts)), None)
 
     def by_part(
-        self, flexspline: Solid, law: Float[Array, "3"], loaded: Float[Array, "3"]
+        self, flexspline: Solid, law: Float[Array, "3"], loaded: Float[Arrays, "3"]
     ) -> dict[str, Float[Array, ""]]:
         """Rotation of the loaded member for a unit torque on it, by part [rad/(N m)]; none of rigid ones.
 

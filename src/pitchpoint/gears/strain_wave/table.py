@@ -452,6 +452,10 @@ class StrainWaveGears(GearsTable):
         """Members that may drive, the usual one first."""
         return tuple(name for name in self.members if name != self.fixed)
 
+    def loaded_member(self, driver: str) -> str:
+        """The one that neither drives nor is fixed."""
+        return next(name for name in self.members if name not in {driver, self.fixed})
+
     @property
     def load_sharing(self) -> str:
         """Most pairs carry only once others yield."""

@@ -29,8 +29,8 @@ __all__ = ["FAMILY", "middle_pair", "torus_pair"]
 _ROUNDED_BACKLASH = 1e-9
 
 
-def _build(gears: TorusGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
-    middle = middle_pair(gears, driver)
+def _build(gears: TorusGears, slices: int) -> tuple[Mesh, tuple[str, ...]]:
+    middle = middle_pair(gears)
     told = [*check_cylindrical(middle)]
     pair = torus_pair(gears, middle)
     _check_place(gears, pair)
@@ -67,12 +67,11 @@ def _completed(pair: TorusPair) -> TorusPair:
     return pair.completed()
 
 
-def middle_pair(gears: TorusGears, driver: str) -> CylindricalPair:
+def middle_pair(gears: TorusGears) -> CylindricalPair:
     """The spur pair that the gears are in the middle of their faces.
 
     Args:
         gears: the table.
-        driver: name of the driving gear.
     """
     depth, fillet = _depths(gears)
     pair = build_cylindrical_pair(
@@ -85,7 +84,6 @@ def middle_pair(gears: TorusGears, driver: str) -> CylindricalPair:
         dedendum=depth,
         fillet_radius=fillet,
         centre_distance=gears.centre_distance,
-        driver=2 if driver == MEMBERS[1] else 1,
         right_flank=gears.flank == "right",
     )
     return with_bores(pair, gears.bore_diameter)

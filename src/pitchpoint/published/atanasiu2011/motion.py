@@ -76,7 +76,7 @@ def readings(point: Point) -> dict[str, float | Course]:
 def _difference(point: Point, *, common: bool) -> float:
     """Largest difference of the stiffness by both procedures, over the mean."""
     terms = replace(point.models[0].compliance, common=array(common))
-    given = point.design.mesh, point.design.solids
+    given = point.design.mesh, point.design.loaded, point.design.solids
     line, middle = (
         jax.device_get(_stiffness(*given, replace(terms, middle=array(way)), point.operation.load))
         for way in (False, True)

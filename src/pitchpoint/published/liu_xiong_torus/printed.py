@@ -258,14 +258,15 @@ def _roll_of(known: Known) -> float:
     return float(known["base_pitch"] / known["base_radii"][0])
 
 
-def _teeth(name: str, point: Point) -> tuple[Mesh, tuple[Solid, Solid], Terms]:
+def _teeth(name: str, point: Point) -> tuple[Mesh, Array, tuple[Solid, Solid], Terms]:
     """Pair of gears, materials and terms by which its teeth yield."""
-    return _mesh(name, point), point.design.solids, point.models[0].compliance
+    design = point.design
+    return _mesh(name, point), design.loaded, design.solids, point.models[0].compliance
 
 
 def _mesh(name: str, point: Point) -> Mesh:
     assert isinstance(point.gears, TorusGears)
-    return point.design.mesh if name == "torus" else middle_pair(point.gears, _PINION)
+    return point.design.mesh if name == "torus" else middle_pair(point.gears)
 
 
 def _named(pair: str, told: Mapping[str, Values | Array]) -> dict[str, float | Values]:

@@ -147,7 +147,7 @@ def steady_figures(design: Design, operation: Operation, springs: Springs) -> di
 
 def _grid(moving: Moving, speed: float) -> Grid:
     """Grid that resolves the highest natural frequency, and friction where it turns: twice as fine."""
-    ratio = float(_highest(moving)) * float(moving.design.mesh.period) / speed
+    ratio = float(_highest(moving)) * float(moving.design.period) / speed
     return Grid(max(LEAST, Grid.resolving(2.0 * ratio).elements), NODES)
 
 

@@ -5,6 +5,7 @@ from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.compliance import slice_stiffness
 from pitchpoint.loading.tooth_compliance import Terms
@@ -17,7 +18,12 @@ Values = NDArray[np.float64]
 
 
 def library_stiffness(
-    mesh: Mesh, solids: tuple[Solid, Solid], terms: Terms, load: float, path: Values
+    mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
+    solids: tuple[Solid, Solid],
+    terms: Terms,
+    load: float,
+    path: Values,
 ) -> dict[str, Values]:
     """Secant and slope of the normal force of a pair over its deflection.
 
@@ -26,6 +32,7 @@ def library_stiffness(
 
     Args:
         mesh: either pair of gears.
+        loaded: one for the gear that carries the load.
         solids: material of each gear.
         terms: of the model of tooth compliance.
         load: on the gear [N m].
@@ -36,7 +43,9 @@ def library_stiffness(
         shape (place) [N/m].
     """
     phase, gone = np.modf(path)
-    secant, slope = jax.device_get(_of_pairs(mesh, solids, terms, array(load), array(phase)))
+    secant, slope = jax.device_get(
+        _of_pairs(mesh, loaded, solids, terms, array(load), array(phase))
+    )
     at = np.arange(path.size)
     pair = gone.astype(int)
     return {"secant": secant[pair, at], "slope": slope[pair, at]}
@@ -45,6 +54,7 @@ def library_stiffness(
 @program
 def _of_pairs(
     mesh: Mesh,
+    loaded: Float[Arrays, " dof"],
     solids: tuple[Solid, Solid],
     terms: Terms,
     load: Float[Array, ""],
@@ -53,7 +63,7 @@ def _of_pairs(
     contacts = mesh.contacts(phase)
 
     def whole(load: Float[Array, ""]) -> Float[Array, "pair place"]:
-        each = slice_stiffness(mesh, contacts, solids, terms, load) * contacts.weight
+        each = slice_stiffness(mesh, loaded, contacts, solids, terms, load) * contacts.weight
         return jnp.sum(jnp.where(contacts.active, each, 0.0), axis=1)
 
     # delta = F/k(F), with F in proportion to the load: d delta/dF = (1 - F k'/k)/k.

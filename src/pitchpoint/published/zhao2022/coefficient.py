@@ -75,7 +75,8 @@ def mixed_lubrication(point: Point, *, tip_angle: float, tip_force: float) -> Mi
     # A strip of one pitch, whatever the number of points: the step that the paper takes.
     length = given.flank_length * gears.module
     strip = length * 2.0 * np.pi / gears.teeth[0] / HALF_ZONE
-    passing = abs(float(mesh.motion[1] - mesh.motion[0])) * length / HALF_ZONE
+    wave, flexspline, _ = np.asarray(point.design.motion)
+    passing = abs(float(flexspline - wave)) * length / HALF_ZONE
     capacity = float(point.design.solids[0].density) * given.specific_heat
     values = _laws(
         both,

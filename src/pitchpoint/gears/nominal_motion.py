@@ -1,0 +1,131 @@
+"""The steady motion of a mesh between the body that drives it and the one that takes the load."""
+
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
+from pitchpoint.gears.coordinates import number_of
+from pitchpoint.gears.mesh import Mesh, bodies_of, has
+
+__all__ = [
+    "mesh_ends",
+    "nominal_motion",
+    "nominal_period",
+    "phase_sense",
+    "speed_ratio",
+    "turned_rates",
+    "usual_ends",
+]
+
+Rates = Float[Arrays, " dof"]
+
+
+@singledispatch
+def usual_ends(mesh: Any) -> tuple[int, int]:
+    """Numbers of the coordinates that drive and that are loaded where nobody says so.
+
+    Args:
+        mesh: any family; of most the first coordinate drives and the second one is loaded.
+    """
+    return 0, 1
+
+
+@singledispatch
+def turned_rates(mesh: Any, driver: Rates) -> Float[Array, " dof"]:
+    """Rates of the coordinates that are turned from outside, zero of the others.
+
+    Args:
+        mesh: any family; that of most turns its driver alone.
+        driver: one for the coordinate that drives.
+    """
+    rates: Array = driver * jnp.sign(mesh.relation @ driver)
+    return rates
+
+
+def nominal_motion(mesh: Mesh, driver: Rates, loaded: Rates) -> Float[Array, " dof"]:
+    """Rates of the coordinates for a unit rate of the driver, which presses the flanks.
+
+    Args:
+        mesh: any family.
+        driver: one for the coordinate that drives, zero elsewhere.
+        loaded: one for the coordinate whose load is prescribed, zero elsewhere; what is left stands still.
+    """
+    turned, relation = turned_rates(mesh, driver), mesh.relation
+    return turned - (relation @ turned) / (relation @ loaded) * loaded
+
+
+def nominal_period(mesh: Mesh, motion: Rates) -> Float[Array, ""]:
+    """Motion of the driver in one period [rad or m].
+
+    Args:
+        mesh: any family.
+        motion: of its coordinates for a unit rate of the driver.
+    """
+    return mesh.pitch / jnp.abs(mesh.passing @ motion)
+
+
+def phase_sense(mesh: Mesh, motion: Rates) -> Float[Array, ""]:
+    """Sense in which the phase runs while the drive turns on: one, or minus one.
+
+    Args:
+        mesh: any family.
+        motion: of its coordinates.
+    """
+    return jnp.sign(mesh.passing @ motion)
+
+
+def speed_ratio(mesh: Mesh, driver: Rates, loaded: Rates) -> dict[str, Float[Array, ""]]:
+    """Speed of the driver over that of the loaded member, by name, where members may take turns.
+
+    Nothing of pairs, whose ratio is that of their teeth, and of rigs.
+
+    Args:
+        mesh: any family.
+        driver, loaded: see `nominal_motion`.
+    """
+    if len(bodies_of(mesh)) < 3 or has(mesh, turned_rates):
+        return {}
+    motion = nominal_motion(mesh, driver, loaded)
+    return {"speed_ratio": jnp.abs((driver @ motion) / (loaded @ motion))}
+
+
+def mesh_ends(
+    mesh: Mesh, driver: str | int | None = None, loaded: str | int | None = None
+) -> tuple[Float[Array, " dof"], Float[Array, " dof"]]:
+    """One for the coordinate that drives, and one for the loaded one; zero elsewhere.
+
+    Args:
+        mesh: any family.
+        driver, loaded: names of bodies, or numbers of their coordinates; by default those of `usual_ends`,
+            and where the usual loaded one drives, the usual driver is loaded.
+
+    Raises:
+        InputError: there is no such body; one that drives and is loaded at once; bodies with motors of
+            their own.
+
+    Example:
+        >>> from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+        >>> given = {"module": 1e-3, "pressure_angle": 0.349, "face_width": 1e-2}
+        >>> pair = build_cylindrical_pair(teeth=(24, 30), **given)
+        >>> [each.tolist() for each in mesh_ends(pair, driver="gear 2")]
+        [[0.0, 1.0], [1.0, 0.0]]
+    """
+    names = tuple(place.body for place in bodies_of(mesh))
+    usual = usual_ends(mesh)
+    drives = usual[0] if driver is None else number_of(driver, names)
+    takes = usual[0] if drives == usual[1] else usual[1]
+    if loaded is not None:
+        takes = number_of(loaded, names)
+    if has(mesh, turned_rates) and (drives, takes) != usual:
+        raise InputError(
+            f"bodies here have motors of their own; the {names[drives]} does not drive the {names[takes]}"
+        )
+    if drives == takes:
+        raise InputError(f"the {names[drives]} drives, and another member is loaded")
+    each = np.eye(len(names))
+    return array(each[drives]), array(each[takes])
