@@ -319,7 +319,7 @@ def test_laws_are_told_the_force_of_the_mesh_and_nothing_for_idle_lanes():
     force, carries = np.asarray(found.force), np.asarray(found.force > 0.0)
     assert np.any(carries)
     assert not np.all(carries)
-    expected = np.sum(force) / float(pitch_point(mesh).line_length)
+    expected = np.sum(force) / float(pitch_point(mesh, given.design.driver).line_length)
     np.testing.assert_allclose(found.friction, np.where(carries, expected, 0.0), rtol=1e-12)
     parted = forces(given, array([0.0, -1e-4]), array([0.0, 0.0]))
     assert np.all(np.asarray(parted.friction) == 0.0)

@@ -646,8 +646,8 @@ def ends_of(case: Case, mesh: Mesh) -> tuple[float, float]:
 
 def _ends(case: Case, mesh: Mesh) -> tuple[jax.Array, jax.Array]:
     """Who drives and who is loaded, see `mesh_ends`."""
-    driver = case.operation.driver
-    return mesh_ends(mesh, driver, case.gears.loaded_member(driver))
+    driver, gears = case.operation.driver, case.gears
+    return mesh_ends(mesh, driver, gears.loaded_member(driver), gears.members)
 
 
 def operation_at(point: Operating) -> Operation:

@@ -14,6 +14,7 @@ from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
+from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.gear_body import GearBody
@@ -95,7 +96,9 @@ class Design(eqx.Module):
     loaded: Float[Arrays, " dof"] = eqx.field(default=None)
 
     def __post_init__(self) -> None:
-        if self.driver is None and self.loaded is None:
+        if (self.driver is None) != (self.loaded is None):
+            raise InputError("driver and loaded coordinate are given together, see `driven_by`")
+        if self.driver is None:
             self.driver, self.loaded = mesh_ends(self.mesh)
 
     def __repr__(self) -> str:

@@ -1,5 +1,6 @@
 """The steady motion of a mesh between the body that drives it and the one that takes the load."""
 
+from collections.abc import Sequence
 from functools import singledispatch
 from typing import Any
 
@@ -95,7 +96,10 @@ def speed_ratio(mesh: Mesh, driver: Rates, loaded: Rates) -> dict[str, Float[Arr
 
 
 def mesh_ends(
-    mesh: Mesh, driver: str | int | None = None, loaded: str | int | None = None
+    mesh: Mesh,
+    driver: str | int | None = None,
+    loaded: str | int | None = None,
+    bodies: Sequence[str] = (),
 ) -> tuple[Float[Array, " dof"], Float[Array, " dof"]]:
     """One for the coordinate that drives, and one for the loaded one; zero elsewhere.
 
@@ -103,6 +107,7 @@ def mesh_ends(
         mesh: any family.
         driver, loaded: names of bodies, or numbers of their coordinates; by default those of `usual_ends`,
             and where the usual loaded one drives, the usual driver is loaded.
+        bodies: names of all of them in order, where they are known already.
 
     Raises:
         InputError: there is no such body; one that drives and is loaded at once; bodies with motors of
@@ -115,7 +120,7 @@ def mesh_ends(
         >>> [each.tolist() for each in mesh_ends(pair, driver="gear 2")]
         [[0.0, 1.0], [1.0, 0.0]]
     """
-    names = tuple(place.body for place in bodies_of(mesh))
+    names = tuple(bodies) or tuple(place.body for place in bodies_of(mesh))
     usual = usual_ends(mesh)
     drives = usual[0] if driver is None else number_of(driver, names)
     takes = usual[0] if drives == usual[1] else usual[1]
