@@ -65,7 +65,7 @@ OTHERS = re.compile(
 )
 """What other gears, other papers, and tables that a pair does not have are computed with."""
 
-MOST = 254
+MOST = 255
 """Modules of the package in a run of a spur pair, of some 490."""
 
 
