@@ -103,6 +103,9 @@ def test_two_sets_in_a_row_are_as_good_as_their_product():
         [one["mean_efficiency"] for one in apart], rel=1e-12
     )
     assert found["mean_loss"] == pytest.approx(sum(one["mean_loss"] for one in apart), rel=1e-11)
+    rolling = [one["latent_power"] for one in apart]
+    assert found["stage_latent_power"] == pytest.approx(rolling, rel=1e-11)
+    assert found["latent_power"] == pytest.approx(sum(rolling), rel=1e-11)
     torque = LOAD / np.prod(RATIOS) / product
     assert found["mean_input_torque"] == pytest.approx(torque, rel=1e-12)
     assert found["stage_speed"] == pytest.approx([SPEED, SPEED / RATIOS[0]], rel=1e-12)
@@ -166,6 +169,7 @@ def test_a_pair_before_and_behind_a_set(built, gears, of_pair, ratios):
     assert found["mean_efficiency"] == pytest.approx(product, rel=1e-9)
     assert found["bearing_load"][0] == pytest.approx(apart[of_pair]["bearing_load"][0], rel=1e-6)
     assert found["mean_loss"] == pytest.approx(sum(one["mean_loss"] for one in apart), rel=1e-6)
+    assert np.isnan(found["stage_latent_power"]).tolist() == [k == of_pair for k in range(2)]
     assert made.motion[-1] == pytest.approx(np.sign(made.motion[0]) * -1 / np.prod(ratios))
 
 

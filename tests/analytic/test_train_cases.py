@@ -89,6 +89,26 @@ def test_meshes_carry_more_by_the_losses_behind_them():
     assert held + found["mean_input_torque"] == pytest.approx(60.0, rel=1e-9)
 
 
+def test_power_that_rolls_through_the_meshes():
+    """Against the carrier, by Willis with the efficiencies of the meshes; of a 3K many times the input."""
+    built, found = figures(PLANETARY)
+    power = found["mean_input_torque"] * built.case.operation.speed
+    against = 84 / 108  # of the speed of the sun
+    first = found["stage_efficiency"][0]
+    expected = power * against * np.array([1.0, first])
+    assert found["stage_latent_power"] == pytest.approx(expected, rel=1e-9)
+    built, found = figures(THREE_K)
+    power = found["mean_input_torque"] * built.case.operation.speed
+    sun, _, output = found["stage_efficiency"]
+    one, two = 90 / 18, 90 * 34 / (36 * 88)
+    given = power * found["mean_efficiency"] * two / (1.0 - two)  # by the output ring
+    held = power * sun * one / (1.0 + one) + given * output  # by the planets to the held ring
+    expected = [power * one / (1.0 + one), held, given]
+    assert found["stage_latent_power"] == pytest.approx(expected, rel=1e-9)
+    assert found["latent_power"] == pytest.approx(sum(expected), rel=1e-9)
+    assert found["latent_power"] > 50.0 * power
+
+
 def test_planets_are_pulled_outwards_by_the_mass_of_their_gears():
     """Discs of the inspection, both of a stepped planet."""
     second = {"teeth": [24, 78], "face_width": "10 mm"}

@@ -142,6 +142,7 @@ STAGES = (
     "stage_friction",
     "stage_input_torque",
     "stage_speed",
+    "stage_latent_power",
 )
 """Figures of each stage of a drive."""
 

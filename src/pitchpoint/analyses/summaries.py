@@ -57,7 +57,12 @@ _SHOWN = 3
 _ENDS = ("lowest_", "highest_")
 """What names begin with of values that decide whether laws hold."""
 
-_WITH_FRICTION = {"largest_contact_force_ratio", "min_lambda_ratio"} | {
+_WITH_FRICTION = {
+    "largest_contact_force_ratio",
+    "min_lambda_ratio",
+    "latent_power",
+    "stage_latent_power",
+} | {
     f"{kind}_{name}{ending}"
     for kind in ("mean", "min", "max")
     for name in ("loss", "efficiency", "input_torque", "friction")

@@ -170,7 +170,12 @@ def _figures(
 ) -> tuple[dict[str, Array], list[Locking]]:
     found = drive_cycle.function(drive, operation, models, nodes, known)
     points = operation.load.shape
-    every = {**_of_drive(found), **_of_links(drive, found), **_of_places(drive, found)}
+    every = {
+        **_of_drive(found),
+        **_of_links(drive, found),
+        **_of_sets(found),
+        **_of_places(drive, found),
+    }
     figures = {
         name: jnp.broadcast_to(values, (*points, *values.shape[len(points) :]))
         for name, values in every.items()
@@ -307,6 +312,19 @@ def _of_links(drive: Drive, found: DriveCycle) -> dict[str, Array]:
             "stage_speed": speed,
         }.items()
     }
+
+
+def _of_sets(found: DriveCycle) -> dict[str, Array]:
+    """Power that rolls through the meshes of each set [point, stage], NaN of other links, and in sum."""
+    sets = {k: one for k, one in enumerate(found.states) if not isinstance(one, State)}
+    if not sets:
+        return {}
+    each = [
+        found.mean(sets[k].latent_power, k) if k in sets else jnp.full((), jnp.nan)
+        for k in range(len(found.states))
+    ]
+    stages = jnp.stack(jnp.broadcast_arrays(*each), axis=-1)
+    return {"stage_latent_power": stages, "latent_power": jnp.nansum(stages, axis=-1)}
 
 
 def _of_places(drive: Drive, found: DriveCycle) -> dict[str, Array]:

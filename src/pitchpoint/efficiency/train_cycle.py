@@ -75,6 +75,15 @@ class MeshState(eqx.Module):
         return jnp.sum(total(self.sliding_loss + self.rolling_loss), axis=0)
 
     @property
+    def latent_power(self) -> Nodes:
+        """Power that its driving member puts in against the carrier, of all copies [W].
+
+        It rolls through the teeth whether the carrier moves or not; friction takes its part of it.
+        """
+        power = self.input_torque * self.speed
+        return jnp.where(power > 0.0, power, self.loss - power)
+
+    @property
     def normal_force(self) -> Nodes:
         """Sum of the normal forces of all contacts of all copies [N]."""
         return jnp.sum(total(self.conditions.load), axis=0)

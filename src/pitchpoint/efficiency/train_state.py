@@ -29,6 +29,7 @@ class TrainState(eqx.Module):
         input_power, output_power: put in, and taken at the loaded body [W].
         loss: power lost in all contacts and beside the teeth [W].
         drag_loss: the part beside the teeth [W].
+        latent_power: that rolls through all meshes, see `MeshState` [W].
         normal_force, friction_force: sums over all contacts, in size [N].
         contact_force_ratio: largest normal force of a mesh over that without friction.
         largest_friction: coefficient of all contacts.
@@ -42,6 +43,7 @@ class TrainState(eqx.Module):
     output_power: Each
     loss: Each
     drag_loss: Each
+    latent_power: Each
     normal_force: Each
     friction_force: Each
     contact_force_ratio: Each
@@ -99,6 +101,7 @@ def _state(found: TrainCycle) -> TrainState:
         found.output_power,
         found.loss,
         found.drag_loss,
+        sum((one.latent_power for one in found.meshes), jnp.zeros_like(found.drag_loss)),
         normal,
         friction,
         found.contact_force_ratio,

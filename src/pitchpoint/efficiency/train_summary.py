@@ -178,6 +178,7 @@ def _of_train(found: TrainCycle) -> dict[str, Array]:
     return {
         "mean_loss": found.mean(found.loss),
         "mean_drag_loss": found.mean(found.drag_loss),
+        "latent_power": found.mean(_latent_power(found.meshes)),
         "mean_efficiency": found.mean_efficiency,
         "min_efficiency": low,
         # Between the nodes the interpolation may overshoot; no state is better than free of loss.
@@ -194,6 +195,12 @@ def _of_train(found: TrainCycle) -> dict[str, Array]:
         "lost": found.status.code == int(Code.NOT_CONVERGED),
         "levers": found.levers,
     }
+
+
+def _latent_power(meshes: Sequence[MeshState]) -> Float[Array, " node"]:
+    """Power that rolls through all meshes [W]."""
+    each = [one.latent_power for one in meshes]
+    return sum(each[1:], each[0])
 
 
 def _mean_friction(meshes: Sequence[MeshState]) -> Float[Array, " node"]:
@@ -217,6 +224,7 @@ def _of_meshes(found: TrainCycle) -> dict[str, Array]:
         "stage_friction": jnp.stack([found.mean(_mean_friction([one])) for one in found.meshes]),
         "stage_input_torque": jnp.stack(driving),
         "stage_speed": jnp.stack(speeds),
+        "stage_latent_power": jnp.stack([found.mean(one.latent_power) for one in found.meshes]),
     }
 
 

@@ -565,6 +565,7 @@ VARIABLES: dict[str, Variable] = {
     "axial_reaction_2": force("mean axial load of the teeth on the bearings of gear 2", "F_a2"),
     "bearing_load": force("mean load on the bearing", "F_B"),
     "mean_drag_loss": power("mean power loss beside the teeth", "P_drag mean"),
+    "latent_power": power("mean power that rolls through all meshes of sets", "P_roll"),
     "mean_efficiency": percent("mean efficiency", "η mean"),
     "min_efficiency": percent("smallest efficiency", "η min"),
     "max_efficiency": percent("largest efficiency", "η max"),
@@ -596,6 +597,7 @@ VARIABLES: dict[str, Variable] = {
     "stage_friction": Variable("mean friction coefficient of the stage", "μ", "1"),
     "stage_input_torque": torque("mean torque that drives the stage", "T_in"),
     "stage_speed": Variable("speed of the stage's driver", "n", "rad/s", "rpm", "rotational speed"),
+    "stage_latent_power": power("mean power that rolls through the meshes of the stage", "P_roll"),
     "stage_wind_up": Variable("wind-up at the output by the stage", "Δθ", "rad", "arcmin", "angle"),
     "stage_torsional_stiffness": torsional_stiffness(
         "torsional stiffness of the stage, at the output", "K"

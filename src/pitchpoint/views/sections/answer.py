@@ -26,7 +26,7 @@ from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Curve, law_title, laws
-from pitchpoint.views.inputs import set_for_run, words
+from pitchpoint.views.inputs import number, set_for_run, words
 from pitchpoint.views.point import (
     by_members,
     of_stage_by_bodies,
@@ -513,6 +513,8 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     without = [f"without the {lacks}"] if (lacks := _lacks(data)) else []
     yield figure(20.0, "Input", "mean_input_torque", _clauses(*without, _ripple(data)))
     yield figure(25.0, "Loss", "mean_loss", _clauses(*without, _drag(data, 0)))
+    if "latent_power" in data:
+        yield figure(77.0, "Latent power", "latent_power", _times_input(outcome, data))
     law = str(data["law"].values[0])
     if law in laws(outcome.parts["operation"]):
         position = laws(outcome.parts["operation"]).index(law)
@@ -567,6 +569,14 @@ def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
         return _clauses(*others, *told)
     law = f"by {data['law'].values[0]}"
     return _clauses(*others, told.pop(), law, *told)
+
+
+def _times_input(outcome: Outcome, data: xr.Dataset) -> str:
+    """Power that rolls through the meshes of sets as so many times that of the input."""
+    rolls, torque = (float(data[n].values[0, 0]) for n in ("latent_power", "mean_input_torque"))
+    power = torque * number(outcome, "operation", "speed")
+    times = f"{show.number(rolls / power, 3)} times the input" if power > 0.0 else ""
+    return _clauses(times, "rolls through the meshes")
 
 
 def _lacks(data: xr.Dataset) -> str:

@@ -1,6 +1,6 @@
 """Stages of a drive: what each loses, and how far it lets the output turn."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -37,12 +37,21 @@ def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
     return [
         {"friction law": law, "stage": stage_words(outcome, at, stage)}
         | {
-            head(name, data): shown(name, float(data[name].values[k, 0, at]), data)
+            head(name, data): _of_stage(shown, name, float(data[name].values[k, 0, at]), data)
             for name in names
         }
         for k, law in enumerate(laws(data))
         for at, stage in enumerate(data["stage"].values)
     ]
+
+
+def _of_stage(words: Callable[[str, float, Any], str], name: str, value: float, data: Any) -> str:
+    """A figure of a stage in words; a dash for what only sets have."""
+    return "–" if name == "stage_latent_power" and np.isnan(value) else words(name, value, data)
+
+
+def _quantity(name: str, value: float, data: Any) -> str:
+    return show.quantity(name, value, of=data)
 
 
 def stage_words(outcome: Outcome, at: int, stage: Any) -> str:
@@ -76,7 +85,10 @@ def _blocks(page: Page) -> Iterator[Block]:
             columns = [
                 (
                     f"stage {stage_words(outcome, at, stage)}",
-                    *(show.quantity(n, float(data[n].values[k, 0, at]), of=data) for n in names),
+                    *(
+                        _of_stage(_quantity, n, float(data[n].values[k, 0, at]), data)
+                        for n in names
+                    ),
                 )
                 for at, stage in enumerate(data["stage"].values)
             ]
