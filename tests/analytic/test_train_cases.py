@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pitchpoint.analyses.duty import rated_lives
 from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.strength import ratings_of
@@ -12,6 +13,7 @@ from pitchpoint.doubts import doubts_of
 from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.drive.thrusts import axial_loads
 from pitchpoint.drive.torques import train_torques
+from pitchpoint.duty_cycle.history import load_steps
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case
 
@@ -152,6 +154,28 @@ def test_bearings_of_planets_and_seals_take_their_part():
     assert start > 0.03
     back = data["back_driving_torque"].sel(temperature=built.case.operation.temperature).item()
     assert back > start * 108 / 24
+
+
+def test_life_of_planet_bearings():
+    """ISO 281 at the speed against the carrier, under K_γ times the teeth and the pull of the planet."""
+    pin = {**PIN, "f0": 1e-9, "f1": 0, "dynamic_load_rating": "8 kN", "life_exponent": 10 / 3}
+    case = PLANETARY | {"losses": {"pin": pin}}
+    case |= {"models": {"friction": {"name": "constant", "coefficient": 0}}}
+    built, found = figures(case)
+    speed = np.pi * 100.0
+    pull = float(built.design.pull) * (speed * 24 / 108) ** 2
+    assert found["bearing_load"] == pytest.approx([np.hypot(60 / 3 / 27e-3, pull)], rel=1e-9)
+    load = np.hypot(1.1 * 60.0 / 3 / 27e-3, pull)
+    life = 1e6 * (8000.0 / load) ** (10 / 3) * 2.0 * np.pi / (speed * (24 / 108 + 0.4))
+    data = ANALYSES["operation"].compute(built, {}, lambda *_: None)
+    assert data["bearing_life"].item() == pytest.approx(life, rel=1e-9)
+    # Twice the load at half the speed for half of the time: Miner's rule.
+    history = load_steps([1.0, 1.0], [60.0, -120.0], [speed * 24 / 108, -speed * 12 / 108], 333.15)
+    twice = np.hypot(2.2 * 60.0 / 3 / 27e-3, pull / 4)
+    part = 0.5 + 0.25 * (twice / load) ** (10 / 3)
+    lives = rated_lives(built)
+    assert lives["pin"].life(history) == pytest.approx(life / part, rel=1e-9)
+    assert lives["pin"].count == 3
 
 
 def test_torque_and_forces_over_the_period_have_the_means_of_the_operating_point():

@@ -1,10 +1,13 @@
 """Energy, torques, lives and heat over the duty cycle of a case, of its loss map of the output."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from pitchpoint._jax import double_precision
+from pitchpoint.analyses.bearing_life import rated_bearings
 from pitchpoint.analyses.four_quadrants import (
     both,
     quadrant_axes,
@@ -17,11 +20,12 @@ from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.duty import DutyInputs, duty_inputs
 from pitchpoint.duty_cycle.cycle import duty_dataset
 from pitchpoint.duty_cycle.energy import demand_inside
+from pitchpoint.duty_cycle.life import RatedBearing
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 from pitchpoint.units import degrees_celsius
 
-__all__ = ["demand_in_map", "duty_of_map"]
+__all__ = ["demand_in_map", "duty_of_map", "rated_lives"]
 
 
 def duty_of_map(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
@@ -38,12 +42,26 @@ def duty_of_map(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         table_of(data),
         asked.history,
         motor=asked.motor,
-        lives=asked.lives,
+        lives={**rated_lives(built), **asked.lives},
         heating=asked.heating,
         teeth=tooth_life(built, asked.history) if rated else None,
         travels="loaded" in built.travels,
         warnings=(),
     )
+
+
+@double_precision()
+def rated_lives(built: Ready) -> dict[str, RatedBearing]:
+    """Bearings with a dynamic load rating under the first friction law; a table of lives overrides them.
+
+    Args:
+        built: the case.
+    """
+    if not built.rates_bearings:
+        return {}
+    kind: Any = built
+    figures = kind.figures_of([(built.design, built.operation)], built.models[0])
+    return rated_bearings(built, figures["bearing_load"][0])
 
 
 def demand_in_map(built: Ready) -> None:

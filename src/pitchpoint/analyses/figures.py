@@ -190,6 +190,7 @@ def of_operation(parts: Parts) -> dict[str, Any]:
         "bearing_load": {
             str(law): dict(bearing_loads(data, k)) for k, law in enumerate(data["law"].values)
         },
+        **_lives(data),
     }
 
 
@@ -241,6 +242,19 @@ def bearing_loads(data: Any, law: int) -> list[tuple[str, float]]:
     loads = data["bearing_load"].values[:, 0]
     bears = loads.any(axis=0)
     return [(str(place), loads[law, k]) for k, place in enumerate(data["place"].values) if bears[k]]
+
+
+def _lives(data: xr.Dataset) -> dict[str, Any]:
+    """Lives of bearings by law and name [s]; nothing where none is rated."""
+    if "bearing_life" not in data:
+        return {}
+    names = [str(place) for place in data["place"].values]
+    rows = zip(data["law"].values, data["bearing_life"].values[:, 0], strict=True)
+    each = {
+        str(law): {n: float(life) for n, life in zip(names, row, strict=True) if not np.isnan(life)}
+        for law, row in rows
+    }
+    return {"bearing_life": without_nan(each)}
 
 
 def error_ranges(data: xr.Dataset | None) -> Iterator[tuple[str, list[str], Any]]:

@@ -26,7 +26,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import FELT, GUESSED, Doubt, doubts_of, in_percent, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models
-from pitchpoint.results.store import without_nan
+from pitchpoint.results.store import dataset, without_nan
 
 __all__ = [
     "BACK_DRIVING",
@@ -40,6 +40,12 @@ DIFFERS = 1.5
 
 def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     data = summaries([built], built.models, beside([built]), title="operating point")
+    if built.rates_bearings:
+        from pitchpoint.analyses.bearing_life import bearing_lives  # few cases ask for it
+
+        lives = bearing_lives(built, data["bearing_load"].values[:, 0])
+        found = {"bearing_life": (("law", "point", "place"), lives[:, None])}
+        data["bearing_life"] = dataset(found, {}, title="lives")["bearing_life"]
     beyond = *_implausible(built), *_rated_below(built, data)
     data.attrs.update(stored([*doubts_of(data.attrs), *beyond]))
     return data
@@ -216,7 +222,7 @@ OPERATION = Analysis(
     title="operating point",
     of="drive",
     compute=_operation,
-    main=(*MAIN, *CONTACT, *REACTIONS, "bearing_load", *TEMPERATURES),
+    main=(*MAIN, *CONTACT, *REACTIONS, "bearing_load", "bearing_life", *TEMPERATURES),
     figures=of_operation,
 )
 LAWS_THERE = Analysis(

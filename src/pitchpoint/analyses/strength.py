@@ -29,7 +29,7 @@ from pitchpoint.strength.load_factors import MOST_RESONANCE
 from pitchpoint.strength.rating import ROWS, ratings
 from pitchpoint.strength.root import THINNEST_RIM, THINNEST_RING
 
-__all__ = ["STRENGTH", "rated_rows", "rating_inputs", "ratings_of"]
+__all__ = ["STRENGTH", "mesh_load_of", "rated_rows", "rating_inputs", "ratings_of"]
 
 _MAIN = (
     "tangential_force",
@@ -183,6 +183,16 @@ def _sharing_by(built: Built, factor: float) -> Built:
         return built
     changed = table.model_copy(update={"mesh_load_factor": factor})
     return replace(built, case=built.case.model_copy(update={"strength": changed}))
+
+
+def mesh_load_of(built: BuiltTrain) -> float:
+    """Mesh load factor K_γ of a set: the largest one of its meshes, as they are rated.
+
+    Args:
+        built: the set.
+    """
+    tables = (one.case.strength for _, one in _with_sharing(built)[0])
+    return max((table.mesh_load_factor or 1.0 for table in tables if table), default=1.0)
 
 
 def rating_inputs(built: Ready) -> list[tuple[Label, tuple[Any, ...]]]:

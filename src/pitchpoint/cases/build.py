@@ -340,6 +340,21 @@ class Built:
         return [*self.case.losses]
 
     @property
+    def rates_bearings(self) -> bool:
+        """True if a bearing has its dynamic load rating, by which its life is known."""
+        return any(loss.dynamic_load_rating is not None for loss in self.case.losses.values())
+
+    @property
+    def with_losses(self) -> "tuple[Built, ...]":
+        """Itself: all that has losses beside the teeth, see `BuiltDrive.with_losses`."""
+        return (self,)
+
+    @property
+    def planet_bodies(self) -> tuple[str, ...]:
+        """Bodies of which there are several: none."""
+        return ()
+
+    @property
     def explored(self) -> tuple[str, Any]:
         """Table of gears by which an explorer changes the case, with its key."""
         return "gears", self.case.gears

@@ -277,6 +277,22 @@ class BuiltDrive:
         return [*self.case.losses, *own]
 
     @property
+    def rates_bearings(self) -> bool:
+        """True if a bearing of the drive or of a stage has its dynamic load rating."""
+        every = (loss for one in self.with_losses for loss in one.case.losses.values())
+        return any(loss.dynamic_load_rating is not None for loss in every)
+
+    @property
+    def with_losses(self) -> "tuple[Built | BuiltDrive, ...]":
+        """The drive and its stages, which have losses beside the teeth in the order of `places`."""
+        return (self, *self.stages)
+
+    @property
+    def planet_bodies(self) -> tuple[str, ...]:
+        """Bodies of which there are several: none of shafts."""
+        return ()
+
+    @property
     def explored(self) -> tuple[str, Any]:
         """Table of gears by which an explorer changes the case, with its key: of the first stage."""
         return f"{STAGES}.{self.numbers[0]}.gears", self.stages[0].case.gears
@@ -469,6 +485,16 @@ class BuiltTrain(BuiltDrive):
     def averaging(self) -> str:
         """What averages run over."""
         return TRAIN_PERIOD
+
+    @property
+    def with_losses(self) -> "tuple[BuiltTrain]":
+        """Itself: its losses stand between its bodies."""
+        return (self,)
+
+    @property
+    def planet_bodies(self) -> tuple[str, ...]:
+        """Bodies of which there are several."""
+        return self.design.planets
 
     @property
     def trains(self) -> "dict[int, BuiltTrain]":

@@ -32,7 +32,7 @@ from pitchpoint.contact.registry import (
     USUAL_SUMMITS,
     SummitConstants,
 )
-from pitchpoint.duty_cycle.table import DutyTable
+from pitchpoint.duty_cycle.table import LIFE_EXPONENT, DutyTable
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import CollectedInputError, Complaints, InputError, shorten
@@ -130,6 +130,7 @@ COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
 MAP_COUNT = Quantity("dimensionless", 2, 200, whole=True)
 BEARING_FACTOR = Quantity("dimensionless", 0.0, 100.0)
 FORCE = Quantity("force", 0.0, 1e7, "N")
+RATING = Quantity("force", 0.0, 1e9, "N", open_low=True)
 PRESSED = Quantity("force", 0.0, 1e7, "N", open_low=True)
 PLACE = Quantity("length", -10.0, 10.0, "mm")
 TURN = Quantity("angle", -2 * pi, 2 * pi, "deg")
@@ -548,6 +549,8 @@ class Loss(Table):
     bearing between wave generator and flexspline bears the radial load of the teeth in both zones.
     In a train a place that names the planet is at every planet, and a bearing stands for all of its body:
     of a planet in its carrier, or of a body in the housing; between two others it bears its preload.
+    A bearing with its dynamic load rating has a life by ISO 281 at the speed between its bodies; those of
+    planets bear K_γ times an equal share of the teeth, and the centrifugal force of the planet.
     A breakaway model and its torque by value hold the bodies at rest, beside the bearing and the seal.
     """
 
@@ -565,6 +568,10 @@ class Loss(Table):
     """Factor of the load f1 of the bearing model, as the maker has it."""
     preload: Annotated[float, FORCE] = 0.0
     """Load on the bearing without any on the teeth, which adds to theirs."""
+    dynamic_load_rating: Annotated[float, RATING] | None = None
+    """Basic dynamic load rating C of the bearing by its maker; gives its life by ISO 281."""
+    life_exponent: Annotated[float, LIFE_EXPONENT] | None = None
+    """Exponent of that life over the load, 3 of balls, 10/3 of rollers and needles; 3 unless given."""
     position: Annotated[float, PLACE] | None = None
     """Place of one of two bearings along the axis, from the middle of the face; of stages, as their place."""
     locating: Annotated[bool, BeforeValidator(_flag)] | None = None
@@ -622,8 +629,12 @@ class Loss(Table):
             raise InputError(
                 "is missing; churning_torque is that at this speed", key="churning_speed"
             )
-        of_bearing = dict.fromkeys(("preload", "position", "locating"), "a bearing")
+        of_bearing = dict.fromkeys(
+            ("preload", "dynamic_load_rating", "position", "locating"), "a bearing"
+        )
         alone = of_bearing if self.bearing == "none" else {}
+        if not _given(self, "dynamic_load_rating"):
+            alone |= {"life_exponent": "dynamic_load_rating"}
         if not _given(self, "churning_torque"):
             alone |= dict.fromkeys(("churning_speed", "churning_exponent"), "churning_torque")
         if not (held or _given(self, "breakaway_torque")):

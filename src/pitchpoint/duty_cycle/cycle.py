@@ -12,7 +12,7 @@ from pitchpoint.duty_cycle.energy import DriverCourse, driver_course, energies, 
 from pitchpoint.duty_cycle.first_failure import first_failure
 from pitchpoint.duty_cycle.heat import ThermalNetwork
 from pitchpoint.duty_cycle.history import LoadHistory, demand_kelvins
-from pitchpoint.duty_cycle.life import BALL, ROLLER, RatedLife, system_life
+from pitchpoint.duty_cycle.life import BALL, ROLLER, RatedBearing, RatedLife, system_life
 from pitchpoint.duty_cycle.motor import Motor
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
@@ -105,7 +105,7 @@ def duty_dataset(
     *,
     law: str = "",
     motor: Motor | None = None,
-    lives: Mapping[str, RatedLife] | None = None,
+    lives: Mapping[str, RatedLife | RatedBearing] | None = None,
     heating: Heating | None = None,
     teeth: xr.Dataset | None = None,
     travels: bool = False,
@@ -146,7 +146,8 @@ def duty_dataset(
     if lives:
         each = {name: rated.life(history) for name, rated in lives.items()}
         extra["bearing_life"] = (("bearing",), [*each.values()])
-        extra["system_life"] = ((), system_life(each.values()))
+        every = [each[name] for name, rated in lives.items() for _ in range(rated.count)]
+        extra["system_life"] = ((), system_life(every))
         coordinates["bearing"] = [*each]
     if teeth is not None:
         extra |= {str(name): (("mesh", "gear"), teeth[name].values) for name in teeth}

@@ -7,7 +7,15 @@ from pydantic import BeforeValidator, Field
 from pitchpoint.input.quantities import Quantity, text
 from pitchpoint.input.tables import Table
 
-__all__ = ["DutyTable", "HeatTable", "MotorTable", "RatedLifeTable", "ResistanceTable", "WarmBody"]
+__all__ = [
+    "LIFE_EXPONENT",
+    "DutyTable",
+    "HeatTable",
+    "MotorTable",
+    "RatedLifeTable",
+    "ResistanceTable",
+    "WarmBody",
+]
 
 Text = Annotated[str, BeforeValidator(text)]
 

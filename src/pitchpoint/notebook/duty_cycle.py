@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from pitchpoint._jax import double_precision
+from pitchpoint.analyses.duty import rated_lives
 from pitchpoint.analyses.four_quadrants import table_of
 from pitchpoint.analyses.tooth_life import tooth_life
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
@@ -54,7 +56,8 @@ def duty(
         variant: of the result, the first one by default.
         law: of friction, the first one of the map by default.
         motor: by value; none by default.
-        lives: of bearings and wave generators by name, as catalogues rate them.
+        lives: of bearings and wave generators by name, as catalogues rate them, beside those of bearings
+            that have a `dynamic_load_rating` in [losses].
         heating: thermal resistances, from which the temperatures follow.
         teeth: with damage and life of the teeth by ISO 6336, see `tooth_life`.
 
@@ -81,15 +84,18 @@ def duty(
         raise InputError(f"{'torque' if torque is None else 'speed'} of the output is missing")
     else:
         history = load_history(time, torque, speed, usual)  # type: ignore[arg-type]
-    (held,) = result.case(variant).held if teeth else (None,)
+    rated = "bearing_life" in outcome.parts.get("operation", ())
+    (held,) = result.case(variant).held if teeth or rated else (None,)
+    with double_precision():
+        built = None if held is None else held.built({})
     return duty_dataset(
         table,
         history,
         law=law_of(table, law or None),
         motor=motor,
-        lives=lives,
+        lives={**(rated_lives(built) if rated and built else {}), **(lives or {})},
         heating=heating,
-        teeth=None if held is None else tooth_life(held.built({}), history),
+        teeth=tooth_life(built, history) if teeth and built else None,
         travels=travels,
         case=str(outcome.manifest["case"]),
         variant=str(outcome.manifest["variant"]),

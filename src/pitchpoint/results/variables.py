@@ -130,7 +130,7 @@ VARIABLES: dict[str, Variable] = {
     "limit_torque": torque("torque of a maker, at this size", "T_limit"),
     "limit_margin": Variable("that torque over the one on the flexspline", "T_limit/T_F", "1"),
     "bearing_life": Variable(
-        "life of the wave generator's bearing by its rating", "L", "s", "h", "time"
+        "life of the bearing by its rating, with 90 % unharmed", "L", "s", "h", "time"
     ),
     "flank_tolerance": deviation("tolerance of the flanks by ISO 1328-1", "T"),
     "residual": Variable("relative residual of the torque balance", "", "1"),

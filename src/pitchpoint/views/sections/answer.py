@@ -316,7 +316,19 @@ def _bearings(outcome: Outcome, law: int) -> list[tuple[str, str]]:
             for place, load in loads
             if load > 0.0
         ]
-    return found
+    return [*found, *_lives(data, law)]
+
+
+def _lives(data: xr.Dataset, law: int) -> list[tuple[str, str]]:
+    """Lives of bearings by their ratings: names and words."""
+    if "bearing_life" not in data:
+        return []
+    each = zip(data["place"].values, data["bearing_life"].values[law, 0], strict=True)
+    return [
+        (f"life of {place}".replace("_", " "), show.quantity("bearing_life", life))
+        for place, life in each
+        if not np.isnan(life)
+    ]
 
 
 _ACROSS = {
@@ -489,6 +501,7 @@ def bearing_rows(outcome: Outcome) -> list[dict[str, str]]:
             f"{head('bearing_load')} {place.replace('_', ' ')}": shown("bearing_load", float(load))
             for place, load in bearing_loads(data, k)
         }
+        | dict(_lives(data, k))
         for k, law in enumerate(data["law"].values)
     ]
     return rows if len(rows[0]) > 1 else []
@@ -513,6 +526,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     without = [f"without the {lacks}"] if (lacks := _lacks(data)) else []
     yield figure(20.0, "Input", "mean_input_torque", _clauses(*without, _ripple(data)))
     yield figure(25.0, "Loss", "mean_loss", _clauses(*without, _drag(data, 0)))
+    yield from _shortest_life(outcome.parts["operation"])
     if "latent_power" in data:
         yield figure(77.0, "Latent power", "latent_power", _times_input(outcome, data))
     law = str(data["law"].values[0])
@@ -569,6 +583,17 @@ def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
         return _clauses(*others, *told)
     law = f"by {data['law'].values[0]}"
     return _clauses(*others, told.pop(), law, *told)
+
+
+def _shortest_life(data: xr.Dataset) -> Iterator[KeyFigure]:
+    """The shortest life of the rated bearings under the first law; nothing where none is rated."""
+    if "bearing_life" not in data or np.isnan(lives := data["bearing_life"].values[0, 0]).all():
+        return
+    at = int(np.nanargmin(lives))
+    place = str(data["place"].values[at]).replace("_", " ")
+    load = show.quantity("bearing_load", float(data["bearing_load"].values[0, 0, at]))
+    life = show.quantity("bearing_life", float(lives[at]))
+    yield KeyFigure(43.0, "Life of bearings", life, f"L10 of {place} by ISO 281; mean load {load}")
 
 
 def _times_input(outcome: Outcome, data: xr.Dataset) -> str:

@@ -1,0 +1,145 @@
+"""Life of the rolling bearings of a drive by their dynamic load ratings: ISO 281."""
+
+from math import acos, inf, nan, sin, sqrt, tan
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from pitchpoint.cases.built_drive import BuiltTrain, Ready
+from pitchpoint.cases.schema import Loss
+from pitchpoint.drive.kinematics import HOUSING, Ends
+from pitchpoint.drive.torques import train_torques
+from pitchpoint.duty_cycle.history import load_steps
+from pitchpoint.duty_cycle.life import BALL, RatedBearing
+
+__all__ = ["bearing_lives", "rated_bearings"]
+
+Vector = tuple[float, float, float]
+
+
+def bearing_lives(
+    built: Ready, loads: Float[np.ndarray, "law place"]
+) -> Float[np.ndarray, "law place"]:
+    """Lives of bearings at the operating point [s]; NaN of places without a rating.
+
+    Args:
+        built: the drive.
+        loads: on the bearing of each place at the operating point, by friction law [N].
+    """
+    speed = float(built.operation.speed) * built.output_rate
+    there = load_steps(1.0, built.case.operation.load, speed, float(built.operation.temperature))
+    each = [rated_bearings(built, row) for row in loads]
+    lives = [
+        [row[name].life(there) if name in row else nan for name in built.places] for row in each
+    ]
+    return np.array(lives)
+
+
+def rated_bearings(built: Ready, loads: Float[np.ndarray, " place"]) -> dict[str, RatedBearing]:
+    """Bearings that have a dynamic load rating, by the name of their place.
+
+    Args:
+        built: the drive.
+        loads: on the bearing of each place at the operating point [N], in the order of `built.places`.
+
+    The load of the teeth is taken to grow with that of the output, and so are losses.
+    """
+    places = iter(zip(built.places, loads.tolist(), strict=True))
+    output, load = float(built.operation.speed) * built.output_rate, built.case.operation.load
+    found: dict[str, RatedBearing] = {}
+    for level in built.with_losses if output > 0.0 else ():
+        rates = dict(zip(level.case.bodies, level.motion, strict=True))
+        step = float(level.operation.speed) / output
+        for loss in level.case.losses.values():
+            name, borne = next(places)
+            if loss.dynamic_load_rating is None:
+                continue
+            first, second = (rates.get(body, 0.0) * step for body in loss.between)
+            pull = _pull(level, loss)
+            outward, along, axial = _of_teeth(level, loss, borne - loss.preload, pull)
+            per = load if load > 0.0 else inf
+            found[name] = RatedBearing(
+                loss.dynamic_load_rating,
+                abs(first - second),
+                (outward / per, along / per, axial / per),
+                pull / output**2,
+                loss.preload,
+                loss.life_exponent or BALL,
+                level.planets if _in_planets(level, loss) else 1,
+            )
+    return found
+
+
+def _in_planets(level: Any, loss: Loss) -> bool:
+    """True for a bearing of a planet in its carrier."""
+    return not {*loss.between}.isdisjoint(level.planet_bodies)
+
+
+def _pull(level: Any, loss: Loss) -> float:
+    """Centrifugal force on a bearing at the operating point [N]."""
+    if not _in_planets(level, loss):
+        return 0.0
+    (carrier,) = {*loss.between} - {*level.design.planets}
+    speed = float(level.design.rates[carrier]) * float(level.operation.speed)
+    return float(level.design.pull) * speed**2
+
+
+def _of_teeth(level: Any, loss: Loss, borne: float, pull: float) -> Vector:
+    """Force of the teeth on a bearing at the operating point: outwards, along its circle, along its axis [N].
+
+    Args:
+        level: drive or stage.
+        loss: the place.
+        borne: all that it bears but its preload, of several planets the mean.
+        pull: centrifugal force.
+
+    On planets it has the direction that it has without friction, and the size that makes up what is borne.
+    """
+    if not _in_planets(level, loss):
+        return 0.0, borne, 0.0
+    along = _on_planet(level)
+    size = float(along @ along)
+    if size == 0.0:
+        return 0.0, 0.0, 0.0
+    inwards = -float(along[0]) * pull
+    part = (inwards + sqrt(max(inwards**2 + size * (borne**2 - pull**2), 0.0))) / size
+    from pitchpoint.analyses.strength import mesh_load_of  # few cases ask for it
+
+    first, second, third = (mesh_load_of(level) * part * along).tolist()
+    return first, second, third
+
+
+def _on_planet(built: BuiltTrain) -> Float[np.ndarray, " 3"]:
+    """Force on a planet by all its meshes without friction, for an equal share: see `_of_teeth` [N]."""
+    train, load = built.design, built.case.operation.load
+    links = [one.link for one in train.meshes]
+    ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
+    shares = train_torques(links, ends, load, [1.0] * len(links)).shares
+    force = np.zeros(3)
+    for link, share, copies in zip(links, shares, built.copies, strict=True):
+        if link.carrier != HOUSING:
+            (planet,) = {*link.bodies} & {*train.planets}
+            torque = share[planet] / copies
+            force += _of_mesh(link.mesh, link.bodies.index(planet), torque)
+    return force
+
+
+def _of_mesh(mesh: Any, planet: int, torque: float) -> Float[np.ndarray, " 3"]:
+    """Force on a planet by one mesh that puts this torque on it: see `_of_teeth` [N].
+
+    The sun touches it inwards of its axis and pushes it outwards, a ring the other way round.
+    """
+    teeth, distance = np.asarray(mesh.teeth, float), abs(float(mesh.centre_distance))
+    radius = distance * abs(float(teeth[planet] / teeth.sum()))
+    side = 1.0 if bool(mesh.internal) else -1.0
+    cosine = abs(float(np.sum(mesh.base_radii))) / distance
+    along = torque / (side * radius)
+    axial = 2.0 * torque * sin(float(mesh.helix_angle))
+    return np.array(
+        [
+            -side * abs(along) * tan(acos(cosine)),
+            along,
+            axial / (abs(float(teeth[planet])) * float(mesh.module)),
+        ]
+    )
