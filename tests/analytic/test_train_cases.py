@@ -1,5 +1,6 @@
 """Case files of planetary sets and other trains: what they compute, what they say of a wrong number."""
 
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.drive.thrusts import axial_loads
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.duty_cycle.history import load_steps
+from pitchpoint.efficiency import train_summary
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case
 
@@ -109,6 +111,31 @@ def test_power_that_rolls_through_the_meshes():
     assert found["stage_latent_power"] == pytest.approx(expected, rel=1e-9)
     assert found["latent_power"] == pytest.approx(sum(expected), rel=1e-9)
     assert found["latent_power"] > 50.0 * power
+
+
+def test_other_flows_planets_and_teeth_take_the_programs_that_are_there():
+    """All six flows of a set are one program, and so are 3K sets whose planets come round in like times."""
+
+    def program_count(tree):
+        figures(tree)
+        return len(train_summary._figures.ready)
+
+    there = program_count(PLANETARY)
+    for turned, loaded, held in permutations(("sun", "carrier", "ring")):
+        roles = {"input": turned, "output": loaded, "held": held}
+        assert program_count({**PLANETARY, "gears": SET | roles}) == there
+    assert (
+        program_count({**PLANETARY, "gears": SET | {"teeth": [25, 29, 83], "planets": 4}}) == there
+    )
+    there = program_count(THREE_K)
+    held = {"train": {**THREE_K["train"], "output": "ring", "held": "output ring"}}
+    assert program_count(THREE_K | held) == there
+    other = [[18, 38], [38, -94], [36, -92]]
+    stages = [
+        one | {"gears": gears(teeth)} for one, teeth in zip(THREE_K["stages"], other, strict=True)
+    ]
+    train = THREE_K["train"] | {"planets": 2}
+    assert program_count(THREE_K | {"stages": stages, "train": train}) == there
 
 
 def test_planets_are_pulled_outwards_by_the_mass_of_their_gears():

@@ -620,7 +620,7 @@ class BuiltTrain(BuiltDrive):
     def periods_per_turn(self, end: End) -> float:
         """Mesh periods in a turn of the input or of the output."""
         turns = 1.0 if end == "driver" else self.output_rate
-        return 2.0 * pi * self.design.meshes[0].periods / (float(self.design.period) * turns)
+        return 2.0 * pi * float(self.design.meshes[0].periods) / (float(self.design.period) * turns)
 
     def on_shafts(self, first: int, _: int) -> dict[str, int]:
         """Shaft of a drive for each of its ends, see `Built.on_shafts`."""

@@ -7,7 +7,7 @@ from math import gcd, lcm, pi
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, demand_double, jnp
 from pitchpoint.brief import brief
@@ -20,7 +20,7 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.nominal_motion import nominal_period, phase_sense
 from pitchpoint.gears.period import TOGETHER
 
-__all__ = ["Train", "TrainMesh", "gear_train", "presses_other_flanks"]
+__all__ = ["Roles", "Train", "TrainMesh", "gear_train", "presses_other_flanks"]
 
 Copies = Float[Array, "copy node"]
 
@@ -40,17 +40,19 @@ class TrainMesh(eqx.Module):
         count: of the copies, which stand at the first places.
         carried: torque or force on the driven coordinate of the mesh for a unit load of the train, without
             friction, on all copies together.
+        periods: of the mesh in one period of the train.
         bodies, carrier, planet_gear: see `Link`; static.
-        periods: of the mesh in one period of the train; static.
+        most_periods: places for these; static.
     """
 
     design: Design
     phases: Float[Array, " copy"]
     count: Float[Array, ""]
     carried: Float[Array, ""]
+    periods: Float[Array, ""]
     bodies: tuple[str, ...] = eqx.field(static=True)
     carrier: str = eqx.field(static=True)
-    periods: int = eqx.field(static=True)
+    most_periods: int = eqx.field(static=True)
     planet_gear: int = eqx.field(static=True)
 
     @property
@@ -83,13 +85,29 @@ class TrainMesh(eqx.Module):
         return {**each, self.carrier: borne + each[self.carrier] if self.carrier in each else borne}
 
 
+class Roles(eqx.Module):
+    """What bodies of a train do, by their numbers: programs serve whatever is turned, loaded or held.
+
+    Attributes:
+        turned, loaded: among `Train.bodies`.
+        balanced: those in equilibrium, among the same, the loaded one first.
+        rows: the same among `Train.rows`, each planet by itself.
+    """
+
+    turned: Int[Array, ""]
+    loaded: Int[Array, ""]
+    balanced: Int[Array, " body"]
+    rows: Int[Array, " row"]
+
+
 class Train(eqx.Module):
     """Meshes that turn together, between bodies of which each may be in several.
 
     Attributes:
         meshes: in any order.
         rates: of the bodies for a unit speed of the one that is turned, from the housing.
-        turned: body that drives; static.
+        roles: of the bodies that follow, by number.
+        turned: body that drives; static, empty within programs as `loaded` and `held` are.
         loaded: body that takes the power; static.
         drag: places beside the teeth where two bodies brake each other, at every planet where one of them is
             one; their `between` counts these two. A bearing bears what the teeth put on its body: that of a
@@ -113,6 +131,7 @@ class Train(eqx.Module):
     angles: Float[Array, " planet"]
     turns: Float[Array, ""]
     onwards: Float[Array, ""]
+    roles: Roles
     turned: str = eqx.field(static=True)
     loaded: str = eqx.field(static=True)
     held: tuple[str, ...] = eqx.field(static=True)
@@ -142,6 +161,15 @@ class Train(eqx.Module):
         """Turn of the driving body in which all meshes come together again [rad]."""
         first = self.meshes[0]
         return first.periods * nominal_period(first.design.mesh, self.motion(first))
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """All bodies but the housing."""
+        return tuple(sorted({*self.rates} - {HOUSING}))
+
+    def without_names(self) -> "Train":
+        """The same train without the names of what is turned, loaded and held, which programs do not ask."""
+        return replace(self, turned="", loaded="", held=())
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -175,13 +203,8 @@ class Train(eqx.Module):
         )
 
     def rows(self) -> list[tuple[str, int]]:
-        """Bodies in equilibrium, planets by the number of their place."""
-        counts = {body: one.places for one in self.meshes for body in one.bodies}
-        return [
-            (body, number)
-            for body in (self.loaded, *self.free)
-            for number in range(counts[body] if body in self.planets else 1)
-        ]
+        """All bodies, planets by the number of their place."""
+        return _rows(self.bodies, self.meshes, self.planets)
 
 
 def gear_train(
@@ -221,12 +244,14 @@ def gear_train(
     unit = replace(ends, turned={turned: float(np.sign(rate))})
     ideal = train_torques(links, unit, 1.0, [1.0] * len(links))
     meshes = []
+    together = _periods(links, ideal.rates)
+    room = _with_room(max(together))
     for link, design, starts, share, periods in zip(
         links,
         designs,
         phases or [np.zeros(1)] * len(links),
         ideal.shares,
-        _periods(links, ideal.rates),
+        together,
         strict=True,
     ):
         torque = np.array([share[body] for body in link.bodies])
@@ -237,13 +262,15 @@ def gear_train(
                 array(_padded(starts, starts[0])),
                 array(float(len(starts))),
                 array(abs(float(design.loaded @ torque))),
+                array(float(periods)),
                 link.bodies,
                 link.carrier,
-                periods,
+                room,
                 link.planet_gear,
             )
         )
     around = np.zeros(1) if angles is None else angles
+    roles = _roles(ideal.rates, ends, turned, meshes, planets)
     exchange = _exchange(meshes, ideal.rates, around if drag else None)
     turns, onwards = exchange or (1, 0)
     return Train(
@@ -253,6 +280,7 @@ def gear_train(
         array(_padded(around, 0.0)),
         array(float(turns)),
         array(float(onwards)),
+        roles,
         turned,
         ends.loaded,
         tuple(ends.held),
@@ -261,6 +289,51 @@ def gear_train(
         exchange is not None,
         array(pull),
     )
+
+
+def _rows(
+    bodies: Sequence[str], meshes: Sequence[TrainMesh], planets: Sequence[str]
+) -> list[tuple[str, int]]:
+    """See `Train.rows`."""
+    counts = {body: one.places for one in meshes for body in one.bodies}
+    return [
+        (body, number)
+        for body in bodies
+        for number in range(counts[body] if body in planets else 1)
+    ]
+
+
+def _roles(
+    rates: Mapping[str, float],
+    ends: Ends,
+    turned: str,
+    meshes: Sequence[TrainMesh],
+    planets: Sequence[str],
+) -> Roles:
+    """What bodies do by their numbers."""
+    bodies = sorted({*rates} - {HOUSING})
+    free = [body for body in bodies if body not in {turned, ends.loaded, *ends.held}]
+    balanced = [ends.loaded, *free]
+    rows = _rows(bodies, meshes, planets)
+    return Roles(
+        jnp.asarray(bodies.index(turned)),
+        jnp.asarray(bodies.index(ends.loaded)),
+        jnp.asarray([bodies.index(body) for body in balanced]),
+        jnp.asarray([k for body in balanced for k, row in enumerate(rows) if row[0] == body]),
+    )
+
+
+def _with_room(periods: int) -> int:
+    """Places for periods of each mesh: few numbers, which trains of other teeth have in common.
+
+    From 4 on at most a quarter of them stays empty.
+
+    Example:
+        >>> [_with_room(count) for count in (1, 2, 7, 9, 10, 11, 17, 18, 35)]
+        [1, 2, 7, 10, 10, 12, 20, 20, 40]
+    """
+    step = 1 << max(periods.bit_length() - 3, 0)
+    return -(-periods // step) * step
 
 
 def _padded(values: Float[np.ndarray, " copy"], rest: float) -> Float[np.ndarray, " place"]:
@@ -291,7 +364,7 @@ def _exchange(
         return all(
             _together(
                 np.broadcast_to(np.asarray(one.phases)[: one.copies], (count,)),
-                float(one.phases[0]) + float(_onward(one, rates)) * one.periods * ahead,
+                float(one.phases[0]) + float(_onward(one, rates) * one.periods) * ahead,
             )
             for one in meshes
         )

@@ -222,13 +222,15 @@ def train_cycle(
     states = tuple(one.state(force) for one, force in zip(every, forces, strict=True))
     places = _places(train, every, forces, operation)
     torques = _torques(train, every, forces, places)
-    driving = torques[train.turned] * jnp.sign(train.rates[train.turned])
-    power_out = operation.load * jnp.abs(train.rates[train.loaded]) * operation.speed
+    rates, roles = jnp.stack([train.rates[body] for body in train.bodies]), train.roles
+    on_bodies = jnp.stack([torques.get(body, 0.0 * weight) for body in train.bodies])
+    driving = on_bodies[roles.turned] * jnp.sign(rates[roles.turned])
+    power_out = operation.load * jnp.abs(rates[roles.loaded]) * operation.speed
     return TrainCycle(
         phase,
         weight,
         states,
-        torques,
+        {body: torque for body, torque in torques.items() if body not in train.free},
         sum((place.lost for place in places), jnp.zeros_like(weight)),
         tuple(place.pressed for place in places),
         driving,
@@ -247,7 +249,8 @@ def _events(train: Train, models: Sequence[Models]) -> Iterator[Float[Array, " e
     """
     for one, laws in zip(train.meshes, models, strict=True):
         events = events_of(one.design.mesh, laws.sharing)
-        turns = jnp.arange(one.periods)[:, None, None]
+        turns = jnp.arange(one.most_periods)[:, None, None]
+        turns = jnp.where(turns < one.periods, turns, 0)  # again those of the first one
         phases = one.phases[:1] if train.alike else one.phases
         ahead = (events[:, None] - phases) * train.onward(one)
         yield jnp.mod(train.turns * (ahead + turns) / one.periods, 1.0).ravel()
@@ -432,8 +435,9 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
 
 def _asked(train: Train, operation: Operation) -> Float[Array, " row"]:
     """Torques from outside on the bodies in equilibrium."""
-    load = -jnp.sign(train.rates[train.loaded]) * operation.load
-    return jnp.stack([load * (body == train.loaded) for body, _ in train.rows()])
+    rates, roles = jnp.stack([train.rates[body] for body in train.bodies]), train.roles
+    load = -jnp.sign(rates[roles.loaded]) * operation.load
+    return jnp.zeros(roles.rows.shape).at[0].set(load)
 
 
 def _levers(train: Train, every: Sequence[_Meshing]) -> Float[Array, "2 node body mesh"]:
@@ -442,8 +446,9 @@ def _levers(train: Train, every: Sequence[_Meshing]) -> Float[Array, "2 node bod
     def on_bodies(one: _Meshing, coefficient: float) -> Float[Array, "body node"]:
         arms = one.of_force(jnp.where(one.carrying, coefficient, 0.0), one.nominal)
         nothing = jnp.zeros(one.nominal.shape)
-        each = (arms.get(body, nothing) for body in (train.loaded, *train.free))
-        return jnp.stack([jnp.sum(arm, axis=0) / one.mesh.count for arm in each])
+        each = (arms.get(body, nothing) for body in train.bodies)
+        on_each = jnp.stack([jnp.sum(arm, axis=0) / one.mesh.count for arm in each])
+        return on_each[train.roles.balanced]
 
     normal, whole = (
         jnp.stack([on_bodies(one, coefficient) for one in every], axis=-1)
@@ -464,7 +469,7 @@ def _arms(train: Train, every: Sequence[Mapping[str, Copies]]) -> Arms:
                 row = rows.get((body, copy if body in train.planets else 0))
                 if row is not None:
                     column[row] = column[row] + values[copy]
-            columns.append(jnp.stack(column, axis=-1))
+            columns.append(jnp.stack(column, axis=-1)[:, train.roles.rows])
     return jnp.stack(columns, axis=-1)
 
 
@@ -502,7 +507,7 @@ def _torques(
     forces: Sequence[Copies],
     places: "Sequence[_Place]",
 ) -> dict[str, Nodes]:
-    """Torques from outside on each body that is not free."""
+    """Torques from outside on each body; those on free ones are rounding."""
     found: dict[str, Nodes] = {}
     for place in places:
         for body, torque in place.torques.items():
@@ -513,7 +518,7 @@ def _torques(
         for body, arm in one.of_force(coefficient, force).items():
             taken = jnp.sum(arm * force + rolling[body], axis=0)
             found[body] = found.get(body, jnp.zeros_like(taken)) + taken
-    return {body: torque for body, torque in found.items() if body not in train.free}
+    return found
 
 
 class _Place(NamedTuple):
@@ -621,7 +626,7 @@ def _on_rows(train: Train, places: Sequence[_Place]) -> Float[Array, "node row"]
                 if (body, number) in rows:
                     taken = torque[number] if body in train.planets else jnp.sum(torque, axis=0)
                     rows[body, number] += taken
-    return jnp.stack([*rows.values()], axis=-1)
+    return jnp.stack([*rows.values()], axis=-1)[:, train.roles.rows]
 
 
 def _leave_open(every: Sequence[_Meshing]) -> None:

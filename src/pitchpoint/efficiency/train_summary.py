@@ -51,6 +51,7 @@ def train_figures(
     From the states of `train_cycle` over the period of the train.
     """
     laws = tuple(models)
+    points = [(train.without_names(), operation) for train, operation in points]
     size = min(CHUNK, int(MOST_BYTES // train_memory(points[0][0], laws)))
     if size == 0:
         raise InputError(
@@ -131,7 +132,7 @@ def train_memory(train: Train, models: Sequence[Models]) -> float:
     for one, laws in zip(train.meshes, models, strict=True):
         contacts, phases = eqx.filter_eval_shape(_sizes, one.design.mesh, laws.sharing)
         own = 1 if train.alike else one.places
-        nodes += one.periods * own * NODES_OF_TRAINS * phases.size
+        nodes += one.most_periods * own * NODES_OF_TRAINS * phases.size
         lanes += one.places * contacts.size
     return nodes * lanes * OF_A_LANE
 
