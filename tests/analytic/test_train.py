@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jnp
-from pitchpoint.drive.assembly import check_neighbours, equal_angles, planet_phases
+from pitchpoint.drive.assembly import (
+    check_neighbours,
+    equal_angles,
+    nearest_places,
+    places_around,
+    planet_phases,
+)
 from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
@@ -269,8 +275,27 @@ def test_planets_that_do_not_fit_in_are_refused_with_what_they_miss():
     ):
         planet_phases(links, ("planet",), equal_angles(5))
     # Steps of 2 pi over the teeth of sun and ring together fit wherever they end.
-    steps = 2.0 * np.pi / 108.0
-    planet_phases(links, ("planet",), steps * np.array([0.0, 22.0, 43.0, 65.0, 86.0]))
+    steps = 2.0 * np.pi / 108.0 * np.array([0.0, 22.0, 43.0, 65.0, 86.0])
+    planet_phases(links, ("planet",), steps)
+    places = places_around([(30, 24), (30, -84)])
+    assert nearest_places(equal_angles(5), places) == pytest.approx(steps)
+
+
+@pytest.mark.parametrize(
+    ("pairs", "places"), [([(18, 36), (24, -78)], 270), ([(18, 36), (36, -90), (34, -88)], 54)]
+)
+def test_planets_fit_in_at_as_many_places_as_are_counted(pairs, places):
+    """A stepped and a 3K set: phases are found at each of their places, and at none between them."""
+    bodies = (("sun", "planet"), ("planet", "ring"), ("planet", "output ring"))
+    links = [
+        Link(design(teeth).mesh, names, "carrier")
+        for teeth, names in zip(pairs, bodies, strict=False)
+    ]
+    of_planets = [pairs[0][::-1], *pairs[1:]]
+    assert places_around(of_planets) == places
+    planet_phases(links, ("planet",), 2.0 * np.pi / places * np.arange(0.0, places, 7.0))
+    with pytest.raises(InputError, match="number 2 misses"):
+        planet_phases(links, ("planet",), np.array([0.0, np.pi / places]))
 
 
 def test_planets_that_run_into_each_other_are_refused():

@@ -618,7 +618,12 @@ def test_stiffness_at_the_output_is_that_of_the_springs_of_all_planets():
     ("settings", "words"),
     [
         ({"gears.planets": 5}, r"gears.planets: .* misses the teeth of the ring by 0.4 of a pitch"),
-        ({"gears.planets": 5}, r"of 1 to 8 planets fit 1, 2, 3, 4$"),
+        ({"gears.planets": 5}, r"of 1 to 8 planets fit 1, 2, 3, 4; it runs with gears.teeth = \["),
+        (
+            {"gears.planet_angles": ["0 deg", "9 deg"]},
+            r"planet_angles: 2 were given for 3 planets; ",
+        ),
+        ({"gears.planet_angles": ["0 deg", "9 deg", "9 N"]}, r"planet_angles.*\"9 N\" is a force"),
         (
             {"gears.planets": 6},
             r"run into each other: 27 mm apart, and their tip circles measure 32",
@@ -648,6 +653,56 @@ def test_stiffness_at_the_output_is_that_of_the_springs_of_all_planets():
 def test_a_wrong_number_gets_a_sentence_in_the_words_of_the_set(settings, words):
     with pytest.raises(InputError, match=words):
         load_case(PLANETARY, settings=settings)
+
+
+STEPPED = SET | {"teeth": [18, 36], "second": {"teeth": [24, 78], "face_width": "10 mm"}}
+THREE_K_SET = SET | {"teeth": [18, 36, 90], "second": {"teeth": [34, 88], "face_width": "10 mm"}}
+LARGE_SUN = {
+    "teeth": [40, 30, 100],
+    "second": THREE_K_SET["second"] | {"teeth": [28, 98]},
+}
+APART = ["0 deg", "110 deg", "235 deg"]
+
+
+TEETH, BOTH = ("gears.teeth",), ("gears.teeth", "gears.second.teeth")
+OF_MESHES = tuple(f"stages.{number}.gears.teeth" for number in (1, 2, 3))
+ANGLES = ("gears.planet_angles",)
+
+
+@pytest.mark.parametrize(
+    ("tree", "keys", "ratio"),
+    [
+        ({"gears": SET | {"planets": 5}}, [TEETH], 4.5),
+        ({"gears": SET | {"teeth": [25, 30, 84]}}, [TEETH, ANGLES], 4.36),
+        ({"gears": SET | {"planet_angles": APART}}, [ANGLES], 4.5),
+        ({"gears": STEPPED | {"planets": 4}}, [BOTH], 7.5),
+        ({"gears": THREE_K_SET | {"planets": 4}}, [BOTH], 176.0),
+        ({"gears": THREE_K_SET | LARGE_SUN}, [BOTH, ANGLES], 73.5),
+        (THREE_K | {"train": THREE_K["train"] | {"planets": 4}}, [OF_MESHES], 176.0),
+    ],
+)
+def test_advice_for_planets_that_do_not_fit_in_runs(tree, keys, ratio):
+    """The nearest numbers of teeth and unequal angles, each with about the ratio that was asked for."""
+    with pytest.raises(InputError, match=r"planet(s|_angles): .*; it runs with ") as caught:
+        load_case(TABLES | tree)
+    cures = caught.value.cures
+    assert [tuple(cure) for cure in cures] == keys
+    for cure in cures:
+        built = load_case(TABLES | tree, settings=cure)
+        assert float(built.design.ratio) == pytest.approx(ratio, rel=0.05)
+        assert all(key in str(caught.value) for key in cure)
+        sideways = any("press sun, rings and carrier sideways" in told for told in built.told)
+        assert sideways == ([*cure] == [*ANGLES])
+
+
+def test_advice_for_planets_of_a_stage_has_the_keys_of_the_stage():
+    stages = [{"gears": gears([23, 61])}, {"gears": SET | {"teeth": [25, 30, 84]}}]
+    with pytest.raises(
+        InputError, match=r"stages.2.gears.planets: the planets do not fit"
+    ) as caught:
+        load_case({"stages": stages, **TABLES})
+    keys = [[*cure] for cure in caught.value.cures]
+    assert keys == [["stages.2.gears.teeth"], ["stages.2.gears.planet_angles"]]
 
 
 @pytest.mark.whole

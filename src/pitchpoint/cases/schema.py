@@ -43,6 +43,7 @@ from pitchpoint.gears.planetary import (
     PLANETARY,
     PLANETS,
     PinErrors,
+    PlanetAngles,
     PlanetaryGears,
 )
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, STIFFNESS, Deviation, GearsTable
@@ -1730,7 +1731,7 @@ class TrainTable(Table):
     """Which bodies of a train of meshes are turned, loaded and held, and where its planets are.
 
     Every stage then names the `bodies` that it joins. Those that are on the planets have as many copies as
-    there are planets, at equal angles on the carrier.
+    there are planets, at equal angles on the carrier unless `planet_angles` has others.
     """
 
     input: Text
@@ -1749,6 +1750,8 @@ class TrainTable(Table):
     """Body that the planets are."""
     planets: Annotated[float, PLANETS] = 3.0
     """Number of planets."""
+    planet_angles: PlanetAngles = ()
+    """Angle at which each planet stands on the carrier; equal ones all around unless given."""
     floating: Text = ""
     """Sun, ring or carrier that is free to move sideways, so that planets share alike; none unless given."""
     pin_errors: PinErrors = ()
@@ -1935,11 +1938,13 @@ def _check_pins(train: TrainTable, meshes: Sequence[tuple[str, ...]], wrong: Com
     if train.floating and train.floating not in central:
         told = f"{shown(train.floating)} does not float; {', '.join(central)} may"
         wrong.add(InputError(told, key="train.floating"))
-    given, count = len(train.pin_errors), round(train.planets)
-    if given not in (0, count):
-        told = f"{given} were given for {count} planets; give the error of each"
-        wrong.add(InputError(told, key="train.pin_errors"))
-    if not (given or train.by_tolerance):
+    count = round(train.planets)
+    for key, what in (("pin_errors", "error"), ("planet_angles", "angle")):
+        given = len(getattr(train, key))
+        if given not in (0, count):
+            told = f"{given} were given for {count} planets; give the {what} of each"
+            wrong.add(InputError(told, key=f"train.{key}"))
+    if not (train.pin_errors or train.by_tolerance):
         for key in ("floating", "pin_stiffness"):
             if getattr(train, key):
                 told = (

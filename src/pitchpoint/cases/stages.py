@@ -1,5 +1,6 @@
 """From a validated case of several stages to one built case a stage, and the drive that they make."""
 
+import copy
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -139,7 +140,15 @@ def _alone(case: DriveCase, document: Document) -> list[_Stage]:
     return found
 
 
-def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
+def _built(
+    case: DriveCase, document: Document, own: ChosenLaws, *, advised: bool = True
+) -> BuiltDrive:
+    """A drive of several meshes.
+
+    Args:
+        case, document, own: see `ready`.
+        advised: True if it is told of planets that do not fit in which ones do.
+    """
     alone = _alone(case, document)
     _check_laws(alone)
     _check_rated(case)
@@ -159,7 +168,12 @@ def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
         warmed = partial(ready, loaded, one.document, own)
         built += filter(None, [wrong.tried(_in_stage, document, one.number, warmed)])
     wrong.demand_none()
-    made = _together(case, built, [one.document for one in alone])
+    try:
+        made = _together(case, built, [one.document for one in alone])
+    except InputError as error:
+        if advised and error.key in OF_PLANETS:
+            raise _with_fitting(error, case, document, built) from None
+        raise
     _check_map(made)
     if case.duty is not None:
         from pitchpoint.cases.duty import duty_inputs
@@ -167,6 +181,42 @@ def _built(case: DriveCase, document: Document, own: ChosenLaws) -> BuiltDrive:
         duty_inputs(case.duty, case.operation.temperature, travels="loaded" in made.travels)
     bearing = without_bearing(made.places, lacks_bearing=made.lacks_bearing)
     return replace(made, told=(*made.told, *bearing))
+
+
+OF_PLANETS = ("train.planets", "train.planet_angles")
+"""Keys of planets that do not fit in."""
+
+
+def _with_fitting(
+    error: InputError, case: DriveCase, document: Document, built: Sequence[Built]
+) -> InputError:
+    """An error of planets that do not fit in, with teeth and angles that do."""
+    from pitchpoint.cases.planet_fit import with_fitting
+    from pitchpoint.cases.trains import rates_of
+
+    def attempt(change: Tree) -> float:
+        changed = with_meshes(_changed(document, change))
+        other = validate(changed)
+        assert isinstance(other, DriveCase)
+        return float(_built(other, changed, (), advised=False).trains[0].design.ratio)
+
+    train = case.train
+    assert train is not None
+    rates = rates_of(case, [one.design.mesh for one in built])
+    return with_fitting(error, case, rates[train.input] / rates[train.output], attempt)
+
+
+def _changed(document: Document, change: Tree) -> Document:
+    """A document with other values; a planetary set has its meshes to be made anew."""
+    of_set = (STAGES, "train") if is_planetary(document.tree) else ()
+    tree = copy.deepcopy({key: one for key, one in document.tree.items() if key not in of_set})
+    for key, value in change.items():
+        *above, last = key.split(".")
+        table = tree
+        for name in above:
+            table = table[name]
+        table[last] = value
+    return replace(document, tree=tree)
 
 
 def _of_train(alone: Sequence[_Stage], document: Document) -> tuple[list[Case], list[Mesh]]:

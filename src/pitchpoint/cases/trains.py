@@ -20,8 +20,14 @@ from pitchpoint.cases.schema import (
 )
 from pitchpoint.cases.solids import BY_VALUE
 from pitchpoint.cases.strength import MESH_LOAD, of_planets
-from pitchpoint.doubts import GUESSED, Doubt
-from pitchpoint.drive.assembly import check_neighbours, equal_angles, planet_phases
+from pitchpoint.doubts import GUESSED, REMARKED, Doubt
+from pitchpoint.drive.assembly import (
+    check_neighbours,
+    equal_angles,
+    nearest_places,
+    places_around,
+    planet_phases,
+)
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link, body_rates
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.train import Train, gear_train, presses_other_flanks
@@ -174,7 +180,9 @@ def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
     designs = [one.design for one in built]
     links = _links(case, train, [one.mesh for one in designs])
     _check_planets(case, built)
-    phases = iter(_fitted([link for link in links if link.carrier != HOUSING], train))
+    on_planets = [link for link in links if link.carrier != HOUSING]
+    angles = _angles(on_planets, train)
+    phases = iter(_fitted(on_planets, train, angles))
     each = [np.zeros(1) if link.carrier == HOUSING else next(phases) for link in links]
     braked = [loss.between for loss in case.losses.values()]
     try:
@@ -184,7 +192,7 @@ def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
             _ends(case, train),
             planets=(train.planet,),
             phases=each,
-            angles=equal_angles(round(train.planets)),
+            angles=angles,
             drag=[
                 replace(drags({name: loss}, loss.between, ())[0], seat=None)
                 for name, loss in case.losses.items()
@@ -338,33 +346,55 @@ _MANY = Doubt(
 MOST_FITTED = 8
 """Planets up to which it is told how many fit in."""
 
+PLAY = 0.01
+"""Part of a step between places that fit by which an angle in a file may be off, as rounded ones are."""
 
-def _fitted(links: Sequence[Link], train: TrainTable) -> list[np.ndarray]:
-    """Phases of the meshes of planets that stand at equal angles.
+
+def _angles(links: Sequence[Link], train: TrainTable) -> np.ndarray:
+    """Angles of the planets [rad]: as the case has them but for rounding, or equal ones."""
+    if not train.planet_angles:
+        return equal_angles(round(train.planets))
+    given = np.array(train.planet_angles)
+    places = places_around([_teeth_of(link, train) for link in links])
+    nearest = nearest_places(given, places)
+    rounded = np.abs(nearest - given) * places < 2.0 * np.pi * PLAY
+    return np.where(rounded, nearest, given)
+
+
+def _teeth_of(link: Link, train: TrainTable) -> tuple[int, int]:
+    """Teeth of a planet and of its mate, negative for a ring."""
+    mesh: Any = link.mesh
+    planet = link.bodies.index(train.planet)
+    return round(float(mesh.teeth[planet])), round(float(mesh.teeth[1 - planet]))
+
+
+def _fitted(links: Sequence[Link], train: TrainTable, angles: np.ndarray) -> list[np.ndarray]:
+    """Phases of the meshes of planets that stand at these angles.
 
     Raises:
-        InputError: they do not fit in; with the numbers of planets that do.
+        InputError: they do not fit in; of equal angles with the numbers of planets that do.
     """
 
-    def phases(count: int) -> list[np.ndarray]:
-        angles = equal_angles(count)
+    def phases(angles: np.ndarray) -> list[np.ndarray]:
         found = planet_phases(links, (train.planet,), angles)
         check_neighbours(links, (train.planet,), angles)
         return found
 
     try:
-        return phases(round(train.planets))
+        return phases(angles)
     except InputError as error:
-        fitting = [count for count in range(1, MOST_FITTED + 1) if _fits(phases, count)]
-        counts = (
-            f"; of 1 to {MOST_FITTED} planets fit {', '.join(map(str, fitting))}" if fitting else ""
-        )
-        raise InputError(f"{error.message}{counts}", key="train.planets") from None
+        if train.planet_angles:
+            raise error.at(key="train.planet_angles") from None
+        every = range(1, MOST_FITTED + 1)
+        fitting = [count for count in every if _fits(phases, equal_angles(count))]
+        counts = f"of 1 to {MOST_FITTED} planets fit {', '.join(map(str, fitting))}"
+        told = error.followed_by(counts if fitting else "")
+        raise told.at(key="train.planets") from None
 
 
-def _fits(phases: Callable[[int], list[np.ndarray]], count: int) -> bool:
+def _fits(phases: Callable[[np.ndarray], list[np.ndarray]], angles: np.ndarray) -> bool:
     try:
-        phases(count)
+        phases(angles)
     except InputError:
         return False
     return True
@@ -377,6 +407,27 @@ def _worn_twice(case: DriveCase, built: Sequence[Built]) -> bool:
         for one, link, member in _of_planets(case, built)
     )
     return any(count > 1 for count in pressed.values())
+
+
+SIDEWAYS = 1e-6
+"""Part of the forces of planets that does not cancel below which it is that of rounding."""
+
+
+def _sideways(train: TrainTable) -> list[Doubt]:
+    """Planets at angles at which their forces do not cancel around sun, ring and carrier."""
+    turns = np.exp(1j * np.array(train.planet_angles or equal_angles(round(train.planets))))
+    part = float(np.abs(turns.mean()))
+    if part < SIDEWAYS or turns.size == 1:
+        return []
+    return [
+        Doubt(
+            f"At these angles {part:.2g} of the forces of the planets do not cancel: they press sun, rings "
+            "and carrier sideways. A load factor K_γ of the standard is for equal angles.",
+            moves=REMARKED,
+            about=("contact_stress", "root_stress"),
+            brief=f"Planets at unequal angles: {part:.2g} of their forces press sideways.",
+        )
+    ]
 
 
 def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
@@ -397,6 +448,7 @@ def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
     return (
         *[_WORN] * worn,
         *[_WARMED] * warmed,
+        *_sideways(train),
         *[_UNBRAKED] * ({train.planet, train.carrier} not in borne),
         *[_MANY] * (train.planets > max(MESH_LOAD) and alone and not out_of_place),
     )

@@ -572,6 +572,11 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             "face widths stand in one list, of sun, planet and ring",
         ),
         Wish(
+            ("planet_angle", "planet_positions", "planet_position", "angles", "spacing"),
+            ("planet_angles",),
+            "planet_angles is a list with the angle of each planet on the carrier",
+        ),
+        Wish(
             ("pin_error", "pin_position_error", "pin_position_errors", "planet_position_error"),
             ("pin_errors",),
             "pin_errors is a list with one for each planet, and pin_tolerance the circle in which each lies",

@@ -1,7 +1,8 @@
 """How planets stand between their mates: phases of their meshes, and whether they fit in."""
 
 from collections.abc import Sequence
-from math import pi
+from itertools import combinations
+from math import floor, gcd, pi
 
 import numpy as np
 from jaxtyping import Float
@@ -11,7 +12,7 @@ from pitchpoint.drive.kinematics import Link
 from pitchpoint.errors import InputError
 from pitchpoint.gears.pairs import planet_gears
 
-__all__ = ["check_neighbours", "equal_angles", "planet_phases"]
+__all__ = ["check_neighbours", "equal_angles", "nearest_places", "places_around", "planet_phases"]
 
 FITS = 1e-6
 """Part of a pitch by which a planet may miss a tooth space: that of rounding, not of play."""
@@ -26,6 +27,42 @@ Teeth = tuple[float, float]
 def equal_angles(count: int) -> Float[np.ndarray, " copy"]:
     """Angles of planets that stand all around, the first one at zero [rad]."""
     return 2.0 * pi * np.arange(count) / count
+
+
+def places_around(meshes: Sequence[tuple[int, int]]) -> int:
+    """Places around the carrier, in equal steps, at which a planet fits in; 0 where it fits anywhere.
+
+    Args:
+        meshes: teeth of the gear of the planets, and of its central mate, negative for a ring.
+
+    Source: a planet that goes around by the part u of a turn, and turns so that it fits in one mesh, fits in
+    another one if u (z_p2 z_1 - z_p1 z_2) is a multiple of the common divisor of z_p1 and z_p2.
+
+    Example:
+        >>> places_around([(30, 24), (30, -84)])  # sun and ring
+        108
+        >>> places_around([(36, 18), (36, -90), (34, -88)])  # a 3K set, which 4 planets do not fit
+        54
+    """
+    steps = [
+        abs(second * mate - first * other) // gcd(first, second)
+        for (first, mate), (second, other) in combinations(meshes, 2)
+    ]
+    return gcd(*steps)
+
+
+def nearest_places(angles: Float[np.ndarray, " copy"], places: int) -> Float[np.ndarray, " copy"]:
+    """Angles at which planets fit in, nearest to others [rad].
+
+    Args:
+        angles: wanted ones [rad].
+        places: see `places_around`; where it is 0 all angles do.
+    """
+    if not places:
+        return angles
+    # Half a step goes up at every planet, so that opposite ones stay opposite where they can.
+    steps = [floor(angle * places / (2.0 * pi) + 0.5 + FITS) for angle in angles]
+    return np.array(steps) * (2.0 * pi / places)
 
 
 def check_neighbours(

@@ -50,6 +50,7 @@ __all__ = [
     "PLANETS",
     "OfThree",
     "PinErrors",
+    "PlanetAngles",
     "PlanetaryGears",
     "in_words_of_set",
 ]
@@ -91,6 +92,9 @@ class OfPins(Quantity):
 
 PIN_ERROR = OfPins("length", -1e-2, 1e-2, "um")
 PinErrors = Annotated[tuple[Annotated[float, PIN_ERROR], ...], Field(max_length=MOST_PLANETS)]
+
+PLANET_ANGLE = Quantity("angle", -2.0 * pi, 2.0 * pi, "deg")
+PlanetAngles = Annotated[tuple[Annotated[float, PLANET_ANGLE], ...], Field(max_length=MOST_PLANETS)]
 
 _LISTS = ("teeth", "profile_shift", "addendum", "dedendum", "fillet_radius", "tip_alteration")
 """Keys that hold a value for each of sun, planet and ring."""
@@ -278,10 +282,11 @@ class PlanetaryGears(Table):
     """A planetary gear set: a sun, planets on a carrier, and a ring around them, of one module.
 
     One of sun, carrier and ring is turned, one takes the load, one is held. All planets are alike and stand
-    at equal angles. Meshes of sun and planet, and of planet and ring, have the same centre distance. With
-    `second` gears on the planets, and `teeth` of sun and planet alone, it is a stepped set: its ring meshes
-    with the second gears. With `teeth` of a ring as well, second gears and their ring make a 3K set: sun and
-    both rings are turned, loaded and held, and the carrier bears the planets alone.
+    at equal angles unless `planet_angles` has others. Meshes of sun and planet, and of planet and ring, have
+    the same centre distance. With `second` gears on the planets, and `teeth` of sun and planet alone, it is a
+    stepped set: its ring meshes with the second gears. With `teeth` of a ring as well, second gears and their
+    ring make a 3K set: sun and both rings are turned, loaded and held, and the carrier bears the planets
+    alone.
     """
 
     # A table without its family is of a pair: schemas say so too.
@@ -302,6 +307,8 @@ class PlanetaryGears(Table):
     """Numbers of teeth of sun, planet and ring, all positive; of sun and planet alone for a stepped set."""
     planets: Annotated[float, PLANETS] = 3.0
     """Number of planets."""
+    planet_angles: PlanetAngles = ()
+    """Angle at which each planet stands on the carrier; equal ones all around unless given."""
     module: Annotated[float, MODULE]
     """Normal module m_n of all gears."""
     face_width: Annotated[TwoOrThree, OfThree(WIDTH, stepped=True)]
@@ -536,7 +543,9 @@ class PlanetaryGears(Table):
 
     def train(self) -> Tree:
         """Table [train]."""
-        pins = [SIValue(error) for error in self.pin_errors]
+        of_each = {
+            name: [*map(SIValue, getattr(self, name))] for name in ("planet_angles", "pin_errors")
+        }
         values = {name: getattr(self, name) for name in _OF_SHARING}
         return {
             "input": self.input,
@@ -544,7 +553,7 @@ class PlanetaryGears(Table):
             "held": self.held,
             "planets": self.planets,
             **({"floating": self.floating} if self.floating else {}),
-            **({"pin_errors": pins} if pins else {}),
+            **{name: listed for name, listed in of_each.items() if listed},
             **{name: SIValue(value) for name, value in values.items() if value is not None},
         }
 
