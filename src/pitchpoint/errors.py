@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, ClassVar, ParamSpec, Self, TypeVar
 
 __all__ = [
+    "RUNS_WITH",
     "CollectedInputError",
     "Complaints",
     "ConvergenceError",
@@ -18,6 +19,9 @@ __all__ = [
 
 LONGEST_PLACE = 240
 """Longest file name or key in a sentence [characters]."""
+
+RUNS_WITH = "; it runs with "
+"""What stands between a refusal and changes that mend it, see `InputError.cures`."""
 
 P = ParamSpec("P")
 T = TypeVar("T")

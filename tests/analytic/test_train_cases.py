@@ -695,6 +695,57 @@ def test_advice_for_planets_that_do_not_fit_in_runs(tree, keys, ratio):
         assert sideways == ([*cure] == [*ANGLES])
 
 
+ONE_PLANET = STEPPED | {"planets": 1, "teeth": [12, 18], "profile_shift": [0.3, -0.3]}
+PIN_IN_TEETH = {"gears": SET, "losses": {"pin": PIN | {"mean_diameter": "27.6 mm"}}}
+
+
+@pytest.mark.parametrize(
+    ("tree", "words", "keys"),
+    [
+        (
+            {"gears": SET | {"profile_shift": [0.3, 0.1, 0.0]}},
+            r"centre_distance: .* sum to -0.4 instead of 0.1; it runs with profile_shift = \[",
+            [("gears.profile_shift",)],  # another centre distance would not suit sun and planet
+        ),
+        (
+            {"gears": SET | {"profile_shift": [0, 0, 0.3]}},
+            r"sum to 0 instead of 0.3; it runs with",
+            [("gears.profile_shift",)],
+        ),
+        (
+            {"gears": SET | {"centre_distance": "26.89 mm"}},
+            r"sum to -0.1083 instead of 0; it runs with centre_distance = \"27 mm\"$",
+            [("gears.centre_distance",)],
+        ),
+        ({"gears": SET | {"teeth": [24, 30, 90]}}, r"teeth: .* any profile shift; .* some 84$", []),
+        ({"gears": SET | {"centre_distance": "30 mm"}}, r"profile shift of -3.95; .* some 90$", []),
+        (
+            {"gears": SET | {"teeth": [12, 18, 48]}},
+            r"ring \(gear 2\): the tip of gear 2 runs into the undercut fillet of gear 1",
+            [("gears.addendum",), ("gears.fillet_radius",)],
+        ),
+        (
+            {"gears": ONE_PLANET | {"second": STEPPED["second"] | {"teeth": [30, 40], "module": "3 mm"}}},
+            r"the second gear of the planets \(gear 1\) and its ring \(gear 2\): the tip of gear 2 runs",
+            [("gears.addendum",)],
+        ),
+        (
+            PIN_IN_TEETH,
+            r"pin.mean_diameter: rolling bodies on a circle of 27.6 mm do not fit into planets whose roots "
+            r"lie on 27.5 mm; it runs with mean_diameter = \"12 mm\"$",
+            [("losses.pin.mean_diameter",)],
+        ),
+    ],
+)  # fmt: skip
+def test_gears_of_a_set_that_do_not_fit_are_refused_with_what_mends_all_of_it(tree, words, keys):
+    """Advice of one mesh that the others do not bear is left out; what is left runs."""
+    with pytest.raises(InputError, match=words) as caught:
+        load_case(TABLES | tree)
+    assert [tuple(cure) for cure in caught.value.cures] == keys
+    for cure in caught.value.cures:
+        load_case(TABLES | tree, settings=cure)
+
+
 def test_advice_for_planets_of_a_stage_has_the_keys_of_the_stage():
     stages = [{"gears": gears([23, 61])}, {"gears": SET | {"teeth": [25, 30, 84]}}]
     with pytest.raises(

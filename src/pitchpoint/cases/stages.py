@@ -61,16 +61,24 @@ MOST_TEETH = 10_000
 """Teeth that mesh in a turn, up to which the ratio of two such numbers is taken as that of whole ones."""
 
 
-def ready(case: Case | DriveCase, document: Document, own: ChosenLaws = ()) -> Ready:
+def ready(
+    case: Case | DriveCase, document: Document, own: ChosenLaws = (), *, advised: bool = True
+) -> Ready:
     """A case of one mesh or of several, ready to compute.
+
+    Args:
+        case: as validated.
+        document: that it came from.
+        own: friction laws in place of those of the case.
+        advised: False to leave out, as for points of a sweep, what changes would mend a set that is refused.
 
     Raises:
         InputError: see `build`; stages that do not follow each other.
     """
     if isinstance(case, Case):
         return _warm(case, document, own)
-    with _spelt(document):
-        return _built(case, document, own)
+    with _spelt(document, advised):
+        return _built(case, document, own, advised=advised)
 
 
 def _warm(case: Case, document: Document, own: ChosenLaws) -> Built:
@@ -83,16 +91,22 @@ def _warm(case: Case, document: Document, own: ChosenLaws) -> Built:
 
 
 @contextmanager
-def _spelt(document: Document) -> Iterator[None]:
+def _spelt(document: Document, advised: bool = False) -> Iterator[None]:
     """What is wrong inside is told with the file and the keys that it has."""
     try:
         yield
     except InputError as error:
-        raise as_spelt(error, document).at(file=document.name) from None
+        raise as_spelt(error, document, advised=advised).at(file=document.name) from None
 
 
-def as_spelt(error: InputError, document: Document) -> InputError:
-    """An error with the keys that the file has, where a planetary set stands for its meshes."""
+def as_spelt(error: InputError, document: Document, *, advised: bool = False) -> InputError:
+    """An error with the keys that the file has, where a planetary set stands for its meshes.
+
+    Args:
+        error: of the meshes.
+        document: of the set.
+        advised: True for changes that mend it: those of one mesh that do so for the set, which is tried.
+    """
     if not is_planetary(document.tree):
         return error
     try:
@@ -100,10 +114,40 @@ def as_spelt(error: InputError, document: Document) -> InputError:
     except InputError:  # which is the error itself
         return error
     wrong = Complaints()
+    keys = [each.key for each in error.every if isinstance(each, InputError)]
     for one in error.every:
         if isinstance(one, InputError):
-            wrong.add(in_words_of_set(one, gears))
+            spelt = in_words_of_set(one, gears)
+            of_mesh = advised and spelt.cures and (one.key or "").startswith(STAGES)
+            others = {key for key in keys if key != one.key}
+            wrong.add(_with_sound_cures(spelt, document, others) if of_mesh else spelt)
     return wrong.error if wrong else error
+
+
+def _with_sound_cures(error: InputError, document: Document, others: set[str | None]) -> InputError:
+    """An error of a mesh of a set with those changes that mend it, where others may be wrong still."""
+    from pitchpoint.gears.cylindrical.cures import told_with_cures
+
+    def mends(change: Tree) -> bool:
+        try:
+            _changed_drive(document, change)
+        except InputError as left:
+            return {one.key for one in left.every if isinstance(one, InputError)} <= others
+        return True
+
+    sound = tuple(filter(mends, error.cures))
+    longer = copy.copy(error)
+    bare = [{key.removeprefix("gears."): one for key, one in each.items()} for each in sound]
+    longer.message, longer.cures = told_with_cures(error.message, bare), sound
+    return longer
+
+
+def _changed_drive(document: Document, change: Tree) -> BuiltDrive:
+    """The drive of a document with other values."""
+    changed = with_meshes(_changed(document, change))
+    case = validate(changed)
+    assert isinstance(case, DriveCase)
+    return _built(case, changed, (), advised=False)
 
 
 class _Stage(NamedTuple):
@@ -165,7 +209,7 @@ def _built(
     built: list[Any] = []  # each a mesh or a set
     for one, each, point in zip(alone, cases, points, strict=True):
         loaded = each.model_copy(update={"operation": point})
-        warmed = partial(ready, loaded, one.document, own)
+        warmed = partial(ready, loaded, one.document, own, advised=advised)
         built += filter(None, [wrong.tried(_in_stage, document, one.number, warmed)])
     wrong.demand_none()
     try:
@@ -195,10 +239,7 @@ def _with_fitting(
     from pitchpoint.cases.trains import rates_of
 
     def attempt(change: Tree) -> float:
-        changed = with_meshes(_changed(document, change))
-        other = validate(changed)
-        assert isinstance(other, DriveCase)
-        return float(_built(other, changed, (), advised=False).trains[0].design.ratio)
+        return float(_changed_drive(document, change).trains[0].design.ratio)
 
     train = case.train
     assert train is not None

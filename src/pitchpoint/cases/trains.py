@@ -31,13 +31,13 @@ from pitchpoint.drive.assembly import (
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link, body_rates
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.train import Train, gear_train, presses_other_flanks
-from pitchpoint.errors import InputError
+from pitchpoint.errors import RUNS_WITH, InputError
 from pitchpoint.gears.bodies import disc
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials.solids import SolidRecord
 
-__all__ = ["about_trains", "rates_of", "train_of", "turning_together"]
+__all__ = ["USUAL_BEARING", "about_trains", "rates_of", "train_of", "turning_together"]
 
 
 def _links(case: DriveCase, train: TrainTable, meshes: Sequence[Mesh]) -> list[Link]:
@@ -180,6 +180,7 @@ def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
     designs = [one.design for one in built]
     links = _links(case, train, [one.mesh for one in designs])
     _check_planets(case, built)
+    _check_bearings(case, built)
     on_planets = [link for link in links if link.carrier != HOUSING]
     angles = _angles(on_planets, train)
     phases = iter(_fitted(on_planets, train, angles))
@@ -231,15 +232,49 @@ def _of_planets(case: DriveCase, built: Sequence[Built]) -> Iterator[tuple[Built
 def _mass(built: Built, member: int) -> float:
     """Mass of a planet in one of its meshes as a disc [kg]."""
     mesh: Any = built.design.mesh
-    module = float(mesh.module)
-    outer = abs(float(mesh.teeth[member])) * module / 2.0 / np.cos(float(mesh.helix_angle))
-    cut = float(mesh.dedendum[member] - mesh.profile_shift[member] - mesh.infeed[member])
     return disc(
         density=float(built.design.solids[member].density),
         width=float(mesh.face_width),
-        outer=outer,
-        inner=(outer - module * cut) / float(mesh.rim_ratio[member]),
+        outer=_reference_radius(mesh, member),
+        inner=_root_radius(mesh, member) / float(mesh.rim_ratio[member]),
     )[0]
+
+
+def _reference_radius(mesh: Any, member: int) -> float:
+    """Of an external gear [m]."""
+    turned = float(mesh.module) / np.cos(float(mesh.helix_angle))
+    return abs(float(mesh.teeth[member])) * float(turned) / 2.0
+
+
+def _root_radius(mesh: Any, member: int) -> float:
+    """Of an external gear [m]."""
+    cut = float(mesh.dedendum[member] - mesh.profile_shift[member] - mesh.infeed[member])
+    return _reference_radius(mesh, member) - float(mesh.module) * cut
+
+
+USUAL_BEARING = 0.4
+"""Mean diameter of the bearing of a planet over its reference diameter, of which advice is given."""
+
+
+def _check_bearings(case: DriveCase, built: Sequence[Built]) -> None:
+    """InputError for bearings whose rolling bodies would lie in the teeth of the planet that they bear."""
+    train = case.train
+    assert train is not None
+    planets = [(one.design.mesh, member) for one, _, member in _of_planets(case, built)]
+    root = 2.0 * min((_root_radius(*one) for one in planets), default=np.inf)
+    for name, loss in case.losses.items():
+        across = loss.mean_diameter or 0.0
+        if {*loss.between} != {train.planet, train.carrier} or across < root:
+            continue
+        usual = 2e3 * USUAL_BEARING * min(_reference_radius(*one) for one in planets)
+        change = {f"losses.{name}.mean_diameter": f"{usual:.3g} mm"}
+        error = InputError(
+            f"rolling bodies on a circle of {1e3 * across:.4g} mm do not fit into planets whose roots lie on "
+            f'{1e3 * root:.4g} mm{RUNS_WITH}mean_diameter = "{usual:.3g} mm"',
+            key=f"losses.{name}.mean_diameter",
+        )
+        error.cures = (change,)
+        raise error
 
 
 _OF_A_GEAR = ("profile_shift", "addendum", "dedendum", "fillet_radius", "infeed")

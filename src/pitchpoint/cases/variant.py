@@ -79,7 +79,7 @@ class Variant:
 
     def built(self, changes: Mapping[str, Any]) -> Ready:
         """Case with some values changed."""
-        return self._ready(*self._read(changes))
+        return ready(*self._read(changes), self.own, advised=not changes)
 
     def built_each(self, changes: Sequence[Mapping[str, Any]]) -> list[Ready | InputError]:
         """Cases with some values changed, or what is wrong with them; their gears are built together."""
@@ -107,7 +107,7 @@ class Variant:
             raise wrong.error from None
 
     def _ready(self, case: Case | DriveCase, document: Document) -> Ready:
-        return ready(case, document, self.own)
+        return ready(case, document, self.own, advised=False)
 
 
 def _or_error(make: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | InputError:

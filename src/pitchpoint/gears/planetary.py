@@ -1,9 +1,7 @@
 """The table [gears] of a planetary gear set: the meshes for which its numbers stand."""
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from math import cos, isfinite, pi
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
@@ -11,7 +9,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, m
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from pitchpoint.errors import InputError
+from pitchpoint.errors import RUNS_WITH, InputError
 from pitchpoint.gears.cylindrical.inspection import (
     Toothing,
     distance_without_backlash,
@@ -485,19 +483,27 @@ class PlanetaryGears(Table):
         if self.stepped:
             changes["profile_shift"] = sun, planet
         elif shifts[2] == FROM_CENTRE_DISTANCE:
-            ring = self._follows(self.teeth[1:], self.module, planet)
-            changes["profile_shift"] = sun, planet, ring
-            if not SHIFT.low <= ring <= SHIFT.high:
-                first, second, last = self.teeth
-                raise InputError(
-                    f"a ring of {last:.0f} teeth at the centre distance {1e3 * self.distance:.6g} mm of sun "
-                    f"and planet asks for a profile shift of {ring:.3g}; with {first:.0f} and {second:.0f} "
-                    f"teeth it has some {first + 2.0 * second:.0f}",
-                    key="teeth",
-                )
+            changes["profile_shift"] = sun, planet, self._shift_of_first_ring(planet)
         if self.second is not None:
             changes["second"] = self._second_with_shift(self.second)
         return self.model_copy(update=changes) if changes else self
+
+    def _shift_of_first_ring(self, planet: float) -> float:
+        """Shift of the ring around the planets with this one; InputError for one that no ring has."""
+        first, second, last = self.teeth
+        try:
+            ring = self._follows(self.teeth[1:], self.module, planet)
+            wrong = f"asks for a profile shift of {ring:.3g}"
+        except InputError:  # no shift makes such a ring
+            ring, wrong = SHIFT.high + 1.0, "does not go around the planets with any profile shift"
+        if SHIFT.low <= ring <= SHIFT.high:
+            return ring
+        nominal = second + 2.0 * self.distance * cos(self.helix_angle) / self.module
+        raise InputError(
+            f"a ring of {last:.0f} teeth at the centre distance {1e3 * self.distance:.6g} mm of sun "
+            f"and planet {wrong}; with {first:.0f} and {second:.0f} teeth it has some {nominal:.0f}",
+            key="teeth",
+        )
 
     def _second_with_shift(self, second: SecondGears) -> SecondGears:
         """The second gears with their module, and the shift of the ring that leaves no backlash."""
@@ -617,22 +623,12 @@ class PlanetaryGears(Table):
         return found
 
 
-_RACKS = ("addendum", "dedendum", "fillet_radius")
-"""Keys of which second gears and their ring have the values of planet and ring."""
-
-
-def _of_racks(gears: PlanetaryGears, found: re.Match[str]) -> str:
-    """Values of the racks of second gear and ring as the list that the set has."""
-    name, planet, ring = found.groups()
-    given = getattr(gears, name) if name in _RACKS else None
-    return found[0] if given is None else f"{name} = [{given[0]:g}, {planet}, {ring}]"
-
-
-_TWO = re.compile(r"\b(\w+) = \[([^,\]]+), ([^,\]]+)\]")
+Cure = dict[str, Any]
+"""Values of a case file by dotted key."""
 
 
 def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:
-    """An error of a mesh, or of the train, with the key that it has in the table of the set.
+    """An error of a mesh, or of the train, with the key that it has in the table of the set; its cures too.
 
     Args:
         error: with a key of [[stages]] or [train].
@@ -644,38 +640,47 @@ def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:
     number, _, key = inside.partition(".")
     if key.startswith(("film", "wear")) and "gear" not in error.message:
         return error.at(key=key)  # a table that all meshes have alike
-    if table == "stages" and number == ("2" if gears.stepped else "3"):
-        words = "in the mesh of the second gear of the planets (gear 1) and its ring (gear 2)"
-        table, _, inside = key.partition(".")
-        own = table == "gears" and inside.partition(".")[0] in SecondGears.model_fields
-        key = f"gears.second.{inside}" if own else key
-        told = f"{words}: {_TWO.sub(partial(_of_racks, gears), error.message)}"
-        return InputError(told, file=error.file, key=key or None, value=error.value)
-    if table != "stages" or number not in ("1", "2"):
+    if table != "stages" or number not in ("1", "2", "3"):
         return error
     first = int(number) - 1
+    second = first == (1 if gears.stepped else 2)
+    if second:
+        words = "the second gear of the planets (gear 1) and its ring (gear 2)"
+        own = key.removeprefix("gears.").partition(".")[0] in SecondGears.model_fields
+        key = f"gears.second.{key.removeprefix('gears.')}" if own else key
+    else:
+        words = "{} (gear 1) and {} (gear 2)".format(*("sun", "planet", "ring")[first : first + 2])
+    told = f"in the mesh of {words}: {error.message.partition(RUNS_WITH)[0]}"
+    located = InputError(told, file=error.file, key=key or None, value=error.value)
+    cures = (_cure_of_set(cure, gears, first, second) for cure in error.cures)
+    located.cures = tuple(cure for cure in cures if cure)
+    return located
 
-    def of_three(found: re.Match[str]) -> str:
-        name, *pair = found.groups()
-        if name not in _LISTS or (gears.stepped and name in _WITHOUT_RING):
-            return found[0]
-        given = getattr(gears, name) or ("",) * 3
-        rest = (
-            f"{given[2 - 2 * first]:g}"
-            if isinstance(given[2 - 2 * first], float)
-            else pair[1 - first]
-        )
-        every = [*pair, rest] if first == 0 else [rest, *pair]
-        return f"{name} = [{', '.join(every)}]"
 
-    message = error.message
-    both = f'profile_shift = "{FROM_CENTRE_DISTANCE}"'
-    open_ring = [*(f"{value:g}" for value in gears.profile_shift[:2]), f'"{FROM_CENTRE_DISTANCE}"']
-    message = (
-        message.replace(both, f"profile_shift = [{', '.join(open_ring)}]") if first else message
-    )
-    named = ("sun", "planet", "ring")[first : first + 2]
-    told = (
-        f"in the mesh of {named[0]} (gear 1) and {named[1]} (gear 2): {_TWO.sub(of_three, message)}"
-    )
-    return InputError(told, file=error.file, key=key or None, value=error.value)
+def _cure_of_set(cure: Cure, gears: PlanetaryGears, first: int, second: bool) -> Cure | None:
+    """A change of the gears of a mesh as one of the set; None where the set has no such key.
+
+    Args:
+        cure: with keys of [[stages]].
+        gears: of the set.
+        first: which mesh of the set it is.
+        second: True for the mesh of second gears and their ring.
+    """
+    found: Cure = {}
+    for dotted, value in cure.items():
+        key = dotted.rpartition("gears.")[2]
+        if second and key in SecondGears.model_fields:
+            found[f"gears.second.{key}"] = value
+        elif key not in _LISTS or (gears.stepped and key in _WITHOUT_RING):
+            found[f"gears.{key}"] = value
+        elif isinstance(value, list):
+            given = getattr(gears, key) or (value[1], *value, value[0])
+            rest = (
+                given[0] if first else FROM_CENTRE_DISTANCE if key == "profile_shift" else given[-1]
+            )
+            found[f"gears.{key}"] = [rest, *value] if first else [*value, rest]
+        elif first and key == "profile_shift":
+            found[f"gears.{key}"] = [*gears.profile_shift[:2], value]
+        else:
+            return None
+    return found

@@ -9,6 +9,7 @@ from pitchpoint import units
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.template import sample_tree, template
+from pitchpoint.cases.trains import USUAL_BEARING
 from pitchpoint.errors import InputError
 from pitchpoint.gears.planetary import PLANETARY, PLANETS
 from pitchpoint.registry import letters
@@ -34,8 +35,6 @@ SAFETIES = {"flank": 1.2, "root": 1.5}
 MATERIAL = "case-hardened-mq"
 WIDTH = {PLANETARY: 12.0, THREE_K: 10.0}
 """Face width [modules]."""
-PIN = 0.4
-"""Mean diameter of the bearing of a planet over its reference diameter."""
 
 TEETH_OF_FLEXSPLINE = 60, 640
 """Flexsplines that usual proportions make, as catalogue drives have 60 to 320 teeth."""
@@ -233,7 +232,7 @@ def _planetary(ratio: float, planets: int) -> tuple[Making, float]:
                 "module": f"{module:g} mm",
                 "face_width": f"{WIDTH[PLANETARY] * module:g} mm",
             }
-            pin = {"mean_diameter": f"{PIN * planet * module:.3g} mm"}
+            pin = {"mean_diameter": f"{USUAL_BEARING * planet * module:.3g} mm"}
             return {"gears": gears | lengths, "losses": {"pin": pin}}
 
         if _can_be_made(PLANETARY, make):

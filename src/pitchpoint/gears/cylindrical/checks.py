@@ -582,10 +582,11 @@ def _overlapping(pair: _Pair) -> str:
     by_allowances = (
         f", and their allowances leave {1e6 * pair.least_backlash:.3g} um" if known else ""
     )
+    needed = round(float(pair.needed_shift_sum), 9) + 0.0  # zero but for rounding is zero
     return (
         f"the flanks of gear 1 and gear 2 overlap at the centre distance {_mm(pair.centre_distance)}; these "
         f"teeth {allowed} {_mm(pair.zero_backlash)}, which is without backlash{by_allowances}; this distance "
-        f"asks for profile shifts that sum to {pair.needed_shift_sum:.4g} instead of {pair.shift_sum:.4g}"
+        f"asks for profile shifts that sum to {needed:.4g} instead of {pair.shift_sum:.4g}"
     )
 
 

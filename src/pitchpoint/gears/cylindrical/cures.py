@@ -6,7 +6,7 @@ from itertools import product
 from math import ceil, nan, pi
 from typing import Any
 
-from pitchpoint.errors import InputError
+from pitchpoint.errors import RUNS_WITH, InputError
 from pitchpoint.gears.cylindrical.checks import Remedy
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE, LEAST_TIP, CylindricalGears
@@ -213,7 +213,7 @@ def told_with_cures(message: str, changes: Sequence[Cure]) -> str:
         " and ".join(f"{key} = {_shown(value)}" for key, value in change.items())
         for change in changes
     )
-    return "; it runs with ".join(filter(None, (message, ", or with ".join(shown))))
+    return RUNS_WITH.join(filter(None, (message, ", or with ".join(shown))))
 
 
 def _shown(value: Any) -> str:
