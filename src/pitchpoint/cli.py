@@ -934,6 +934,10 @@ def new(
     planets: Annotated[
         int | None, typer.Option(help="With --ratio: number of planets, 3 unless given.")
     ] = None,
+    count: Annotated[
+        int | None,
+        typer.Option(help="With --ratio: so many sets as variants of the file, the best first."),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FILE", help="Default: the screen, as for -."),
@@ -946,7 +950,7 @@ def new(
     from pitchpoint.cases.template import template
 
     if ratio is None:
-        for key, value in {"torque": torque, "planets": planets}.items():
+        for key, value in {"torque": torque, "planets": planets, "count": count}.items():
             if value is not None:
                 raise InputError("goes with --ratio; the file has its own", key=key)
         _write(template(family), output)
@@ -954,7 +958,13 @@ def new(
     from pitchpoint.sizing.for_ratio import case_for_ratio
 
     _write(
-        case_for_ratio(family, _ratio(ratio), torque=torque, planets=planets),
+        case_for_ratio(
+            family,
+            _ratio(ratio),
+            torque=torque,
+            planets=planets,
+            count=1 if count is None else count,
+        ),
         output,
     )
 

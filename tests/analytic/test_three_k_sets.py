@@ -91,6 +91,55 @@ def test_pairs_that_are_built_have_its_geometry(sets):
         )
 
 
+def mean_of_pair(teeth, shifts, tips, friction=0.1):
+    """Mean efficiency of a pair that is built, by its radii."""
+    pair = build_cylindrical_pair(
+        teeth=teeth,
+        module=1.0,
+        pressure_angle=radians(20.0),
+        face_width=1.0,
+        profile_shift=shifts,
+        tip_alteration=tips,
+    )
+    z, tip = np.array(teeth, float), np.abs(np.asarray(pair.tip_radii))
+    base = np.abs(np.asarray(pair.base_radii))
+    working = np.tan(
+        np.arccos(
+            abs(base.sum() if teeth[1] > 0 else base[1] - base[0])
+            / abs(float(pair.centre_distance))
+        )
+    )
+    parts = z / (2.0 * np.pi) * (np.sqrt((tip / base) ** 2 - 1.0) - working)
+    return three_k.mesh_efficiency((z[:1], z[1:]), (parts[:1], parts[1:]), friction).item()
+
+
+def test_derivatives_are_those_of_pairs_with_other_shifts(sets):
+    """The shift of the planet in the output ring, away from its best one, moved on pairs as built."""
+    chosen = sets.isel(set=0)
+    z, x = chosen["teeth"].values.tolist(), chosen["profile_shift"].values.tolist()
+    tip = float(chosen["tip_alteration"])
+    x[3:] = [x[3] - 0.3, x[4] + 0.3]
+    others = [
+        mean_of_pair((z[0], z[1]), (x[0], x[1]), (tip, tip)),
+        mean_of_pair((z[1], -z[2]), (x[1], x[2]), (tip, 0.0)),
+    ]
+    ways = []
+    for step in (-1e-3, 1e-3):
+        last = mean_of_pair((z[3], -z[4]), (x[3] + step, x[4] - step), (0.0, 0.0))
+        ways.append(three_k.three_k_efficiencies(np.array(z, float), np.array([*others, last])))
+    slope = (np.array(ways[1]) - np.array(ways[0])) / 2e-3
+    none = np.full(1, np.nan)
+    point = three_k._Points(
+        none, chosen["centre_distance"].values[None], np.array([x]), none, none, none, none
+    )
+    found = three_k._slopes(np.array([z], float), point, 0.1)[:, 0, 2]
+    assert found == pytest.approx(slope, rel=1e-3)
+    assert slope.min() > 5e-3
+    # At the best one the derivative vanishes, where nothing is in the way.
+    at_best = chosen[["efficiency_slope", "back_driving_slope"]].isel(variable=2)
+    assert max(abs(float(one)) for one in at_best.data_vars.values()) < 2e-4
+
+
 @pytest.mark.whole
 def test_contacts_say_the_same_of_the_best_one(sets):
     """Closed forms of mean losses lie within 2 % of the loss of what all contacts give."""

@@ -184,6 +184,22 @@ def test_the_module_is_the_smallest_that_bears_the_torque(family: str, ratio: fl
     assert built.case.operation.load == 200.0
 
 
+@pytest.mark.parametrize(("family", "ratio"), [("planetary", 5.0), ("3k", 100.0)])
+def test_several_sets_are_variants_each_of_which_opens(family: str, ratio: float) -> None:
+    text = case_for_ratio(family, ratio, count=3)
+    variants = tomllib.loads(text)["variants"]
+    assert [*variants] == ["set_1", "set_2", "set_3"] and variants["set_1"] == {}
+    seen = set()
+    for name in variants:
+        built = load_case(tomllib.loads(text), variant=name)
+        teeth = [one.design.mesh.teeth.tolist() for one in built.meshes]
+        assert abs(float(built.design.ratio)) == pytest.approx(ratio, rel=0.03)
+        assert f"{name}: Ratio {float(built.design.ratio):.6g}" in text
+        seen.add(str(teeth))
+    assert len(seen) == 3
+    assert "set_1" not in case_for_ratio(family, ratio)
+
+
 LONG_RATIOS = [pytest.param(ratio, marks=pytest.mark.whole) for ratio in (30.0, -80.0, 320.0)]
 
 
@@ -219,6 +235,8 @@ def test_a_strain_wave_gear_for_a_ratio_has_it_within_half_a_turn(
         ("strain_wave", 80.0, {"torque": "5 N m"}, "no rating of its teeth, give operation.torque"),
         ("strain_wave", 80.0, {"planets": 3}, "planets: is for planetary and 3K"),
         ("planetary", float("nan"), {}, "nan is no ratio"),
+        ("planetary", 5.0, {"count": 0}, "count: 0 is out of range; allowed is 1 to 20"),
+        ("strain_wave", 80.0, {"count": 2}, "count: is for planetary and 3K"),
     ],
 )
 def test_what_no_set_has_is_told_in_a_sentence(

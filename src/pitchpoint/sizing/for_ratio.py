@@ -1,9 +1,12 @@
 """A case file of gears from a ratio: teeth that assemble, a module that bears the torque if it is rated."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 from math import ceil, isfinite, pi, radians, sin
 from typing import Any
+
+import tomlkit
+import xarray as xr
 
 from pitchpoint import units
 from pitchpoint._jax import double_precision
@@ -12,6 +15,7 @@ from pitchpoint.cases.template import sample_tree, template
 from pitchpoint.cases.trains import USUAL_BEARING
 from pitchpoint.errors import InputError
 from pitchpoint.gears.planetary import PLANETARY, PLANETS
+from pitchpoint.input.quantities import Quantity
 from pitchpoint.registry import letters
 from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.three_k import three_k_sets, three_k_tables
@@ -48,6 +52,9 @@ _BETWEEN_PLANETS = 2.5
 _NEAR = 0.005
 """Relative difference of ratios that counts as none against the size of a set."""
 MOST_TRIED = 40
+
+SETS = Quantity("dimensionless", 1, 20, whole=True)
+"""Sets that a file may have."""
 
 ARRANGED = (
     ("sun", "carrier", "ring", lambda ratio: ratio - 1.0, lambda basic: 1.0 + basic),
@@ -99,7 +106,12 @@ def planetary_teeth(basic: float, planets: int) -> Iterator[tuple[int, int, int]
 
 @double_precision()
 def case_for_ratio(
-    family: str, ratio: float, *, torque: str | None = None, planets: int | None = None
+    family: str,
+    ratio: float,
+    *,
+    torque: str | None = None,
+    planets: int | None = None,
+    count: int = 1,
 ) -> str:
     """A case file of a set of this ratio, with a module that bears the torque.
 
@@ -110,6 +122,7 @@ def case_for_ratio(
         torque: at the output, with its unit; the module is 1 mm and stays unsized without one. Not for strain
             wave gears, whose teeth no standard rates.
         planets: at equal angles, 3 unless given; of sets that have some.
+        count: of sets at most, the best one first; of several each is a variant of the file, `set_1` on.
 
     Raises:
         InputError: another family, no such teeth, more torque than gears of 32 mm module bear.
@@ -126,32 +139,57 @@ def case_for_ratio(
     if not isfinite(ratio):
         raise InputError(f"{ratio} is no ratio, input over output", key="ratio")
     if named == STRAIN_WAVE:
-        return _strain_wave(ratio, {"torque": torque, "planets": planets})
+        return _strain_wave(
+            ratio, {"torque": torque, "planets": planets, "count": count if count != 1 else None}
+        )
+    _check("count", lambda: SETS.read(count))
     planets = 3 if planets is None else planets
     _check("planets", lambda: PLANETS.read(planets))
     if torque is not None and _check("torque", lambda: units.parse(torque, "torque")) <= 0.0:
         raise InputError(f"{torque} was given; it is more than zero", key="torque")
-    make, met = (_planetary if named == PLANETARY else _three_k)(ratio, planets)
+    found = [
+        *islice((_planetary if named == PLANETARY else _three_k)(ratio, planets, count), count)
+    ]
+    sized = [_with_rest(named, make, torque) for make, _ in found]
+    each = [
+        f"{_met(met, ratio)}. {borne}" for (_, met), (_, borne) in zip(found, sized, strict=True)
+    ]
+    if len(found) > 1:
+        each = [f"set_{number}: {told}" for number, told in enumerate(each, 1)]
+    told = _FACTORS if torque else "The module is not sized: --torque is what the output bears."
+    text = template(named, sized[0][0], [*each, told])
+    return text + _variants([tree["gears"] for tree, _ in sized]) if len(found) > 1 else text
+
+
+_FACTORS = "Load factors but K_v and that of planets are 1: give those of your drive in [strength]."
+
+
+def _with_rest(named: str, make: Making, torque: str | None) -> tuple[Tree, str]:
+    """Tables of a set, with the module that bears the torque if there is one, and a sentence on that."""
 
     def with_rest(module: float) -> Tree:
         rest: Tree = {"materials": {"gear_1": MATERIAL, "gear_2": MATERIAL}}
         return make(module) | (rest | {"operation": {"torque": torque}} if torque else {})
 
+    gears = with_rest(1.0)["gears"]
+    teeth = "/".join(map(str, [*gears["teeth"], *gears.get("second", {}).get("teeth", [])]))
     if torque is None:
-        remark = "The module is not sized: --torque is what the output bears."
-        return template(named, with_rest(1.0), [f"{_met(met, ratio)}. {remark}"])
+        return with_rest(1.0), f"Teeth {teeth}."
     module, safeties = _sized(named, with_rest)
     borne = ", ".join(f"{part}s {value:.3g}" for part, value in safeties.items())
     asked = " and ".join(f"{least:g} ({part}s)" for part, least in SAFETIES.items())
-    return template(
-        named,
-        with_rest(module),
-        [
-            f"{_met(met, ratio)}. Module {module:g} mm for {torque}: least safeties by ISO 6336 {borne}; "
-            f"asked were {asked}.",
-            "Load factors but K_v and that of planets are 1: give those of your drive in [strength].",
-        ],
+    return with_rest(module), (
+        f"Teeth {teeth}. Module {module:g} mm for {torque}: least safeties by ISO 6336 {borne}; "
+        f"asked were {asked}."
     )
+
+
+def _variants(gears: Sequence[Tree]) -> str:
+    """Tables of variants with the gears of each set."""
+    lines = ["", "# Sets for this ratio, the best one first; each is computed.", "[variants.set_1]"]
+    for number, table in enumerate(gears[1:], 2):
+        lines += ["", tomlkit.dumps({"variants": {f"set_{number}": {"gears": table}}}).strip()]
+    return "\n".join(lines) + "\n"
 
 
 def _strain_wave(ratio: float, others: Mapping[str, Any]) -> str:
@@ -201,8 +239,8 @@ def _check(key: str, read: Callable[[], float]) -> float:
         raise error.at(key=key) from None
 
 
-def _planetary(ratio: float, planets: int) -> tuple[Making, float]:
-    """Tables of the first set that can be made, and its ratio."""
+def _planetary(ratio: float, planets: int, count: int) -> Iterator[tuple[Making, float]]:
+    """Tables of sets that can be made, each with its ratio, the nearest one first."""
     arranged = next((one for one, low, high in _reach(planets) if low <= ratio <= high), None)
     if 0.0 < abs(ratio) < 1.0:
         raise InputError(
@@ -222,6 +260,7 @@ def _planetary(ratio: float, planets: int) -> tuple[Making, float]:
         )
     turned, loaded, held, basic, back = arranged
     ends = {} if held == "ring" else {"input": turned, "output": loaded, "held": held}
+    made = 0
     for sun, planet, ring in islice(planetary_teeth(basic(ratio), planets), MOST_TRIED):
         gears: Tree = {"teeth": [sun, planet, ring], "planets": planets, **ends}
         if any(shifts := [_without_undercut(teeth) for teeth in (sun, planet)]):
@@ -236,11 +275,13 @@ def _planetary(ratio: float, planets: int) -> tuple[Making, float]:
             return {"gears": gears | lengths, "losses": {"pin": pin}}
 
         if _can_be_made(PLANETARY, make):
-            return make, back(ring / sun)
-    raise InputError(
-        f"no teeth for a ratio of {ratio:g} with {planets} planets can be made; take another number of them",
-        key="ratio",
-    )
+            made += 1
+            yield make, back(ring / sun)
+    if not made:
+        raise InputError(
+            f"no teeth for a ratio of {ratio:g} with {planets} planets can be made; take another number",
+            key="ratio",
+        )
 
 
 def _without_undercut(teeth: int) -> float:
@@ -265,24 +306,25 @@ def _can_be_made(family: str, make: Making) -> bool:
     return True
 
 
-def _three_k(ratio: float, planets: int) -> tuple[Making, float]:
-    """Tables of the set that loses least in its worse direction, and its ratio."""
+def _three_k(ratio: float, planets: int, count: int) -> Iterator[tuple[Making, float]]:
+    """Tables of the sets that lose least in their worse direction, each with its ratio."""
     if ratio <= 1.0:
         raise InputError(
             f"{ratio:g} was given; of a 3K set it is the size, from some 20 on", key="ratio"
         )
     try:
-        sets = three_k_sets((0.97 * ratio, 1.03 * ratio), planets=planets, count=1)
+        sets = three_k_sets((0.97 * ratio, 1.03 * ratio), planets=planets, count=count)
     except InputError as error:
         raise InputError(
             f"{error.message}: pitchpoint.three_k_sets takes other limits", key=error.key or "ratio"
         ) from None
-    chosen = sets.isel(set=0)
+    for number in range(sets.sizes["set"]):
+        chosen = sets.isel(set=number)
 
-    def make(module: float) -> Tree:
-        return three_k_tables(chosen, f"{module:g} mm", f"{WIDTH[THREE_K] * module:g} mm")
+        def make(module: float, chosen: xr.Dataset = chosen) -> Tree:
+            return three_k_tables(chosen, f"{module:g} mm", f"{WIDTH[THREE_K] * module:g} mm")
 
-    return make, float(chosen["ratio"])
+        yield make, float(chosen["ratio"])
 
 
 def _sized(family: str, make: Making) -> tuple[float, dict[str, float]]:

@@ -25,6 +25,13 @@ from pitchpoint.gears.table import SHIFT
 __all__ = ["mesh_efficiency", "three_k_efficiencies", "three_k_sets", "three_k_tables"]
 
 GEARS = ("sun", "planet of the held ring", "held ring", "planet of the output", "output ring")
+VARIABLES = (
+    "centre distance",
+    "shift of the planet of the held ring",
+    "shift of the planet of the output",
+)
+"""By which the others of a set follow without backlash, and by which it has derivatives."""
+
 MESHES = ("sun and planet", "planet and held ring", "planet and output ring")
 
 _ALPHA = radians(20.0)
@@ -52,6 +59,9 @@ _ANGLES = np.radians(np.linspace(16.0, 28.0, 13))
 _SHIFTS = np.linspace(-0.4, 1.2, 17)
 _ZOOMS, _NEARER = 4, 3.0
 """How often the best point is looked for between its neighbours, and by how much closer each time."""
+
+_STEP = 1e-4
+"""Of centre distance and shifts for derivatives, whose error goes with its square [modules]."""
 
 _SPARE = 8
 """Sets that are refined and checked for each one that is asked for: some teeth cannot be made."""
@@ -153,7 +163,9 @@ def three_k_sets(
 
     Returns:
         Over `set`: `ratio` (negative where the output turns against the sun), `efficiency` and
-        `back_driving_efficiency`, `teeth` and `profile_shift` [set, gear], `contact_ratio` [set, mesh],
+        `back_driving_efficiency`, their derivatives `efficiency_slope` and `back_driving_slope`
+        [set, variable] by centre distance and both shifts of planets in modules, where sun and rings follow
+        without backlash, `teeth` and `profile_shift` [set, gear], `contact_ratio` [set, mesh],
         `tip_alteration` of sun and first planet, and `centre_distance` [modules]; the attribute `compared`
         says of how many sets they are the best. `three_k_tables` makes them tables of a case.
 
@@ -355,9 +367,7 @@ def _best(teeth: np.ndarray, grid: Sequence[np.ndarray], task: _Task) -> _Points
     for angle in angles.T[:, :, None]:
         nominal = (z[0] + z[1]) / 2.0
         distance = nominal * cos(_ALPHA) / np.cos(angle)
-        outer = _Mesh(z[1], z[0], first, distance, tip=None)
-        held = _Mesh(z[1], -z[2], first, distance, outer.tip)
-        last = _Mesh(z[3], -z[4], second, distance)
+        outer, held, last = _three_meshes(z, distance, first, second)
         room = (
             2.0 * distance * sin(pi / task.planets) - _BETWEEN_PLANETS
             if task.planets > 1
@@ -413,6 +423,26 @@ def _better(one: _Points, other: _Points) -> _Points:
     return _Points(
         *(chosen(getattr(one, each.name), getattr(other, each.name)) for each in fields(_Points))
     )
+
+
+def _three_meshes(
+    z: Sequence[Values], distance: Values, first: Values, second: Values
+) -> "tuple[_Mesh, _Mesh, _Mesh]":
+    """Meshes of sun, held ring and output ring, by the shifts of the planet gears in the latter two."""
+    outer = _Mesh(z[1], z[0], first, distance, tip=None)
+    held = _Mesh(z[1], -z[2], first, distance, outer.tip)
+    return outer, held, _Mesh(z[3], -z[4], second, distance)
+
+
+def _slopes(teeth: np.ndarray, points: _Points, friction: float) -> np.ndarray:
+    """Derivatives of both efficiencies [way set variable] by `VARIABLES`, from central differences."""
+    centre = np.stack([points.distance, points.shifts[:, 1], points.shifts[:, 3]])
+    steps = _STEP * np.concatenate([np.eye(3), -np.eye(3)])
+    moved = centre + steps[:, :, None]
+    meshes = _three_meshes([*teeth.T], moved[:, 0], moved[:, 1], moved[:, 2])
+    each = np.stack([one.efficiency(friction) for one in meshes], axis=-1)
+    ways = np.stack(three_k_efficiencies(teeth, each))
+    return np.asarray(np.moveaxis(ways[:, :3] - ways[:, 3:], 1, 2) / (2.0 * _STEP))
 
 
 class _Mesh:
@@ -534,10 +564,13 @@ def _can_be_made(teeth: np.ndarray, points: _Points) -> np.ndarray:
 def _dataset(teeth: np.ndarray, points: _Points, compared: int, task: _Task) -> xr.Dataset:
     i1, i2 = _basic_ratios(*teeth.T)
     each, of_gear, of_mesh = ("set",), ("set", "gear"), ("set", "mesh")
+    of_variable, (by_there, by_back) = ("set", "variable"), _slopes(teeth, points, task.friction)
     columns: dict[str, tuple[tuple[str, ...], Any, str]] = {
         "ratio": (each, (1.0 + i1) / (1.0 - i2), "ratio of sun to output ring"),
         "efficiency": (each, points.there, "mean efficiency from sun to output ring"),
         "back_driving_efficiency": (each, points.back, "mean efficiency, driven back"),
+        "efficiency_slope": (of_variable, by_there, "derivative of efficiency, in modules"),
+        "back_driving_slope": (of_variable, by_back, "derivative of it driven back, in modules"),
         "teeth": (of_gear, teeth.astype(int), "number of teeth"),
         "profile_shift": (of_gear, points.shifts, "profile shift coefficient"),
         "contact_ratio": (of_mesh, points.ratios, "transverse contact ratio"),
@@ -553,6 +586,6 @@ def _dataset(teeth: np.ndarray, points: _Points, compared: int, task: _Task) -> 
             name: (dims, values, {"units": "1", "long_name": words})
             for name, (dims, values, words) in columns.items()
         },
-        coords={"gear": [*GEARS], "mesh": [*MESHES]},
+        coords={"gear": [*GEARS], "mesh": [*MESHES], "variable": [*VARIABLES]},
         attrs={"planets": task.planets, "friction": task.friction, "compared": compared},
     )
