@@ -1,5 +1,6 @@
 """Case files to begin with: they are sound as they are, and so is every key that stands in a remark."""
 
+import math
 import re
 import sys
 import tomllib
@@ -18,7 +19,13 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.runs.check import check
 from pitchpoint.runs.run import load_case
-from pitchpoint.sizing.for_ratio import MODULES, SAFETIES, case_for_ratio, planetary_teeth
+from pitchpoint.sizing.for_ratio import (
+    MODULES,
+    SAFETIES,
+    case_for_ratio,
+    planetary_teeth,
+    stepped_teeth,
+)
 
 HEAD = re.compile(r"(?:# )?\[([a-z_.0-9]+)\](?:  #.*)?")
 KEY = re.compile(r"# ([a-z_0-9]+ = .*)")
@@ -153,6 +160,28 @@ def test_a_planetary_set_for_a_ratio_turns_so(ratio: float, sense: str) -> None:
     train = built.case.train
     assert " ".join([train.input, train.output, *train.held]) == sense
     assert float(built.design.ratio) == pytest.approx(ratio, rel=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [20.0, pytest.param(15.0, marks=pytest.mark.whole)])
+def test_a_ratio_beyond_one_set_has_stepped_planets(ratio: float) -> None:
+    text = case_for_ratio("planetary", ratio)
+    built = load_case(tomllib.loads(text))
+    assert built.case.gears.stepped and built.planets == 3
+    assert float(built.design.ratio) == pytest.approx(ratio, rel=0.005)
+    assert f"Ratio {float(built.design.ratio):.6g}. Teeth " in text
+
+
+@pytest.mark.parametrize("planets", [1, 3, 4])
+def test_stepped_teeth_for_a_ratio_assemble(planets: int) -> None:
+    """By the ratio of two meshes in a row about a carrier, and the rule for two gears on each planet."""
+    teeth = [*stepped_teeth(12.0, planets)]
+    assert teeth
+    for sun, first, second, ring in teeth:
+        assert 1.0 + first / sun * ring / second == pytest.approx(12.0, rel=0.031)
+        assert (sun * second + ring * first) % (planets * math.gcd(first, second)) == 0
+        assert sun + first == ring - second
+        if planets > 1:
+            assert (sun + first) * np.sin(np.pi / planets) > first + 2.0
 
 
 @pytest.mark.whole

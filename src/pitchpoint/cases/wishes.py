@@ -134,6 +134,11 @@ def no_family(name: str, known: Collection[str]) -> str:
             ": it is planetary with second gears, second = { teeth = [planet, ring], face_width = ... } "
             "under [gears]; pitchpoint new 3K --ratio 100 writes one for a ratio"
         )
+    if letters(name).removesuffix("set").removesuffix("planetary") in ("compound", "stepped"):
+        return (
+            ": it is planetary with second gears, second = { teeth = [planet, ring], face_width = ... } "
+            "under [gears]; pitchpoint new planetary --ratio 20 writes one for a ratio"
+        )
     plain = letters(name).removesuffix("s").removesuffix("gear").removesuffix("drive")
     if {plain, letters(name)} & _NO_FAMILIES:
         return " of Pitchpoint; pitchpoint docs not_included says what to use instead"

@@ -5,6 +5,7 @@ from itertools import islice
 from math import ceil, isfinite, pi, radians, sin
 from typing import Any
 
+import numpy as np
 import tomlkit
 import xarray as xr
 
@@ -20,7 +21,7 @@ from pitchpoint.registry import letters
 from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.three_k import three_k_sets, three_k_tables
 
-__all__ = ["case_for_ratio", "planetary_teeth"]
+__all__ = ["case_for_ratio", "planetary_teeth", "stepped_teeth"]
 
 Tree = dict[str, Any]
 Making = Callable[[float], Tree]
@@ -247,41 +248,104 @@ def _planetary(ratio: float, planets: int, count: int) -> Iterator[tuple[Making,
             f"{ratio:g} is a step up; ask for {1.0 / ratio:.5g}, and exchange input and output in the file",
             key="ratio",
         )
-    if arranged is None:
-        reach = "; ".join(
-            f"{one[0]} to {one[1]} {low:.3g} to {high:.3g}" for one, low, high in _reach(planets)
+    reach = [*_reach(planets)]
+    if not reach:
+        raise InputError(f"{planets} planets have no room on a carrier; take fewer", key="ratio")
+    if arranged is not None:
+        every = _simple_sets(arranged, ratio, planets)
+    elif ratio > max(high for _, _, high in reach):
+        every = _stepped_sets(ratio, planets)
+    else:
+        told = "; ".join(
+            f"{one[0]} to {one[1]} {low:.3g} to {high:.3g}" for one, low, high in reach
         )
         raise InputError(
-            f"{planets} planets have no room on a carrier; take fewer"
-            if not reach
-            else f"{ratio:g} is no ratio of one planetary set with {planets} planets, which reaches, from "
-            f"{reach}; others have two sets in a row (pitchpoint docs stages) or a 3K (new 3K)",
+            f"{ratio:g} is no ratio of one planetary set with {planets} planets, which reaches, from "
+            f"{told}, and from sun to carrier more with stepped planets",
             key="ratio",
         )
-    turned, loaded, held, basic, back = arranged
-    ends = {} if held == "ring" else {"input": turned, "output": loaded, "held": held}
     made = 0
-    for sun, planet, ring in islice(planetary_teeth(basic(ratio), planets), MOST_TRIED):
-        gears: Tree = {"teeth": [sun, planet, ring], "planets": planets, **ends}
-        if any(shifts := [_without_undercut(teeth) for teeth in (sun, planet)]):
-            gears["profile_shift"] = shifts
+    for gears, bearing, met in islice(every, MOST_TRIED):
 
-        def make(module: float, gears: Tree = gears, planet: int = planet) -> Tree:
-            lengths = {
-                "module": f"{module:g} mm",
-                "face_width": f"{WIDTH[PLANETARY] * module:g} mm",
+        def make(module: float, gears: Tree = gears, bearing: float = bearing) -> Tree:
+            width = f"{WIDTH[PLANETARY] * module:g} mm"
+            table = gears | {"module": f"{module:g} mm", "face_width": width}
+            if "second" in gears:
+                table["second"] = gears["second"] | {"face_width": width}
+            return {
+                "gears": table,
+                "losses": {"pin": {"mean_diameter": f"{bearing * module:.3g} mm"}},
             }
-            pin = {"mean_diameter": f"{USUAL_BEARING * planet * module:.3g} mm"}
-            return {"gears": gears | lengths, "losses": {"pin": pin}}
 
         if _can_be_made(PLANETARY, make):
             made += 1
-            yield make, back(ring / sun)
+            yield make, met
     if not made:
         raise InputError(
-            f"no teeth for a ratio of {ratio:g} with {planets} planets can be made; take another number",
+            f"no teeth for a ratio of {ratio:g} with {planets} planets can be made; two sets in a row "
+            "(pitchpoint docs stages) or a 3K (new 3K) have it",
             key="ratio",
         )
+
+
+Set = tuple[Tree, float, float]
+"""Table of gears without lengths, mean diameter of the bearing of a planet [modules], ratio."""
+
+
+def _simple_sets(arranged: tuple[Any, ...], ratio: float, planets: int) -> Iterator[Set]:
+    """Sets of planets of one gear, the nearest and smallest one first."""
+    turned, loaded, held, basic, back = arranged
+    ends = {} if held == "ring" else {"input": turned, "output": loaded, "held": held}
+    for sun, planet, ring in planetary_teeth(basic(ratio), planets):
+        gears: Tree = {"teeth": [sun, planet, ring], "planets": planets, **ends}
+        if any(shifts := [_without_undercut(teeth) for teeth in (sun, planet)]):
+            gears["profile_shift"] = shifts
+        yield gears, USUAL_BEARING * planet, back(ring / sun)
+
+
+def _stepped_sets(ratio: float, planets: int) -> Iterator[Set]:
+    """Sets of stepped planets from sun to carrier, the nearest and smallest one first."""
+    for sun, first, second, ring in stepped_teeth(ratio, planets):
+        gears: Tree = {
+            "teeth": [sun, first],
+            "planets": planets,
+            "second": {"teeth": [second, ring]},
+        }
+        if shift := _without_undercut(sun):
+            gears["profile_shift"] = [shift, -shift]  # which leaves the centre distance as it is
+        yield gears, USUAL_BEARING * second, 1.0 + first * ring / (sun * second)
+
+
+def stepped_teeth(ratio: float, planets: int) -> Iterator[tuple[int, int, int, int]]:
+    """Teeth of sun, both gears of the planets and ring that assemble, for a ratio of sun to carrier.
+
+    Args:
+        ratio: of the sun over the carrier, the ring is held.
+        planets: at equal angles, whose tips are apart.
+
+    Returns:
+        All of one module with suns of 12 to 40, gears of planets from 18 and rings up to 240 teeth; nearest
+        and smallest first.
+
+    Example:
+        >>> next(stepped_teeth(20.0, 3))
+        (13, 53, 18, 84)
+    """
+    sun, first, second = np.ix_(range(12, 41), range(LEAST_PLANET, 121), range(LEAST_PLANET, 81))
+    ring = sun + first + second
+    met = 1.0 + first * ring / (sun * second)
+    fits = (first > second) & (ring <= LARGEST_RING) & (np.abs(met / ratio - 1.0) < 0.03)
+    fits &= (sun * second + ring * first) % (planets * np.gcd(first, second)) == 0
+    if planets > 1:
+        fits &= (sun + first) * sin(pi / planets) >= first + _BETWEEN_PLANETS
+    found = [(sun.flat[i], first.flat[j], second.flat[k]) for i, j, k in np.argwhere(fits).tolist()]
+    every = [(int(s), int(p), int(q), int(s + p + q)) for s, p, q in found]
+
+    def order(teeth: tuple[int, int, int, int]) -> tuple[int, int]:
+        s, p, q, r = teeth
+        return round(abs((1.0 + p * r / (s * q)) / ratio - 1.0) / _NEAR), r + p
+
+    return iter(sorted(every, key=order))
 
 
 def _without_undercut(teeth: int) -> float:
