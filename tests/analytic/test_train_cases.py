@@ -7,6 +7,9 @@ import numpy as np
 import pytest
 
 from pitchpoint.analyses.duty import rated_lives
+
+
+import pitchpoint as pp
 from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.strength import ratings_of
@@ -744,6 +747,15 @@ def test_gears_of_a_set_that_do_not_fit_are_refused_with_what_mends_all_of_it(tr
     assert [tuple(cure) for cure in caught.value.cures] == keys
     for cure in caught.value.cures:
         load_case(TABLES | tree, settings=cure)
+
+
+@pytest.mark.parametrize("key", ["gears.profile_shift", "gears.second.profile_shift"])
+def test_shifts_that_follow_are_set_from_python(key):
+    shifts = [0.1, 0.0, "from centre distance"][-3 if key.startswith("gears.p") else -2 :]
+    case = pp.Case({"gears": THREE_K_SET, **TABLES}).set({key: shifts})
+    assert "from centre distance" in case.to_toml()
+    with pytest.raises(InputError, match="plain finite number"):
+        case.set({"gears.teeth": [18, 36, "from centre distance"]})
 
 
 def test_advice_for_planets_of_a_stage_has_the_keys_of_the_stage():

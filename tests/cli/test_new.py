@@ -171,6 +171,17 @@ def test_a_ratio_beyond_one_set_has_stepped_planets(ratio: float) -> None:
     assert f"Ratio {float(built.design.ratio):.6g}. Teeth " in text
 
 
+@pytest.mark.parametrize("ratio", [4.0, 20.0])
+def test_a_ring_meets_its_planets_away_from_their_base_circles(ratio: float) -> None:
+    """Where a planet has no curvature its pressure has no bound; Hertz then fails what ISO 6336 passes."""
+    built = load_case(tomllib.loads(case_for_ratio("planetary", ratio)))
+    ring = built.meshes[1].design.mesh
+    base, tip = np.abs(np.asarray(ring.base_radii)), np.abs(np.asarray(ring.tip_radii))
+    distance = float(ring.centre_distance)
+    line = np.sqrt(distance**2 - (base[1] - base[0]) ** 2)
+    assert np.sqrt(tip[1] ** 2 - base[1] ** 2) - line > 0.5 * float(ring.module)
+
+
 @pytest.mark.parametrize("planets", [1, 3, 4])
 def test_stepped_teeth_for_a_ratio_assemble(planets: int) -> None:
     """By the ratio of two meshes in a row about a carrier, and the rule for two gears on each planet."""

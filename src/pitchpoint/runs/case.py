@@ -24,6 +24,8 @@ from pitchpoint.cases.document import (
 from pitchpoint.cases.schema import DriveCase, StageTable, in_form, keys, quantity_at, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten
+from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
+from pitchpoint.gears.table import SHIFT
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.lubrication.registry import ChosenLaws
 from pitchpoint.registry import nearest
@@ -260,6 +262,8 @@ def _demand(quantity: Quantity, value: Any, key: str) -> None:
     if isinstance(value, list):
         for one in value:
             _demand(quantity, one, key)
+    elif quantity == SHIFT and value == FROM_CENTRE_DISTANCE:
+        pass  # which shifts may follow so is the table's to say
     elif not isinstance(value, dict) and value is not None:
         try:
             quantity.read(value)

@@ -15,6 +15,7 @@ from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.template import sample_tree, template
 from pitchpoint.cases.trains import USUAL_BEARING
 from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.planetary import PLANETARY, PLANETS
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.registry import letters
@@ -52,6 +53,10 @@ _BETWEEN_PLANETS = 2.5
 """Addenda and room between tip circles of neighbouring planets [modules]."""
 _NEAR = 0.005
 """Relative difference of ratios that counts as none against the size of a set."""
+FEW_IN_RING, SHIFT_IN_RING = 30, 0.3
+"""Teeth of planets below which they have a profile shift, and that: without one the tips of a ring meet few
+teeth near their base circles, where pressures have no bound."""
+
 MOST_TRIED = 40
 
 SETS = Quantity("dimensionless", 1, 20, whole=True)
@@ -298,7 +303,7 @@ def _simple_sets(arranged: tuple[Any, ...], ratio: float, planets: int) -> Itera
     ends = {} if held == "ring" else {"input": turned, "output": loaded, "held": held}
     for sun, planet, ring in planetary_teeth(basic(ratio), planets):
         gears: Tree = {"teeth": [sun, planet, ring], "planets": planets, **ends}
-        if any(shifts := [_without_undercut(teeth) for teeth in (sun, planet)]):
+        if any(shifts := [_without_undercut(sun), _in_ring(planet)]):
             gears["profile_shift"] = shifts
         yield gears, USUAL_BEARING * planet, back(ring / sun)
 
@@ -309,7 +314,10 @@ def _stepped_sets(ratio: float, planets: int) -> Iterator[Set]:
         gears: Tree = {
             "teeth": [sun, first],
             "planets": planets,
-            "second": {"teeth": [second, ring]},
+            "second": {
+                "teeth": [second, ring],
+                "profile_shift": [_in_ring(second), FROM_CENTRE_DISTANCE],
+            },
         }
         if shift := _without_undercut(sun):
             gears["profile_shift"] = [shift, -shift]  # which leaves the centre distance as it is
@@ -351,6 +359,11 @@ def stepped_teeth(ratio: float, planets: int) -> Iterator[tuple[int, int, int, i
 def _without_undercut(teeth: int) -> float:
     """Least profile shift of two digits, not negative, with which a rack of 20 degrees does not undercut."""
     return max(ceil(100.0 * (STRAIGHT - 0.5 * teeth * sin(radians(20.0)) ** 2)) / 100.0, 0.0)
+
+
+def _in_ring(teeth: int) -> float:
+    """Profile shift of a planet that a ring meets well above its base circle."""
+    return max(_without_undercut(teeth), SHIFT_IN_RING * (teeth < FEW_IN_RING))
 
 
 def _reach(planets: int) -> Iterator[tuple[tuple[Any, ...], float, float]]:
