@@ -264,6 +264,13 @@ def test_a_strain_wave_gear_for_a_ratio_has_it_within_half_a_turn(
     ("family", "ratio", "more", "told"),
     [
         ("planetary", 2.0, {}, "which reaches, from sun to carrier 2.6 to 13"),
+        ("planetary", 0.0, {}, "0 is no ratio of one planetary set with 3 planets"),
+        (
+            "planetary",
+            1000.0,
+            {},
+            "no teeth for a ratio of 1000 with 3 planets can be made; two sets",
+        ),
         ("planetary", 0.2, {}, "ask for 5, and exchange input and output"),
         ("planetary", 5.0, {"torque": "5 N"}, 'torque: "5 N" is a force'),
         ("3K", 3000.0, {}, "pitchpoint.three_k_sets takes other limits"),

@@ -276,6 +276,10 @@ _DOES = {
 """What bodies do of which there is one, by key."""
 
 
+_EVERY = ("all", "both", "everything", "every")
+"""Words for several bodies."""
+
+
 class PlanetaryGears(Table):
     """A planetary gear set: a sun, planets on a carrier, and a ring around them, of one module.
 
@@ -364,9 +368,11 @@ class PlanetaryGears(Table):
         """The table; InputError for several bodies where one is turned, loaded, held or floats."""
         for key, does in _DOES.items() if isinstance(table, Mapping) else ():
             value = table.get(key)
-            if isinstance(value, list | tuple):
+            several = isinstance(value, list | tuple)
+            if several or value in _EVERY:
+                told = f"has {count_of(value)}" if several else "is more than one body"
                 raise InputError(
-                    f"{shown(value)} has {count_of(value)}, and one body alone {does}; write one of "
+                    f"{shown(value)} {told}, and one body alone {does}; write one of "
                     f"{', '.join(get_args(Body))}",
                     key=key,
                 )
@@ -454,10 +460,12 @@ class PlanetaryGears(Table):
                 key=wrong[-1],
             )
         sun, planet = self.teeth[:2]
-        if not self.stepped and (ring := self.teeth[2]) <= planet:
+        if not self.stepped and (ring := self.teeth[2]) <= max(sun, planet):
+            around = f"planet of {planet:.0f}; with a sun of {sun:.0f} teeth"
+            if ring > planet:
+                around = f"sun of {sun:.0f}; with planets of {planet:.0f} teeth"
             raise InputError(
-                f"a ring of {ring:.0f} teeth is not around a planet of {planet:.0f}; with a sun of {sun:.0f} "
-                f"teeth it has some {sun + 2.0 * planet:.0f}",
+                f"a ring of {ring:.0f} teeth is not around a {around} it has some {sun + 2.0 * planet:.0f}",
                 key="teeth",
             )
         if self.second is not None and self.second.teeth[1] <= self.second.teeth[0]:
