@@ -617,6 +617,12 @@ def export(
     fmu: Annotated[
         bool, typer.Option("--fmu", help="The loss map as a unit of FMI 2.0 for co-simulation.")
     ] = False,
+    fmu_joint: Annotated[
+        bool,
+        typer.Option(
+            "--fmu-joint", help="The same with states: rotor, load, stiction, wind-up, play."
+        ),
+    ] = False,
     simscape: Annotated[
         bool, typer.Option("--simscape", help="The loss map as a lookup for MATLAB and Simulink.")
     ] = False,
@@ -671,7 +677,7 @@ def export(
     asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx, "evaluator": evaluator}
     formats = [name for name, wanted in asked.items() if wanted]
     joints = {"mujoco": mujoco, "urdf": urdf, "ros2_control": ros2_control, "isaac": isaac}
-    joints |= {"modelica": modelica, "fmu": fmu, "simscape": simscape}
+    joints |= {"modelica": modelica, "fmu": fmu, "fmu_joint": fmu_joint, "simscape": simscape}
     targets = [name for name, wanted in joints.items() if wanted]
     outcomes, folder = open_result(result), output or Path(result) / "export"
     if formats or not targets:

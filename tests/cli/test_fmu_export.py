@@ -108,7 +108,7 @@ def test_its_source_is_clean_and_builds_where_it_is_unpacked(tmp_path: Path) -> 
         names = {one for one in archive.namelist() if not one.startswith("binaries/")}
     sources = {
         f"sources/{name}"
-        for name in ("joint_fmu.c", "joint_of.h", "loss_table.h", "CMakeLists.txt")
+        for name in ("joint_fmu.c", "joint_map.h", "joint_of.h", "loss_table.h", "CMakeLists.txt")
     }
     assert names == {"modelDescription.xml", "documentation/index.html", *sources}
     subprocess.run(

@@ -16,6 +16,7 @@ from pitchpoint.runs.joint_model import joint_model
 from pitchpoint.runs.run import Outcome
 
 WISHES = Asked(torque_range="5 N m:25 N m", speed_range="2 rpm:20 rpm")
+ROTOR = Asked(rotor_inertia="2 kg cm2")
 
 
 def handed(made: Outcome, folder: Path, target: str, wishes: Asked | None = None) -> HandedOver:
@@ -58,7 +59,7 @@ def test_every_target_takes_every_drive(target: str, kind: str, tmp_path: Path) 
         law, slides=kind == "slides", more={"torsion": torsion()} if kind == "plain" else None
     )
     outcomes = {"a": made, "b": made} if kind == "several" else {"default": made}
-    written = hand_over(outcomes, tmp_path, [target])
+    written = hand_over(outcomes, tmp_path, [target], ROTOR)
     assert len(written) == len(outcomes)
     for name, files in written.items():
         assert all(path.is_file() for path in files.paths)
@@ -78,7 +79,7 @@ def test_what_somebody_typed_ends_no_remark(target: str, tmp_path: Path) -> None
     made = made_joint()
     made.manifest["members"][0] = "a -- b <c>&"
     made.manifest |= {"case": '--> 1 end; */ """ \'', "driver": "a -- b <c>&", "warnings": [TITLE]}
-    paths = handed(made, tmp_path, target).paths
+    paths = handed(made, tmp_path, target, ROTOR).paths
     for path in [one for each in paths for one in unpacked(each)]:
         if path.suffix == ".mat":
             continue

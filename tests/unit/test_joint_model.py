@@ -35,11 +35,14 @@ def test_what_the_result_has_is_there_with_units_and_the_rest_has_a_reason() -> 
     assert (joint.wind_up.at_load, joint.wind_up.covers) == (1000.0, "teeth")
     assert (joint.hysteresis, joint.transmission_error) == (3e-5, pytest.approx(2e-4))
     assert joint.backlash == {"nominal": 2e-4}
-    order, amplitude, phase, angle = joint.kinematic_error
+    order, amplitude, phase, angle, turns = joint.kinematic_error
     assert order.tolist() == [2, 7]
     assert amplitude == pytest.approx([2e-4, 5e-5])
     assert phase == pytest.approx([0.5, -np.pi / 2.0])
-    assert angle == "wave generator against circular spline"
+    assert (angle, turns) == ("wave generator against circular spline", 1.0)
+    of_gear = error().assign_attrs(turn_angle="angle of flexspline")
+    waves = joint_model(made_joint(more={"kinematic_error": of_gear})).kinematic_error
+    assert waves is not None and waves.turns == pytest.approx(1.0 / 50.0)
     assert joint.inertia is None and joint.armature == 0.0
     assert joint.lacks["inertia"] == "that of a body of the drive is not known"
     bare = joint_model(made_joint())

@@ -21,7 +21,7 @@ from pitchpoint.exports.evaluator import demand_room, header
 from pitchpoint.exports.simulators import HandedOver, Simulated, heading, lost_lines, xml_comment
 from pitchpoint.results.store import write_bytes
 
-__all__ = ["write_fmu"]
+__all__ = ["Unit", "Variable", "write_fmu", "write_unit"]
 
 BESIDE = (
     "The unit is the loss map itself: nothing of it is lost. It has no state: inertia, stiffness, play, "
@@ -47,21 +47,55 @@ _UNITS = {
     "m/s": 'm="1" s="-1"',
     "W": 'kg="1" m="2" s="-3"',
     "degC": 'K="1" offset="273.15"',
+    "rad": 'rad="1"',
+    "m": 'm="1"',
+    "kg m2": 'kg="1" m="2"',
+    "kg": 'kg="1"',
+    "N m s/rad": 'kg="1" m="2" s="-1" rad="-1"',
+    "N s/m": 'kg="1" s="-1"',
     "1": "",
 }
 
 
-class _Variable(NamedTuple):
-    """A variable of the unit, whose place is its value reference."""
+class Variable(NamedTuple):
+    """A variable of a unit, whose place is its value reference.
+
+    Attributes:
+        name, words: of it.
+        unit: of a number; none of what is true or false.
+        start: of what is set from outside; None of an output.
+        parameter: True for what is set before the start, "tunable" for what is set at any time.
+    """
 
     name: str
     words: str
     unit: str = ""
     start: float | None = None
+    parameter: bool | str = False
+
+
+class Unit(NamedTuple):
+    """What makes a unit beside its joint.
+
+    Attributes:
+        name: of model, library and file.
+        what: it is, in a sentence.
+        variables: in the order of their numbers in C.
+        model: file of C with its equations.
+        numbers: lines of C with the numbers that it asks for.
+        notes: paragraphs of its page.
+    """
+
+    name: str
+    what: str
+    variables: list[Variable]
+    model: str
+    numbers: str = ""
+    notes: tuple[str, ...] = ()
 
 
 def write_fmu(given: Simulated, folder: Path) -> HandedOver:
-    """Write the unit: description, sources with CMake, documentation, and a binary if a compiler is there.
+    """Write the loss map as a unit.
 
     Args:
         given: the joint.
@@ -70,19 +104,37 @@ def write_fmu(given: Simulated, folder: Path) -> HandedOver:
     Raises:
         InputError: the map is too large for a file of source.
     """
-    demand_room(given.joint.table, "--fmu")
-    lost = lost_lines(given, given.loss_of_map, BESIDE)
-    sources = _sources(given)
-    binaries = _binary(given, sources)
+    what = "Loss map of a drive for co-simulation, FMI 2.0."
+    unit = Unit(given.name, what, _variables(given), "joint_map.h")
+    return write_unit(given, folder, unit, "--fmu", BESIDE)
+
+
+def write_unit(given: Simulated, folder: Path, unit: Unit, key: str, beside: str) -> HandedOver:
+    """Write a unit: description, sources with CMake, documentation, and a binary if a compiler is there.
+
+    Args:
+        given: the joint, whose map the unit has.
+        folder: of the file.
+        unit: what makes it.
+        key: option that asks for it.
+        beside: what else it leaves out, in a sentence.
+
+    Raises:
+        InputError: the map is too large for a file of source.
+    """
+    demand_room(given.joint.table, key)
+    lost = lost_lines(given, given.loss_of_map, beside)
+    sources = _sources(given, unit)
+    binaries = _binary(unit, sources)
     if not binaries:
         lost = [*lost, "No compiler of C (cc) made a binary: the unit has sources alone."]
     texts = {
-        "modelDescription.xml": _description(given),
-        "documentation/index.html": _page(given, lost),
+        "modelDescription.xml": _description(given, unit, lost),
+        "documentation/index.html": _page(given, unit, lost),
         **{f"sources/{name}": text for name, text in sources.items()},
     }
     content = {name: text.encode("utf-8") for name, text in texts.items()} | binaries
-    path = folder / f"{given.name}.fmu"
+    path = folder / f"{unit.name}.fmu"
     write_bytes(path, _zipped(content))
     return HandedOver([path], lost)
 
@@ -98,27 +150,38 @@ def _zipped(content: dict[str, bytes]) -> bytes:
     return image.getvalue()
 
 
-def _guid(given: Simulated) -> str:
+def _guid(given: Simulated, unit: Unit) -> str:
     joint = given.joint
-    told = repr((joint.digest, joint.law, joint.version, given.temperature, joint.table))
+    told = repr(
+        (
+            joint.digest,
+            joint.law,
+            joint.version,
+            given.temperature,
+            joint.table,
+            unit.name,
+            unit.numbers,
+        )
+    )
     return "{" + str(UUID(bytes=sha256(told.encode()).digest()[:16])) + "}"
 
 
-def _sources(given: Simulated) -> dict[str, str]:
+def _sources(given: Simulated, unit: Unit) -> dict[str, str]:
     joint = given.joint
     law = [*joint.table.loss_torques].index(joint.law)
+    code = files("pitchpoint.exports")
     return {
-        "joint_fmu.c": files("pitchpoint.exports").joinpath("joint_fmu.c").read_text("utf-8"),
+        **{one: code.joinpath(one).read_text("utf-8") for one in ("joint_fmu.c", unit.model)},
         "joint_of.h": (
-            f'#define JOINT_LAW {law}\n#define JOINT_GUID "{_guid(given)}"\n'
-            f"#define JOINT_TEMPERATURE {float(given.temperature)!r}\n"
+            f'#define JOINT_LAW {law}\n#define JOINT_GUID "{_guid(given, unit)}"\n'
+            f"#define JOINT_TEMPERATURE {float(given.temperature)!r}\n{unit.numbers}"
         ),
         "loss_table.h": header(given.outcome, joint.table),
-        "CMakeLists.txt": _CMAKE.format(name=given.name),
+        "CMakeLists.txt": _CMAKE.format(name=unit.name),
     }
 
 
-def _binary(given: Simulated, sources: dict[str, str]) -> dict[str, bytes]:
+def _binary(unit: Unit, sources: dict[str, str]) -> dict[str, bytes]:
     """Library for this machine by its place in the archive; nothing without a compiler."""
     place = _platform()
     compiler = shutil.which(os.environ.get("CC", "cc")) or shutil.which("gcc")
@@ -128,7 +191,7 @@ def _binary(given: Simulated, sources: dict[str, str]) -> dict[str, bytes]:
     with tempfile.TemporaryDirectory() as made:
         for name, text in sources.items():
             (Path(made) / name).write_text(text, "utf-8")
-        library = f"{given.name}.{ending}"
+        library = f"{unit.name}.{ending}"
         command = [compiler, *FLAGS, "joint_fmu.c", "-o", library, "-lm"]
         done = subprocess.run(command, cwd=made, capture_output=True, check=False, timeout=120)
         if done.returncode:
@@ -143,82 +206,90 @@ def _platform() -> tuple[str, str] | None:
     return ("darwin64", "dylib") if sys.platform == "darwin" else None
 
 
-def _variables(given: Simulated) -> list[_Variable]:
+def _variables(given: Simulated) -> list[Variable]:
     unit = given.joint.units
     torque, speed, driver = unit["torque"], unit["speed"], unit["driver"]
     return [
-        _Variable("torque", "of the output on its load", torque, 0.0),
-        _Variable("speed", "of the output", speed, 0.0),
-        _Variable("temperature", "of the oil", "degC", given.temperature),
-        _Variable("loss", "power lost; 0 where friction locks the drive", "W"),
-        _Variable("efficiency", "power out over power in; 0 where no power comes out", "1"),
-        _Variable(
+        Variable("torque", "of the output on its load", torque, 0.0),
+        Variable("speed", "of the output", speed, 0.0),
+        Variable("temperature", "of the oil", "degC", given.temperature),
+        Variable("loss", "power lost; 0 where friction locks the drive", "W"),
+        Variable("efficiency", "power out over power in; 0 where no power comes out", "1"),
+        Variable(
             "input_torque",
             "of the driver; at rest the middle of the band that holds, 0 where friction locks the drive",
             driver,
         ),
-        _Variable("lowest", "torque of the driver that holds, -1e30 without an end", driver),
-        _Variable("highest", "torque of the driver that holds, 1e30 without an end", driver),
-        _Variable("locked", "friction locks the drive against its output"),
-        _Variable("outside", "beyond the map, whose nearest point it is then"),
+        Variable("lowest", "torque of the driver that holds, -1e30 without an end", driver),
+        Variable("highest", "torque of the driver that holds, 1e30 without an end", driver),
+        Variable("locked", "friction locks the drive against its output"),
+        Variable("outside", "beyond the map, whose nearest point it is then"),
     ]
 
 
-def _description(given: Simulated) -> str:
-    variables = _variables(given)
-    used = dict.fromkeys(one.unit for one in variables if one.unit)
+def _description(given: Simulated, unit: Unit, lost: list[str]) -> str:
+    used = dict.fromkeys(one.unit for one in unit.variables if one.unit)
     units = "".join(
-        f"    <Unit name={quoteattr(unit)}><BaseUnit {_UNITS[unit]}/></Unit>\n".replace(" />", "/>")
-        for unit in used
+        f"    <Unit name={quoteattr(name)}><BaseUnit {_UNITS[name]}/></Unit>\n".replace(" />", "/>")
+        for name in used
     )
+    takes = [
+        n for n, one in enumerate(unit.variables, 1) if one.start is not None and not one.parameter
+    ]
     outputs = "".join(
-        f'      <Unknown index="{number}" dependencies="1 2 3"/>\n'
-        for number, one in enumerate(variables, 1)
+        f'      <Unknown index="{number}"{{}}/>\n'
+        for number, one in enumerate(unit.variables, 1)
         if one.start is None
     )
-    name, joint = given.name, given.joint
+    depends = f' dependencies="{" ".join(map(str, takes))}"'
+    at_once = outputs.replace("{}", depends)
+    from_all = outputs.replace(
+        "{}", "" if any(one.parameter for one in unit.variables) else depends
+    )
+    name, joint = unit.name, given.joint
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
-        f"{xml_comment(heading(given, 'Loss map of a drive for co-simulation, FMI 2.0.'))}"
-        f'<fmiModelDescription fmiVersion="2.0" modelName="{name}" guid="{_guid(given)}" '
+        f"{xml_comment([*heading(given, unit.what), chr(10).join(lost)])}"
+        f'<fmiModelDescription fmiVersion="2.0" modelName="{name}" guid="{_guid(given, unit)}" '
         f'description={quoteattr(visible(joint.title))} generationTool="Pitchpoint {joint.version}" '
         'variableNamingConvention="flat">\n'
         f'  <CoSimulation modelIdentifier="{name}" canHandleVariableCommunicationStepSize="true" '
         'canGetAndSetFMUstate="true" canSerializeFMUstate="true">\n'
         '    <SourceFiles>\n      <File name="joint_fmu.c"/>\n    </SourceFiles>\n  </CoSimulation>\n'
         f"  <UnitDefinitions>\n{units}  </UnitDefinitions>\n  <ModelVariables>\n"
-        f"{''.join(map(_variable, range(len(variables)), variables))}  </ModelVariables>\n"
-        f"  <ModelStructure>\n    <Outputs>\n{outputs}    </Outputs>\n"
-        f"    <InitialUnknowns>\n{outputs}    </InitialUnknowns>\n"
+        f"{''.join(map(_variable, range(len(unit.variables)), unit.variables))}  </ModelVariables>\n"
+        f"  <ModelStructure>\n    <Outputs>\n{at_once}    </Outputs>\n"
+        f"    <InitialUnknowns>\n{from_all}    </InitialUnknowns>\n"
         "  </ModelStructure>\n</fmiModelDescription>\n"
     )
 
 
-def _variable(number: int, one: _Variable) -> str:
-    takes = one.start is not None
+def _variable(number: int, one: Variable) -> str:
     kind = "Real" if one.unit else "Boolean"
     unit = f" unit={quoteattr(one.unit)}" if one.unit else ""
-    start = f' start="{one.start!r}"' if takes else ""
-    causality = "input" if takes else "output"
-    calculated = "" if takes else ' initial="calculated"'
-    discrete = ' variability="discrete"' if kind == "Boolean" else ""
+    start = "" if one.start is None else f' start="{one.start!r}"'
+    if one.start is None:
+        role = "output" if kind == "Real" else 'output" variability="discrete'
+        role += '" initial="calculated'
+    elif one.parameter:
+        role = f'parameter" variability="{"tunable" if one.parameter == "tunable" else "fixed"}'
+    else:
+        role = "input"
     return (
-        f'    <ScalarVariable name="{one.name}" valueReference="{number}" causality="{causality}"'
-        f"{discrete}{calculated} description={quoteattr(one.words)}><{kind}{unit}{start}/></ScalarVariable>\n"
+        f'    <ScalarVariable name="{one.name}" valueReference="{number}" causality="{role}" '
+        f"description={quoteattr(one.words)}><{kind}{unit}{start}/></ScalarVariable>\n"
     )
 
 
-def _page(given: Simulated, lost: list[str]) -> str:
-    words = "".join(
-        f"<p>{escape(one)}</p>\n" for one in heading(given, "Loss map for co-simulation.")
-    )
+def _page(given: Simulated, unit: Unit, lost: list[str]) -> str:
+    words = "".join(f"<p>{escape(one)}</p>\n" for one in (*heading(given, unit.what), *unit.notes))
     rows = "".join(
         f"<li><b>{one.name}</b> [{escape(one.unit or 'true or false')}]: {escape(one.words)}</li>\n"
-        for one in _variables(given)
+        for one in unit.variables
     )
     table = escape("\n".join(lost))
     return (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{given.name}</title></head>\n'
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{unit.name}</title></head>\n'
         f"<body>\n<h1>{escape(given.joint.title)}</h1>\n{words}<ul>\n{rows}</ul>\n<pre>{table}</pre>\n"
         "<p>Inputs that are not a number are refused. Another platform: cmake in the folder sources, and put "
         "the library into binaries.</p>\n</body></html>\n"

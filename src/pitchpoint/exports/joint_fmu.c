@@ -1,7 +1,8 @@
-/* Loss map of a drive as a unit of FMI 2.0 for co-simulation: no state, outputs follow inputs at once.
+/* A drive as a unit of FMI 2.0 for co-simulation: what every unit answers.
  *
- * C99; loss_table.h beside it holds the map. JOINT_LAW is the number of the friction law, JOINT_GUID that of
- * modelDescription.xml, JOINT_TEMPERATURE the one that holds until another is set. */
+ * C99; loss_table.h beside it holds the loss map, joint_of.h the numbers of the drive: JOINT_LAW is the number of
+ * the friction law, JOINT_GUID that of modelDescription.xml, JOINT_TEMPERATURE the one that holds until another is
+ * set. joint_map.h gives loss and torque at once, joint_motion.h moves rotor and load, where JOINT_MOVES. */
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,56 +40,11 @@ typedef struct {
     fmi2ComponentEnvironment componentEnvironment;
 } fmi2CallbackFunctions;
 
-enum { TORQUE, SPEED, TEMPERATURE, LOSS, EFFICIENCY, INPUT_TORQUE, LOWEST, HIGHEST, REALS };
-enum { LOCKED = REALS, OUTSIDE };
-
-#define UNBOUNDED 1e30 /* stands for a torque that no torque of the driver reaches */
-
-struct joint {
-    double inputs[3];
-    double time;
-};
-
-static double joint_finite(double value, double otherwise)
-{
-    return isnan(value) ? otherwise : value;
-}
-
-/* Outputs by their value references; what has no number has the stand-in of modelDescription.xml. */
-static double joint_output(const struct joint *joint, fmi2ValueReference number)
-{
-    const double torque = joint->inputs[TORQUE], speed = joint->inputs[SPEED];
-    const double temperature = joint->inputs[TEMPERATURE];
-    const struct loss_table_point here = loss_table_at(torque, speed, temperature, JOINT_LAW);
-    const struct loss_table_rest rest = loss_table_at_rest(torque, temperature, JOINT_LAW);
-    const double ideal = torque * LOSS_TABLE_SPEED_RATIO;
-    switch (number) {
-    case LOSS:
-        return joint_finite(here.loss, 0.0);
-    case EFFICIENCY:
-        return joint_finite(here.efficiency, 0.0);
-    case INPUT_TORQUE:
-        if (speed == 0.0)
-            return 0.5 * (joint_finite(rest.lowest, ideal) + joint_finite(rest.highest, ideal));
-        return joint_finite(here.input_torque, 0.0);
-    case LOWEST:
-        return joint_finite(rest.lowest, -UNBOUNDED);
-    case HIGHEST:
-        return joint_finite(rest.highest, UNBOUNDED);
-    case LOCKED:
-        return speed == 0.0 ? rest.locked : here.locked;
-    case OUTSIDE:
-        return here.outside;
-    default:
-        return joint->inputs[number];
-    }
-}
-
-static void joint_reset(struct joint *joint)
-{
-    joint->inputs[TORQUE] = joint->inputs[SPEED] = joint->time = 0.0;
-    joint->inputs[TEMPERATURE] = JOINT_TEMPERATURE;
-}
+#if defined(JOINT_MOVES)
+#include "joint_motion.h"
+#else
+#include "joint_map.h"
+#endif
 
 FMI2_EXPORT const char *fmi2GetTypesPlatform(void)
 {
@@ -140,7 +96,7 @@ FMI2_EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component c)
 
 FMI2_EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
-    (void)c;
+    joint_start(c);
     return fmi2OK;
 }
 
@@ -171,7 +127,7 @@ FMI2_EXPORT fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference 
                                       fmi2Boolean values[])
 {
     for (size_t k = 0; k < n; ++k) {
-        if (numbers[k] != LOCKED && numbers[k] != OUTSIDE)
+        if (numbers[k] < REALS || numbers[k] >= ALL)
             return fmi2Error;
         values[k] = joint_output(c, numbers[k]) != 0.0;
     }
@@ -196,9 +152,8 @@ FMI2_EXPORT fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference num
                                    const fmi2Real values[])
 {
     for (size_t k = 0; k < n; ++k) {
-        if (numbers[k] > TEMPERATURE || isnan(values[k]))
+        if (!joint_set(c, numbers[k], values[k]))
             return fmi2Error;
-        ((struct joint *)c)->inputs[numbers[k]] = values[k];
     }
     return fmi2OK;
 }
@@ -297,9 +252,8 @@ FMI2_EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2V
 
 FMI2_EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean final)
 {
-    (void)final;
-    ((struct joint *)c)->time = time + step;
-    return fmi2OK;
+    (void)time, (void)final;
+    return joint_step(c, step) ? fmi2OK : fmi2Error;
 }
 
 FMI2_EXPORT fmi2Status fmi2CancelStep(fmi2Component c)

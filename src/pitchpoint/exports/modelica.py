@@ -184,8 +184,7 @@ def _joint(given: Simulated) -> str:
     inertia = joint.armature / ratio**2
     where = "Translational" if joint.slides else "Rotational"
     stiff = joint.wind_up.at_load if joint.wind_up is not None else 0.0
-    each = joint.backlash or {}
-    play = each.get("mean", each.get("nominal", 0.0))
+    play = joint.play
     after, parts, joined = "gear.flange_b", [], []
     if joint.slides:
         parts.append(

@@ -153,8 +153,7 @@ def _arm_with_spring(given: Simulated) -> str:
 
 def _play(given: Simulated, axis: str, kind: str) -> str:
     """Joint that is free within the backlash; a remark where there is none."""
-    each = given.joint.backlash or {}
-    play = each.get("mean", each.get("nominal", 0.0))
+    play = given.joint.play
     if play < 1e-9:
         return f"        <!-- {inert('no backlash is known: a joint with limited range would be it')} -->\n"
     half = f"{0.5 * play:.9g}"

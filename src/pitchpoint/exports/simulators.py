@@ -50,6 +50,7 @@ TARGETS: Mapping[str, str] = {
     "isaac": "pitchpoint.exports.isaac:write_isaac",
     "modelica": "pitchpoint.exports.modelica:write_modelica",
     "fmu": "pitchpoint.exports.fmu:write_fmu",
+    "fmu_joint": "pitchpoint.exports.fmu_joint:write_joint_fmu",
     "simscape": "pitchpoint.exports.simscape:write_simscape",
 }
 """Where each target of a hand-over is written, by the name of its folder and option."""

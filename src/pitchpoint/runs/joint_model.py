@@ -72,12 +72,14 @@ class AngleWaves(NamedTuple):
         amplitude: [wave], in the unit of what they are waves of.
         phase: at the angle zero [wave] [rad].
         angle: of what, in words.
+        turns: turns of that angle in one turn of the driver, without sign.
     """
 
     order: np.ndarray
     amplitude: np.ndarray
     phase: np.ndarray
     angle: str
+    turns: float
 
 
 @dataclass(frozen=True)
@@ -192,6 +194,12 @@ class JointModel:
     def armature(self) -> float:
         """Inertia of drive and rotor at the output; what is not known of it counts as zero [kg m2 or kg]."""
         return (self.inertia or 0.0) + (self.rotor_inertia or 0.0) * self.ratio**2
+
+    @property
+    def play(self) -> float:
+        """Backlash in the mean of its tolerances; none where it is not known [rad or m]."""
+        each = self.backlash or {}
+        return each.get("mean", each.get("nominal", 0.0))
 
     def loss_torque(self, torque: Any, speed: Any, temperature: Any = None) -> Any:
         """Torque of the output that is lost in motion.
@@ -546,7 +554,7 @@ def _backlash(data: xr.Dataset, outcome: Outcome, _: str, __: float) -> dict[str
     }
 
 
-def _kinematic_error(data: xr.Dataset, _: Outcome, __: str, ___: float) -> AngleWaves | None:
+def _kinematic_error(data: xr.Dataset, outcome: Outcome, _: str, __: float) -> AngleWaves | None:
     """Waves of the error under load, by both members together, over a turn."""
     if "curve" not in data.dims or data["kinematic_error"].ndim != 2:
         return None
@@ -557,7 +565,19 @@ def _kinematic_error(data: xr.Dataset, _: Outcome, __: str, ___: float) -> Angle
     size = np.abs(lines)
     largest = np.argsort(-size)[:MOST_WAVES]
     kept = np.sort(largest[size[largest] >= LEAST_WAVE * size.max()])
-    return AngleWaves(kept + 1, size[kept], np.angle(lines[kept]), str(data.attrs["turn_angle"]))
+    angle = str(data.attrs["turn_angle"])
+    turns = _turns_of(angle, outcome.manifest)
+    if turns is None:
+        return None
+    return AngleWaves(kept + 1, size[kept], np.angle(lines[kept]), angle, turns)
+
+
+def _turns_of(angle: str, record: Mapping[str, Any]) -> float | None:
+    """Turns of an angle in one turn of the driver: of one member, or of one against another."""
+    rates, (name, _, other) = _rates(record), angle.removeprefix("angle of ").partition(" against ")
+    if name not in rates or (other or name) not in rates or not rates[record["driver"]]:
+        return None
+    return abs((rates[name] - (rates[other] if other else 0.0)) / rates[record["driver"]])
 
 
 def _transmission_error(data: xr.Dataset, _: Outcome, __: str, load: float) -> float | None:

@@ -1,0 +1,150 @@
+"""A drive as a unit of FMI 2.0 with states: rotor and load, friction, wind-up, play and kinematic error."""
+
+from pathlib import Path
+
+import numpy as np
+
+from pitchpoint.errors import InputError
+from pitchpoint.exports.evaluator import inert
+from pitchpoint.exports.fmu import Unit, Variable, write_unit
+from pitchpoint.exports.simulators import LOCKED_SHARE, HandedOver, Simulated
+from pitchpoint.runs.joint_model import JointModel, WindUpTable
+
+__all__ = ["write_joint_fmu"]
+
+BESIDE = (
+    "In steady motion the unit has the loss map itself: nothing of it is lost. Lost are the ripple of "
+    "friction over the angle, the hysteresis of the wind-up, and the change of temperature by the losses."
+)
+
+STEPS = (
+    "Inside, fixed steps of Runge and Kutta of order four: a hundredth of the shortest period of the wind-up "
+    "with the inertia of the load that is set, a thirtieth of the shortest wave of the kinematic error, at "
+    "most 0.1 ms. Where the driver comes to rest within a step, it is found there."
+)
+
+
+def write_joint_fmu(given: Simulated, folder: Path) -> HandedOver:
+    """Write the unit with states.
+
+    Args:
+        given: the joint.
+        folder: of the file.
+
+    Raises:
+        InputError: no inertia is known of drive or rotor, or the map is too large for a file of source.
+    """
+    if not given.joint.armature > 0.0:
+        raise InputError(
+            "the result knows no inertia of the drive, without which its joint cannot move; say that of "
+            'the motor, --rotor-inertia "0.3 kg cm2"',
+            key="--fmu-joint",
+        )
+    unit = Unit(
+        f"{given.name}_joint",
+        "Joint with states for co-simulation, FMI 2.0: rotor and load, friction that sticks, wind-up, play.",
+        _variables(given),
+        "joint_motion.h",
+        _numbers(given),
+        (STEPS, *_holds(given.joint)),
+    )
+    return write_unit(
+        given, folder, unit, "--fmu-joint", f"{BESIDE} {' '.join(_lacks(given.joint))}".strip()
+    )
+
+
+def _variables(given: Simulated) -> list[Variable]:
+    unit = given.joint.units
+    torque, speed, driver, travel = (unit[name] for name in ("torque", "speed", "driver", "travel"))
+    slides = given.joint.slides
+    turning = "rad/s" if driver == "N m" else "m/s"
+    turned = "rad" if driver == "N m" else "m"
+    return [
+        Variable("motor_torque", "of the motor on the driver", driver, 0.0),
+        Variable("load_torque", "of the output on its load", torque, 0.0),
+        Variable("temperature", "of the oil", "degC", given.temperature),
+        Variable("load_inertia", "of the load", unit["inertia"], given.joint.armature, "tunable"),
+        Variable("damping", "of the wind-up", "N s/m" if slides else "N m s/rad", 0.0, "tunable"),
+        Variable("start_angle", "of the driver over the ratio", travel, 0.0, True),
+        Variable("start_speed", "of the driver over the ratio", speed, 0.0, True),
+        Variable("start_wind_up", "from the middle of the play", travel, 0.0, True),
+        Variable("start_wind_up_rate", "of the wind-up", speed, 0.0, True),
+        Variable("motor_angle", "of the driver, along that of the output", turned),
+        Variable("motor_speed", "of the driver, along that of the output", turning),
+        Variable("output_angle", "of the load", travel),
+        Variable("output_speed", "of the load", speed),
+        Variable("wind_up", "from the middle of the play; 0 of a rigid drive", travel),
+        Variable("torque", "of the drive on its output", torque),
+        Variable("friction", "torque at the driver against its motion, or that holds it", driver),
+        Variable("loss", "power lost to friction", "W"),
+        Variable("sticks", "friction holds the driver at rest"),
+        Variable("outside", "beyond the map, whose nearest point it is then"),
+    ]
+
+
+def _numbers(given: Simulated) -> str:
+    """What the equations ask for, as C has it; arrays of nothing have a place that nothing reads."""
+    joint = given.joint
+    knots = np.zeros((3, 0)) if joint.wind_up is None else _knots(joint.wind_up)
+    waves = joint.kinematic_error
+    order = np.zeros(0) if waves is None else waves.order * waves.turns * abs(joint.ratio)
+    arrays = {
+        "wind_up": knots[0],
+        "wind_up_torque": knots[1],
+        "stiffness": knots[2],
+        "wave_order": order,
+        "wave_amplitude": order if waves is None else waves.amplitude,
+        "wave_phase": order if waves is None else waves.phase,
+    }
+    numbers = {
+        "ARMATURE": joint.armature,
+        "PLAY": joint.play,
+        "LOCKED_SHARE": LOCKED_SHARE,
+        "STIFFEST": max(knots[2], default=0.0),
+        "HIGHEST_ORDER": max(abs(order), default=0.0),
+    }
+    return (
+        f"#define JOINT_MOVES\n#define JOINT_KNOTS {knots.shape[1]}\n#define JOINT_WAVES {order.size}\n"
+        + "".join(f"#define JOINT_{name} {float(value)!r}\n" for name, value in numbers.items())
+        + "".join(f"static const double joint_{n}[] = {{{_row(v)}}};\n" for n, v in arrays.items())
+    )
+
+
+def _row(values: np.ndarray) -> str:
+    few = np.zeros(2) if values.size < 2 else values[:0]
+    return ", ".join(map(repr, map(float, (*values, *few))))
+
+
+def _knots(curve: WindUpTable) -> np.ndarray:
+    """Wind-up from first touch, torque and stiffness, rising from zero."""
+    points = np.stack([curve.wind_up, curve.torque, curve.stiffness])
+    if points[1, 0] > 0.0:
+        start = points[0, 0] - points[1, 0] / points[2, 0]
+        points = np.concatenate([[[start], [0.0], [points[2, 0]]], points], axis=1)
+    points[0] -= points[0, 0]
+    return points
+
+
+def _lacks(joint: JointModel) -> list[str]:
+    """What the result has not, of which the unit has none then."""
+    told = {
+        "wind_up": "The drive is rigid and has no play in it",
+        "backlash": "It has no play",
+        "kinematic_error": "It has no error over the angle",
+    }
+    return [f"{words}: {joint.lacks[name]}." for name, words in told.items() if name in joint.lacks]
+
+
+def _holds(joint: JointModel) -> list[str]:
+    """Numbers of the joint, and what it has not, as paragraphs."""
+    unit, curve = joint.units, joint.wind_up
+    stiffness = "rigid"
+    if curve is not None:
+        slope = f"{curve.at_load:.6g} {unit['torque']}/{unit['travel']}"
+        stiffness = f"stiffness {slope} at the load of operation"
+    return [
+        f"Inertia of drive and rotor at the output {joint.armature:.6g} {unit['inertia']}; {stiffness}; play "
+        f"{joint.play:.6g} {unit['travel']}. At rest friction holds what the band of the map holds. Where "
+        f"friction locks the drive against its load, friction is {LOCKED_SHARE} times the load.",
+        *map(inert, _lacks(joint)),
+    ]

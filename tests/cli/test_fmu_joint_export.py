@@ -1,0 +1,325 @@
+"""The joint as a unit of FMI 2.0 with states: against map, integrator with events, and own motion."""
+
+import math
+import shutil
+import subprocess
+import zipfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from made_joints import RATIO, error, locking, made_joint, plain, torsion
+from scipy.integrate import solve_ivp
+
+from pitchpoint._jax import array
+from pitchpoint.dynamics.excitation import Waves
+from pitchpoint.dynamics.joint import Joint, Sliding
+from pitchpoint.dynamics.joint_course import Drive, course
+from pitchpoint.errors import InputError
+from pitchpoint.exports.simulators import Asked, HandedOver, hand_over
+from pitchpoint.loading.wind_up_curve import WindUpCurve
+from pitchpoint.runs.joint_model import JointModel, joint_model
+from pitchpoint.runs.run import Outcome
+
+fmpy = pytest.importorskip("fmpy")
+pytestmark = pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc")
+STRICT = ("gcc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-shared", "-fPIC")
+ROTOR, LOAD = 0.7, 1.2
+WISHES = Asked(rotor_inertia=f"{ROTOR / RATIO**2} kg m2", temperature="40 degC")
+NAMES = ["motor_torque", "load_torque", "temperature", "load_inertia", "damping"]
+NAMES += ["start_angle", "start_speed", "start_wind_up", "start_wind_up_rate"]
+NAMES += ["motor_angle", "motor_speed", "output_angle", "output_speed", "wind_up", "torque"]
+NAMES += ["friction", "loss"]
+
+
+def sticking(torque: np.ndarray, speed: np.ndarray, degree: np.ndarray) -> np.ndarray:
+    """What starts the drive is half as much again as what moves it."""
+    return np.asarray(plain(torque, speed, degree) * np.where(speed == 0.0, 1.5, 1.0))
+
+
+def lossless(torque: np.ndarray, speed: np.ndarray, degree: np.ndarray) -> np.ndarray:
+    return 0.0 * (torque + speed + degree)
+
+
+def handed(made: Outcome, folder: Path) -> HandedOver:
+    return hand_over({"default": made}, folder, ["fmu_joint"], WISHES)["fmu_joint"]
+
+
+class Unit:
+    """A unit in a process, which starts as it is set and runs by steps of a millisecond."""
+
+    def __init__(self, made: Outcome, folder: Path, **start: float) -> None:
+        from fmpy.fmi2 import FMU2Slave
+
+        self.path = handed(made, folder).paths[0]
+        described: Any = fmpy.read_model_description(str(self.path))
+        place = fmpy.extract(str(self.path), unzipdir=str(folder / "unit"))
+        name = described.coSimulation.modelIdentifier
+        self.unit: Any = FMU2Slave(
+            guid=described.guid, unzipDirectory=place, modelIdentifier=name, instanceName="joint"
+        )
+        assert [one.name for one in described.modelVariables] == [*NAMES, "sticks", "outside"]
+        self.time = 0.0
+        self.unit.instantiate()
+        self.begin(**start)
+
+    def begin(self, **start: float) -> None:
+        self.unit.setupExperiment(startTime=0.0)
+        self.unit.enterInitializationMode()
+        self.put(**{"load_inertia": LOAD, **start})
+        self.unit.exitInitializationMode()
+
+    def put(self, **values: float) -> None:
+        self.unit.setReal([NAMES.index(one) for one in values], [*values.values()])
+
+    def of(self, *names: str) -> list[float]:
+        return [*self.unit.getReal([NAMES.index(one) for one in names])]
+
+    @property
+    def sticks(self) -> bool:
+        return bool(self.unit.getBoolean([len(NAMES)])[0])
+
+    def run(self, duration: float, step: float = 1e-3, **values: float) -> list[list[float]]:
+        """Speeds of driver and load over the ratio, and torque, after each step."""
+        self.put(**values)
+        found = []
+        for _ in range(round(duration / step)):
+            self.unit.doStep(self.time, step)
+            self.time += step
+            speed, *others = self.of("motor_speed", "output_speed", "torque")
+            found.append([speed / abs(RATIO), *others])
+        return found
+
+
+def solved(
+    joint: JointModel, motor: float, load: float, start: np.ndarray, times: np.ndarray
+) -> np.ndarray:
+    """Angle and speed of driver and load by an integrator with a search for each stop and start.
+
+    Args:
+        joint: with a wind-up of one stiffness, and play.
+        motor, load: torques at the output.
+        start: state.
+        times: at which it is wanted, from 0.
+    """
+    stiffness = float(joint.wind_up.at_load) if joint.wind_up else 0.0
+
+    def spring(state: np.ndarray) -> float:
+        wind_up = state[0] - state[2]
+        return stiffness * math.copysign(max(abs(wind_up) - joint.play / 2.0, 0.0), wind_up)
+
+    def held(state: np.ndarray) -> float:
+        pull = motor - spring(state)
+        return joint.table.lost(math.copysign(1.0, pull) * spring(state), 0.0, 40.0) - abs(pull)
+
+    def slopes(way: float) -> Callable[..., list[float]]:
+        def of(_: float, state: np.ndarray) -> list[float]:
+            torque = spring(state)
+            pace = max(way * state[1], 1e-9)
+            lost = way * joint.table.lost(way * torque, pace, 40.0) if way else 0.0
+            gain = (motor - lost - torque) / ROTOR if way else 0.0
+            return [state[1], gain, state[3], (torque - load) / LOAD]
+
+        return of
+
+    def stops(way: float) -> Callable[..., float]:
+        def event(_: float, state: np.ndarray) -> float:
+            return way * state[1] if way else held(state)
+
+        event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
+        return event
+
+    state, time, rows = np.array(start, float), 0.0, [np.array(start, float)]
+    way = math.copysign(1.0, state[1])
+    while len(rows) < times.size:
+        run = solve_ivp(
+            slopes(way), (time, times[-1]), state, t_eval=times[len(rows) :], events=stops(way),
+            rtol=1e-9, atol=1e-12, max_step=2e-3,
+        )  # fmt: skip
+        rows += [*np.reshape(run.y, (4, -1)).T]
+        if len(rows) < times.size:
+            time, state = float(run.t_events[0][0]), run.y_events[0][0].copy()
+            stays = way != 0.0 and held(state) >= 0.0
+            way = 0.0 if stays else math.copysign(1.0, motor - spring(state))
+            state[1] = way * 1e-11
+    return np.array(rows)
+
+
+def with_play(play: float = 2e-3) -> dict[str, xr.Dataset]:
+    """A wind-up of one stiffness, and play."""
+    spring = torsion()
+    spring["tangent_torsional_stiffness"][:] = 1000.0
+    spring["kinematic_play"] = play
+    return {"torsion": spring}
+
+
+def test_it_is_whole_clean_and_refuses_what_is_no_number(tmp_path: Path) -> None:
+    from fmpy.validation import validate_fmu
+
+    for number, made in enumerate(
+        (
+            made_joint(more={"torsion": torsion(), "kinematic_error": error()}),
+            made_joint(slides=True),
+        )
+    ):
+        folder = tmp_path / str(number)
+        wishes = replace(WISHES, rotor_inertia="2 kg cm2")
+        (path,), lost = hand_over({"default": made}, folder, ["fmu_joint"], wishes)["fmu_joint"]
+        assert validate_fmu(str(path)) == []
+        with zipfile.ZipFile(path) as archive:
+            archive.extractall(folder / "unit")
+        command = [*STRICT, "joint_fmu.c", "-o", "unit.so", "-lm"]
+        subprocess.run(command, cwd=folder / "unit" / "sources", check=True)
+        page = (folder / "unit" / "documentation" / "index.html").read_text("utf-8")
+        head = (folder / "unit" / "modelDescription.xml").read_text("utf-8")
+        assert "a hundredth of the shortest period" in page and "What is lost" in head
+        assert ("The drive is rigid" in " ".join(lost)) == bool(number)
+    unit = Unit(made_joint(), tmp_path / "other")
+    for wrong in ({"motor_torque": math.nan}, {"load_torque": math.inf}, {"load_inertia": 0.0}):
+        with pytest.raises(Exception, match="fmi2SetReal"):
+            unit.put(**wrong)
+    with pytest.raises(Exception, match="fmi2SetReal"):
+        unit.put(start_speed=1.0)  # it runs
+    with pytest.raises(InputError, match=r"knows no inertia.*--rotor-inertia"):
+        hand_over({"default": made_joint()}, tmp_path, ["fmu_joint"])
+
+
+@pytest.mark.parametrize("more", [{}, with_play()], ids=["rigid", "wound up"])
+def test_steady_motion_is_that_of_the_map(more: dict[str, xr.Dataset], tmp_path: Path) -> None:
+    """In all quadrants: under the torque of the driver by the map its speed is that of the map."""
+    made = made_joint(more=more)
+    joint, unit = joint_model(made), Unit(made, tmp_path)
+    for load, speed in ((20.0, 0.5), (-20.0, 0.5), (45.0, -3.0), (-45.0, -1.0), (0.0, 2.0)):
+        unit.unit.reset()
+        unit.begin(start_speed=0.98 * speed, load_torque=load, damping=10.0 if more else 0.0)
+        motor = joint.driver_torque(load, speed)
+        (*_, (driver, output, torque)) = unit.run(6.0, 0.5, motor_torque=motor)
+        assert (driver, output) == pytest.approx((speed, speed), rel=1e-3)
+        assert torque == pytest.approx(load, abs=0.01)
+        friction, loss = unit.of("friction", "loss")
+        lost = joint.loss_torque(load, speed)
+        assert abs(friction) == pytest.approx(lost / abs(RATIO), rel=1e-2)
+        assert loss == pytest.approx(abs(friction * driver * RATIO), rel=1e-12)
+
+
+def test_it_starts_where_the_band_ends_and_comes_to_rest(tmp_path: Path) -> None:
+    """Rigid, at 20 N m: held below what starts it, then the motion of one inertia, and back to rest."""
+    made = made_joint(sticking)
+    joint, unit = joint_model(made), Unit(made, tmp_path, load_torque=20.0)
+    starts = joint.holding_band(20.0).highest
+    assert starts == pytest.approx((20.0 + 1.5 * 4.0) / 50.0)
+    held = unit.run(0.5, motor_torque=0.999 * starts)
+    assert unit.sticks and not np.any(np.array(held)[:, :2])
+    found = np.array(unit.run(0.6, motor_torque=1.01 * starts))[:, 0]
+
+    def gain(speed: float, motor: float) -> float:
+        """Of both inertias; the load's own counts among what the drive transmits and loses by."""
+        torque, share = 20.0, LOAD / ROTOR
+        for _ in range(9):
+            lost = joint.table.lost(torque, max(speed, 1e-9), 40.0)
+            torque = (20.0 + share * (motor - lost)) / (1.0 + share)
+        return (torque - 20.0) / LOAD
+
+    motor = 1.01 * starts * 50.0
+    times = np.arange(1, 601) * 1e-3
+    expected = solve_ivp(
+        lambda _, v: [gain(v[0], motor)], (0.0, 0.6), [0.0], t_eval=times, rtol=1e-8, atol=1e-10
+    ).y[0]
+    np.testing.assert_allclose(found, expected, rtol=1e-2, atol=1e-6)
+    assert found[-1] > 0.2
+    for speed, *_ in unit.run(1.0, motor_torque=20.0 / 50.0):
+        assert speed >= 0.0
+    assert unit.sticks and unit.of("motor_speed", "output_speed") == [0.0, 0.0]
+    assert unit.of("torque")[0] == pytest.approx(20.0)
+
+
+def test_a_reversal_through_play_is_that_of_an_integrator_with_events(tmp_path: Path) -> None:
+    """The motor turns back: the driver rests, starts anew, crosses the play, and takes the load along."""
+    made = made_joint(sticking, more=with_play())
+    joint = joint_model(made, rotor_inertia=ROTOR / RATIO**2)
+    wind_up = 1e-3 + 5.0 / 1000.0
+    unit = Unit(made, tmp_path, start_speed=0.3, start_wind_up=wind_up)
+    found = np.array(unit.run(0.4, motor_torque=-12.0 / 50.0, load_torque=0.0))
+    times = np.arange(401) * 1e-3
+    start = np.array([0.0, 0.3, -wind_up, 0.3])
+    expected = solved(joint, -12.0, 0.0, start, times)[1:]
+    size = np.abs(expected).max(axis=0)
+    assert expected[:, 1].min() < -0.2 < 0.2 < found[0, 0]
+    inside = abs(expected[:, 0] - expected[:, 2]) < 1e-3
+    assert 5 < inside.sum() < 200
+    np.testing.assert_allclose(found[:, 0], expected[:, 1], atol=0.01 * size[1])
+    np.testing.assert_allclose(found[:, 1], expected[:, 3], atol=0.01 * size[3])
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize("torque", [60.0, 2.0], ids=["loaded", "through the play"])
+def test_wind_up_play_and_error_move_as_in_the_product(torque: float, tmp_path: Path) -> None:
+    """Without friction of a map: against `course`, its own motion of a joint."""
+    points, play = np.array([0.0, 1e-3, 3e-3]), 4e-4
+    carried, slopes = np.array([0.0, 25.0, 105.0]), np.array([2e4, 3e4, 4.5e4])
+    waves, wave = error(), Waves(array([1e-4]), array([2.0]), array([0.3]))
+    waves["kinematic_error"][1] = 1e-4 * np.cos(2.0 * np.arange(64) * 2.0 * np.pi / 64 + 0.3)
+    spring = torsion().assign_coords(torque=carried)
+    spring["wind_up"], spring["tangent_torsional_stiffness"] = (
+        ("torque", points),
+        ("torque", slopes),
+    )
+    spring["torsional_stiffness"] = ("torque", slopes, {"covers": "teeth"})
+    spring["kinematic_play"] = play
+    made = made_joint(lossless, more={"torsion": spring, "kinematic_error": waves})
+    values = map(array, (torque, ROTOR, LOAD, 12.0, abs(RATIO)))
+    curve = WindUpCurve(*map(array, (points, carried, slopes, play)))
+    joint = Joint(curve, *values, Sliding(array([0.0]), array([1.0])))
+    rest, lag = float(joint.wind_up), 1e-4 * math.cos(0.3)
+    times = np.linspace(0.0, 0.2, 41)
+    start = array([0.0, 0.0, rest + 1e-3, 0.0])
+    expected = course(joint, wave, Drive.steady(40.0), array(times), start)
+    speed = 40.0 / abs(RATIO)
+    turning = -1e-4 * 2.0 * abs(RATIO) * math.sin(0.3) * speed
+    unit = Unit(
+        made, tmp_path, damping=12.0, start_speed=speed, start_wind_up=rest + 1e-3 - lag,
+        start_wind_up_rate=-turning, motor_torque=torque / abs(RATIO), load_torque=torque,
+    )  # fmt: skip
+    found = np.array(unit.run(0.2, 5e-3))
+    if torque == 2.0:
+        assert float(np.min(expected.torque)) < 0.0
+    for column, values in ((2, expected.torque), (1, expected.output_rate)):
+        size = float(np.ptp(values))
+        np.testing.assert_allclose(found[:, column], values[1:], atol=0.01 * size)
+
+
+def test_a_gear_that_locks_holds_its_load_and_is_driven_down(tmp_path: Path) -> None:
+    unit = Unit(made_joint(locking, more=with_play()), tmp_path, damping=5.0)
+    for load in (10.0, 60.0, 500.0, -60.0):
+        unit.run(2.0, load_torque=load, motor_torque=0.0)
+        before = unit.of("motor_angle")
+        unit.run(1.0)
+        assert unit.sticks and unit.of("motor_angle") == before
+    (*_, (speed, _, _)) = unit.run(0.5, load_torque=30.0, motor_torque=-8.0 / 50.0)
+    assert speed < -0.01
+
+
+def test_whatever_it_is_asked_it_has_numbers(tmp_path: Path) -> None:
+    """At random: at rest, locked, beyond the map, thrown, at steps of any length."""
+    random = np.random.default_rng(2)
+    for name, law in (("plain", sticking), ("locks", locking)):
+        for kind, more in (("wound", with_play()), ("rigid", {})):
+            unit = Unit(made_joint(law, more=more), tmp_path / f"{name}_{kind}")
+            for _ in range(150):
+                scale = 10.0 ** random.uniform(-3.0, 3.0)
+                unit.put(
+                    motor_torque=scale * random.choice([0.0, 1.0, -1.0]),
+                    load_torque=50.0 * scale * random.choice([0.0, 1.0, -1.0]),
+                    temperature=random.uniform(-50.0, 200.0),
+                )
+                unit.unit.doStep(0.0, float(random.choice([0.0, 1e-7, 1e-3, 0.013])))
+                assert np.isfinite(unit.of(*NAMES)).all()
+            kept = unit.unit.getFMUState()
+            before = unit.run(0.01)
+            unit.unit.setFMUState(kept)
+            unit.unit.freeFMUState(kept)
+            assert unit.run(0.01) == before
