@@ -23,7 +23,14 @@ from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.notebook.tables import summary
 from pitchpoint.runs.jobs import jobs
-from pitchpoint.runs.run import Outcome, Progress, describe, open_result, run_piece, run_variant
+from pitchpoint.runs.run import (
+    Outcome,
+    Progress,
+    describe,
+    open_result,
+    run_piece,
+    run_variant,
+)
 from pitchpoint.views import show
 from pitchpoint.views.report import render
 from pitchpoint.views.sections.strength import STRENGTH, strength_rows
@@ -567,3 +574,34 @@ def test_teeth_last_as_long_as_the_life_at_which_their_safety_is_one(
                     ]
                     safety = job.compute(job.pieces[0])[f"{name}_safety"].values[gear]
                     assert safety == pytest.approx(1.0, rel=1e-9)
+
+
+def test_a_root_of_plastic_lasts_as_long_as_its_safety_is_one_at_the_temperature_of_the_cycle() -> (
+    None
+):
+    text = PAIR.replace('gear_2 = "case-hardened-mq"', 'gear_2 = "POM-H"')
+    text = text.replace('"50 N m"', '"80 N m"')
+
+    def built(degrees: float, more: str = "") -> Variant:
+        warm = text.replace('"60 degC"', f'"{degrees} degC"')
+        return Variant(tomllib.loads(warm + more), "pair.toml", "default")
+
+    with pp.double_precision():
+        case = built(60.0).built({})
+        output = float(case.operation.speed) * case.output_rate
+        lives = {}
+        for degrees in (60.0, 70.0):  # the same case, whose cycle is warmer
+            history = load_steps([1.0], [80.0], [output], degrees + 273.15)
+            found = tooth_life(case, history)
+            assert np.isnan(found["flank_life"].values).tolist() == [[False, True]]
+            lives[degrees] = float(found["root_life"][0, 1])
+            (job,) = [
+                one
+                for one in jobs(built(degrees, f'[strength]\nlife = "{lives[degrees]!r} s"\n'), {})
+                if one.name == "strength"
+            ]
+            safety = job.compute(job.pieces[0])["root_safety"].values[1]
+            assert safety == pytest.approx(1.0, rel=1e-9)
+        both = load_steps([1.0, 1.0], [80.0, 80.0], [output, -output], [333.15, 343.15])
+        damage = 0.5 / lives[60.0] + 0.5 / lives[70.0]
+        assert float(tooth_life(case, both)["root_life"][0, 1]) == pytest.approx(1.0 / damage)

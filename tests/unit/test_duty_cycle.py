@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 from scipy.integrate import solve_ivp
 
-from pitchpoint.analyses.tooth_life import cycles_to_failure, load_classes
+from pitchpoint.analyses.tooth_life import cycles_on_curve, cycles_to_failure, load_classes
 from pitchpoint.cases.duty import _heating
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
 from pitchpoint.duty_cycle.energy import driver_course, energies, mean_load
@@ -192,15 +192,16 @@ def teeth(flank: float, root: float) -> xr.Dataset:
     lives = {name: np.full((1, 2), math.inf) for name in ("flank", "back_flank", "root")}
     lives["flank"][0, 0], lives["root"][0, 0] = flank, root
     data = {f"{name}_life": (("mesh", "gear"), each) for name, each in lives.items()}
-    return xr.Dataset(data, {"mesh": ["1"], "gear": ["gear 1", "gear 2"]})
+    coordinates = {"mesh": ["1"], "gear": ["gear 1", "gear 2"]}
+    return xr.Dataset(data, coordinates, {"members": '["sun", "planet on sun"]'})
 
 
 def test_the_part_that_fails_first_is_the_one_of_the_shortest_life() -> None:
     bearing = {"output": RatedLife(40.0, 1e8)}
     data = duty_dataset(table(), history(), lives=bearing, teeth=teeth(9e9, 8e3))
-    assert data.attrs["first_to_fail"] == "root of gear 1" and float(data["shortest_life"]) == 8e3
+    assert data.attrs["first_to_fail"] == "root of sun" and float(data["shortest_life"]) == 8e3
     assert data.attrs["parts_compared"] == 7 and data.attrs["left_out"] == "heat, wear"
-    assert first_to_fail(data, 0.0).value == "root of gear 1"
+    assert first_to_fail(data, 0.0).value == "root of sun"
     data = duty_dataset(table(), history(), lives=bearing, teeth=teeth(math.inf, math.nan))
     assert data.attrs["first_to_fail"] == "bearing output"
     assert float(data["shortest_life"]) == float(data["bearing_life"][0])
@@ -222,6 +223,7 @@ def test_lives_of_like_names_are_all_compared_and_unloaded_flanks_endure_nothing
     plastic = xr.Dataset(
         {name: (("mesh", "gear"), [[life]]) for name, life in both.items()},
         {"mesh": [""], "gear": ["gear 1"]},
+        {"members": '["gear 1"]'},
     )
     assert first_failure(plastic).compared == 0
     assert "other teeth" in first_failure(plastic).left_out
@@ -398,11 +400,22 @@ def test_lines_of_endurance_give_the_cycles_that_teeth_bear() -> None:
     np.testing.assert_allclose(number, by_hand, rtol=1e-12)
 
 
+def test_curves_of_plastic_roots_give_the_cycles_that_they_bear() -> None:
+    curve = np.array([20.0, 400.0, 0.2, 120.0])[:, None]
+    number = cycles_on_curve(np.array([19.0, 20.0, 30.0, 60.0, 121.0, math.nan]), curve)
+    by_hand = [math.inf, math.inf, 40.0**5, 10.0**5, 0.0, math.nan]
+    np.testing.assert_allclose(number, by_hand, rtol=1e-12)
+    assert np.isnan(cycles_on_curve(np.array([30.0]), np.full((4, 1), math.nan))).all()
+
+
 def test_a_collective_keeps_way_and_mean_loads_of_a_history() -> None:
     few = load_classes(
         load_steps([1.0, 2.0, 3.0, 1.0], [5.0, -5.0, 5.0, 0.0], [2.0, -1.0, 2.0, 2.0], WARM)
     )
-    assert sorted(zip(*few, strict=True)) == [(-5.0, 1.0, 2.0), (5.0, 2.0, 8.0)]
+    assert sorted(zip(*few, strict=True)) == [(-5.0, 1.0, 2.0, WARM), (5.0, 2.0, 8.0, WARM)]
+    two = load_steps([1.0, 1.0], 5.0, 2.0, [WARM, WARM + 8.0])
+    assert load_classes(two).temperature.tolist() == [WARM + 4.0]
+    assert load_classes(two, warm=True).temperature.tolist() == [WARM, WARM + 8.0]
     time = np.linspace(0.0, 10.0, 4001)
     waves = load_history(time, 30.0 * np.sin(time), 2.0 + np.cos(3.0 * time), WARM)
     many = load_classes(waves)

@@ -1,6 +1,6 @@
-"""Life of teeth over a load history: Miner's rule on the lines of ISO 6336, by flank and by root."""
+"""Life of teeth over a load history: Miner's rule on lines of ISO 6336 and VDI 2736, by flank and root."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -10,17 +10,27 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.strength import rated_rows, rating_inputs
-from pitchpoint.cases.built_drive import Ready
+from pitchpoint.cases.built_drive import TRAIN_PERIOD, Ready
+from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.duty_cycle.history import LoadHistory
 from pitchpoint.errors import InputError
 from pitchpoint.gears.nominal_motion import nominal_motion
+from pitchpoint.results.by_stage import Label
 from pitchpoint.results.store import dataset
+from pitchpoint.strength.treatments import PLASTIC_CYCLES
 
-__all__ = ["LoadClasses", "cycles_to_failure", "load_classes", "tooth_life"]
+__all__ = [
+    "LoadClasses",
+    "cycles_on_curve",
+    "cycles_to_failure",
+    "load_classes",
+    "member_names",
+    "tooth_life",
+]
 
 Floats = NDArray[np.float64]
 
-TORQUE_CLASSES, SPEED_CLASSES = 48, 6
+TORQUE_CLASSES, SPEED_CLASSES, TEMPERATURE_CLASSES = 48, 6, 6
 """Classes of a history with more different loads than these: with twice as many lives move by below 1 %."""
 
 _POWER = 8.0
@@ -40,14 +50,16 @@ class LoadClasses(NamedTuple):
         torque: of the output, of either sign, shape (k,) [N m or N].
         speed: of the output, positive, shape (k,) [rad/s or m/s].
         way: that the output makes in the class, shape (k,) [rad or m].
+        temperature: of the oil, mean over the way, shape (k,) [K].
     """
 
     torque: Floats
     speed: Floats
     way: Floats
+    temperature: Floats
 
 
-def load_classes(history: LoadHistory) -> LoadClasses:
+def load_classes(history: LoadHistory, *, warm: bool = False) -> LoadClasses:
     """The collective of a history, what stands still or has no load left out.
 
     Different loads stay apart where there are few; of many those in a class are one, with the power mean of
@@ -55,20 +67,24 @@ def load_classes(history: LoadHistory) -> LoadClasses:
 
     Args:
         history: of an output.
+        warm: temperatures make classes too, as the lines of plastics hang on them.
     """
     size, speed = np.abs(history.torque), np.abs(history.speed)
     way = history.duration * speed
     counts = (way > 0.0) & (size > _LEAST * size.max())
-    torque, size, speed, way, time = (
-        values[counts] for values in (history.torque, size, speed, way, history.duration)
+    torque, size, speed, way, time, degree = (
+        values[counts]
+        for values in (history.torque, size, speed, way, history.duration, history.temperature)
     )
-    pairs = np.stack([torque, speed])
-    rows, place = np.unique(pairs, axis=1, return_inverse=True)
+    loads = np.stack([torque, speed, *[degree] * warm])
+    rows, place = np.unique(loads, axis=1, return_inverse=True)
     if rows.shape[1] > TORQUE_CLASSES * SPEED_CLASSES:
-        bins = np.minimum(TORQUE_CLASSES * size / size.max(), TORQUE_CLASSES - 1).astype(int)
-        paces = np.minimum(SPEED_CLASSES * speed / speed.max(), SPEED_CLASSES - 1).astype(int)
-        keys = (bins * SPEED_CLASSES + paces) * 2 + (torque > 0.0)
-        _, place = np.unique(keys, return_inverse=True)
+        keys = _class_of(size, TORQUE_CLASSES) * SPEED_CLASSES + _class_of(speed, SPEED_CLASSES)
+        if warm:
+            keys = keys * TEMPERATURE_CLASSES + _class_of(
+                degree - degree.min(), TEMPERATURE_CLASSES
+            )
+        _, place = np.unique(keys * 2 + (torque > 0.0), return_inverse=True)
     place = place.ravel()
 
     def whole(values: Floats) -> Floats:
@@ -76,7 +92,14 @@ def load_classes(history: LoadHistory) -> LoadClasses:
 
     ways, times = whole(way), whole(time)
     mean = (whole(way * size**_POWER) / ways) ** (1.0 / _POWER)
-    return LoadClasses(np.sign(whole(torque)) * mean, whole(time * speed) / times, ways)
+    sides = np.sign(whole(torque))
+    return LoadClasses(sides * mean, whole(time * speed) / times, ways, whole(way * degree) / ways)
+
+
+def _class_of(values: Floats, count: int) -> NDArray[np.int_]:
+    """Number of the class among equal ones from zero to the largest value."""
+    most = max(float(values.max(initial=0.0)), 1e-300)
+    return np.minimum(count * values / most, count - 1).astype(int)
 
 
 def cycles_to_failure(stress: Floats, cycles: Floats, limits: Floats) -> Floats:
@@ -100,6 +123,26 @@ def cycles_to_failure(stress: Floats, cycles: Floats, limits: Floats) -> Floats:
     return np.where(np.isnan(stress) | np.isnan(limits[1]), np.nan, number)
 
 
+def cycles_on_curve(stress: Floats, curve: Floats) -> Floats:
+    """Load cycles that plastic roots bear under s_0 + s_N/N^r, at most s_1, shape (...).
+
+    Args:
+        stress: nominal, that of test gears, shape (...) [Pa].
+        curve: s_0, s_N [Pa], r [1], s_1 [Pa], shape (4, ...).
+
+    Returns:
+        0 above what a single load breaks, infinite where it bears more than `LONG`.
+
+    Source: VDI 2736 Part 2 (2014), eq. 13 and the strengths behind it, solved for N.
+    """
+    endless, of_cycles, power, most = curve
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        number = (of_cycles / (stress - endless)) ** (1.0 / power)
+    number = np.where((stress <= endless) | (number > LONG), np.inf, number)
+    number = np.where(stress > np.minimum(most, endless + of_cycles), 0.0, number)
+    return np.where(np.isnan(stress) | np.isnan(endless + of_cycles), np.nan, number)
+
+
 @double_precision()
 def tooth_life(built: Ready, history: LoadHistory) -> xr.Dataset:
     """Damage of the teeth of each mesh in one cycle, and the time until it is one.
@@ -110,25 +153,29 @@ def tooth_life(built: Ready, history: LoadHistory) -> xr.Dataset:
 
     Returns:
         Over `mesh` and `gear`: damage of the working and of the back flank, of the root, which both load, and
-        lives; NaN for plastics, whose lines are others. Load factors are those at the load and speed of each
-        class, K_A is left as the case has it: 1 where the history is the whole load. The attribute `unrated`
-        counts the meshes whose teeth ISO 6336 does not rate.
+        lives. Roots of plastic have the line of their material at the temperature of each class, their teeth
+        warmer than the oil by as much as at the operating point; NaN stands for flanks of plastic, and roots
+        without such a line. Load factors are those at the load and speed of each class, K_A is left as the
+        case has it: 1 where the history is the whole load. The attribute `unrated` counts the meshes whose
+        teeth ISO 6336 does not rate, `members` names the gears of each mesh.
 
     Raises:
         InputError: the drive has no teeth that ISO 6336 rates, or nothing moves under load.
 
-    Source: Palmgren (1924), Miner (1945); ISO 6336-6:2019.
+    Source: Palmgren (1924), Miner (1945); ISO 6336-6:2019; VDI 2736 Part 2 (2014).
     """
-    classes = load_classes(history)
+    every = rating_inputs(built)
+    plastic = any(np.asarray(inputs[4].plastic).any() for _, inputs in every)
+    classes = load_classes(history, warm=plastic)
     if not classes.way.size:
         raise InputError(
             "nothing moves under load in the duty cycle, so that teeth have no load cycles"
         )
-    every = rating_inputs(built)
     if not every:
         raise InputError("ISO 6336 rates pairs of cylindrical gears, and the drive has none")
     labels = [str(label) for label, _ in every]
-    damage = np.stack([_damage(inputs, built, classes) for _, inputs in every])
+    curves = _curves(built, classes.temperature)
+    damage = np.stack([_damage(inputs, built, classes, curves[label]) for label, inputs in every])
     names = ("flank_damage", "back_flank_damage", "root_damage")
     seconds = float(history.duration.sum())
     with np.errstate(divide="ignore"):
@@ -139,10 +186,78 @@ def tooth_life(built: Ready, history: LoadHistory) -> xr.Dataset:
         for at, name in enumerate(names)
     }
     coordinates = {"mesh": labels, "gear": ["gear 1", "gear 2"]}
-    return dataset(data, coordinates, unrated=len(built.meshes) - len(every))
+    return dataset(
+        data,
+        coordinates,
+        unrated=len(built.meshes) - len(every),
+        members=member_names(built, [label for label, _ in every]),
+    )
 
 
-def _damage(inputs: tuple[Any, ...], built: Ready, classes: LoadClasses) -> Floats:
+def member_names(built: Ready, labels: Sequence[Label]) -> list[str]:
+    """Names of both gears of each mesh: of a set its bodies, a planet with what it meshes with.
+
+    Args:
+        built: the drive.
+        labels: of the meshes.
+    """
+    named = dict(zip(built.mesh_labels, _bodies(built), strict=True))
+    found: list[str] = []
+    for label in labels:
+        number, bodies = named[label]
+        where = f", stage {number}" if number else ""
+        if bodies:
+            found += [f"{name}{where}" for name in _parted(bodies, [b for _, b in named.values()])]
+        else:
+            found += [f"gear {at}{where}" for at in (1, 2)]
+    return found
+
+
+def _bodies(built: Ready) -> list[tuple[int, tuple[str, ...]]]:
+    """Stage of each mesh, 0 where there is one alone, and the two bodies of a mesh of a set."""
+    if built.averaging == TRAIN_PERIOD:
+        return [(0, tuple(words.split(" and "))) for words in built.stage_bodies]
+    found: list[tuple[int, tuple[str, ...]]] = []
+    for number, one in zip(built.numbers or (0,), built.stages or (built,), strict=True):
+        sets = [tuple(words.split(" and ")) for words in one.stage_bodies]
+        found += [(number, bodies) for bodies in sets or [()]]
+    return found
+
+
+def _parted(bodies: Sequence[str], every: Sequence[Sequence[str]]) -> list[str]:
+    """Names of both, with the mate where a body has several."""
+    often = [sum(name in set(one) for one in {*map(tuple, every)}) > 1 for name in bodies]
+    return [
+        f"{name} on {mate}" if several else name
+        for name, mate, several in zip(bodies, reversed(bodies), often, strict=True)
+    ]
+
+
+def _curves(built: Ready, temperature: Floats) -> dict[Label, Floats]:
+    """Lines of plastic roots of each mesh at temperatures of the oil, shape (4, k, 2); NaN for others."""
+    found = {}
+    for label, one in zip(built.mesh_labels, built.meshes, strict=True):
+        if not one.case.gears.rated:
+            continue
+        given = np.asarray(one.rated.strengths.root)
+        columns = [
+            _curve(used, temperature + used.temperature - float(one.operation.temperature), limit)
+            for used, limit in zip(one.solids, given, strict=True)
+        ]
+        found[label] = np.stack(columns, axis=-1)
+    return found
+
+
+def _curve(used: SolidInUse, degrees: Floats, given: float) -> Floats:
+    """Of a gear at temperatures of its teeth, shape (4, k)."""
+    known, tensile = used.record.root_strength, used.record.tensile_strength
+    if known is None or not used.plastic or not np.isnan(given):
+        return np.full((4, degrees.size), np.nan)
+    most = np.inf if tensile is None else tensile.value
+    return np.array([(*known.at(float(degree)), most) for degree in degrees]).T
+
+
+def _damage(inputs: tuple[Any, ...], built: Ready, classes: LoadClasses, curves: Floats) -> Floats:
     """Of working flank, back flank and root of both gears of a mesh in one cycle, shape (2, 3)."""
     mesh, _, duty, _, strengths, _ = inputs
     rows = rated_rows([*_rows(inputs, built, classes)])
@@ -154,29 +269,42 @@ def _damage(inputs: tuple[Any, ...], built: Ready, classes: LoadClasses) -> Floa
     output_rate = float(built.operation.speed) * built.output_rate
     # Turns of the driver of this mesh for a way of the output, at the ratio of the operating point.
     turns = classes.way * float(duty.speed) / abs(output_rate) / (2.0 * np.pi)
-    own = np.abs(np.asarray(nominal_motion(mesh, duty.driver, 1.0 - duty.driver))) * np.asarray(
-        duty.engagements
-    )
+    motion = np.asarray(nominal_motion(mesh, duty.driver, 1.0 - duty.driver))
+    own = np.abs(motion) * np.asarray(duty.engagements)
     cycles = turns[:, None] * own
     working = classes.torque[:, None] > 0.0
-    parts = []
-    for part, constants in (
-        ("flank", strengths.constants.flank),
-        ("root", strengths.constants.root),
-    ):
-        stress, limit = (
-            ("contact_stress", "contact_limit")
-            if part == "flank"
-            else ("root_stress", "root_limit")
-        )
-        _, few, many = np.asarray(constants)
-        places = np.stack([few, many, np.full(2, LONG)])[:, None, :]
-        bears = cycles_to_failure(of(stress)[0], np.broadcast_to(places, (3, count, 2)), of(limit))
-        with np.errstate(divide="ignore"):
-            parts.append(np.where(cycles > 0.0, cycles / bears, 0.0))
-    flank, root = parts
+    flank = _bears(of("contact_stress"), of("contact_limit"), strengths.constants.flank)
+    root = _bears(of("root_stress"), of("root_limit"), strengths.constants.root)
+    plastic = np.asarray(strengths.plastic)
+    flank = np.where(plastic, np.nan, flank)
+    root = np.where(
+        plastic, _plastic_roots(of("root_stress")[0], of("root_limit")[1], strengths, curves), root
+    )
+    with np.errstate(divide="ignore"):
+        flank, root = (np.where(cycles > 0.0, cycles / bears, 0.0) for bears in (flank, root))
     either = [np.where(side, flank, 0.0).sum(axis=0) for side in (working, ~working)]
     return np.stack([*either, root.sum(axis=0)], axis=1)
+
+
+def _bears(stress: Floats, limit: Floats, constants: Any) -> Floats:
+    """Load cycles that both gears bear in each class on the lines of steel, shape (k, 2)."""
+    _, few, many = np.asarray(constants)
+    places = np.stack([few, many, np.full(2, LONG)])[:, None, :]
+    return cycles_to_failure(stress[0], np.broadcast_to(places, limit.shape), limit)
+
+
+def _plastic_roots(stress: Floats, limit: Floats, strengths: Any, curves: Floats) -> Floats:
+    """Load cycles of roots on the lines of plastics, shape (k, 2).
+
+    Args:
+        stress: at the root, shape (k, 2) [Pa].
+        limit: permissible at `PLASTIC_CYCLES` and the temperature of the operating point, shape (k, 2) [Pa].
+        strengths: of both gears.
+        curves: at the temperatures of the classes, shape (4, k, 2).
+    """
+    endless, of_cycles, power, most = np.asarray(strengths.over_cycles)
+    nominal = np.minimum(endless + of_cycles / PLASTIC_CYCLES**power, most)
+    return cycles_on_curve(stress * nominal / limit, curves)
 
 
 def _rows(inputs: tuple[Any, ...], built: Ready, classes: LoadClasses) -> Iterator[tuple[Any, ...]]:

@@ -155,9 +155,8 @@ def duty_dataset(
     numbers = energies(history, driver)
     numbers["mean_torque_of_balls"] = mean_load(history, BALL)
     numbers["mean_torque_of_rollers"] = mean_load(history, ROLLER)
-    unrated = 0 if teeth is None else int(teeth.attrs.get("unrated", 0))
     failing = first_failure(
-        xr.Dataset(extra, coordinates, {"unrated": unrated}),
+        xr.Dataset(extra, coordinates, {} if teeth is None else teeth.attrs),
         None if heating is None else heating.limits,
     )
     numbers["shortest_life"] = failing.life

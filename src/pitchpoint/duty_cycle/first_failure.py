@@ -1,5 +1,6 @@
 """Which part of a drive fails first over a duty cycle."""
 
+import json
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
@@ -14,7 +15,8 @@ _TEETH = {"flank": "flank_life", "back flank": "back_flank_life", "root": "root_
 
 WITHOUT_LIFE = {
     "teeth": "No life of teeth: not asked for, not rated by ISO 6336, or none moves under load.",
-    "other teeth": "Some teeth have no life here: ISO 6336 rates cylindrical gears, and no plastics.",
+    "other teeth": "Some teeth have no life here: ISO 6336 rates cylindrical gears of steel, VDI 2736 the "
+    "roots of plastics whose strength over cycles is known, and some materials have no strength.",
     "bearings": "No bearing or wave generator was given with its rated life.",
     "heat": "No body was given with a largest temperature, so that none gets too hot.",
     "wear": "Wear has no life here: its depth is that of the operating point.",
@@ -42,9 +44,9 @@ def first_failure(data: xr.Dataset, limits: Mapping[str, float] | None = None) -
     """The part with the shortest life among bodies too hot, bearings, and flanks and roots of the teeth.
 
     Args:
-        data: with `bearing_life` over `bearing`, lives of teeth over `mesh` and `gear`, `body_temperature`
-            over `time` and `body`; any of them may be missing. An attribute `unrated` above 0 tells that
-            teeth of other meshes have no life.
+        data: with `bearing_life` over `bearing`, lives of teeth over `mesh` and `gear` with their names as
+            attribute `members`, `body_temperature` over `time` and `body`; any of them may be missing. An
+            attribute `unrated` above 0 tells that teeth of other meshes have no life.
         limits: largest temperatures of bodies by name [K]; one that gets hotter fails at once.
 
     Example:
@@ -90,10 +92,11 @@ def _of_teeth(data: xr.Dataset) -> Iterator[tuple[str, float]]:
 
 
 def _places(data: xr.Dataset) -> Iterator[tuple[tuple[int, int], str]]:
-    """Indices of meshes and gears with their names; the mesh is named where there are several."""
-    for row, mesh in enumerate(data["mesh"].values.tolist()):
-        for column, gear in enumerate(data["gear"].values.tolist()):
-            yield (row, column), f"{gear}, mesh {mesh}" if data.sizes["mesh"] > 1 else str(gear)
+    """Indices of meshes and gears with their names."""
+    every = [
+        (row, column) for row in range(data.sizes["mesh"]) for column in range(data.sizes["gear"])
+    ]
+    yield from zip(every, json.loads(data.attrs["members"]), strict=True)
 
 
 def _left_out(data: xr.Dataset, limits: Mapping[str, float], unknown: bool) -> Iterator[str]:
