@@ -905,6 +905,15 @@ def test_a_duty_cycle_that_cannot_be_is_told_before_its_map(
         jobs(on_duty(tmp_path, steps, more, changed), {})
 
 
+def test_a_law_of_a_duty_cycle_is_one_of_the_case(tmp_path: Path) -> None:
+    made = on_duty(tmp_path)
+    settings = {"duty.law": "xu_2006"}
+    changed = Variant(read(tmp_path / "pair.toml"), "pair.toml", "default", settings)
+    with pytest.raises(InputError, match=r'duty.law: "xu_2006" is no .*did you mean xu_2007'):
+        jobs(changed, {})
+    assert len(jobs(made, {})) > 0
+
+
 def test_files_of_the_map_say_what_is_doubtful_of_it(moving: tuple[Ready, Outcome]) -> None:
     _, made = moving
     doubtful = replace(made, manifest={**made.manifest, "warnings": ["The film */ is thin."]})

@@ -1,6 +1,7 @@
 """Duty cycles by hand: energies of a loss map, means, lives, resistances."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from pitchpoint.analyses.tooth_life import cycles_on_curve, cycles_to_failure, l
 from pitchpoint.cases.duty import _heating
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
 from pitchpoint.duty_cycle.energy import driver_course, energies, mean_load
-from pitchpoint.duty_cycle.first_failure import first_failure
+from pitchpoint.duty_cycle.first_failure import WITHOUT_LIFE, first_failure
 from pitchpoint.duty_cycle.heat import ThermalNetwork
 from pitchpoint.duty_cycle.history import (
     LoadHistory,
@@ -24,10 +25,13 @@ from pitchpoint.duty_cycle.history import (
 )
 from pitchpoint.duty_cycle.life import BALL, ROLLER, SCATTER, RatedLife, system_life
 from pitchpoint.duty_cycle.motor import COPPER, Motor
+from pitchpoint.duty_cycle.recorded_lives import recorded_lives
 from pitchpoint.duty_cycle.table import HeatTable
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.views.duty_cycle import first_to_fail
+from pitchpoint.results.by_stage import by_stage
+from pitchpoint.results.store import dataset
+from pitchpoint.views.duty_cycle import duty_screen, first_to_fail
 
 WARM = 313.15
 RATIO = 0.02
@@ -187,13 +191,14 @@ def test_quadrants_add_up_to_the_whole() -> None:
     assert float(data["system_life"]) == pytest.approx(together, rel=1e-12)
 
 
-def teeth(flank: float, root: float) -> xr.Dataset:
-    """Lives [s] of the working flank and of the root of gear 1; all others endure."""
+def teeth(flank: float, root: float) -> Callable[[LoadHistory], xr.Dataset]:
+    """Gives lives [s] of the working flank and of the root of gear 1; all others endure."""
     lives = {name: np.full((1, 2), math.inf) for name in ("flank", "back_flank", "root")}
     lives["flank"][0, 0], lives["root"][0, 0] = flank, root
     data = {f"{name}_life": (("mesh", "gear"), each) for name, each in lives.items()}
     coordinates = {"mesh": ["1"], "gear": ["gear 1", "gear 2"]}
-    return xr.Dataset(data, coordinates, {"members": '["sun", "planet on sun"]'})
+    attributes = {"members": '["sun", "planet on sun"]'}
+    return lambda _: xr.Dataset(data, coordinates, attributes)
 
 
 def test_the_part_that_fails_first_is_the_one_of_the_shortest_life() -> None:
@@ -326,9 +331,24 @@ def test_what_is_no_duty_cycle_is_told(columns: dict[str, object], says: str) ->
 @pytest.mark.parametrize(
     ("torque", "speed", "degrees", "says"),
     [
-        (60.0, 1.0, WARM, r"torque: 2 of 2 samples .* 60 N m; the map has -50 to 50 N m"),
-        (1.0, -11.0, WARM, r"speed: 2 of 2 samples .* 11 rad/s"),
-        (1.0, 1.0, 353.15, r"temperature: 2 of 2 samples .* 80 degC"),
+        (
+            60.03,
+            1.0,
+            WARM,
+            r"torque: 2 of 2 samples .* 60.03 N m; the map has -50 to 50 N m; .* \"60.1 N m\"",
+        ),
+        (
+            1.0,
+            -11.0,
+            WARM,
+            r"speed: 2 of 2 samples .* 105.042 rpm; .* loss_map.speed = \"5260 rpm\"",
+        ),
+        (
+            1.0,
+            1.0,
+            353.15,
+            r"temperature: 2 of 2 samples .* 80 degC; .* = \[\"20 degC\", \"80 degC\"\]",
+        ),
     ],
 )
 def test_loads_beyond_the_map_are_told(
@@ -428,3 +448,111 @@ def test_a_collective_keeps_way_and_mean_loads_of_a_history() -> None:
             assert many.way[here] @ np.abs(many.torque[here]) ** power == pytest.approx(
                 asked, rel=3e-3
             )
+
+
+def part(**attributes: object) -> xr.Dataset:
+    """A march of wear under 40 N m at 1 rad/s that took 3e6 s to 20 um."""
+    values = {"life_hours": ((), 3e6), "final_depth": ((), 2e-5)}
+    return xr.Dataset(values, attrs={"law": "archard_1953", "end": "depth"} | attributes)
+
+
+def test_lives_that_a_result_has_are_those_of_its_operating_point() -> None:
+    generator = xr.Dataset({"bearing_life": ((), 1e7)}, attrs={"bearing": "wave generator"})
+    planets = xr.Dataset({"bearing_life": ("pin", [2e7, 3e7])}, {"pin": ["pin 1", "pin 2"]})
+    of = recorded_lives([generator, planets, xr.Dataset()], 40.0, 1.5)
+    assert [*of.bearings] == ["wave generator", "bearing pin 1", "bearing pin 2"]
+    there = load_steps([1.0], [-40.0], [1.5], WARM)
+    assert of.bearings["bearing pin 2"].life(there) == pytest.approx(3e7, rel=1e-12)
+    half = load_steps(
+        [1.0, 1.0], [20.0, 30.0], [3.0, 0.0], WARM
+    )  # half the load, twice as fast, rest
+    assert of.bearings["wave generator"].life(half) == pytest.approx(8.0 * 1e7, rel=1e-12)
+    averaged = generator.assign(operating_bearing_life=((), 4e6))
+    assert recorded_lives([averaged], 40.0, 1.5).bearings["wave generator"].life(
+        there
+    ) == pytest.approx(4e6, rel=1e-12)
+    each = dataset({"bearing_life": ((), 1e7)}, {}, title="limits", bearing="wave generator")
+    stages = by_stage({1: each, 2: each})
+    assert [*recorded_lives([stages], 40.0, 1.5).bearings] == [
+        "wave generator, stage 1",
+        "wave generator, stage 2",
+    ]
+
+
+def test_flanks_wear_with_the_load_times_the_way_of_the_side_that_bears() -> None:
+    (worn,) = recorded_lives([part()], 40.0, 1.0).worn.values()
+    assert worn.until_as_deep(load_steps([1.0], [40.0], [-1.0], WARM)) == pytest.approx(3e6)
+    # 20 N m forwards over 2 rad and 30 N m backwards over 3 rad in 4 s: the second side is the worse.
+    both = load_steps([1.0, 1.0, 2.0], [20.0, -30.0, 9.0], [2.0, 3.0, 0.0], WARM)
+    life = 3e6 * 40.0 * 4.0 / (30.0 * 3.0)
+    assert worn.until_as_deep(both) == pytest.approx(life, rel=1e-12)
+    data = duty_dataset(table(), both, recorded=recorded_lives([part()], 40.0, 1.0))
+    assert data.attrs["first_to_fail"] == "wear of flanks"
+    assert float(data["wear_life"][0]) == pytest.approx(life, rel=1e-12)
+    assert float(data["cycle_wear"][0]) == pytest.approx(2e-5 * 4.0 / life, rel=1e-12)
+    assert data.attrs["left_out"] == "teeth, bearings, heat"
+
+
+@pytest.mark.parametrize(
+    ("attributes", "why"),
+    [
+        ({"law": "masjedi_khonsari_2015"}, "wear at other loads"),
+        ({"end": "turns"}, "wear to a limit"),
+    ],
+)
+def test_wear_without_a_life_is_told(attributes: dict[str, str], why: str) -> None:
+    of = recorded_lives([part(**attributes)], 40.0, 1.0)
+    data = duty_dataset(table(), history(), recorded=of)
+    assert data.attrs["left_out"].endswith(why) and why in WITHOUT_LIFE
+    assert math.isnan(float(data["shortest_life"]))
+    if of.worn:  # how deep a cycle wears is known
+        assert float(data["cycle_wear"][0]) > 0.0
+
+
+def test_energies_under_all_laws_stand_beside_the_first_where_none_is_chosen() -> None:
+    two = table()._replace(
+        loss_torques={
+            "own": table().loss_torques["own"],
+            "twice": (2.0 * np.array(table().loss_torques["own"])).tolist(),
+            "locked": np.full((3, 3, 2), LOCKED).tolist(),
+        }
+    )
+    data = duty_dataset(two, history(), case="x", variant="v")
+    lost = float(data["lost_energy"])
+    np.testing.assert_allclose(data["law_lost_energy"], [lost, 2.0 * lost, np.nan], rtol=1e-12)
+    screen = [line.text for line in duty_screen(data, 80)]
+    assert screen[0].endswith("friction own, first of 3 laws")
+    (row,) = [line for line in screen if line.startswith("Energy lost")]
+    assert "104 to 208 J by law, 1 without an answer" in row
+    chosen = duty_dataset(two, history(), law="twice", case="x", variant="v")
+    assert float(chosen["lost_energy"]) == pytest.approx(2.0 * lost)
+    assert "law" not in chosen.dims
+    assert duty_screen(chosen, 80)[0].text.endswith("friction twice")
+
+
+def test_an_actuator_takes_what_its_motor_and_drive_lose_over_map_and_cycle() -> None:
+    motor = Motor(torque_constant=0.1, resistance=0.5, iron_loss=0.01, largest_torque=0.9)
+    steps = load_steps([1.0, 2.0], [30.0, 30.0], [1.0, -1.0], WARM)
+    data = duty_dataset(table(), steps, motor=motor)
+
+    def taken(load: float, speed: float) -> float:
+        lost = (2.0 + 0.1 * load) * np.sign(speed)
+        torque, turning = (load + lost) * RATIO, speed / RATIO
+        copper = 0.5 * (1.0 + 20.0 * COPPER) * (torque / 0.1) ** 2
+        return float(torque * turning + copper + 0.01 * abs(turning) ** 1.5)
+
+    on, back = taken(30.0, 1.0), 2.0 * taken(30.0, -1.0)
+    assert float(data["electrical_energy"]) == pytest.approx(max(on, 0.0) + max(back, 0.0))
+    out, into = 30.0 + max(-back, 0.0), on + max(back, 0.0) + 60.0
+    assert float(data["actuator_efficiency"]) == pytest.approx(out / into)
+    assert float(data["drive_efficiency"]) == pytest.approx((30.0 + 2 * 25.0) / (35.0 + 60.0))
+    there = data.sel(map_torque=50.0)
+    assert np.isnan(
+        there["map_electrical_power"].sel(map_speed=[0.0, 1.0])
+    ).all()  # 1.14 N m of 0.9
+    there = data.sel(map_torque=0.0, map_speed=10.0)
+    assert float(there["map_electrical_power"]) == pytest.approx(taken(0.0, 10.0))
+    assert float(there["map_actuator_efficiency"]) == 0.0
+    assert "Electrical energy" in "\n".join(
+        line.text for line in duty_screen(data.assign_attrs(case="", variant=""), 80)
+    )

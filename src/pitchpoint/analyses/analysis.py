@@ -168,11 +168,13 @@ class Analysis(Entry):
         pieces: where the pieces lie, in order; one that is the whole by default.
         joined: the whole dataset from its pieces.
         reads: name of a part that it is computed of, which `joined` has in place of pieces.
+        beside: variables; `joined` has the parts before it that have any of them too, behind what it reads.
         onward: of a march, the next piece after the last one as computed, None at its end; it begins after
             `pieces`.
     """
 
     reads: str = ""
+    beside: tuple[str, ...] = ()
     compute: Deferred[Callable[[Any, Piece, Progress], xr.Dataset]] = Deferred(_of_no_piece)
     pieces: Deferred[Callable[[Any], Iterable[Piece]]] = Deferred(_whole)
     joined: Deferred[Callable[[Any, Sequence[xr.Dataset]], xr.Dataset]] = Deferred(_only)

@@ -1,6 +1,7 @@
 """Energy, torques, lives and heat over the duty cycle of a case, of its loss map of the output."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,30 +22,36 @@ from pitchpoint.cases.duty import DutyInputs, duty_inputs
 from pitchpoint.duty_cycle.cycle import duty_dataset
 from pitchpoint.duty_cycle.energy import demand_inside
 from pitchpoint.duty_cycle.life import RatedBearing
+from pitchpoint.duty_cycle.recorded_lives import recorded_lives
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import shown
+from pitchpoint.registry import nearest
 from pitchpoint.units import degrees_celsius
 
 __all__ = ["demand_in_map", "duty_of_map", "rated_lives"]
 
 
 def duty_of_map(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """The duty cycle of a case under its first friction law.
+    """The duty cycle of a case under the friction law that it names, or all of them.
 
     Args:
         built: the case.
-        parts: the loss map of the output, alone.
+        parts: the loss map of the output, and those that have lives, see `recorded_lives`.
     """
-    (data,) = parts
+    data, *others = parts
     asked = _asked(built)
     rated = bool(load_classes(asked.history).way.size) and bool(rating_inputs(built))
+    speed = float(built.operation.speed) * built.output_rate
     return duty_dataset(
         table_of(data),
         asked.history,
+        law=asked.law,
         motor=asked.motor,
         lives={**rated_lives(built), **asked.lives},
+        recorded=recorded_lives(others, float(built.operation.load), abs(speed)),
         heating=asked.heating,
-        teeth=tooth_life(built, asked.history) if rated else None,
+        teeth=partial(tooth_life, built) if rated else None,
         travels="loaded" in built.travels,
         warnings=(),
     )
@@ -71,6 +78,9 @@ def demand_in_map(built: Ready) -> None:
         built: the case.
     """
     asked, (loads, speeds, degrees) = _asked(built), quadrant_axes(built)
+    if asked.law and asked.law not in built.law_names:
+        told = f"{shown(asked.law)} is no friction law of this case{nearest(asked.law, built.law_names)}"
+        raise InputError(told, key="duty.law")
     history = asked.history
     if asked.heating is not None:  # whose temperatures are not known yet
         history = history.at_temperature(np.full(history.time.size, degrees[0]))

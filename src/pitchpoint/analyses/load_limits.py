@@ -55,15 +55,18 @@ def load_limits_part(built: Built) -> xr.Dataset:
     stresses = _stresses(built, limits, torque)
     against = _against(limits, torque, mesh.pitch_diameter)
     life = _life(built, limits, torque)
+    there = None if life is None else _life(built, _at_operation(limits), torque)
     return dataset(
         {
             **{name: (("place",), value) for name, value in stresses.items()},
             **{name: (("against",), value) for name, value in against.items()},
             "flexspline_torque": ((), torque),
             **({} if life is None else {"bearing_life": ((), life)}),
+            **({} if there == life else {"operating_bearing_life": ((), there)}),
         },
         {"place": [*PLACES], **({"against": [*AGAINST]} if against else {})},
         title="load limits",
+        bearing="wave generator",
         warnings=[*_failing(stresses, against)],
         note=ESTIMATE.format(_SENSES[limits.torque]),
         concentrations=[limits.bending_concentration, limits.shear_concentration],
@@ -152,6 +155,11 @@ def _life(built: Built, limits: LoadLimits, torque: float) -> float | None:
         torque=limits.average_torque or torque,
         speed=limits.average_speed or built.case.operation.speed * turns,
     )
+
+
+def _at_operation(limits: LoadLimits) -> LoadLimits:
+    """The same with torque and speed of the operating point as averages."""
+    return limits.model_copy(update={"average_torque": None, "average_speed": None})
 
 
 def _failing(stresses: dict[str, np.ndarray], against: dict[str, np.ndarray]) -> Iterator[str]:

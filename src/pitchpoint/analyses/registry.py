@@ -130,6 +130,7 @@ DUTY = Analysis(
     of="drive",
     lacks=no_duty,
     reads=FOUR_QUADRANTS.name,
+    beside=("bearing_life", "life_hours"),
     joined="pitchpoint.analyses.duty:duty_of_map",
     figures="pitchpoint.analyses.figures:duty_figures",
 )

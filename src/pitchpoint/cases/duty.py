@@ -25,12 +25,14 @@ class DutyInputs(NamedTuple):
         motor: by value; None without one.
         lives: of bearings and wave generators by name.
         heating: resistances that give the temperatures; None where the file has them.
+        law: of friction by name; empty where the case leaves it open.
     """
 
     history: LoadHistory
     motor: Motor | None
     lives: dict[str, RatedLife]
     heating: Heating | None
+    law: str
 
 
 def duty_inputs(table: DutyTable, temperature: float, *, travels: bool) -> DutyInputs:
@@ -53,6 +55,7 @@ def duty_inputs(table: DutyTable, temperature: float, *, travels: bool) -> DutyI
         None if table.motor is None else _motor(table.motor),
         lives,
         None if table.heat is None else _heating(table.heat),
+        table.law,
     )
 
 

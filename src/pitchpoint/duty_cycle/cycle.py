@@ -1,21 +1,24 @@
 """A duty cycle as a dataset: courses, energies, means, life and temperatures."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from pitchpoint.duty_cycle.actuator import actuator_map
 from pitchpoint.duty_cycle.energy import DriverCourse, driver_course, energies, mean_load
 from pitchpoint.duty_cycle.first_failure import first_failure
 from pitchpoint.duty_cycle.heat import ThermalNetwork
 from pitchpoint.duty_cycle.history import LoadHistory, demand_kelvins
 from pitchpoint.duty_cycle.life import BALL, ROLLER, RatedBearing, RatedLife, system_life
 from pitchpoint.duty_cycle.motor import Motor
+from pitchpoint.duty_cycle.recorded_lives import RecordedLives
 from pitchpoint.efficiency.loss_table import LossTable
-from pitchpoint.errors import InputError
+from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.results.store import dataset
 from pitchpoint.results.variable import End
 
@@ -106,8 +109,9 @@ def duty_dataset(
     law: str = "",
     motor: Motor | None = None,
     lives: Mapping[str, RatedLife | RatedBearing] | None = None,
+    recorded: RecordedLives | None = None,
     heating: Heating | None = None,
-    teeth: xr.Dataset | None = None,
+    teeth: Callable[[LoadHistory], xr.Dataset] | None = None,
     travels: bool = False,
     **attributes: Any,
 ) -> xr.Dataset:
@@ -116,72 +120,186 @@ def duty_dataset(
     Args:
         table: loss map of the drive.
         history: of its output.
-        law: of friction, the first one of the map by default.
+        law: of friction; the first one of the map by default, beside which energies under all of them stand.
         motor: of the drive, none by default.
         lives: of bearings by name.
+        recorded: lives that the result of the drive has; those of `lives` with their names come before them.
         heating: resistances that give the temperatures; those of the history by default.
-        teeth: damage and life of the teeth over this history, see `tooth_life`; not known by default.
+        teeth: damage and life of the teeth over a history, see `tooth_life`; not known by default.
         travels: the output travels.
         attributes: of the dataset beside.
 
     Returns:
-        Courses over `time`, energies and means as single numbers, energies over `quadrant`, lives over
-        `bearing`, temperatures over `time` and `body`; the part that fails first, see `first_failure`.
+        Courses over `time`, energies and means as single numbers, energies over `quadrant` and `law`, lives
+        over `bearing` and `worn`, temperatures over `time` and `body`, electrical power over `map_torque` and
+        `map_speed`; the part that fails first, see `first_failure`.
 
     Raises:
         InputError: samples beyond the map or the limits of the motor, or where friction locks the drive.
         ConvergenceError: there is no periodic temperature.
     """
-    winding: Floats | None = None
-    extra: dict[str, tuple[tuple[str, ...], Any]] = {}
-    ends: tuple[End, ...] = ("loaded",) if travels else ()
-    coordinates: dict[str, Any] = {"time": history.time, "quadrant": [*QUADRANTS]}
-    if heating is not None:
-        degrees = heating.periodic(table, history, law, motor)
-        history = history.at_temperature(degrees[:, heating.place(heating.gears)])
-        winding = degrees[:, heating.place(heating.winding)]
-        extra["body_temperature"] = (("time", "body"), degrees)
-        coordinates["body"] = [*heating.network.bodies]
-    driver = driver_course(table, history, law=law, motor=motor, winding_temperature=winding)
-    if lives:
-        each = {name: rated.life(history) for name, rated in lives.items()}
-        extra["bearing_life"] = (("bearing",), [*each.values()])
-        every = [each[name] for name, rated in lives.items() for _ in range(rated.count)]
-        extra["system_life"] = ((), system_life(every))
-        coordinates["bearing"] = [*each]
-    if teeth is not None:
-        extra |= {str(name): (("mesh", "gear"), teeth[name].values) for name in teeth}
-        coordinates |= {name: teeth[name].values for name in ("mesh", "gear")}
-    numbers = energies(history, driver)
-    numbers["mean_torque_of_balls"] = mean_load(history, BALL)
-    numbers["mean_torque_of_rollers"] = mean_load(history, ROLLER)
-    failing = first_failure(
-        xr.Dataset(extra, coordinates, {} if teeth is None else teeth.attrs),
-        None if heating is None else heating.limits,
+    laws = [law] if law else [*table.loss_torques]
+    warm = _warmed(table, history, laws[0], motor, heating)
+    driver = driver_course(
+        table, warm.history, law=laws[0], motor=motor, winding_temperature=warm.winding
     )
-    numbers["shortest_life"] = failing.life
+    parts = [
+        _heated(warm, heating),
+        _lives(warm.history, (recorded.bearings if recorded else {}) | dict(lives or {})),
+        _wear(warm.history, recorded),
+        _teeth(warm.history, teeth),
+        _of_actuator(table, warm, laws[0], motor),
+        _by_law(table, history, laws, motor, heating, driver),
+    ]
+    extra = xr.merge(parts, combine_attrs="no_conflicts")
+    failing = first_failure(extra, None if heating is None else heating.limits)
+    ends: tuple[End, ...] = ("loaded",) if travels else ()
+    numbers = energies(warm.history, driver)
+    numbers |= {
+        "mean_torque_of_balls": mean_load(warm.history, BALL),
+        "mean_torque_of_rollers": mean_load(warm.history, ROLLER),
+        "shortest_life": failing.life,
+    }
     return dataset(
         {
             "output_torque": (("time",), history.torque),
             "output_speed": (("time",), history.speed),
-            "temperature": (("time",), history.temperature),
+            "temperature": (("time",), warm.history.temperature),
             "input_torque": (("time",), driver.torque),
             "input_speed": (("time",), driver.speed),
             "loss": (("time",), driver.loss),
             "motor_loss": (("time",), driver.motor_loss),
+            "electrical_power": (("time",), driver.power + driver.motor_loss),
             **{name: ((), value) for name, value in numbers.items()},
-            **_by_quadrant(history, driver),
-            **extra,
+            **_by_quadrant(warm.history, driver),
+            **{str(name): (tuple(map(str, one.dims)), one.values) for name, one in extra.items()},
         },
-        coordinates,
+        {"time": history.time, "quadrant": [*QUADRANTS]}
+        | {str(name): one.values for name, one in extra.coords.items()},
         travels=ends,
         title="duty cycle",
-        law=law or next(iter(table.loss_torques)),
+        members=str(extra.attrs.get("members", "[]")),
+        law=laws[0],
+        chosen_law=int(bool(law)),
+        motor=int(motor is not None),
         first_to_fail=failing.part,
         parts_compared=failing.compared,
         left_out=", ".join(failing.left_out),
         **attributes,
     )
+
+
+class _Warm(NamedTuple):
+    """A history at its temperatures; those of the bodies (n, b) and of the winding (n,) [K], if computed."""
+
+    history: LoadHistory
+    bodies: Floats | None
+    winding: Floats | None
+
+
+def _warmed(
+    table: LossTable, history: LoadHistory, law: str, motor: Motor | None, heating: Heating | None
+) -> _Warm:
+    if heating is None:
+        return _Warm(history, None, None)
+    bodies = heating.periodic(table, history, law, motor)
+    warm = history.at_temperature(bodies[:, heating.place(heating.gears)])
+    return _Warm(warm, bodies, bodies[:, heating.place(heating.winding)])
+
+
+def _heated(warm: _Warm, heating: Heating | None) -> xr.Dataset:
+    if heating is None or warm.bodies is None:
+        return xr.Dataset()
+    names = [*heating.network.bodies]
+    return xr.Dataset({"body_temperature": (("time", "body"), warm.bodies)}, {"body": names})
+
+
+def _lives(history: LoadHistory, lives: Mapping[str, RatedLife | RatedBearing]) -> xr.Dataset:
+    """Of bearings and wave generators, each and together."""
+    if not lives:
+        return xr.Dataset()
+    each = {name: rated.life(history) for name, rated in lives.items()}
+    every = [each[name] for name, rated in lives.items() for _ in range(rated.count)]
+    data = {
+        "bearing_life": (("bearing",), [*each.values()]),
+        "system_life": ((), system_life(every)),
+    }
+    return xr.Dataset(data, {"bearing": [*each]})
+
+
+def _wear(history: LoadHistory, recorded: RecordedLives | None) -> xr.Dataset:
+    """Life of worn flanks, NaN where their march ended before a limit, and depth of one cycle."""
+    if recorded is None:
+        return xr.Dataset()
+    unworn = {"unworn": json.dumps([*recorded.left_out])}
+    if not recorded.worn:
+        return xr.Dataset(attrs=unworn)
+    times = {name: one.until_as_deep(history) for name, one in recorded.worn.items()}
+    total = float(history.duration.sum())
+    worn = recorded.worn.items()
+    depths = [one.depth * total / times[name] for name, one in worn]
+    lives = [times[name] if one.limited else np.nan for name, one in worn]
+    data = {"wear_life": (("worn",), lives), "cycle_wear": (("worn",), depths)}
+    return xr.Dataset(data, {"worn": [*times]}, unworn)
+
+
+def _teeth(history: LoadHistory, teeth: Callable[[LoadHistory], xr.Dataset] | None) -> xr.Dataset:
+    if teeth is None:
+        return xr.Dataset()
+    found = teeth(history)
+    kept = {name: value for name, value in found.attrs.items() if name in ("unrated", "members")}
+    return found.drop_attrs().assign_attrs(kept)
+
+
+def _of_actuator(table: LossTable, warm: _Warm, law: str, motor: Motor | None) -> xr.Dataset:
+    """Electrical power and efficiency over the map, at the mean temperatures of the cycle."""
+    if motor is None:
+        return xr.Dataset()
+    oil = float(np.average(warm.history.temperature, weights=warm.history.duration))
+    hot = (
+        oil
+        if warm.winding is None
+        else float(np.average(warm.winding, weights=warm.history.duration))
+    )
+    found = actuator_map(table, motor, law=law, temperature=oil, winding=hot)
+    axes = ("map_torque", "map_speed")
+    data = {
+        "map_electrical_power": (axes, found.power),
+        "map_actuator_efficiency": (axes, found.efficiency),
+    }
+    return xr.Dataset(data, dict(zip(axes, (found.torque, found.speed), strict=True)))
+
+
+def _by_law(
+    table: LossTable,
+    history: LoadHistory,
+    laws: Sequence[str],
+    motor: Motor | None,
+    heating: Heating | None,
+    first: DriverCourse,
+) -> xr.Dataset:
+    """Energies under each law; NaN where friction locks the drive by it, or nothing settles."""
+    if len(laws) == 1:
+        return xr.Dataset()
+    rows = [_sums(history, first)]
+    for law in laws[1:]:
+        try:
+            warm = _warmed(table, history, law, motor, heating)
+            course = driver_course(
+                table, warm.history, law=law, motor=motor, winding_temperature=warm.winding
+            )
+            rows.append(_sums(history, course))
+        except (InputError, ConvergenceError):
+            rows.append((np.nan, np.nan))
+    lost, given = zip(*rows, strict=True)
+    data = {"law_lost_energy": (("law",), [*lost]), "law_input_energy": (("law",), [*given])}
+    return xr.Dataset(data, {"law": [*laws]})
+
+
+def _sums(history: LoadHistory, driver: DriverCourse) -> tuple[float, float]:
+    """Energy that is lost, and that the driver gives [J]."""
+    given = np.maximum(driver.power, 0.0)
+    return float(history.duration @ driver.loss), float(history.duration @ given)
 
 
 def _by_quadrant(history: LoadHistory, driver: DriverCourse) -> dict[str, Any]:

@@ -15,6 +15,7 @@ __all__ = ["DriverCourse", "demand_inside", "driver_course", "energies", "mean_l
 Floats = NDArray[np.float64]
 
 _ZERO = 273.15
+_RPM = 30.0 / np.pi
 
 
 class DriverCourse(NamedTuple):
@@ -97,29 +98,47 @@ def demand_inside(table: LossTable, history: LoadHistory) -> None:
         history: of its output.
     """
     along = np.where(history.speed >= 0.0, 1.0, -1.0) * history.torque
+    degrees = history.temperature - _ZERO
     torque, speed, _ = table.units
+    turns = speed == "rad/s"
+    scale, unit = (_RPM, "rpm") if turns else (1.0, speed)
+    paces = np.array(table.speeds) * scale
     rows = (
-        ("torque", along, table.torques, torque, "loss_map.torque"),
-        ("speed", np.abs(history.speed), table.speeds, speed, "loss_map.speed"),
-        (
-            "temperature",
-            history.temperature - _ZERO,
-            table.temperatures,
-            "degC",
-            "loss_map.temperatures",
-        ),
+        ("torque", along, np.array(table.torques), torque),
+        ("speed", np.abs(history.speed) * scale, paces, unit),
+        ("temperature", degrees, np.array(table.temperatures), "degC"),
     )
-    for name, values, axis, unit, key in rows:
+    for name, values, axis, shown in rows:
         room = 1e-9 * (axis[-1] - axis[0])  # of converted units
         beyond = (values < axis[0] - room) | (values > axis[-1] + room)
         if beyond.any():
             at = int(np.argmax(beyond))
             raise InputError(
                 f"{np.count_nonzero(beyond)} of {values.size} samples lie beyond the loss map, the first at "
-                f"{history.time[at]:.6g} s with {values[at]:.6g} {unit}; the map has {axis[0]:.6g} to "
-                f"{axis[-1]:.6g} {unit}; widen {key}",
+                f"{history.time[at]:.6g} s with {values[at]:.6g} {shown}; the map has {axis[0]:.6g} to "
+                f"{axis[-1]:.6g} {shown}; run the case with {_wider(history, table, name)}",
                 key=name,
             )
+
+
+def _wider(history: LoadHistory, table: LossTable, beyond: str) -> str:
+    """Setting of a map that holds what lies beyond."""
+    if beyond == "torque":
+        key, unit = ("force", "N") if table.units[0] == "N" else ("torque", "N m")
+        return f'loss_map.{key} = "{_at_least(float(np.abs(history.torque).max()))} {unit}"'
+    if beyond == "speed":
+        driver = float(np.abs(history.speed).max()) / table.speed_ratio * _RPM
+        return f'loss_map.speed = "{_at_least(driver)} rpm", that of the driver'
+    degrees = history.temperature - _ZERO
+    low = min(np.floor(degrees.min()), table.temperatures[0])
+    high = max(np.ceil(degrees.max()), table.temperatures[-1])
+    return f'loss_map.temperatures = ["{low:g} degC", "{high:g} degC"]'
+
+
+def _at_least(value: float) -> str:
+    """A number of three digits, not below a value."""
+    step = 10.0 ** (np.floor(np.log10(value)) - 2.0)
+    return f"{np.ceil(value / step * (1.0 - 1e-12)) * step:.6g}"
 
 
 def _demand_free(locked: NDArray[np.bool_], history: LoadHistory) -> None:
@@ -157,7 +176,9 @@ def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
 
     Returns:
         By name. Power balances at each sample but for what speeds the rotor up, which a cycle gives back:
-        input_energy - recovered_energy = output_energy - returned_energy + lost_energy + rotor_energy.
+        input_energy - recovered_energy = output_energy - returned_energy + lost_energy + rotor_energy. An
+        efficiency is what comes out at either end over what goes in at either; without a motor that of the
+        actuator is that of the drive.
     """
     seconds = history.duration
     out, given = history.power, driver.power
@@ -165,6 +186,12 @@ def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
 
     def whole(power: Floats) -> float:
         return float(seconds @ power)
+
+    def of(what: Floats, base: Floats) -> float:
+        """Energy out over energy in, both of power out of the one and into the other end."""
+        into = whole(np.maximum(base, 0.0) + np.maximum(-what, 0.0))
+        left = whole(np.maximum(what, 0.0) + np.maximum(-base, 0.0))
+        return left / into if into > 0.0 else float("nan")
 
     def rms(values: Floats) -> float:
         return float(np.sqrt(seconds @ values**2 / total))
@@ -181,6 +208,10 @@ def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
         "motor_lost_energy": whole(driver.motor_loss),
         "electrical_energy": whole(np.maximum(electrical, 0.0)),
         "electrical_recovered_energy": whole(np.maximum(-electrical, 0.0)),
+        "drive_efficiency": of(out, given),
+        "actuator_efficiency": of(out, electrical),
+        "mean_electrical_power": whole(electrical) / total,
+        "peak_electrical_power": float(np.abs(electrical).max()),
         "mean_loss": whole(driver.loss) / total,
         "rms_output_torque": rms(history.torque),
         "peak_output_torque": float(np.abs(history.torque).max()),

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-__all__ = ["WITHOUT_LIFE", "FirstFailure", "first_failure"]
+__all__ = ["WITHOUT_LIFE", "FirstFailure", "first_failure", "part_lives"]
 
 _TEETH = {"flank": "flank_life", "back flank": "back_flank_life", "root": "root_life"}
 """Parts of a tooth with the variable of their life."""
@@ -17,9 +17,14 @@ WITHOUT_LIFE = {
     "teeth": "No life of teeth: not asked for, not rated by ISO 6336, or none moves under load.",
     "other teeth": "Some teeth have no life here: ISO 6336 rates cylindrical gears of steel, VDI 2736 the "
     "roots of plastics whose strength over cycles is known, and some materials have no strength.",
-    "bearings": "No bearing or wave generator was given with its rated life.",
+    "bearings": "No bearing or wave generator has a rated life: none was given, and no part of the result "
+    "has it.",
     "heat": "No body was given with a largest temperature, so that none gets too hot.",
-    "wear": "Wear has no life here: its depth is that of the operating point.",
+    "wear": "Wear has no life here: the result has no march of wear, for which [wear] asks.",
+    "wear at other loads": "Wear has no life here: the rate of its law hangs on film or pressure, so that at "
+    "other loads flanks wear otherwise than in proportion.",
+    "wear to a limit": "Wear has no life here: its march ended before a limit of depth, pressure, tip land "
+    "or backlash; more wear.cycles reach it.",
 }
 """Why parts have no life, by what they are."""
 
@@ -44,9 +49,10 @@ def first_failure(data: xr.Dataset, limits: Mapping[str, float] | None = None) -
     """The part with the shortest life among bodies too hot, bearings, and flanks and roots of the teeth.
 
     Args:
-        data: with `bearing_life` over `bearing`, lives of teeth over `mesh` and `gear` with their names as
-            attribute `members`, `body_temperature` over `time` and `body`; any of them may be missing. An
-            attribute `unrated` above 0 tells that teeth of other meshes have no life.
+        data: with `bearing_life` over `bearing`, `wear_life` over `worn`, lives of teeth over `mesh` and
+            `gear` with their names as attribute `members`, `body_temperature` over `time` and `body`; any of
+            them may be missing. An attribute `unrated` above 0 tells that teeth of other meshes have no life,
+            `unworn` why wear has none.
         limits: largest temperatures of bodies by name [K]; one that gets hotter fails at once.
 
     Example:
@@ -55,7 +61,7 @@ def first_failure(data: xr.Dataset, limits: Mapping[str, float] | None = None) -
         >>> first_failure(xr.Dataset(lives, {"bearing": ["input", "output"]}))[:3]
         ('bearing output', 10000000.0, 2)
     """
-    lives = [*_of_bodies(data, limits or {}), *_of_bearings(data), *_of_teeth(data)]
+    lives = [*_of_bodies(data, limits or {}), *part_lives(data)]
     known = [(name, life) for name, life in lives if not np.isnan(life)]
     unknown = len(known) < len(lives) or bool(data.attrs.get("unrated"))
     left_out = tuple(_left_out(data, limits or {}, unknown))
@@ -63,6 +69,15 @@ def first_failure(data: xr.Dataset, limits: Mapping[str, float] | None = None) -
         return FirstFailure("", float("nan"), 0, left_out)
     part, life = min(known, key=lambda item: item[1])
     return FirstFailure("" if np.isinf(life) else part, life, len(known), left_out)
+
+
+def part_lives(data: xr.Dataset) -> list[tuple[str, float]]:
+    """Names of bearings, teeth and worn flanks with their lives [s], NaN where one is not known.
+
+    Args:
+        data: as `first_failure` has it.
+    """
+    return [*_of_bearings(data), *_of_teeth(data), *_of_wear(data)]
 
 
 def _of_bodies(data: xr.Dataset, limits: Mapping[str, float]) -> Iterator[tuple[str, float]]:
@@ -78,6 +93,11 @@ def _of_bearings(data: xr.Dataset) -> Iterator[tuple[str, float]]:
         ):
             bare = "bearing" in name or "generator" in name
             yield (name if bare else f"bearing {name}"), life
+
+
+def _of_wear(data: xr.Dataset) -> Iterator[tuple[str, float]]:
+    if "wear_life" in data:
+        yield from zip(data["worn"].values.tolist(), data["wear_life"].values.tolist(), strict=True)
 
 
 def _of_teeth(data: xr.Dataset) -> Iterator[tuple[str, float]]:
@@ -109,4 +129,4 @@ def _left_out(data: xr.Dataset, limits: Mapping[str, float], unknown: bool) -> I
         yield "bearings"
     if "body_temperature" not in data or not limits:
         yield "heat"
-    yield "wear"
+    yield from json.loads(data.attrs.get("unworn", '["wear"]'))

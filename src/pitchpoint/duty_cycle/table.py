@@ -118,6 +118,8 @@ class DutyTable(Table):
 
     file: Text
     """File of comma separated values beside the case file, with units in its heads."""
+    law: Text = ""
+    """Friction law of the cycle by name; unless given the first one, with the spread of all beside it."""
     motor: MotorTable | None = None
     """Motor by value, whose losses count; none unless given."""
     lives: Annotated[dict[str, RatedLifeTable], Field(max_length=MOST_PARTS)] = Field(

@@ -1,6 +1,7 @@
 """The duty cycle of a result, by the loss map that it holds."""
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.duty import rated_lives
-from pitchpoint.analyses.four_quadrants import table_of
 from pitchpoint.analyses.tooth_life import tooth_life
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
 from pitchpoint.duty_cycle.history import (
@@ -20,9 +20,10 @@ from pitchpoint.duty_cycle.history import (
 )
 from pitchpoint.duty_cycle.life import RatedLife
 from pitchpoint.duty_cycle.motor import Motor
+from pitchpoint.duty_cycle.recorded_lives import recorded_lives
 from pitchpoint.errors import InputError
 from pitchpoint.notebook.result import Result
-from pitchpoint.runs.joint_model import law_of, map_of_output
+from pitchpoint.runs.joint_model import joint_model, map_of_output
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,10 +55,10 @@ def duty(
         speed: of the output, shape (n,) or () [rad/s or m/s].
         temperature: of the oil, that of the case by default, shape (n,) or () [K].
         variant: of the result, the first one by default.
-        law: of friction, the first one of the map by default.
+        law: of friction; the first one of the map by default, with energies under all of them beside it.
         motor: by value; none by default.
-        lives: of bearings and wave generators by name, as catalogues rate them, beside those of bearings
-            that have a `dynamic_load_rating` in [losses].
+        lives: of bearings and wave generators by name, as catalogues rate them, beside those of the result
+            and those of bearings that have a `dynamic_load_rating` in [losses].
         heating: thermal resistances, from which the temperatures follow.
         teeth: with damage and life of the teeth by ISO 6336, see `tooth_life`.
 
@@ -75,7 +76,7 @@ def duty(
     """
     outcome = result.outcome(variant)
     data = map_of_output(outcome)
-    table = table_of(data)
+    joint = joint_model(outcome, law=law or None)
     travels = data["output_torque"].attrs["units"] == "N"
     usual = float(data.attrs["degree"]) if temperature is None else temperature
     if torque is None and speed is None:
@@ -89,13 +90,14 @@ def duty(
     with double_precision():
         built = None if held is None else held.built({})
     return duty_dataset(
-        table,
+        joint.table,
         history,
-        law=law_of(table, law or None),
+        law=law,
         motor=motor,
         lives={**(rated_lives(built) if rated and built else {}), **(lives or {})},
         heating=heating,
-        teeth=tooth_life(built, history) if teeth and built else None,
+        recorded=recorded_lives(outcome.parts.values(), joint.load, joint.speed),
+        teeth=partial(tooth_life, built) if teeth and built else None,
         travels=travels,
         case=str(outcome.manifest["case"]),
         variant=str(outcome.manifest["variant"]),

@@ -132,6 +132,9 @@ VARIABLES: dict[str, Variable] = {
     "bearing_life": Variable(
         "life of the bearing by its rating, with 90 % unharmed", "L", "s", "h", "time"
     ),
+    "operating_bearing_life": Variable(
+        "life of the bearing at the operating point", "L", "s", "h", "time"
+    ),
     "flank_tolerance": deviation("tolerance of the flanks by ISO 1328-1", "T"),
     "residual": Variable("relative residual of the torque balance", "", "1"),
     "load": Variable("normal force of the pair", "F", "N", "N", "force"),
@@ -648,6 +651,17 @@ VARIABLES: dict[str, Variable] = {
     "motor_lost_energy": energy("energy lost in the motor", "W_motor"),
     "electrical_energy": energy("electrical energy taken", "W_el"),
     "electrical_recovered_energy": energy("electrical energy given back", "W_el rec"),
+    "electrical_power": power("electrical power of the motor", "P_el"),
+    "mean_electrical_power": power("mean electrical power", "P_el mean"),
+    "peak_electrical_power": power("largest electrical power, either way", "P_el max"),
+    "drive_efficiency": percent("energy out of the drive over energy into it", "η_W"),
+    "actuator_efficiency": percent("energy out of the actuator over energy into it", "η_W el"),
+    "map_torque": torque("output torque of the map", "T_out"),
+    "map_speed": Variable("output speed of the map", "n_out", "rad/s", "rpm", "rotational speed"),
+    "map_electrical_power": power("electrical power over the map", "P_el"),
+    "map_actuator_efficiency": percent("efficiency of the actuator over the map", "η_el"),
+    "law_lost_energy": energy("energy lost in the drive by friction law", "W_loss"),
+    "law_input_energy": energy("energy that the driver gives by friction law", "W_in"),
     "rms_output_torque": torque("root mean square of the output torque over time", "T_out rms"),
     "peak_output_torque": torque("largest output torque, either way", "T_out max"),
     "peak_output_speed": Variable(
@@ -670,6 +684,8 @@ VARIABLES: dict[str, Variable] = {
     "quadrant_input_energy": energy("energy of the driver by quadrant", "W_in"),
     "quadrant_lost_energy": energy("energy lost in the drive by quadrant", "W_loss"),
     "system_life": Variable("life of all bearings together", "L", "s", "h", "time"),
+    "wear_life": Variable("life until flanks are worn to their limit", "L_w", "s", "h", "time"),
+    "cycle_wear": Variable("depth of wear of one cycle", "h_c", "m", "nm", "length"),
     "shortest_life": Variable("life of the part that fails first", "L_min", "s", "h", "time"),
     "flank_damage": Variable("damage of the working flank in one cycle", "D_H", "1"),
     "back_flank_damage": Variable("damage of the back flank in one cycle", "D_H", "1"),
@@ -715,6 +731,8 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
     "loaded": {
         "torque": force("output force", "F_out"),
         "output_torque": force("output force", "F_out"),
+        "map_torque": force("output force of the map", "F_out"),
+        "map_speed": speed("output speed of the map", "v_out"),
         "output_speed": speed("output speed", "v_out"),
         "back_driving_torque": force("output force that starts the drive backwards", "F_back"),
         "least_back_driving_torque": force(

@@ -275,6 +275,8 @@ def run_variant(
         _hand_over(variant, outcome.manifest["title"], folder, studies)
     for job in work:
         mark = _mark(variant, built, rows, job)
+        if beside := [*_beside(job, outcome.parts)]:
+            mark = fingerprint(mark, beside)  # parts that there were not before count
         part = _part(job, variant, mark, folder, progress, outcome.parts)
         outcome.parts[job.name] = part
         if not is_study(job.name):
@@ -643,6 +645,13 @@ def _mark(variant: Variant, built: Ready, rows: Sequence[inputs.Row], job: Job) 
     return fingerprint(surroundings(), source, given, job.name, own, *_digests(rows))
 
 
+def _beside(job: Job, before: Mapping[str, xr.Dataset]) -> Iterator[str]:
+    """Names of parts that a part has beside the one that it reads."""
+    for name, part in before.items():
+        if any(variable in part for variable in job.analysis.beside):
+            yield name
+
+
 def _names_file(row: Mapping[str, Any]) -> bool:
     """True for the name of a file: what it holds counts, see `_digests`, not where it lies."""
     *above, last = f"{row['table']}.{row['key']}".split(".")
@@ -672,7 +681,8 @@ def _part(
             _drop_pieces(folder, job.name)  # of a run that was killed while it removed them
         return found
     bound_programs()  # those of the parts before
-    pieces = [before[job.analysis.reads]] if job.analysis.reads else []
+    named = [job.analysis.reads] if job.analysis.reads else []
+    pieces = [before[name] for name in (*named, *_beside(job, before))]
     for piece in _pieces(job, variant, labels, folder, progress):
         pieces.append(piece)
         progress.points(sum(map(_points, pieces)))

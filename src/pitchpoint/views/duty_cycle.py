@@ -9,7 +9,7 @@ from pitchpoint.views import show
 from pitchpoint.views.first_screen import Line, aligned
 from pitchpoint.views.section import KeyFigure
 
-__all__ = ["FIRST", "cycle_figures", "cycle_words", "duty_screen", "first_to_fail"]
+__all__ = ["FIRST", "cycle_figures", "cycle_words", "duty_screen", "first_to_fail", "lost_words"]
 
 FIRST = "Fails first"
 """Name of the line on the part with the shortest life."""
@@ -24,7 +24,7 @@ def duty_screen(data: xr.Dataset, width: int) -> list[Line]:
     """
     title = f"{data.attrs['case']} ({data.attrs['variant']}), friction {data.attrs['law']}"
     return [
-        Line(title, "title"),
+        Line(f"{title}{_among(data)}", "title"),
         Line(show.first_clauses(cycle_words(data), width)),
         *aligned([*cycle_figures(data)], width),
     ]
@@ -56,9 +56,14 @@ def cycle_figures(data: xr.Dataset) -> Iterator[KeyFigure]:
     )
     total = float(data["duration"])
     rows = (
-        ("Energy in", "input_energy", f"{of('recovered_energy')} comes back to the driver"),
+        (
+            "Energy in",
+            "input_energy",
+            f"{of('recovered_energy')} comes back to the driver; efficiency {of('drive_efficiency')}",
+        ),
         ("Energy out", "output_energy", f"{of('returned_energy')} comes back from the load"),
-        ("Energy lost", "lost_energy", f"{of('mean_loss')} in the mean"),
+        ("Energy lost", "lost_energy", f"{_spread(data)}{of('mean_loss')} in the mean"),
+        *_electrical(data),
         (
             "Output torque",
             "rms_output_torque",
@@ -85,6 +90,46 @@ def cycle_figures(data: xr.Dataset) -> Iterator[KeyFigure]:
     ]
     yield KeyFigure(len(rows), "Time", _value(data, "duration"), ", ".join(shares))
     yield first_to_fail(data, len(rows) + 1)
+
+
+def _among(data: xr.Dataset) -> str:
+    """How many laws there are beside the one that nobody chose."""
+    return f", first of {data.sizes['law']} laws" if "law" in data.dims else ""
+
+
+def lost_words(data: xr.Dataset) -> str:
+    """Energy that is lost, from the least to the most of all laws where none was chosen.
+
+    Args:
+        data: see `duty_dataset`.
+    """
+    if "law" not in data.dims:
+        return _value(data, "lost_energy")
+    values = data["law_lost_energy"].values
+    return show.span("lost_energy", "lost_energy", (np.nanmin(values), np.nanmax(values)), data)
+
+
+def _spread(data: xr.Dataset) -> str:
+    """Energies that are lost under all laws; empty where one was chosen."""
+    if "law" not in data.dims:
+        return ""
+    stuck = int(np.isnan(data["law_lost_energy"].values).sum())
+    return f"{lost_words(data)} by law{f', {stuck} without an answer' * bool(stuck)}; "
+
+
+def _electrical(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
+    """What the motor takes, where there is one."""
+    if data.attrs["motor"]:
+        back, share, most = (
+            _value(data, name)
+            for name in (
+                "electrical_recovered_energy",
+                "actuator_efficiency",
+                "peak_electrical_power",
+            )
+        )
+        told = f"{back} given back, efficiency {share}, {most} at most"
+        yield "Electrical energy", "electrical_energy", told
 
 
 def first_to_fail(data: xr.Dataset, order: float) -> KeyFigure:

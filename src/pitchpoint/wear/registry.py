@@ -21,7 +21,8 @@ class WearLaw:
     """A named wear law; `function` gives the specific wear rate of one member [1/Pa].
 
     It holds for contacts of one `shape`, or of any (None). `ranges` are of its arguments in SI; empty where
-    no source states any.
+    no source states any. The rate of a law that is `proportional` is the same at any load, speed and
+    temperature, so that depth grows with the load times the way.
     """
 
     name: str
@@ -30,6 +31,7 @@ class WearLaw:
     sources: tuple[str, ...] = ()
     note: str = ""
     shape: Shape | None = None
+    proportional: bool = False
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     @property
@@ -46,6 +48,7 @@ WEAR_LAWS = Registry(
         "pitchpoint.wear.laws:archard_1953",
         ("archard_1953", "zhao_2022"),
         "The coefficient is of the pair of materials; recalled values of dry metals are 1e-6 to 1e-4.",
+        proportional=True,
     ),
     WearLaw(
         "masjedi_khonsari_2015",
@@ -71,5 +74,6 @@ WEAR_LAWS = Registry(
         "pitchpoint.wear.laws:vdi_2736",
         ("vdi_2736_2_2014", "tkuhn39_2026"),
         "Of plastics; the guideline has it with the mean depth over the flank.",
+        proportional=True,
     ),
 )

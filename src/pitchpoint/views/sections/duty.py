@@ -1,17 +1,18 @@
 """The duty cycle of a case: energies, torques, what fails first, operating points over the efficiency."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import ceil
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint.duty_cycle.first_failure import WITHOUT_LIFE
+from pitchpoint.duty_cycle.first_failure import WITHOUT_LIFE, part_lives
+from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.duty_cycle import cycle_figures, cycle_words, first_to_fail
-from pitchpoint.views.figures import Figure, Panel, display, laws, level, rounded
+from pitchpoint.views.duty_cycle import cycle_figures, cycle_words, first_to_fail, lost_words
+from pitchpoint.views.figures import Figure, Panel, Trace, display, laws, level, rounded
 from pitchpoint.views.section import (
     Block,
     KeyFigure,
@@ -24,7 +25,7 @@ from pitchpoint.views.section import (
 from pitchpoint.views.sections.four_quadrants import OF_OUTPUT
 from pitchpoint.views.sections.loss_map import map_figure
 
-__all__ = ["duty_blocks", "duty_facts", "duty_printed", "operating_points"]
+__all__ = ["actuator_points", "duty_blocks", "duty_facts", "duty_printed", "operating_points"]
 
 _MOST = 2000
 """Largest number of operating points that go into the page."""
@@ -42,6 +43,16 @@ def operating_points(name: str, outcome: Outcome) -> Figure:
     data, cycle = outcome.parts[OF_OUTPUT.part], outcome.parts[_PART]
     mean = float(cycle["temperature"].mean())
     place = int(np.argmin(np.abs(data["temperature"].values - mean)))
+    points, thinned = _points(cycle)
+    law = laws(data).index(str(cycle.attrs["law"]))
+    drawn = map_figure("mean_efficiency", outcome, OF_OUTPUT, law, place)
+    degree = level("temperature", float(data["temperature"].values[place]))
+    told = f"Dots are the operating points of the cycle{thinned}; oil at {degree}."
+    return replace(drawn, name=name, data=[drawn.data[0], points], note=told)
+
+
+def _points(cycle: xr.Dataset) -> tuple[Trace, str]:
+    """Dots at the operating points of a cycle, and what is left out of them in words."""
     step = ceil(cycle.sizes["time"] / _MOST)
     across, up = (cycle[axis].values[::step] for axis in OF_OUTPUT.axes)
     points = {
@@ -52,12 +63,46 @@ def operating_points(name: str, outcome: Outcome) -> Figure:
         "marker": {"size": 5, "color": "#c2185b", "opacity": 0.6},
         "hovertemplate": "%{x:.4~r}, %{y:.4~r}<extra>duty cycle</extra>",
     }
-    law = laws(data).index(str(cycle.attrs["law"]))
-    drawn = map_figure("mean_efficiency", outcome, OF_OUTPUT, law, place)
-    degree = level("temperature", float(data["temperature"].values[place]))
-    thinned = f", one in {step} of them" if step > 1 else ""
-    told = f"Dots are the operating points of the cycle{thinned}; oil at {degree}."
-    return replace(drawn, name=name, data=[drawn.data[0], points], note=told)
+    return points, f", one in {step} of them" if step > 1 else ""
+
+
+ACTUATOR = {
+    "actuator_efficiency": "map_actuator_efficiency",
+    "electrical_power": "map_electrical_power",
+}
+"""Quantities of the actuator that are drawn over its map, with where they stand."""
+
+
+def actuator_points(name: str, place: int, outcome: Outcome) -> Figure:
+    """Operating points of a cycle over a quantity of the actuator, drive and motor together.
+
+    Args:
+        name: of `ACTUATOR`.
+        place: of the variant, for the name of the figure.
+        outcome: with a duty cycle of a motor.
+    """
+    cycle = outcome.parts[_PART]
+    values = cycle[ACTUATOR[name]].values[None, :, :, None]
+    dims = ("law", "output_torque", "output_speed", "temperature")
+    axes = {"output_torque": cycle["map_torque"].values, "output_speed": cycle["map_speed"].values}
+    known = dataset(
+        {name: (dims, values)},
+        {
+            "law": [str(cycle.attrs["law"])],
+            **axes,
+            "temperature": [float(cycle["temperature"].mean())],
+        },
+        travels=[end for end in ("loaded",) if cycle["output_torque"].attrs["units"] == "N"],
+        speed_ratio=outcome.parts[OF_OUTPUT.part].attrs["speed_ratio"],
+    )
+    parts = {**outcome.parts, OF_OUTPUT.part: known}
+    drawn = map_figure(name, replace(outcome, parts=parts), OF_OUTPUT, 0, 0)
+    points, thinned = _points(cycle)
+    oil = show.quantity("temperature", float(cycle["temperature"].mean()), of=cycle)
+    told = (
+        f"Dots are the operating points of the cycle{thinned}; drive and motor with oil at {oil}."
+    )
+    return replace(drawn, name=f"duty_{name}_{place}", data=[drawn.data[0], points], note=told)
 
 
 def duty_blocks(page: Page) -> Iterator[Block]:
@@ -74,29 +119,58 @@ def _of_variant(place: int, outcome: Outcome) -> Iterator[Block]:
     yield Paragraph(show.sentence(cycle_words(data)))
     rows = [[row.name, row.value, row.detail] for row in cycle_figures(data)]
     yield Table(["", "value", ""], rows, caption="Over the duty cycle")
-    if "bearing" in data.coords:
-        yield _lives(data)
+    if lives := [(name, life) for name, life in part_lives(data) if not np.isnan(life)]:
+        yield _lives(lives)
+    if "worn" in data.coords:
+        yield _worn(data)
+    if "law" in data.coords:
+        yield _laws(data)
     out = filter(None, str(data.attrs["left_out"]).split(", "))
     yield Paragraph(" ".join(WITHOUT_LIFE[key] for key in out), "note")
     figure = operating_points(f"duty_{place}", outcome)
     yield Panel("Operating points over the efficiency", [figure])
+    if data.attrs["motor"]:
+        figures = [actuator_points(name, place, outcome) for name in ACTUATOR]
+        yield Panel("Operating points over the map of the actuator", figures)
 
 
-def _lives(data: xr.Dataset) -> Table:
-    """Lives of bearings and wave generators."""
-    pairs = zip(data["bearing"].values, data["bearing_life"].values, strict=True)
-    rows = [[str(name), show.quantity("bearing_life", float(life))] for name, life in pairs]
-    return Table(["bearing", "life"], rows, caption="Lives of bearings")
+def _lives(lives: Sequence[tuple[str, float]]) -> Table:
+    """Lives of all parts, the shortest first; parts that endure behind them."""
+    rows = [
+        [name, show.quantity("shortest_life", life) if np.isfinite(life) else "endures"]
+        for name, life in sorted(lives, key=lambda pair: pair[1])
+    ]
+    return Table(["part", "life"], rows, caption="Lives of the parts")
+
+
+def _worn(data: xr.Dataset) -> Table:
+    """Depth that a cycle wears off."""
+    pairs = zip(data["worn"].values, data["cycle_wear"].values, strict=True)
+    rows = [[str(name), show.quantity("cycle_wear", float(depth))] for name, depth in pairs]
+    return Table(["flanks", "depth in a cycle"], rows, caption="Wear of one cycle")
+
+
+def _laws(data: xr.Dataset) -> Table:
+    """Energies under each friction law."""
+    names = ("law_lost_energy", "law_input_energy")
+    columns = [data[name].values for name in names]
+    rows = [
+        [str(law), *(show.quantity(n, float(v)) for n, v in zip(names, values, strict=True))]
+        for law, *values in zip(data["law"].values, *columns, strict=True)
+    ]
+    told = "Energies by friction law; all else is by the first one, or by duty.law"
+    return Table(["law", "lost", "driver gives"], rows, caption=told)
 
 
 def duty_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """What is lost over the duty cycle, and what fails first."""
     data = outcome.parts[_PART]
-    lost, taken = (
-        show.quantity(name, float(data[name]), of=data) for name in ("lost_energy", "input_energy")
-    )
-    yield KeyFigure(37.0, "Duty cycle", f"{lost} lost", f"of {taken} in; {cycle_words(data)}")
-    yield first_to_fail(data, 38.0)
+    taken = show.quantity("input_energy", float(data["input_energy"]), of=data)
+    first = first_to_fail(data, 38.0)
+    fails = f"fails first: {first.value}, {first.detail.partition(',')[0]}"
+    told = f"of {taken} in; {fails if data.attrs['first_to_fail'] else cycle_words(data)}"
+    yield KeyFigure(37.0, "Duty cycle", f"{lost_words(data)} lost", told)
+    yield first
 
 
 def duty_printed(outcome: Outcome) -> Iterator[Printed]:
