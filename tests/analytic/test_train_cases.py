@@ -6,10 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pitchpoint.analyses.duty import rated_lives
-
-
 import pitchpoint as pp
+from pitchpoint.analyses.duty import rated_lives
 from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.strength import ratings_of

@@ -41,6 +41,7 @@ from pitchpoint.analyses.running import BANDS, RUNNING, from_rest
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import read
 from pitchpoint.cases.variant import Variant
+from pitchpoint.doubts import apart, doubts_of
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import header, module
@@ -694,7 +695,12 @@ def test_a_result_without_the_map(
     assert command("export", tmp_path / "other", "--mujoco") == 2
     told = capsys.readouterr().err
     assert "--mujoco: the result has no loss map of the output" in told
-    assert "--set loss_map.quadrants=4" in told
+    advice = re.search(r"pitchpoint run \S+ --set ([\w.]+)=(\d+)", " ".join(told.split()))
+    assert advice is not None
+    key, value = advice.groups()
+    plain = tomllib.loads(PAIR.replace("quadrants = 4", ""))
+    work = jobs(Variant(plain, "pair.toml", "default", {key: int(value)}), {})
+    assert FOUR_QUADRANTS.name in [job.name for job in work]
     assert (
         open_result(folder)["default"].parts["four_quadrants"].attrs["title"]
         == FOUR_QUADRANTS.title
@@ -903,6 +909,38 @@ def test_a_duty_cycle_that_cannot_be_is_told_before_its_map(
 ) -> None:
     with pytest.raises(InputError, match=told):
         jobs(on_duty(tmp_path, steps, more, changed), {})
+
+
+HEAT = """
+[duty.heat]
+gears = "gears"
+bodies.gears = { heat_capacity = "100 J/K", largest_temperature = "45 degC" }
+resistances.arm = { between = ["gears", "ambient"], resistance = "%s" }
+"""
+
+
+def heated(
+    moving: tuple[Ready, Outcome], folder: Path, resistance: str, ambient: str
+) -> xr.Dataset:
+    """The duty cycle of the pair with a resistance to its surroundings."""
+    more = (HEAT % resistance).replace("bodies", f'ambient = "{ambient}"\nbodies')
+    built = on_duty(folder, more=more).built({})
+    return DUTY_CYCLE.joined(built, [moving[1].parts[FOUR_QUADRANTS.name]])
+
+
+def test_heat_that_runs_away_or_is_too_much_is_told_first(
+    moving: tuple[Ready, Outcome], tmp_path: Path
+) -> None:
+    away = heated(moving, tmp_path, "1e6 K/W", "45 degC")
+    (sentence,) = apart(doubts_of(away.attrs))["implausible"]
+    assert "there is no steady temperature" in sentence and "first at gears" in sentence
+    assert away.attrs["first_to_fail"] == "heat of gears" and float(away["shortest_life"]) == 0.0
+    assert "body_temperature" not in away and float(away["lost_energy"]) > 0.0
+    hot = heated(moving, tmp_path, "0.01 K/W", "46 degC")
+    (sentence,) = apart(doubts_of(hot.attrs))["implausible"]
+    assert "gears gets 46" in sentence and "bears 45 degC" in sentence
+    cool = heated(moving, tmp_path, "0.01 K/W", "42 degC")
+    assert not apart(doubts_of(cool.attrs))["implausible"]
 
 
 def test_a_law_of_a_duty_cycle_is_one_of_the_case(tmp_path: Path) -> None:

@@ -310,7 +310,10 @@ def test_tables_and_files_have_units_in_their_heads(tmp_path: Path) -> None:
         ({"time": [0, 0], "torque": [1, 1], "speed": [1, 1]}, "time ascends"),
         ({"time": [0], "torque": [1], "speed": [1]}, "at least two samples"),
         ({"time": [0, 1], "torque": [1, math.nan], "speed": [1, 1]}, "torque: sample 2 is nan"),
-        ({"time": [0, 1], "torque": [1, 1], "speed": ["a", "b"]}, "speed: is not made of numbers"),
+        (
+            {"time": [0, 1], "torque": [1, 1], "speed": ["a", "b"]},
+            'speed: .* numbers alone: sample 1 is "a"',
+        ),
         (
             {"time": [0, 1], "torque": [1, 1, 1], "speed": [1, 1]},
             "torque: has 3 samples where time has 2",
@@ -326,6 +329,12 @@ def test_tables_and_files_have_units_in_their_heads(tmp_path: Path) -> None:
 def test_what_is_no_duty_cycle_is_told(columns: dict[str, object], says: str) -> None:
     with pytest.raises(InputError, match=says):
         history_of_table(columns, WARM)  # type: ignore[arg-type]
+
+
+def test_an_empty_file_is_told_what_its_heads_are(tmp_path: Path) -> None:
+    (tmp_path / "empty.csv").write_text(" \n")
+    with pytest.raises(InputError, match=r"empty.csv: is empty; .* heads, such as time"):
+        read_history(tmp_path / "empty.csv", WARM)
 
 
 @pytest.mark.parametrize(

@@ -95,7 +95,7 @@ def test_ranges_that_somebody_names() -> None:
 def test_a_result_without_the_map_says_how_to_get_it() -> None:
     made = made_joint()
     del made.parts["four_quadrants"]
-    with pytest.raises(InputError, match=r"run made\.toml with --set loss_map\.quadrants=4"):
+    with pytest.raises(InputError, match=r"pitchpoint run made\.toml --set loss_map\.quadrants=4"):
         joint_model(made)
     with pytest.raises(
         InputError, match=r"\"mad\" is not a friction law of this result; did you mean made\?"

@@ -1,6 +1,6 @@
 """Energy, torques, lives and heat over the duty cycle of a case, of its loss map of the output."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -19,8 +19,10 @@ from pitchpoint.analyses.strength import rating_inputs
 from pitchpoint.analyses.tooth_life import load_classes, tooth_life
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.duty import DutyInputs, duty_inputs
+from pitchpoint.doubts import fails, stored
 from pitchpoint.duty_cycle.cycle import duty_dataset
 from pitchpoint.duty_cycle.energy import demand_inside
+from pitchpoint.duty_cycle.heat import RunawayError
 from pitchpoint.duty_cycle.life import RatedBearing
 from pitchpoint.duty_cycle.recorded_lives import recorded_lives
 from pitchpoint.efficiency.loss_table import LossTable
@@ -43,18 +45,41 @@ def duty_of_map(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     asked = _asked(built)
     rated = bool(load_classes(asked.history).way.size) and bool(rating_inputs(built))
     speed = float(built.operation.speed) * built.output_rate
-    return duty_dataset(
+    compute = partial(
+        duty_dataset,
         table_of(data),
         asked.history,
         law=asked.law,
         motor=asked.motor,
         lives={**rated_lives(built), **asked.lives},
         recorded=recorded_lives(others, float(built.operation.load), abs(speed)),
-        heating=asked.heating,
         teeth=partial(tooth_life, built) if rated else None,
         travels="loaded" in built.travels,
-        warnings=(),
     )
+    try:
+        found = compute(heating=asked.heating)
+    except RunawayError as error:
+        told = f"{error}; the duty cycle is that at the temperatures of its file."
+        brief = f"The duty cycle heats {error.body} without end."
+        return compute(runaway=error.body, warnings=[fails(told, brief)])
+    except InputError as error:
+        raise InputError(error.message, key=f"duty.{error.key}") from None
+    limits = {} if asked.heating is None else asked.heating.limits
+    return found.assign_attrs(stored([*_too_hot(found, limits)]))
+
+
+def _too_hot(data: xr.Dataset, limits: Mapping[str, float]) -> Iterator[str]:
+    """Sentences on bodies that get hotter than they bear."""
+    for body, most in limits.items():
+        hottest = float(data["body_temperature"].sel(body=body).max())
+        if hottest > most:
+            reached, bears = (
+                f"{float(degrees_celsius(np.asarray(one))):.4g}" for one in (hottest, most)
+            )
+            yield fails(
+                f"{body} gets {reached} degC hot in the duty cycle, and bears {bears} degC.",
+                f"{body} gets {reached} degC hot, and bears {bears} degC.",
+            )
 
 
 @double_precision()

@@ -112,6 +112,7 @@ def duty_dataset(
     recorded: RecordedLives | None = None,
     heating: Heating | None = None,
     teeth: Callable[[LoadHistory], xr.Dataset] | None = None,
+    runaway: str = "",
     travels: bool = False,
     **attributes: Any,
 ) -> xr.Dataset:
@@ -126,6 +127,7 @@ def duty_dataset(
         recorded: lives that the result of the drive has; those of `lives` with their names come before them.
         heating: resistances that give the temperatures; those of the history by default.
         teeth: damage and life of the teeth over a history, see `tooth_life`; not known by default.
+        runaway: body that gets ever hotter, where somebody found that; it fails first.
         travels: the output travels.
         attributes: of the dataset beside.
 
@@ -152,6 +154,7 @@ def duty_dataset(
         _by_law(table, history, laws, motor, heating, driver),
     ]
     extra = xr.merge(parts, combine_attrs="no_conflicts")
+    extra = extra.assign_attrs({"runaway": runaway} if runaway else {})
     failing = first_failure(extra, None if heating is None else heating.limits)
     ends: tuple[End, ...] = ("loaded",) if travels else ()
     numbers = energies(warm.history, driver)

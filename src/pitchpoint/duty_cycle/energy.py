@@ -116,7 +116,7 @@ def demand_inside(table: LossTable, history: LoadHistory) -> None:
             raise InputError(
                 f"{np.count_nonzero(beyond)} of {values.size} samples lie beyond the loss map, the first at "
                 f"{history.time[at]:.6g} s with {values[at]:.6g} {shown}; the map has {axis[0]:.6g} to "
-                f"{axis[-1]:.6g} {shown}; run the case with {_wider(history, table, name)}",
+                f"{axis[-1]:.6g} {shown}; {_wider(history, table, name)} in the case holds it",
                 key=name,
             )
 
@@ -128,7 +128,7 @@ def _wider(history: LoadHistory, table: LossTable, beyond: str) -> str:
         return f'loss_map.{key} = "{_at_least(float(np.abs(history.torque).max()))} {unit}"'
     if beyond == "speed":
         driver = float(np.abs(history.speed).max()) / table.speed_ratio * _RPM
-        return f'loss_map.speed = "{_at_least(driver)} rpm", that of the driver'
+        return f'loss_map.speed = "{_at_least(driver)} rpm" of the driver'
     degrees = history.temperature - _ZERO
     low = min(np.floor(degrees.min()), table.temperatures[0])
     high = max(np.ceil(degrees.max()), table.temperatures[-1])

@@ -52,7 +52,7 @@ def first_failure(data: xr.Dataset, limits: Mapping[str, float] | None = None) -
         data: with `bearing_life` over `bearing`, `wear_life` over `worn`, lives of teeth over `mesh` and
             `gear` with their names as attribute `members`, `body_temperature` over `time` and `body`; any of
             them may be missing. An attribute `unrated` above 0 tells that teeth of other meshes have no life,
-            `unworn` why wear has none.
+            `unworn` why wear has none, `runaway` a body that gets ever hotter.
         limits: largest temperatures of bodies by name [K]; one that gets hotter fails at once.
 
     Example:
@@ -81,6 +81,8 @@ def part_lives(data: xr.Dataset) -> list[tuple[str, float]]:
 
 
 def _of_bodies(data: xr.Dataset, limits: Mapping[str, float]) -> Iterator[tuple[str, float]]:
+    if runaway := str(data.attrs.get("runaway", "")):
+        yield f"heat of {runaway}", 0.0
     for body, limit in limits.items() if "body_temperature" in data else ():
         hottest = float(data["body_temperature"].sel(body=body).max())
         yield f"heat of {body}", 0.0 if hottest > limit else float("inf")
@@ -127,6 +129,6 @@ def _left_out(data: xr.Dataset, limits: Mapping[str, float], unknown: bool) -> I
         yield "other teeth"
     if "bearing_life" not in data:
         yield "bearings"
-    if "body_temperature" not in data or not limits:
+    if ("body_temperature" not in data or not limits) and not data.attrs.get("runaway"):
         yield "heat"
     yield from json.loads(data.attrs.get("unworn", '["wear"]'))

@@ -10,7 +10,7 @@ from scipy.linalg import eigh
 
 from pitchpoint.errors import ConvergenceError, InputError
 
-__all__ = ["AMBIENT", "ThermalNetwork"]
+__all__ = ["AMBIENT", "RunawayError", "ThermalNetwork"]
 
 Floats = NDArray[np.float64]
 
@@ -31,6 +31,21 @@ _SLOWEST = 0.999
 
 _HOTTEST = 2000.0
 """Temperature beyond which a body has run away [K]."""
+
+
+class RunawayError(ConvergenceError):
+    """There is no steady temperature.
+
+    Attributes:
+        body: the hottest one.
+    """
+
+    def __init__(self, body: str) -> None:
+        super().__init__(
+            f"there is no steady temperature below {_HOTTEST - 273.15:.0f} degC: more is lost than the "
+            f"resistances carry away, or losses grow faster with the temperature, first at {body}"
+        )
+        self.body = body
 
 
 @dataclass(frozen=True)
@@ -145,7 +160,7 @@ class ThermalNetwork:
             heat: into each body at temperatures [K] of the bodies, both of shape (b,) [W].
 
         Raises:
-            ConvergenceError: there is no steady state, since heat grows faster than it leaves.
+            RunawayError: there is no steady state, since heat grows faster than it leaves.
         """
         return self._settled(
             lambda now: self.steady(heat(now)), np.full(len(self.bodies), self.ambient)
@@ -194,7 +209,7 @@ class ThermalNetwork:
             heat: into each body in each step at the temperatures in the middle of steps, both (n, b) [W].
 
         Raises:
-            ConvergenceError: heat grows faster than it leaves.
+            RunawayError: heat grows faster than it leaves.
         """
 
         def again(middle: Floats) -> Floats:
@@ -225,11 +240,7 @@ class ThermalNetwork:
             steady = before.any() and -1.0 < part < _SLOWEST
             now = following + change * part / (1.0 - part) if steady else following
             changes.append(0.0 * change if steady else change)
-        hottest = self.bodies[int(np.argmax(np.atleast_2d(now).max(axis=0)))]
-        raise ConvergenceError(
-            f"there is no steady temperature below {_HOTTEST - 273.15:.0f} degC: losses grow faster with the "
-            f"temperature than heat leaves, first at {hottest}"
-        )
+        raise RunawayError(self.bodies[int(np.argmax(np.atleast_2d(now).max(axis=0)))])
 
     def _ordered(self, heat: Mapping[str, float] | ArrayLike) -> Floats:
         if isinstance(heat, Mapping):

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint import units
 from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import shown
 from pitchpoint.plain_files import content
 
 if TYPE_CHECKING:
@@ -195,6 +196,9 @@ def read_history(path: Path, temperature: float, *, travels: bool = False) -> Lo
     import pandas as pd
 
     text = content(path, LARGEST).decode("utf-8-sig", "replace")
+    if not text.strip():
+        heads = "time [s], torque [N m], speed [rpm]"
+        raise InputError(f"is empty; its first line has heads, such as {heads}", file=str(path))
     first = text.partition("\n")[0]
     apart = max(",;\t", key=first.count)
     comma = apart != "," and "." not in text
@@ -258,11 +262,21 @@ def _numbers(name: str, values: Any) -> Floats:
     try:
         numbers = np.asarray(values, float)
     except (TypeError, ValueError):
-        raise InputError("is not made of numbers alone", key=name) from None
+        raise InputError(f"is not made of numbers alone{_first_text(values)}", key=name) from None
     if not np.isfinite(numbers).all():
         at = int(np.argmin(np.isfinite(np.ravel(numbers))))
         raise InputError(f"sample {at + 1} is {np.ravel(numbers)[at]}, no finite number", key=name)
     return numbers
+
+
+def _first_text(values: Any) -> str:
+    """Which sample is no number, in words; empty where that is not clear."""
+    for at, value in enumerate(np.ravel(np.asarray(values, object)).tolist(), 1):
+        try:
+            float(value)
+        except (TypeError, ValueError):
+            return f": sample {at} is {shown(value)}"
+    return ""
 
 
 def _samples(name: str, values: ArrayLike, count: int) -> Floats:

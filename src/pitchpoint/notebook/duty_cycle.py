@@ -12,6 +12,7 @@ from pitchpoint._jax import double_precision
 from pitchpoint.analyses.duty import rated_lives
 from pitchpoint.analyses.tooth_life import tooth_life
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
+from pitchpoint.duty_cycle.energy import demand_inside
 from pitchpoint.duty_cycle.history import (
     LoadHistory,
     history_of_table,
@@ -21,6 +22,7 @@ from pitchpoint.duty_cycle.history import (
 from pitchpoint.duty_cycle.life import RatedLife
 from pitchpoint.duty_cycle.motor import Motor
 from pitchpoint.duty_cycle.recorded_lives import recorded_lives
+from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 from pitchpoint.notebook.result import Result
 from pitchpoint.runs.joint_model import joint_model, map_of_output
@@ -85,6 +87,8 @@ def duty(
         raise InputError(f"{'torque' if torque is None else 'speed'} of the output is missing")
     else:
         history = load_history(time, torque, speed, usual)  # type: ignore[arg-type]
+    if heating is None and isinstance(time, str | Path):
+        _demand_inside(joint.table, history, time)
     rated = "bearing_life" in outcome.parts.get("operation", ())
     (held,) = result.case(variant).held if teeth or rated else (None,)
     with double_precision():
@@ -103,6 +107,14 @@ def duty(
         variant=str(outcome.manifest["variant"]),
         fingerprint=str(data.attrs["fingerprint"]),
     )
+
+
+def _demand_inside(table: LossTable, history: LoadHistory, file: str | Path) -> None:
+    """InputError with the name of a file whose loads lie beyond the map."""
+    try:
+        demand_inside(table, history)
+    except InputError as error:
+        raise error.at(file=str(file)) from None
 
 
 def _of_columns(columns: Any, temperature: Any, travels: bool) -> LoadHistory:

@@ -442,7 +442,7 @@ def map_of_output(outcome: Outcome) -> xr.Dataset:
     if name in outcome.parts:
         return outcome.parts[name]
     why = outcome.manifest["lacks"].get(name)
-    how = f"run {outcome.manifest['case']} with --set loss_map.quadrants=4, which computes it"
+    how = f"it is computed by: pitchpoint run {outcome.manifest['case']} --set loss_map.quadrants=4"
     told = f"the result has no {FOUR_QUADRANTS.title}"
     raise InputError(f"{told}: {why}" if why else f"{told}; {how}")
 
