@@ -14,6 +14,7 @@ from documentation import block
 from made_joints import TITLE, locking, made_joint, torsion
 
 from pitchpoint.analyses.four_quadrants import table_of
+from pitchpoint.exports.mujoco_joint import show_arm
 from pitchpoint.exports.simulators import Asked, hand_over
 from pitchpoint.runs.joint_model import joint_model
 
@@ -190,6 +191,18 @@ def test_files_stand_alone_and_nothing_typed_breaks_out(folder: Path) -> None:
     assert told.keys() == {"lifts", "holds", "lowers"}
     assert float(told["lifts"][3]) == pytest.approx(float(told["lifts"][4]), rel=0.01)
     assert abs(float(told["holds"][1])) < 1e-4
+
+
+def test_the_arm_of_a_fast_drive_is_lifted_and_lowered_steadily(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = table_of(made_joint().parts["four_quadrants"])
+    fast = table._replace(speeds=[15.0 * speed for speed in table.speeds])
+    show_arm(fast, 40.0, "", folder)
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()[1:]]
+    for row in (rows[0], rows[2]):
+        assert abs(float(row[1])) == pytest.approx(0.5, rel=0.05)
+        assert float(row[3]) == pytest.approx(float(row[4]), rel=0.01)
 
 
 def test_the_loop_of_the_guide_holds_the_arm(folder: Path) -> None:

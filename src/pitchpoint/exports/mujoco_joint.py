@@ -135,17 +135,17 @@ def show_arm(
     friction = LoadFriction(model, joint, table, temperature, law)
     gear = float(model.actuator_gear[0, 0])
     print(f"{'':8}{'speed':>11}{'load':>17}{'torque of the driver':>23}{'by the map':>18}")
-    for what, speed in (("lifts", 0.2), ("holds", 0.0), ("lowers", -0.2)):
-        sought = speed * table.speeds[-1]
+    slow = min(0.2 * table.speeds[-1], 0.5)  # so that the arm is far from upright after all
+    for what, sought in (("lifts", slow), ("holds", 0.0), ("lowers", -slow)):
         for _ in range(int(0.5 / model.opt.timestep)):
             weight = float(data.qfrc_bias[0])
             data.ctrl[0] = (weight + gain * (sought - float(data.qvel[0]))) / gear  # of a servo
             friction.update(model, data)
             mujoco.mj_step(model, data)
-        here, motor = float(data.qvel[0]), float(data.ctrl[0])
+        here, motor = float(data.qvel[0]), float(data.actuator_force[0])  # within ctrlrange
         load = friction.load(model, data)
         point, rest = table.at(load, here, temperature, law), table.at_rest(load, temperature, law)
         beside = (
-            f"{point.input_torque:.6g}" if speed else f"{rest.lowest:.4g} to {rest.highest:.4g}"
+            f"{point.input_torque:.6g}" if sought else f"{rest.lowest:.4g} to {rest.highest:.4g}"
         )
         print(f"{what:8}{here:+11.3e}{load:+17.6g}{motor:23.6g}{beside:>18}")

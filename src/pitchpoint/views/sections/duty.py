@@ -167,8 +167,8 @@ def duty_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     data = outcome.parts[_PART]
     taken = show.quantity("input_energy", float(data["input_energy"]), of=data)
     first = first_to_fail(data, 38.0)
-    fails = f"fails first: {first.value}, {first.detail.partition(',')[0]}"
-    told = f"of {taken} in; {fails if data.attrs['first_to_fail'] else cycle_words(data)}"
+    fails = f"fails first: {first.value}; of {taken} in"
+    told = fails if data.attrs["first_to_fail"] else f"of {taken} in; {cycle_words(data)}"
     yield KeyFigure(37.0, "Duty cycle", f"{lost_words(data)} lost", told)
     yield first
 
