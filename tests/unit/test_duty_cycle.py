@@ -545,7 +545,7 @@ def test_an_actuator_takes_what_its_motor_and_drive_lose_over_map_and_cycle() ->
     data = duty_dataset(table(), steps, motor=motor)
 
     def taken(load: float, speed: float) -> float:
-        lost = (2.0 + 0.1 * load) * np.sign(speed)
+        lost = (2.0 + 0.1 * abs(load)) * np.sign(speed)
         torque, turning = (load + lost) * RATIO, speed / RATIO
         copper = 0.5 * (1.0 + 20.0 * COPPER) * (torque / 0.1) ** 2
         return float(torque * turning + copper + 0.01 * abs(turning) ** 1.5)
@@ -561,7 +561,11 @@ def test_an_actuator_takes_what_its_motor_and_drive_lose_over_map_and_cycle() ->
     ).all()  # 1.14 N m of 0.9
     there = data.sel(map_torque=0.0, map_speed=10.0)
     assert float(there["map_electrical_power"]) == pytest.approx(taken(0.0, 10.0))
-    assert float(there["map_actuator_efficiency"]) == 0.0
+    assert np.isnan(there["map_actuator_efficiency"])
+    there = data.sel(
+        map_torque=-50.0, map_speed=1.0
+    )  # the load and the motor both heat the winding
+    assert float(there["map_electrical_power"]) == pytest.approx(taken(-50.0, 1.0))
     assert "Electrical energy" in "\n".join(
         line.text for line in duty_screen(data.assign_attrs(case="", variant=""), 80)
     )

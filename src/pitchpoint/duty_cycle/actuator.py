@@ -18,6 +18,8 @@ _ZERO = 273.15
 class ActuatorMap(NamedTuple):
     """What an actuator takes in steady motion; NaN at rest, where friction locks it, and beyond the motor.
 
+    Where the load is none the efficiency is not a number either.
+
     Attributes:
         torque: of the output on its load, shape (t,) [N m or N].
         speed: of the output, of both signs, shape (s,) [rad/s or m/s].
@@ -61,7 +63,8 @@ def actuator_map(
     beyond = (np.abs(given) > motor.largest_torque) | (np.abs(turning) > motor.largest_speed)
     power = given * turning + motor.copper_loss(given, winding) + motor.iron_losses(turning)
     power = np.where(beyond, np.nan, power)
-    return ActuatorMap(torque, speed, power, efficiency(load * pace + 0.0 * power, power))
+    output = np.where(load * pace == 0.0, np.nan, load * pace)
+    return ActuatorMap(torque, speed, power, efficiency(output, power))
 
 
 def efficiency(output: Floats, electrical: Floats) -> Floats:
@@ -76,5 +79,4 @@ def efficiency(output: Floats, electrical: Floats) -> Floats:
     """
     out = np.maximum(output, 0.0) + np.maximum(-electrical, 0.0)
     into = np.maximum(electrical, 0.0) + np.maximum(-output, 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(out / np.where(into > 0.0, into, np.nan), float)
+    return np.asarray(out / np.where(into > 0.0, into, np.nan), float)

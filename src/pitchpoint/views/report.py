@@ -233,6 +233,11 @@ _PRINTED = (
 )
 """Minus, powers of ten, degrees, products, squares; symbols, numbers and units that stay on one line."""
 
+_DIGEST = re.compile(
+    r"(?<![0-9a-f])(?=[0-9a-f]{64})[0-9a-f]{16}|(?<=[0-9a-f]{16})[0-9a-f]{16}(?=[0-9a-f])"
+)
+"""Sixteen digits of a digest, behind which it may break."""
+
 _IN_UNIT = re.compile(r"(?<=[Ng]) (?=[cm]?m(?![a-z]))")
 """A space within the unit of a torque, a stiffness against rotation or an inertia."""
 
@@ -278,7 +283,7 @@ def _typeset(words: str) -> "markupsafe.Markup":
 
 
 def _breakable(words: str, *, symbols: bool = True) -> "markupsafe.Markup":
-    """Words, escaped, that break after an underscore of a name, and within no unit.
+    """Words, escaped, that break after an underscore of a name and within a digest, and within no unit.
 
     Args:
         words: with symbols whose indices are set low, unless they are names alone, as of files.
@@ -288,7 +293,7 @@ def _breakable(words: str, *, symbols: bool = True) -> "markupsafe.Markup":
 
     whole = _IN_UNIT.sub("\u00a0", str(escape(words)))
     whole = show.subscripts(whole) if symbols else whole
-    return Markup(whole.replace("_", "_<wbr>"))
+    return Markup(_DIGEST.sub(r"\g<0><wbr>", whole.replace("_", "_<wbr>")))
 
 
 def _marked(words: str) -> "markupsafe.Markup":

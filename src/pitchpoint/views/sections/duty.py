@@ -23,7 +23,7 @@ from pitchpoint.views.section import (
     by_variant,
 )
 from pitchpoint.views.sections.four_quadrants import OF_OUTPUT
-from pitchpoint.views.sections.loss_map import map_figure
+from pitchpoint.views.sections.loss_map import colour_scale, map_figure
 
 __all__ = ["actuator_points", "duty_blocks", "duty_facts", "duty_printed", "operating_points"]
 
@@ -66,11 +66,8 @@ def _points(cycle: xr.Dataset) -> tuple[Trace, str]:
     return points, f", one in {step} of them" if step > 1 else ""
 
 
-ACTUATOR = {
-    "actuator_efficiency": "map_actuator_efficiency",
-    "electrical_power": "map_electrical_power",
-}
-"""Quantities of the actuator that are drawn over its map, with where they stand."""
+ACTUATOR = ("map_actuator_efficiency", "map_electrical_power")
+"""Quantities of the actuator that are drawn over its map."""
 
 
 def actuator_points(name: str, place: int, outcome: Outcome) -> Figure:
@@ -82,7 +79,7 @@ def actuator_points(name: str, place: int, outcome: Outcome) -> Figure:
         outcome: with a duty cycle of a motor.
     """
     cycle = outcome.parts[_PART]
-    values = cycle[ACTUATOR[name]].values[None, :, :, None]
+    values = cycle[name].values[None, :, :, None]
     dims = ("law", "output_torque", "output_speed", "temperature")
     axes = {"output_torque": cycle["map_torque"].values, "output_speed": cycle["map_speed"].values}
     known = dataset(
@@ -96,7 +93,9 @@ def actuator_points(name: str, place: int, outcome: Outcome) -> Figure:
         speed_ratio=outcome.parts[OF_OUTPUT.part].attrs["speed_ratio"],
     )
     parts = {**outcome.parts, OF_OUTPUT.part: known}
-    drawn = map_figure(name, replace(outcome, parts=parts), OF_OUTPUT, 0, 0)
+    drawn = map_figure(
+        name, replace(outcome, parts=parts), OF_OUTPUT, 0, 0, colour_scale(name, [values])
+    )
     points, thinned = _points(cycle)
     oil = show.quantity("temperature", float(cycle["temperature"].mean()), of=cycle)
     told = (

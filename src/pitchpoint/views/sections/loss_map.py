@@ -1,6 +1,6 @@
 """Loss and efficiency over torque, speed and temperature."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import ceil, floor, log10
 from types import MappingProxyType
@@ -139,8 +139,18 @@ def _scale(name: str, outcomes: Mapping[str, Outcome], chart: Chart) -> dict[str
     every = chart.of(outcomes)
     inside = [data[name].values[_holds(outcomes[n], data)] for n, data in every.items()]
     maps = inside if sum(map(len, inside)) else [data[name].values for data in every.values()]
+    return colour_scale(name, maps)
+
+
+def colour_scale(name: str, maps: Iterable[np.ndarray]) -> dict[str, float]:
+    """Ends of the colour scale of some maps, with zero in the middle where both signs mean something.
+
+    Args:
+        name: of the quantity.
+        maps: its values, as many as have one scale.
+    """
     low, high = _ends(np.concatenate([display(name, values).ravel() for values in maps]))
-    low, high = (-max(-low, high), max(-low, high)) if name == _SIGNED else (low, high)
+    low, high = (-max(-low, high), max(-low, high)) if name in _SIGNED else (low, high)
     if not high > low:  # as one colour, not its last digits over the whole scale
         low, high = low - _SEEN * abs(low), low + _SEEN * abs(low)
     return {"zmin": low, "zmax": high} if high > low else {}
@@ -296,12 +306,14 @@ def _beginning(name: str, data: xr.Dataset, chart: Chart, shown: Mapping[str, An
     return f" From {' and '.join(ends)} on, the smallest that were computed above rest."
 
 
-_SIGNED = "mean_input_torque"
-"""A quantity whose scale has zero in its middle."""
+_EFFICIENCIES = ("mean_efficiency", "map_actuator_efficiency")
+
+_SIGNED = ("mean_input_torque", "map_electrical_power")
+"""Quantities whose scale has zero in its middle."""
 
 _COLOURS: dict[str, dict[str, Any]] = {
-    "mean_efficiency": {"colorscale": evenly("#8fa3cf", "#c9cdd0", "#ffe45c")},
-    _SIGNED: {"colorscale": evenly("#e08a6d", "#f4f2ef", "#79a9d8")},
+    **{name: {"colorscale": evenly("#8fa3cf", "#c9cdd0", "#ffe45c")} for name in _EFFICIENCIES},
+    **{name: {"colorscale": evenly("#e08a6d", "#f4f2ef", "#79a9d8")} for name in _SIGNED},
 }
 """Colours of quantities of which little is not what is wanted; light, so that contours can be read."""
 
