@@ -5,13 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from made_joints import locking, made_joint, torsion
+from made_joints import Lost, locking, made_joint, plain, torsion
 from scipy.optimize import brentq
 
 from pitchpoint.analyses.four_quadrants import table_of
 from pitchpoint.efficiency.friction_fit import loss_nodes
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.exports.modelica import LossyRow, lossy_rows, lossy_torque
+from pitchpoint.exports.modelica_map import MapTables, map_lost
 from pitchpoint.exports.simulators import HandedOver, hand_over
 from pitchpoint.runs.joint_model import joint_model
 from pitchpoint.runs.run import Outcome
@@ -94,16 +95,106 @@ def test_the_package_is_whole(tmp_path: Path) -> None:
         (path,), _ = handed(made, tmp_path / name)
         code = re.sub(r"//.*", "", path.read_text("utf-8"))
         opened = re.findall(r"^ *(?:package|model) (\w+)", code, re.MULTILINE)
-        closed = re.findall(r"^ *end (\w+);", code, re.MULTILINE)
+        closed = re.findall(r"^ *end (?!for;)(\w+);", code, re.MULTILINE)
         assert sorted(opened) == sorted(closed) and path.stem == opened[0]
         plain = re.sub(r'"[^"]*"', "", code)
         assert code.count('"') % 2 == 0
         assert all(plain.count(a) == plain.count(b) for a, b in ("()", "[]"))
-        parts = set(re.findall(r"^    (?:Modelica\.\S+|Gear\w+) (\w+)", code, re.MULTILINE))
-        ends = re.findall(r"connect\((\w+)\S*, (\w+)\S*\);", code)
-        assert {one for both in ends for one in both} == parts
-        assert ("IdealGearR2T" in code) == (name == "slides")
-        assert ("spring" in parts) == (name != "bare")
+        for joint in ("Joint", "JointOfMap"):
+            model = code[code.index(f"model {joint} ") : code.index(f"end {joint};")]
+            parts = set(re.findall(r"^    (?:Modelica\.\S+|\w*Gear\w*) (\w+)", model, re.MULTILINE))
+            ends = re.findall(r"connect\((\w+)\S*, (\w+)\S*\);", model)
+            assert {one for both in ends for one in both} == parts
+            assert ("IdealGearR2T" in model) == (name == "slides")
+            assert (f"elastic = {str(name != 'bare').lower()} " in model) and "backlash = " in model
+            assert "annotation(Documentation(info" in model
+        stiff = re.findall(r"stiffness = (\S+)$", code, re.MULTILINE)
+        assert {*map(float, stiff)} == {{"turns": 1000.0, "slides": 0.4, "bare": 1.0}[name]}
+
+
+def syntax_errors(path: Path) -> list[str]:
+    """What a parser of the grammar of Modelica says of a file."""
+    parser = pytest.importorskip("modelica_builder.modelica_parser")
+    antlr4 = pytest.importorskip("antlr4")
+    found: list[str] = []
+
+    class Listener(antlr4.error.ErrorListener.ErrorListener):  # type: ignore[misc,name-defined]
+        def syntaxError(self, *told: object) -> None:  # noqa: N802
+            found.append(f"{told[2]}:{told[3]}: {told[4]}")
+
+    lexer = parser.modelicaLexer(antlr4.FileStream(str(path), "utf-8"))
+    made = parser.modelicaParser(antlr4.CommonTokenStream(lexer))
+    for one in (lexer, made):
+        one.removeErrorListeners()
+        one.addErrorListener(Listener())
+    made.stored_definition()
+    return found
+
+
+@pytest.mark.parametrize("kind", ["turns", "slides", "locks"])
+def test_a_parser_of_the_grammar_reads_it_without_an_error(kind: str, tmp_path: Path) -> None:
+    """Whatever somebody typed; and the parser says where a file is wrong."""
+    made = made_joint(locking) if kind == "locks" else made_joint(slides=kind == "slides")
+    made.manifest["driver"] = 'a "b" \\" */ // <c>&\n'
+    made.manifest["members"][0] = made.manifest["driver"]
+    (path,), _ = handed(made, tmp_path)
+    assert syntax_errors(path) == []
+    wrong = tmp_path / "wrong.mo"
+    for before, after in (
+        ("equation\n", "equaton\n"),
+        ("end for;\n", "end for\n"),
+        ("ratio = ", "ratio == "),
+    ):
+        wrong.write_text(path.read_text("utf-8").replace(before, after, 1), "utf-8")
+        assert syntax_errors(wrong)
+
+
+def matrices(text: str) -> list[np.ndarray]:
+    """Tables of the model of the map: of each temperature in motion, and that at rest."""
+    found = re.findall(r"\[(0, [^\]]*)\]", text[text.index("model MapGear") :])
+    return [np.array([[*map(float, row.split(","))] for row in one.split(";")]) for one in found]
+
+
+@pytest.mark.parametrize("law", [plain, locking])
+def test_the_model_of_the_map_has_the_map(law: Lost, tmp_path: Path) -> None:
+    """At random points in and beyond it, by the tables in the file; what locks has more than its load."""
+    made = made_joint(law)
+    (path,), lost = handed(made, tmp_path)
+    text, joint = path.read_text("utf-8"), joint_model(made)
+    *moving, rest = matrices(text)
+    (degrees,) = re.findall(r"degrees\[7\] = \{(.*?)\}", text)
+    degree = np.array([*map(float, degrees.split(","))])
+    axes = moving[0][1:, 0], moving[0][0, 1:]
+    tables = MapTables(*axes, degree, np.stack([one[1:, 1:] for one in moving]), rest[1:, 1:])
+    random = np.random.default_rng(6)
+    points = random.uniform([-80.0, 1e-3, 10.0], [80.0, 5.0, 70.0], (2000, 3))
+    found = map_lost(tables, *points.T)
+    expected = joint.loss_torque(*points.T[:2], points[:, 2] + 273.15)
+    (said,) = re.findall(r"largest error is (\S+) N m", " ".join(lost))
+    known = np.isfinite(expected)
+    assert known.all() == (law is plain) and float(said) < 1e-9
+    # A node of the table counts there, one of the nodes of the law between: 50 N m of the output a N m.
+    assert np.abs(found - expected)[known].max() <= 60.0 * max(float(said), 1e-11)
+    assert (found[~known] >= 1.049 * np.minimum(abs(points[~known, 0]), 60.0)).all()
+    for torque in (-30.0, 0.0, 30.0):
+        band = joint.holding_band(torque)
+        starts = np.interp(
+            [torque, -torque], rest[1:, 0], rest[1:, 1 + np.argmin(abs(degree - 40.0))]
+        )
+        for found_end, end in (
+            (torque + starts[0], band.highest),
+            (torque - starts[1], band.lowest),
+        ):
+            assert np.isnan(end) or found_end / 50.0 == pytest.approx(end)
+
+
+def test_no_line_is_nearer_than_it_says(tmp_path: Path) -> None:
+    """A loss by a power of the load: that of LossyGear is more, and by no more than a line has to be."""
+    made = made_joint(lambda torque, speed, degree: 0.5 + 0.02 * abs(torque) ** 1.5 + 0.0 * speed)
+    (_,), lost = handed(made, tmp_path)
+    (said,) = re.findall(r"No line is nearer than (\S+) N m", " ".join(lost))
+    rows = re.findall(r"^the map .*\) +(\S+) +\S+ +\S+ % +\d+$", "\n".join(lost), re.MULTILINE)
+    assert 0.0 < float(said) < max(map(float, rows)) < 3.0 * float(said)
 
 
 def test_a_drive_that_locks_is_said_not_to_lock_there(tmp_path: Path) -> None:

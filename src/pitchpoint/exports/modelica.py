@@ -1,19 +1,22 @@
-"""A drive as a package of Modelica: `LossyGear` of the standard library, a table for each temperature."""
+"""A drive as a package of Modelica: `LossyGear`, a table for each temperature, and the loss map itself."""
 
+from collections.abc import Iterable
 from functools import partial
+from html import escape
 from pathlib import Path
 from textwrap import wrap
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import lsq_linear
+from scipy.optimize import linprog, lsq_linear
 
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.exports.evaluator import inert
+from pitchpoint.exports.modelica_map import MAP_GEAR, MapTables, map_gear, map_lost, map_tables
 from pitchpoint.exports.simulators import HandedOver, Simulated, heading, lost_lines
 from pitchpoint.results.store import write_text
 
-__all__ = ["LossyRow", "lossy_rows", "lossy_torque", "write_modelica"]
+__all__ = ["LossyRow", "least_line_error", "lossy_rows", "lossy_torque", "write_modelica"]
 
 NEAREST = 1e-9
 """How near to one an efficiency may come: LossyGear divides by eta_mf1 - 1/eta_mf2."""
@@ -24,6 +27,14 @@ LEAST_EFFICIENCY = 1e-6
 BESIDE = (
     "Losses of LossyGear are a line over the torque of the driver, one for either way of the power, and "
     "linear over the speed. Lost are ripple and kinematic error, and the change of temperature while it runs."
+)
+LOSSY_WORDS = (
+    "Loss of the map as lines over the torque of the driver, by least squares, one for either way of the "
+    "power, at the temperature of the name."
+)
+JOINT_WORDS = (
+    "Rotor and drive, then the gear with its losses, then wind-up and backlash, where elastic is true. "
+    "Stiffness, damping and backlash are those of the shaft behind the gear."
 )
 LOCKS = (
     "Friction locks this drive against its load; LossyGear cannot lock, and lets the load turn it."
@@ -88,6 +99,42 @@ def _line(
     return float(found[0]), float(found[1])
 
 
+def least_line_error(torque: np.ndarray, lost: np.ndarray) -> float:
+    """Largest error of that straight line whose largest error is least; 0 through two points or fewer.
+
+    Args:
+        torque, lost: points.
+
+    Example:
+        >>> import numpy as np
+        >>> from pitchpoint.exports.modelica import least_line_error
+        >>> x = np.linspace(0.0, 1.0, 101)
+        >>> round(least_line_error(x, x**2), 9)
+        0.125
+    """
+    if torque.size < 3:
+        return 0.0
+    columns = np.stack([torque / np.abs(torque).max(), np.ones(torque.size)], axis=-1)
+    within = -np.ones((torque.size, 1))
+    both = np.concatenate([np.hstack([columns, within]), np.hstack([-columns, within])])
+    ends = np.concatenate([lost, -lost])
+    found = linprog(
+        [0.0, 0.0, 1.0], A_ub=both, b_ub=ends, bounds=[(None, None)] * 2 + [(0.0, None)]
+    )
+    return float(found.x[-1])
+
+
+def _least_error(table: LossTable, temperature: float, law: str) -> float:
+    """Error of the driver's torque that no table of LossyGear can be without, at one temperature."""
+    torques, errors = np.asarray(table.torques), [0.0]
+    for speed in table.speeds[1:]:
+        lost = np.asarray(table.at_many(torques, speed, temperature, law).loss) / speed
+        for way in (torques >= 0.0, torques <= 0.0):
+            there = way & np.isfinite(lost)
+            errors.append(least_line_error((torques + lost)[there], lost[there]))
+    return max(errors) * table.speed_ratio
+
+
 def lossy_torque(rows: list[LossyRow], torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
     """Torque of the driver by LossyGear.
 
@@ -118,9 +165,12 @@ def write_modelica(given: Simulated, folder: Path) -> HandedOver:
     degrees = sorted({*table.temperatures[::3], given.temperature})
     tables = {degree: lossy_rows(table, degree, joint.law) for degree in degrees}
 
-    lost = lost_lines(given, partial(_lost, table, joint.law), BESIDE)
+    whole = map_tables(given)
+    near = max(one.largest for one in joint.errors(partial(map_lost, whole)))
+    least = _least_error(table, given.temperature, joint.law)
+    lost = lost_lines(given, partial(_lost, table, joint.law), _beside(given, least, near))
     path = folder / f"{_name(given)}.mo"
-    write_text(path, _package(given, tables, lost))
+    write_text(path, _package(given, tables, whole, lost))
     return HandedOver([path], lost)
 
 
@@ -141,19 +191,60 @@ def _name(given: Simulated) -> str:
     return "".join(part[:1].upper() + part[1:] for part in given.name.split("_")) + "Drive"
 
 
-def _package(given: Simulated, tables: dict[float, list[LossyRow]], lost: list[str]) -> str:
+def _beside(given: Simulated, least: float, near: float) -> str:
+    """What LossyGear cannot hold, by how much, and what the model of the map itself loses."""
+    unit = given.joint.units["driver"]
+    return (
+        f"{BESIDE} No line is nearer than {least:.4g} {unit} to the map at {given.temperature:.4g} degC. "
+        f"{MAP_GEAR} and JointOfMap have the map itself: their largest error is {near:.2g} {unit}, by the "
+        "digits of their tables. Where friction locks the drive they have what holds a little more than the "
+        "load."
+    )
+
+
+def _package(
+    given: Simulated, tables: dict[float, list[LossyRow]], whole: MapTables, lost: list[str]
+) -> str:
     joint, name = given.joint, _name(given)
     what = (
-        "Drive of Modelica, on the Modelica Standard Library 4. Gear is the gear at the temperature of its "
-        "name, Joint puts inertia, wind-up and backlash around one. Nobody compiled this file: it was "
-        "made by the grammar of the language, and its tables were checked against the map."
+        "Drive of Modelica, on the Modelica Standard Library 4. Gear is a LossyGear at the temperature of "
+        f"its name and Joint one of them with inertia, wind-up and backlash; {MAP_GEAR} is the loss map "
+        "itself and JointOfMap the same around it. Nobody compiled this file: it was made by the grammar of "
+        "the language, and its tables were checked against the map."
     )
     locks = joint.holding_band(given.load, given.kelvins).locked
     paragraphs = [*heading(given, what), *([LOCKS] if locks else []), "\n".join(lost)]
     remark = "\n".join(f"// {line}" for one in paragraphs for line in _lines(one))
     gears = "".join(_gear(given, degree, rows) for degree, rows in tables.items())
+    map_words = (
+        "Torque that is lost by the loss map: bilinear over torque and logarithm of the speed, linear over "
+        "the temperature. At rest the torque that holds is between the starting torques of the map."
+    )
     text = inert(joint.title).strip()
-    return f'{remark}\npackage {name} "{text}"\n{gears}{_joint(given)}end {name};\n'
+    return (
+        f'{remark}\npackage {name} "{text}"\n{gears}{map_gear(given, whole)}'
+        f"{_annotation(map_words)}  end {MAP_GEAR};\n\n"
+        f"{_joint(given, of_map=False)}\n{_joint(given, of_map=True)}"
+        f'  annotation(uses(Modelica(version = "4.0.0")), version = "{inert(joint.version)}",\n'
+        f"    {_documentation(paragraphs)});\nend {name};\n"
+    )
+
+
+def _annotation(*paragraphs: str) -> str:
+    return f"    annotation({_documentation(paragraphs)});\n"
+
+
+def _documentation(paragraphs: Iterable[str]) -> str:
+    """Paragraphs as a page; those of several lines as they stand."""
+    pages = (
+        f"<pre>{_page(one)}</pre>" if "\n" in one else f"<p>{_page(one)}</p>" for one in paragraphs
+    )
+    return f'Documentation(info = "<html>{"".join(pages)}</html>")'
+
+
+def _page(text: str) -> str:
+    """Text of a page in a string of Modelica, whatever stands in it."""
+    return escape(text, quote=False).replace("\\", "\\\\").replace('"', '\\"')
 
 
 def _lines(paragraph: str) -> list[str]:
@@ -170,6 +261,7 @@ def _gear(given: Simulated, degree: float, rows: list[LossyRow]) -> str:
         f'  model Gear{_degree(degree)} "At {degree:g} degC"\n'
         "    extends Modelica.Mechanics.Rotational.Components.LossyGear(\n"
         f"      ratio = {_rotary_ratio(given):.12g},\n      lossTable = [{numbers}]);\n"
+        f"{_annotation(LOSSY_WORDS)}"
         f"  end Gear{_degree(degree)};\n\n"
     )
 
@@ -179,39 +271,65 @@ def _rotary_ratio(given: Simulated) -> float:
     return 1.0 if given.joint.slides else given.joint.ratio
 
 
-def _joint(given: Simulated) -> str:
+def _joint(given: Simulated, *, of_map: bool) -> str:
+    """A joint of the gear at one temperature, or of the map itself."""
     joint, ratio = given.joint, given.joint.ratio
-    inertia = joint.armature / ratio**2
-    where = "Translational" if joint.slides else "Rotational"
-    stiff = joint.wind_up.at_load if joint.wind_up is not None else 0.0
-    play = joint.play
-    after, parts, joined = "gear.flange_b", [], []
-    if joint.slides:
-        parts.append(
-            f"    Modelica.Mechanics.Rotational.Components.IdealGearR2T travel(ratio = {ratio:.12g});\n"
-        )
-        joined.append(f"    connect({after}, travel.flangeR);\n")
-        after = "travel.flangeT"
-    if stiff > 0.0:
-        values = f"c = {stiff:.9g}, d = damping"
-        kind = "SpringDamper" if joint.slides else "ElastoBacklash"
-        values += "" if joint.slides else f", b = {play:.9g}"
-        parts.append(
-            '    parameter Real damping = 0 "Of the wind-up, which the map does not know";\n'
-        )
-        parts.append(f"    Modelica.Mechanics.{where}.Components.{kind} spring({values});\n")
-        joined += [
-            f"    connect({after}, spring.flange_a);\n",
-            "    connect(spring.flange_b, flange_b);\n",
-        ]
-    else:
-        joined.append(f"    connect({after}, flange_b);\n")
-    return (
-        '  model Joint "Rotor and drive, its losses, wind-up and backlash"\n'
-        '    Modelica.Mechanics.Rotational.Interfaces.Flange_a flange_a "Driver";\n'
-        f'    Modelica.Mechanics.{where}.Interfaces.Flange_b flange_b "Output";\n'
-        f"    Modelica.Mechanics.Rotational.Components.Inertia inertia(J = {inertia:.9g});\n"
-        f"    Gear{_degree(given.temperature)} gear;\n{''.join(parts)}  equation\n"
-        "    connect(flange_a, inertia.flange_a);\n    connect(inertia.flange_b, gear.flange_a);\n"
-        f"{''.join(joined)}  end Joint;\n"
+    per = abs(ratio) if joint.slides else 1.0
+    curve, slides = joint.wind_up, joint.slides
+    return _JOINT.format(
+        name="JointOfMap" if of_map else "Joint",
+        losses="the loss map itself" if of_map else "losses of LossyGear",
+        gear=MAP_GEAR if of_map else f"Gear{_degree(given.temperature)}",
+        where="Translational" if slides else "Rotational",
+        elastic=str(curve is not None).lower(),
+        stiffness=f"{1.0 if curve is None else curve.at_load / per**2:.9g}",
+        known="not known: set it for a wind-up" if curve is None else "at the load of operation",
+        backlash=f"{joint.play * per:.9g}",
+        inertia=f"{joint.armature / ratio**2:.9g}",
+        end="travel.flangeR" if slides else "flange_b",
+        oil=_OIL[0].format(f"{given.temperature:.9g}") if of_map else "",
+        oiled=_OIL[1] if of_map else "",
+        travel=_TRAVEL[0].format(f"{ratio:.12g}") if slides else "",
+        travels=_TRAVEL[1] if slides else "",
+        annotation=_annotation(JOINT_WORDS),
     )
+
+
+_JOINT = """  model {name} "Rotor and drive, {losses}, wind-up and backlash"
+    Modelica.Mechanics.Rotational.Interfaces.Flange_a flange_a "Driver"
+      annotation(Placement(transformation(extent = {{{{-110, -10}}, {{-90, 10}}}})));
+    Modelica.Mechanics.{where}.Interfaces.Flange_b flange_b "Output"
+      annotation(Placement(transformation(extent = {{{{90, -10}}, {{110, 10}}}})));
+    parameter Boolean elastic = {elastic} "True with wind-up and backlash, false for a rigid drive";
+    parameter Modelica.Units.SI.RotationalSpringConstant stiffness = {stiffness}
+      "Of the wind-up, {known}";
+    parameter Modelica.Units.SI.RotationalDampingConstant damping = 0
+      "Of the wind-up, which the map does not know";
+    parameter Modelica.Units.SI.Angle backlash = {backlash} "Of the teeth";
+{oil}{travel}    Modelica.Mechanics.Rotational.Components.Inertia inertia(J = {inertia});
+    {gear} gear;
+    Modelica.Mechanics.Rotational.Components.ElastoBacklash spring(
+      c = stiffness, d = damping, b = backlash) if elastic;
+    Modelica.Mechanics.Rotational.Components.IdealGear rigid(ratio = 1) if not elastic;
+  equation
+    connect(flange_a, inertia.flange_a);
+    connect(inertia.flange_b, gear.flange_a);
+    connect(gear.flange_b, spring.flange_a);
+    connect(gear.flange_b, rigid.flange_a);
+    connect(spring.flange_b, {end});
+    connect(rigid.flange_b, {end});
+{travels}{oiled}{annotation}  end {name};
+"""
+
+_OIL = (
+    '    parameter Real temperature = {} "Of the oil, degC";\n'
+    "    Modelica.Blocks.Sources.Constant oil(k = temperature);\n",
+    "    connect(oil.y, gear.temperature);\n",
+)
+"""The temperature of a map, and how it is joined."""
+
+_TRAVEL = (
+    "    Modelica.Mechanics.Rotational.Components.IdealGearR2T travel(ratio = {});\n",
+    "    connect(travel.flangeT, flange_b);\n",
+)
+"""What makes travel of a rotation, and how it is joined."""
