@@ -20,6 +20,7 @@ _LAZY: dict[str, str] = {
     "run": "pitchpoint.notebook.result",
     "open_result": "pitchpoint.notebook.result",
     "study": "pitchpoint.runs.study",
+    "sobol_indices": "pitchpoint.runs.sensitivity",
     "JointModel": "pitchpoint.runs.joint_model",
     "MapRange": "pitchpoint.efficiency.friction_fit",
     "fit_friction": "pitchpoint.efficiency.friction_fit",

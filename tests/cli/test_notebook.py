@@ -367,6 +367,40 @@ def test_a_latin_hypercube_fills_its_ranges_evenly() -> None:
     assert {*found["gears.teeth.1"].values} <= {*range(20, 27)}
 
 
+def test_designs_of_a_sobol_sequence_fill_their_ranges() -> None:
+    found = pp.study(PAIR, {TORQUE: (5.0, 45.0)}, "sobol", n=16, seed=2)
+    strata = np.sort(np.floor((found[TORQUE].values - 5.0) / 2.5))
+    np.testing.assert_array_equal(strata, np.arange(16.0))
+
+
+def test_the_loss_of_a_pair_hangs_on_its_torque_where_its_speed_hardly_changes() -> None:
+    over = {TORQUE: ("5 N m", "45 N m"), "operation.speed": ("1000 rpm", "1001 rpm")}
+    indices = pp.sobol_indices(PAIR, over, 16, figures=["mean_loss"])
+    found = indices.sel(figure="mean_loss", law="xu_2007")["total_order"]
+    assert found.sel(key=TORQUE).item() == pytest.approx(1.0, abs=0.1)
+    assert found.sel(key="operation.speed").item() < 1e-4
+    assert (indices.attrs["designs"], indices.attrs["asked"]) == (16, 16)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"n": 12}, "12 designs were asked for; a Sobol' sequence is even with a power of two"),
+        (
+            {"figures": ["mean_los"]},
+            '"mean_los" is no figure of this study; did you mean mean_loss',
+        ),
+        ({"over": {TORQUE: [20.0, 30.0, 40.0]}}, "where the lowest and the highest number belong"),
+        ({"over": {TORQUE: 20.0}}, "was given where a list of values belongs"),
+        ({"over": {}}, "a study needs the values of one key at least"),
+    ],
+)
+def test_indices_that_cannot_be(given: dict[str, Any], told: str) -> None:
+    with pytest.raises(pp.InputError) as caught:
+        pp.sobol_indices(PAIR, **({"over": {TORQUE: (5.0, 45.0)}, "n": 16} | given))
+    assert told in str(caught.value)
+
+
 class Heard(Progress):
     def __init__(self) -> None:
         self.reused: list[bool] = []
@@ -397,7 +431,16 @@ def test_a_study_goes_on_from_its_folder(tmp_path: Path) -> None:
         ({"gears.profile_shift": [0.1]}, "grid", "different values for gear 1 and gear 2"),
         ({TORQUE: [1.0], WARM: [1.0, 2.0]}, "zip", "given were 1 of operation.torque, 2 of opera"),
         ({TORQUE: [1.0, 2.0]}, "latin_hypercube", "needs the number of designs, n"),
-        ({TORQUE: [1.0, 2.0]}, "sobol", '"sobol" is no way to lay out a study; use one of "grid"'),
+        (
+            {TORQUE: [1.0, 2.0]},
+            "sobol",
+            "no number of designs was given; a Sobol' sequence is even with",
+        ),
+        (
+            {TORQUE: [1.0, 2.0]},
+            "halton",
+            '"halton" is no way to lay out a study; use one of "grid"',
+        ),
     ],
 )
 def test_a_study_that_cannot_be(over: dict[str, Any], how: Any, told: str) -> None:

@@ -26,9 +26,9 @@ from pitchpoint.runs.case import Case, CaseLike, as_case, written
 from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import FrictionChoice, Progress, compute_alone, own_law
 
-__all__ = ["study"]
+__all__ = ["drawn_values", "study"]
 
-How = Literal["grid", "zip", "latin_hypercube"]
+How = Literal["grid", "zip", "latin_hypercube", "sobol"]
 
 
 @double_precision()
@@ -49,11 +49,12 @@ def study(
 
     Args:
         case: a `Case`, or what makes one.
-        over: values by key, SI numbers or texts with a unit, or names; for "latin_hypercube" the lowest and
-            the highest one.
+        over: values by key, SI numbers or texts with a unit, or names; for "latin_hypercube" and "sobol" the
+            lowest and the highest one.
         how: "grid" takes every value with every other, "zip" the first ones together, then the second
-            ones, "latin_hypercube" draws designs that fill the ranges evenly.
-        n: number of designs to draw.
+            ones, "latin_hypercube" draws designs that fill the ranges evenly, "sobol" those of a scrambled
+            Sobol' sequence.
+        n: number of designs to draw; a power of two of a Sobol' sequence.
         seed: the same one draws the same designs.
         units: of the result, "si", those in which values are "shown", or some by kind of quantity,
             {"angle": "arcmin"}, and the others as shown.
@@ -101,6 +102,28 @@ def study(
         )
     with shown_in(unit_choice(tree.get(OUTPUT, {}).get("units", {}))), showing(units):
         return _laid_out(in_units(data, units), axes, dims, columns, units)
+
+
+def drawn_values(
+    case: CaseLike, over: Mapping[str, Any], shares: np.ndarray, variant: str | None = None
+) -> dict[str, list[Any]]:
+    """Values by whole key at shares of their ranges, as a study by "zip" takes them.
+
+    Args:
+        case: see `study`.
+        over: lowest and highest value by key.
+        shares: of the ranges, shape (design, key).
+        variant: of the case, the first one by default.
+
+    Raises:
+        InputError: see `study`; a key without two numbers.
+    """
+    chosen = as_case(case) if variant is None else Case(case, variant=variant)
+    ranges = _whole(chosen, over).items()
+    return {
+        key: _Axis.of(chosen, key, values).drawn(shares[:, at])
+        for at, (key, values) in enumerate(ranges)
+    }
 
 
 class _Axis:
@@ -215,10 +238,24 @@ def _latin_hypercube(axes: _Axes, n: int | None, seed: int) -> _Layout:
     return {"design": n}, [axis.drawn(shares[:, k]) for k, axis in enumerate(axes.values())]
 
 
+def _sobol(axes: _Axes, n: int | None, seed: int) -> _Layout:
+    from scipy.stats import qmc
+
+    if n is None or n < 1 or n & (n - 1):
+        raise InputError(
+            f"{'no number' if n is None else n} of designs was given; a Sobol' sequence is even with a power "
+            "of two of them"
+        )
+    _demand_count(n)
+    shares = qmc.Sobol(d=len(axes), rng=np.random.default_rng(seed)).random(n)
+    return {"design": n}, [axis.drawn(shares[:, k]) for k, axis in enumerate(axes.values())]
+
+
 _LAID_OUT: dict[How, Callable[[_Axes, int | None, int], _Layout]] = {
     "grid": _grid,
     "zip": _zip,
     "latin_hypercube": _latin_hypercube,
+    "sobol": _sobol,
 }
 
 

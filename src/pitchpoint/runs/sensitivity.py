@@ -1,0 +1,174 @@
+"""Which numbers of a case its figures hang on over ranges of all of them: Sobol' indices."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Float
+
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import shown
+from pitchpoint.registry import nearest
+from pitchpoint.runs.case import CaseLike
+from pitchpoint.runs.run import FrictionChoice, Progress
+from pitchpoint.runs.study import drawn_values, study
+
+__all__ = ["indices_of", "sobol_indices"]
+
+FEWEST = 16
+"""Designs of each sample below which indices say nothing."""
+
+CONFIDENCE = 0.95
+"""Part of the resampled indices that lie between the bounds of an index."""
+
+RESAMPLES = 200
+"""Resampled indices from which the bounds come."""
+
+Rows = Float[np.ndarray, "figure design"]
+
+
+def sobol_indices(
+    case: CaseLike,
+    over: Mapping[str, Any],
+    n: int,
+    *,
+    figures: Sequence[str] = ("mean_efficiency", "mean_loss", "torque_ripple"),
+    seed: int = 0,
+    variant: str | None = None,
+    friction: FrictionChoice | None = None,
+    folder: str | Path | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Parts of the variance of figures that each number of a case has, alone and with others.
+
+    Args:
+        case: a `Case`, or what makes one.
+        over: lowest and highest value by key, SI numbers or texts with a unit; all values between are equally
+            likely, those of different keys independent.
+        n: designs of each of two samples, a power of two; (keys + 2) n designs are computed in all.
+        figures: of the study whose variance is parted.
+        seed: the same one draws the same designs.
+        variant, friction, folder, progress: see `study`.
+
+    Returns:
+        `first_order` and `total_order` over `figure`, `law` and `key`, each with bounds `_low` and `_high` in
+        which 95 of 100 resampled indices lie; not a number where a figure does not vary. `designs` counts those
+        of each sample that entered: where some could not be computed, the largest power of two that is left.
+
+    Raises:
+        InputError: a number of designs that is no power of two, a figure that the study does not have, or
+            fewer than 16 designs that can be computed; see `study`.
+
+    From Sobol (2001) by the estimators of Saltelli et al. (2010), on a scrambled Sobol' sequence.
+    """
+    if n < FEWEST or n & (n - 1):
+        raise InputError(
+            f"{n} designs were asked for; a Sobol' sequence is even with a power of two of them, "
+            f"{FEWEST} at least"
+        )
+    shares = _shares(len(over), n, seed)
+    values = drawn_values(case, over, shares.reshape(shares.shape[0] * n, len(over)), variant)
+    found = study(
+        case,
+        values,
+        "zip",
+        variant=variant,
+        friction=friction,
+        folder=folder,
+        progress=progress,
+    )
+    data = xr.concat([_figure(found, name) for name in figures], "figure")
+    rows = data.transpose("figure", "law", "design").values.reshape(-1, len(over) + 2, n)
+    sound = np.flatnonzero(np.isfinite(rows).all(axis=(0, 1)))
+    count = 1 << max(sound.size.bit_length() - 1, 0)
+    if sound.size < FEWEST:
+        reasons = {str(one) for one in found["reason"].values.ravel() if str(one)}
+        told = f": {min(reasons)}" if reasons else ""
+        raise InputError(
+            f"{sound.size} of {n} designs can be computed with all changes of them{told}"
+        )
+    indices = indices_of(rows[..., sound[:count]], seed)
+    shape = (len(figures), data.sizes["law"], len(over))
+    return xr.Dataset(
+        {
+            name: (("figure", "law", "key"), values.reshape(shape))
+            for name, values in indices.items()
+        },
+        {"figure": [*figures], "law": data["law"].values, "key": [*values]},
+        {"designs": count, "asked": n, "seed": seed},
+    )
+
+
+def indices_of(
+    rows: Float[np.ndarray, "figure sample design"], seed: int = 0
+) -> dict[str, Float[np.ndarray, "figure key"]]:
+    """Indices of first and total order, with the bounds of each.
+
+    Args:
+        rows: values in both samples, then those of the first one with each key in turn as in the second.
+        seed: of the resampling.
+
+    Example:
+        >>> import numpy as np
+        >>> from scipy.stats import qmc
+        >>> first, second = np.split(qmc.Sobol(4, rng=1).random(1024), 2, axis=1)
+        >>> linear = np.array([1.0, 2.0])  # variances 1 to 4
+        >>> swapped = [np.where(np.arange(2) == key, second, first) for key in (0, 1)]
+        >>> found = indices_of(np.stack([one @ linear for one in (first, second, *swapped)])[None])
+        >>> found["first_order"].round(2).tolist()
+        [[0.2, 0.8]]
+    """
+    from scipy.stats import sobol_indices as parted
+
+    every: dict[str, list[Float[np.ndarray, " key"]]] = {}
+    for each in rows:
+        for name, value in _of_figure(each, parted, seed).items():
+            every.setdefault(name, []).append(value)
+    return {name: np.stack(values) for name, values in every.items()}
+
+
+def _of_figure(
+    rows: Float[np.ndarray, "sample design"], parted: Any, seed: int
+) -> dict[str, Float[np.ndarray, " key"]]:
+    keys = len(rows) - 2
+    nothing = np.full(keys, np.nan)
+    if not np.ptp(rows[:2]) > ROUNDING * np.abs(rows[:2]).max():
+        names = ("first_order", "total_order")
+        return {name + end: nothing for name in names for end in ("", "_low", "_high")}
+    given = {"f_A": rows[0][None], "f_B": rows[1][None], "f_AB": rows[2:, None]}
+    found = parted(func=given, n=rows.shape[1], rng=np.random.default_rng(seed))
+    bounds = found.bootstrap(confidence_level=CONFIDENCE, n_resamples=RESAMPLES)
+    made = {}
+    for name in ("first_order", "total_order"):
+        between = getattr(bounds, name).confidence_interval
+        ends = {"": getattr(found, name), "_low": between.low, "_high": between.high}
+        made |= {name + end: np.asarray(values).reshape(keys) for end, values in ends.items()}
+    return made
+
+
+ROUNDING = 1e-9
+"""Range of a figure over its size below which it does not vary: what a solver leaves."""
+
+
+def _shares(keys: int, n: int, seed: int) -> Float[np.ndarray, "sample design key"]:
+    """Both samples, and the first one with each key in turn from the second, as shares of the ranges."""
+    from scipy.stats import qmc
+
+    both = qmc.Sobol(2 * keys, rng=np.random.default_rng(seed)).random(n)
+    first, second = np.split(both, 2, axis=1)
+    swapped = [np.where(np.arange(keys) == key, second, first) for key in range(keys)]
+    return np.stack([first, second, *swapped])
+
+
+def _figure(found: xr.Dataset, name: str) -> xr.DataArray:
+    """One figure over designs and laws; InputError if there is none."""
+    whole = {"design", "law"}
+    known = [str(one) for one, data in found.data_vars.items() if whole == {*map(str, data.dims)}]
+    known = [one for one in known if np.issubdtype(found[one].dtype, np.floating)]
+    if name not in known:
+        raise InputError(
+            f"{shown(name)} is no figure of this study{nearest(name, known)}; it has {', '.join(known)}"
+        )
+    return found[name].drop_vars([str(one) for one in found[name].coords if str(one) not in whole])
