@@ -54,8 +54,8 @@ def sobol_indices(
 
     Returns:
         `first_order` and `total_order` over `figure`, `law` and `key`, each with bounds `_low` and `_high` in
-        which 95 of 100 resampled indices lie; not a number where a figure does not vary. `designs` counts those
-        of each sample that entered: where some could not be computed, the largest power of two that is left.
+        which 95 of 100 resampled indices lie; not a number where a figure does not vary. `designs` counts
+        those of each sample that entered: where some could not be computed, the largest power of two left.
 
     Raises:
         InputError: a number of designs that is no power of two, a figure that the study does not have, or
@@ -140,7 +140,7 @@ def _of_figure(
     given = {"f_A": rows[0][None], "f_B": rows[1][None], "f_AB": rows[2:, None]}
     found = parted(func=given, n=rows.shape[1], rng=np.random.default_rng(seed))
     bounds = found.bootstrap(confidence_level=CONFIDENCE, n_resamples=RESAMPLES)
-    made = {}
+    made: dict[str, Any] = {}
     for name in ("first_order", "total_order"):
         between = getattr(bounds, name).confidence_interval
         ends = {"": getattr(found, name), "_low": between.low, "_high": between.high}
