@@ -94,7 +94,8 @@ def factors(**changed: float) -> Factors:
 
 def duty(load: float, rpm: float, flank: float = 5e7, root: float = 3e6) -> Duty:
     speed = rpm * pi / 30.0
-    return Duty(numbers(load), numbers(speed), numbers(flank, flank), numbers(root, root))
+    cycles = numbers(flank, flank), numbers(root, root)
+    return Duty(numbers(load), numbers(speed), *cycles, driver=numbers(1.0, 0.0))
 
 
 FINISH = Finish(numbers(0.0, 0.0), numbers(1.8e-6), numbers(20e-6, 20e-6), numbers(90.02e-6))

@@ -23,6 +23,7 @@ from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.gears.pairs import largest_radius
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
+from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave.design import check_strain_wave
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
@@ -281,7 +282,12 @@ def test_a_drive_driven_by_another_member_is_the_one_that_the_file_would_give(fi
     usual = one.built({})
     first, other = usual.case.gears.drivers
     assert (usual.driver, usual.loaded) == (first, other)
-    demand_same(usual.design.backwards, one.built({"operation.driver": other}).design)
+    for driver in (first, other):
+        asked = one.built({"operation.driver": driver}).design
+        demand_same(usual.design.driven_by(driver), asked)
+    demand_same(usual.design.backwards, asked)
+    with pytest.raises(InputError, match=f"the {fixed} is fixed and cannot drive"):
+        usual.design.driven_by(fixed)
     with pytest.raises(InputError, match=f'"{fixed}" is fixed'):
         one.built({"operation.driver": fixed})
 
@@ -517,3 +523,24 @@ def test_gears_are_named_by_their_kind_and_their_teeth(
 ) -> None:
     family = {"family": table.model_fields["family"].default}
     assert table.model_validate({**PAIR["gears"], **family, **gears}).designation == designation
+
+
+def test_who_cannot_drive_or_be_loaded_is_told() -> None:
+    pair = Variant(PAIR, "pair.toml", "default", {}).built({}).design
+    with pytest.raises(InputError, match="gear 1 cannot drive and be loaded at once"):
+        pair.driven_by("gear 1", "gear 1")
+    with pytest.raises(InputError, match="one coordinate cannot drive and be loaded at once"):
+        replace(pair, driver=pair.loaded)
+    with pytest.raises(InputError, match="given together"):
+        replace(pair, driver=None)
+    driver, loaded = mesh_ends(pair.mesh, loaded="gear 1")
+    assert (driver.tolist(), loaded.tolist()) == ([0.0, 1.0], [1.0, 0.0])
+
+
+def test_bodies_with_motors_of_their_own_drive_as_they_do() -> None:
+    discs = TwinDisc(jnp.array([0.02, 0.035]), jnp.asarray(0.008), jnp.asarray(0.8))
+    rig = replace(Variant(PAIR, "pair.toml", "default", {}).built({}).design, mesh=discs)
+    rig = replace(rig, **dict(zip(("driver", "loaded"), mesh_ends(discs), strict=True)))
+    for ask in (lambda: rig.backwards, lambda: rig.driven_by(1), lambda: mesh_ends(discs, 1, 0)):
+        with pytest.raises(InputError, match="motors of their own"):
+            ask()

@@ -207,15 +207,15 @@ def test_nothing_but_gears_asks_for_the_family(folder: str) -> None:
 
 
 READ = {
-    "shape": 40,
-    "surfaces": 10,
-    "body": 40,
-    "other_flanks": 5,
-    "spots": 5,
-    "coordinates": 20,
-    "contacts": 30,
-    "events": 10,
-    "contact_ratio": 10,
+    "shape": 34,
+    "surfaces": 5,
+    "body": 27,
+    "other_flanks": 1,
+    "spots": 3,
+    "coordinates": 13,
+    "contacts": 18,
+    "events": 7,
+    "contact_ratio": 7,
     "relation": 2,
     "passing": 0,
     "pitch": 0,
@@ -246,7 +246,7 @@ def test_a_mesh_has_few_members_that_are_abstract_or_final() -> None:
 def test_rooms_beside_gears_read_few_members_of_a_mesh() -> None:
     reads = dict.fromkeys(READ, 0)
     for file in sorted(SOURCE.rglob("*.py")):
-        if file.relative_to(SOURCE).parts[0] in ("gears", "published"):
+        if file.relative_to(SOURCE).parts[0] == "gears":
             continue
         for node in ast.walk(ast.parse(file.read_text("utf-8"))):
             if isinstance(node, ast.Attribute) and node.attr in READ:

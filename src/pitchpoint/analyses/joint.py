@@ -138,7 +138,8 @@ def _torsion(built: Built) -> _Torsion:
     at = RATED if rated else 0
     weight = np.asarray(known.weight)
     ripple = np.exp(-2j * np.pi * np.asarray(known.phase)) * weight
-    play = np.asarray(kinematic_play(built.design, known.contacts, known.phase, body)) @ weight
+    ends = built.design.mesh, built.design.loaded
+    play = np.asarray(kinematic_play(*ends, known.contacts, known.phase, body)) @ weight
     slope = 1.0 / ((1.0 / found.stiffness) @ weight)
     turned, carried, slopes = map(array, _found(np.stack([found.wind_up @ weight, torques, slope])))
     curve = WindUpCurve(turned, carried, slopes, array(max(play, 0.0)))

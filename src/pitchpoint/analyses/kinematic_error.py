@@ -16,11 +16,13 @@ from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.doubts import Doubt
-from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.gears.family import Turning
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.nominal_motion import nominal_motion, phase_sense
 from pitchpoint.loading.compliance import Compliance, compliance
 from pitchpoint.loading.kinematic_error import KinematicError, added_gap, kinematic_error
 from pitchpoint.loading.tooth_compliance import Terms
+from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import looping_program, program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
@@ -48,6 +50,7 @@ class _Period(eqx.Module):
 
     contacts: Contacts
     yields: Compliance
+    sense: Float[Array, ""]
 
 
 def kinematic_error_part(
@@ -66,13 +69,15 @@ def kinematic_error_part(
     design, gears = built.design, built.case.gears
     load = array(np.full((1, 1), built.case.operation.load))
     phases = PHASES if design.mesh.body.couples else FEW_PAIRS
-    period = _period(design, built.terms, load, phases)
+    period = _period(
+        design.mesh, (design.driver, design.loaded), design.solids, built.terms, load, phases
+    )
     teeth = np.asarray(gears.tooth_numbers)
     solved: list[np.ndarray] = []
 
     def over(own: Surfaces, count: int) -> np.ndarray:
         done, found = sum(one.shape[1] for one in solved), []
-        for piece in _pieces(design, period, own, count):
+        for piece in _pieces(design.mesh, period, own, count):
             found.append(piece)
             progress(done + min(len(found) * TEETH, count) * phases)
         solved.append(np.concatenate(found, axis=1)[:, : count * phases])
@@ -151,13 +156,11 @@ def _together(
     return np.take(own, np.arange(teeth * phases), axis=1, mode="wrap")
 
 
-def _pieces(
-    design: Design, period: _Period, deviations: Surfaces, count: int
-) -> Iterator[np.ndarray]:
+def _pieces(mesh: Mesh, period: _Period, deviations: Surfaces, count: int) -> Iterator[np.ndarray]:
     phases = period.contacts.path.shape[-1]
     for start in range(0, count, TEETH):
         turned = start + np.arange(TEETH)[:, None] + np.arange(phases) / phases
-        added = _added(design, period, deviations, array(turned))
+        added = _added(mesh, period, deviations, array(turned))
         found = jax.device_get(_errors(period, added))
         each = (found.geometric, found.elastic_mean, found.under_load)
         yield np.stack([values.ravel() for values in each])
@@ -171,17 +174,25 @@ def _amplitudes(errors: np.ndarray, orders: int) -> np.ndarray:
 
 
 @program
-def _period(design: Design, terms: Terms, load: Array, phases: int) -> _Period:
-    contacts = design.mesh.contacts(design.onward * jnp.arange(phases)[None] / phases)
-    yields = compliance(design.mesh, design.loaded, contacts, design.solids, terms, load)
-    return _Period(contacts, yields)
+def _period(
+    mesh: Mesh,
+    ends: tuple[Array, Array],
+    solids: tuple[Solid, Solid],
+    terms: Terms,
+    load: Array,
+    phases: int,
+) -> _Period:
+    sense, loaded = phase_sense(mesh, nominal_motion(mesh, *ends)), ends[1]
+    contacts = mesh.contacts(sense * jnp.arange(phases)[None] / phases)
+    yields = compliance(mesh, loaded, contacts, solids, terms, load)
+    return _Period(contacts, yields, sense)
 
 
 @program
 def _added(
-    design: Design, period: _Period, deviations: Surfaces, turned: Float[Array, "tooth phase"]
+    mesh: Mesh, period: _Period, deviations: Surfaces, turned: Float[Array, "tooth phase"]
 ) -> Float[Array, "pair slice tooth phase"]:
-    return added_gap(deviations, design.mesh.spots(period.contacts, design.onward * turned))
+    return added_gap(deviations, mesh.spots(period.contacts, period.sense * turned))
 
 
 @looping_program

@@ -338,7 +338,9 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
     return {
         "phase": phase[::SHOWN],
         "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
-        "kinematic_play": np.asarray(kinematic_play(design, known.contacts, known.phase, body))
+        "kinematic_play": np.asarray(
+            kinematic_play(design.mesh, design.loaded, known.contacts, known.phase, body)
+        )
         @ weight,
         "angular_transmission_error": approach[:, ::SHOWN],
         "angular_transmission_error_range": np.ptp(approach, axis=-1),
@@ -489,17 +491,17 @@ def _zone_load(loads: np.ndarray) -> dict[str, np.ndarray]:
 
 @program
 def kinematic_play(
-    design: Design, contacts: Contacts, phase: Float[Array, " node"], body: Body | None
+    mesh: Mesh,
+    loaded: Float[Array, " dof"],
+    contacts: Contacts,
+    phase: Float[Array, " node"],
+    body: Body | None,
 ) -> Array:
     """Rotation of the loaded member between first touch of its flanks on either side [rad]."""
-    mesh = design.mesh
     other = mesh.other_flanks
     both = contacts, contacts if other is mesh else other.contacts(phase)
     return sum(
-        (
-            touch(opened(at.gap, body), jnp.abs(along(at.normal, design.loaded)), at.active)
-            for at in both
-        ),
+        (touch(opened(at.gap, body), jnp.abs(along(at.normal, loaded)), at.active) for at in both),
         jnp.zeros(()),
     )
 

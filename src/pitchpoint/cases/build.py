@@ -58,13 +58,13 @@ from pitchpoint.gears.contact_lines import line_of_action, pitch_point
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.families import Gears, built_gears, family_of
 from pitchpoint.gears.family import Family, Followed
-from pitchpoint.gears.mesh import Mesh, bodies_of, has
+from pitchpoint.gears.mesh import Mesh, coordinates_of, has
 from pitchpoint.gears.nominal_motion import (
     mesh_ends,
     nominal_motion,
     nominal_period,
     phase_sense,
-    speed_ratio,
+    ratio_dimension,
 )
 from pitchpoint.gears.pairs import touching, way
 from pitchpoint.gears.tooth_section import tooth_sections
@@ -574,7 +574,7 @@ class Built:
     @cached_property
     def bodies(self) -> tuple[Coordinate, ...]:
         """Coordinates of the mesh without their places."""
-        return bodies_of(self.design.mesh)
+        return coordinates_of(self.design.mesh)
 
     @cached_property
     def travels(self) -> frozenset[End]:
@@ -1293,7 +1293,7 @@ def _numbers(mesh: Mesh, driver: jax.Array, loaded: jax.Array) -> dict[str, dict
         if has(mesh, pitch_point)
         else jnp.zeros(()),
     }
-    dimensions = main_dimensions(mesh) | speed_ratio(mesh, driver, loaded)
+    dimensions = main_dimensions(mesh) | ratio_dimension(mesh, driver, loaded)
     return {"dimensions": dimensions, "nominal": nominal}
 
 

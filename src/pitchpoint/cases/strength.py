@@ -101,8 +101,8 @@ class Rated:
         """
         flank, root = self.endured
         time, engagements = nan if life is None else life, self.table.engagements or (1.0, 1.0)
-        ends = array(time), array(engagements), driver
-        return Duty(point.load, point.speed, flank, root, *ends)
+        given = point.load, point.speed, flank, root, driver
+        return Duty(*given, array(time), array(engagements))
 
 
 def check_strength(case: Case, used: Used) -> None:

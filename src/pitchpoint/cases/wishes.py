@@ -396,8 +396,7 @@ def _at_output(tree: Tree) -> tuple[float, bool]:
         return loads[train["output"]] / loads[train["input"]], False
     for gears, driver in _chain(tree):
         torques = gears.relative_torques
-        loaded = [one for one in torques if one not in (driver, getattr(gears, "fixed", ""))]
-        ratio *= torques[loaded[0]] / torques[driver]
+        ratio *= torques[gears.loaded_member(driver) or ""] / torques[driver]
         force = gears.load == "force"
     return ratio, force
 

@@ -187,7 +187,7 @@ def on_springs(
         design: mesh and materials.
         contacts: of the mesh.
         terms: of the model by which teeth yield.
-        load: that the driven coordinate carries [N m or N].
+        load: that the loaded coordinate carries [N m or N].
 
     Returns:
         Stiffness of each slice along its normal, zero out of contact [N/m].

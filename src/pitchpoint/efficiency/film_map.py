@@ -44,7 +44,7 @@ class FilmMap:
         """Friction [pair, slice, speed, temperature, node] between the points, or at the nearest end.
 
         Args:
-            load: that the driven coordinate carries [N m or N].
+            load: that the loaded coordinate carries [N m or N].
             speeds: of the driver [rad/s].
             degrees: temperatures of the oil [K].
 

@@ -17,9 +17,17 @@ from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.contact_lines import pitch_point
+from pitchpoint.gears.coordinates import number_of
 from pitchpoint.gears.gear_body import GearBody
-from pitchpoint.gears.mesh import Mesh, has
-from pitchpoint.gears.nominal_motion import mesh_ends, nominal_motion, nominal_period, phase_sense
+from pitchpoint.gears.mesh import Mesh, coordinates_of, has
+from pitchpoint.gears.nominal_motion import (
+    MOTORS,
+    mesh_ends,
+    nominal_motion,
+    nominal_period,
+    phase_sense,
+    turned_rates,
+)
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.pairs import touching
 from pitchpoint.gears.period import between
@@ -82,7 +90,8 @@ class Design(eqx.Module):
         roughness: of both flanks.
         drag: places beside the teeth where power is lost; none by default.
         elliptic: how an elliptic contact follows from its load; static.
-        driver: one for the coordinate that drives, zero elsewhere; by default see `mesh_ends`.
+        driver: one for the coordinate that drives, zero elsewhere; by default see `mesh_ends`, which takes
+            one mesh: of a batch give both, with its axis in front.
         loaded: one for the coordinate whose load is prescribed, zero elsewhere; what is left stands still.
     """
 
@@ -98,6 +107,8 @@ class Design(eqx.Module):
     def __post_init__(self) -> None:
         if (self.driver is None) != (self.loaded is None):
             raise InputError("driver and loaded coordinate are given together, see `driven_by`")
+        if self.driver is not None and self.driver is self.loaded:
+            raise InputError("one coordinate cannot drive and be loaded at once")
         if self.driver is None:
             self.driver, self.loaded = mesh_ends(self.mesh)
 
@@ -126,13 +137,35 @@ class Design(eqx.Module):
 
     @property
     def backwards(self) -> "Design":
-        """The same, driven by the member that is loaded, in the sense that presses the same flanks."""
+        """The same, driven by the member that is loaded, in the sense that presses the same flanks.
+
+        Raises:
+            InputError: bodies have motors of their own.
+        """
+        if has(self.mesh, turned_rates):
+            raise InputError(MOTORS)
         return replace(self, driver=self.loaded, loaded=self.driver)
 
     def driven_by(self, driver: str | int, loaded: str | int | None = None) -> "Design":
-        """The same between other members, see `mesh_ends`."""
-        first, last = mesh_ends(self.mesh, driver, loaded)
-        return replace(self, driver=first, loaded=last)
+        """The same with another member driving, in the sense that presses the same flanks.
+
+        Args:
+            driver: name of a body, or number of its coordinate.
+            loaded: likewise; by default a member that is fixed stays so, and the one that drove is loaded.
+
+        Raises:
+            InputError: there is no such body, it is fixed, or bodies have motors of their own.
+        """
+        if loaded is not None:
+            first, last = mesh_ends(self.mesh, driver, loaded)
+            return replace(self, driver=first, loaded=last)
+        names = tuple(place.body for place in coordinates_of(self.mesh))
+        drives = number_of(driver, names)
+        if np.asarray(self.driver)[drives]:
+            return self
+        if not np.asarray(self.loaded)[drives] and not has(self.mesh, turned_rates):
+            raise InputError(f"the {names[drives]} is fixed and cannot drive")
+        return self.backwards
 
     def conditions(
         self,
@@ -184,7 +217,7 @@ class Operation(eqx.Module):
     """Operating points.
 
     Attributes:
-        load: torque (or force) that the driven coordinate carries, not negative [N m or N].
+        load: torque (or force) that the loaded coordinate carries, not negative [N m or N].
         speed: of the driver, positive [rad/s].
         temperature: of the oil [K].
     """
@@ -297,7 +330,7 @@ class Models(eqx.Module):
         Args:
             design: mesh and materials.
             contacts: of the mesh.
-            load: that the driven coordinate carries [N m or N].
+            load: that the loaded coordinate carries [N m or N].
             body: compliance of what is under the teeth, where it is known already.
             teeth: where the contacts lie on them, likewise.
         """
@@ -369,7 +402,7 @@ def engagement(
 
     Args:
         design: mesh and materials.
-        load: that the driven coordinate carries [N m or N].
+        load: that the loaded coordinate carries [N m or N].
         models: sharing and compliance.
         nodes: in each segment between events.
         like: of the same mesh, solids and nodes under another load: what does not depend on it is
@@ -397,7 +430,7 @@ def shares_at(
     Args:
         design: mesh and materials.
         contacts: of the mesh.
-        load: that the driven coordinate carries [N m or N].
+        load: that the loaded coordinate carries [N m or N].
         models: sharing and compliance.
         body: compliance of what is under the teeth, where it couples them.
     """

@@ -36,7 +36,7 @@ from pitchpoint.efficiency.rows import (
 )
 from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.nominal_motion import speed_ratio
+from pitchpoint.gears.nominal_motion import ratio_dimension
 from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.reactions import radial_and_axial
@@ -112,7 +112,7 @@ def summary(design: Design, result: Cycle, factor: Array) -> dict[str, Array]:
     acting, limit = result.nearest_to_jamming
     return {
         **_by_gear(main_dimensions(design.mesh)),
-        **speed_ratio(design.mesh, design.driver, design.loaded),
+        **ratio_dimension(design.mesh, design.driver, design.loaded),
         "contact_ratio": design.mesh.contact_ratio,
         "loss_factor": factor,
         "mean_loss": result.mean_loss,

@@ -16,7 +16,7 @@ from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.gear_body import GearBody
 
-__all__ = ["Mesh", "bodies_of", "has"]
+__all__ = ["Mesh", "coordinates_of", "has"]
 
 
 class Mesh(eqx.Module):
@@ -107,7 +107,7 @@ class Mesh(eqx.Module):
         """Factors of the rates of the coordinates, whose sum is the rate at which engagements pass."""
 
 
-def bodies_of(mesh: Mesh) -> tuple[Coordinate, ...]:
+def coordinates_of(mesh: Mesh) -> tuple[Coordinate, ...]:
     """Coordinates of a mesh without their places: of each form of a mesh they are traced once.
 
     Args:

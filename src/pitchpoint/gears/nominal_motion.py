@@ -11,19 +11,23 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import number_of
-from pitchpoint.gears.mesh import Mesh, bodies_of, has
+from pitchpoint.gears.mesh import Mesh, coordinates_of, has
 
 __all__ = [
+    "MOTORS",
     "mesh_ends",
     "nominal_motion",
     "nominal_period",
     "phase_sense",
-    "speed_ratio",
+    "ratio_dimension",
     "turned_rates",
     "usual_ends",
 ]
 
 Rates = Float[Arrays, " dof"]
+
+MOTORS = "bodies of a rig have motors of their own, and a load that drives none of them"
+"""Why other ends are no choice there."""
 
 
 @singledispatch
@@ -80,8 +84,8 @@ def phase_sense(mesh: Mesh, motion: Rates) -> Float[Array, ""]:
     return jnp.sign(mesh.passing @ motion)
 
 
-def speed_ratio(mesh: Mesh, driver: Rates, loaded: Rates) -> dict[str, Float[Array, ""]]:
-    """Speed of the driver over that of the loaded member, by name, where members may take turns.
+def ratio_dimension(mesh: Mesh, driver: Rates, loaded: Rates) -> dict[str, Float[Array, ""]]:
+    """Speed of the driver over that of the loaded member as a main dimension, where members may take turns.
 
     Nothing of pairs, whose ratio is that of their teeth, and of rigs.
 
@@ -89,7 +93,7 @@ def speed_ratio(mesh: Mesh, driver: Rates, loaded: Rates) -> dict[str, Float[Arr
         mesh: any family.
         driver, loaded: see `nominal_motion`.
     """
-    if len(bodies_of(mesh)) < 3 or has(mesh, turned_rates):
+    if len(coordinates_of(mesh)) < 3 or has(mesh, turned_rates):
         return {}
     motion = nominal_motion(mesh, driver, loaded)
     return {"speed_ratio": jnp.abs((driver @ motion) / (loaded @ motion))}
@@ -120,17 +124,17 @@ def mesh_ends(
         >>> [each.tolist() for each in mesh_ends(pair, driver="gear 2")]
         [[0.0, 1.0], [1.0, 0.0]]
     """
-    names = tuple(bodies) or tuple(place.body for place in bodies_of(mesh))
+    names = tuple(bodies) or tuple(place.body for place in coordinates_of(mesh))
     usual = usual_ends(mesh)
     drives = usual[0] if driver is None else number_of(driver, names)
     takes = usual[0] if drives == usual[1] else usual[1]
     if loaded is not None:
         takes = number_of(loaded, names)
+        if driver is None and takes == drives:
+            drives = usual[1]
     if has(mesh, turned_rates) and (drives, takes) != usual:
-        raise InputError(
-            f"bodies here have motors of their own; the {names[drives]} does not drive the {names[takes]}"
-        )
+        raise InputError(MOTORS)
     if drives == takes:
-        raise InputError(f"the {names[drives]} drives, and another member is loaded")
+        raise InputError(f"the {names[drives]} cannot drive and be loaded at once")
     each = np.eye(len(names))
     return array(each[drives]), array(each[takes])

@@ -168,12 +168,13 @@ class GearsTable(Table):
         return self.members
 
     def loaded_member(self, driver: str) -> str | None:
-        """Member that is loaded while another one drives; None where there is no choice, see `mesh_ends`.
+        """Member that is loaded while another one drives; None of a rig, see `mesh_ends`.
 
         Args:
             driver: its name.
         """
-        return None
+        others = [name for name in self.members if name != driver]
+        return others[0] if len(others) == 1 else None
 
     @property
     def relative_torques(self) -> Mapping[str, float]:

@@ -67,7 +67,7 @@ def compliance(
         contacts: of the mesh.
         solids: material of each member.
         terms: of the model of tooth compliance.
-        load: that the driven coordinate carries [N m or N].
+        load: that the loaded coordinate carries [N m or N].
         body: see `GearBody.compliance`, where it is known already.
         teeth: where the contacts lie on them, where that is known already.
     """
@@ -85,7 +85,7 @@ def mean_line_load(
     Args:
         loaded: one for the coordinate that carries the load, zero elsewhere.
         contacts: of the mesh.
-        load: that the driven coordinate carries [N m or N].
+        load: that the loaded coordinate carries [N m or N].
 
     From the balance of the loaded coordinate under one load per length on all contact lines.
     """
@@ -110,7 +110,7 @@ def slice_stiffness(
         contacts: of the mesh.
         solids: material of each member.
         terms: of the model of tooth compliance.
-        load: that the driven coordinate carries [N m or N].
+        load: that the loaded coordinate carries [N m or N].
         teeth: where the contacts lie on them, where that is known already.
     """
     if teeth is None:

@@ -162,7 +162,7 @@ def estimate(
         mesh: any family; none but external cylindrical pairs have an estimate.
         loaded: one for the coordinate that carries the load, zero elsewhere.
         solids: materials.
-        load: that the driven coordinate carries [N m].
+        load: that the loaded coordinate carries [N m].
 
     Returns:
         c' and c_gamma_alpha over the whole face width [N/m] under their names, and sentences.

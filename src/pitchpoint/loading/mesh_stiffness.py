@@ -86,7 +86,7 @@ def mesh_stiffness(
         loaded: one for the coordinate that carries the load, zero elsewhere.
         solids: material of each member.
         terms: of the model of tooth compliance.
-        load: that the driven coordinate carries [N m or N].
+        load: that the loaded coordinate carries [N m or N].
         count: nodes in each segment between events.
 
     Source: Atanasiu et al. (2011), eqs. 20 to 22.

@@ -61,7 +61,7 @@ def springs(
         contacts: of the mesh.
         solids: material of each member.
         terms: of the model of tooth compliance.
-        load: that the driven coordinate carries [N m or N].
+        load: that the loaded coordinate carries [N m or N].
 
     From the derivative of the equilibrium with respect to the load, see `equilibrium`.
     """

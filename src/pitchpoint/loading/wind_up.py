@@ -25,7 +25,7 @@ class WindUp(eqx.Module):
     """Equilibrium at rest at loads and phases `*b`, without friction.
 
     Attributes:
-        load: that the driven coordinate carries [N m or N].
+        load: that the loaded coordinate carries [N m or N].
         wind_up: movement of that coordinate from first touch, the others held [rad or m].
         touch: movement up to first touch: its play on this flank at this phase [rad or m].
         stiffness: slope of the load over the wind-up [N m/rad or N/m]; steps up where a pair comes to

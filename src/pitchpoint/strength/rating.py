@@ -49,18 +49,18 @@ class Duty(eqx.Module):
         load: torque on the driven gear [N m].
         speed: of the driving gear [rad/s].
         cycles_flank, cycles_root: load cycles of both gears that their life factors count, without a life.
+        driver: one for the gear that drives, zero for the other one.
         life: time under load, whose cycles count [s]; not a number where none is asked.
         engagements: of a tooth of each gear in one turn of it.
-        driver: one for the gear that drives, zero for the other one.
     """
 
     load: One
     speed: One
     cycles_flank: Both
     cycles_root: Both
+    driver: Both
     life: One = eqx.field(default_factory=lambda: np.array(nan))
     engagements: Both = eqx.field(default_factory=lambda: np.ones(2))
-    driver: Both = eqx.field(default_factory=lambda: np.array([1.0, 0.0]))
 
 
 class Factors(eqx.Module):

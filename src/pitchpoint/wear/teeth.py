@@ -163,9 +163,8 @@ def backlash_growth(
 
 def _beside_pitch_line(mesh: Mesh, start: Start) -> Bool[np.ndarray, "place slice"]:
     """Places on slices beside which the sliding turns along a line, of all positions but where paths end."""
-    motion = nominal_motion(
-        mesh, *mesh_ends(mesh)
-    )  # turns of sliding stand where they are, whoever drives
+    # The sliding turns where it does, whoever drives.
+    motion = nominal_motion(mesh, *mesh_ends(mesh))
     slip = jax.device_get(along(start.contacts.slip_arm, motion))
     turns = np.sign(slip[:, 1:]) != np.sign(slip[:, :-1])
     beside = np.zeros(slip.shape, dtype=bool)

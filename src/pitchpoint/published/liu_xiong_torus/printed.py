@@ -48,7 +48,6 @@ Known = dict[str, Float[Arrays, "..."]]
 
 _DEGREE = 4
 
-_PINION = "gear 1"
 
 _ROLLS = 157
 """Roll angles at which the stiffness of a pair is kept, some 0.1 deg apart."""
