@@ -131,3 +131,14 @@ def error() -> xr.Dataset:
         {"curve": ["geometry", "under load"]},
         {"turn_angle": "wave generator against circular spline"},
     )
+
+
+def strengths() -> dict[str, xr.Dataset]:
+    """Safeties under the load of operation, 20 N m: roots bear 1.5 of it, flanks 1.44, ratcheting 2."""
+    margin = {"limit_margin": ("against", [2.0, np.nan]), "flexspline_torque": 20.0}
+    goodman = {"goodman_torque": ("place", [70.0, 64.0])}
+    safeties = {"flank_safety": ("gear", [1.3, 1.2]), "root_safety": ("gear", [1.5, 1.7])}
+    return {
+        "strength": xr.Dataset(safeties),
+        "load_limits": xr.Dataset({**margin, **goodman}, {"against": ["ratcheting", "buckling"]}),
+    }

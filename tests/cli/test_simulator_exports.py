@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from made_joints import TITLE, locking, made_joint, plain, torsion
+from made_joints import TITLE, locking, made_joint, plain, strengths, torsion
+from scipy.io import loadmat
 
 from pitchpoint.exports.simulators import TARGETS, Asked, HandedOver, hand_over
 from pitchpoint.runs.joint_model import joint_model
@@ -124,9 +125,55 @@ def test_friction_of_isaac_starts_the_joint_as_the_map_does(tmp_path: Path) -> N
     assert values["armature"] == pytest.approx(2e-4 * 2500.0)
     assert values["friction"] == pytest.approx(max(4.2, values["dynamic_friction"]))
     same(lost, constant(values["dynamic_friction"], values["viscous_friction"]))
-    assert made["MAP_ENDS"] == {"effort": 60, "velocity": 4} and made["RATIO"] == -50.0
+    assert (
+        made["LIMITS"] == {"effort_limit_sim": 60, "velocity_limit_sim": 4}
+        and made["RATIO"] == -50.0
+    )
+    text = " ".join(path.read_text("utf-8").split())
+    assert all(
+        word in text for word in ("Isaac Sim 5.0", "Isaac Sim 4.5", "PhysX 5.6", "N m over rad/s")
+    )
     worm = runpy.run_path(str(handed(made_joint(locking), tmp_path, "isaac").paths[0]))["ACTUATOR"]
     assert worm["friction"] >= 20.0
+
+
+def test_the_envelope_of_isaac_is_that_of_a_motor_of_direct_current(tmp_path: Path) -> None:
+    """0.05 N m/A, 2 ohm, 24 V behind 50: 30 N m stalled, 9.6 rad/s idle, none at the torque of the stall."""
+    (path,), _ = handed(made_joint(more=strengths()), tmp_path, "isaac")
+    made = runpy.run_path(str(path))
+    found = made["envelope"](0.05, 2.0, 24.0, 20.0)
+    assert found["max_actuator_velocity"] == pytest.approx(9.6)
+    assert found["speed_effort_gradient"] * 30.0 == pytest.approx(9.6)
+    assert (found["max_effort"], found["velocity_dependent_resistance"]) == (
+        pytest.approx(28.8),
+        0.0,
+    )
+    assert made["envelope"](0.05, 2.0, 24.0, 4.0)["max_effort"] == pytest.approx(10.0)
+
+
+def test_every_target_that_has_limits_writes_what_parts_bear(tmp_path: Path) -> None:
+    """28.8 N m, which the flanks bear; all heads name every part."""
+    made = made_joint(more=strengths())
+    folders = {one: handed(made, tmp_path, one, ROTOR).paths for one in TARGETS}
+    for target, paths in folders.items():
+        texts = [
+            " ".join(one.read_text("utf-8").split())
+            for path in paths
+            for one in unpacked(path)
+            if one.suffix != ".mat"
+        ]
+        said = "flanks of the teeth 28.8"
+        assert any(said in re.sub(r" [%/*]+ ", " ", text) for text in texts), target
+    urdf = ElementTree.parse(folders["urdf"][0]).find("joint/limit")
+    assert urdf is not None and float(urdf.attrib["effort"]) == 28.8
+    assert runpy.run_path(str(folders["isaac"][0]))["LIMITS"]["effort_limit_sim"] == 28.8
+    assert "effort 28.8, which is the least torque" in folders["ros2_control"][0].read_text("utf-8")
+    matrices = loadmat(folders["simscape"][0], simplify_cells=True)
+    assert matrices["limits"]["torque"] == pytest.approx(28.8)
+    motor = ElementTree.parse(folders["mujoco"][0]).find(".//motor")
+    assert motor is not None
+    driver = joint_model(made).driver_torque(28.8, 4.0)
+    assert float(motor.attrib["ctrlrange"].split()[1]) == pytest.approx(driver, rel=1e-5)
 
 
 def test_a_transmission_of_ros2_control_has_the_ratio_and_no_loss(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from made_joints import RATIO, error, locking, made_joint, plain, torsion
+from made_joints import RATIO, error, locking, made_joint, plain, strengths, torsion
 
 from pitchpoint.errors import InputError
 from pitchpoint.runs.joint_model import joint_model, part_of_map
@@ -101,3 +101,23 @@ def test_a_result_without_the_map_says_how_to_get_it() -> None:
         InputError, match=r"\"mad\" is not a friction law of this result; did you mean made\?"
     ):
         joint_model(made_joint(), law="mad")
+
+
+def test_parts_limit_the_torque_where_the_record_has_them() -> None:
+    """Flanks by the square of their safety, roots and margins by themselves, at the load of operation."""
+    joint = joint_model(made_joint(more=strengths()))
+    assert joint.part_limits == pytest.approx(
+        {
+            "flank_torque": 28.8,
+            "root_torque": 30.0,
+            "flexspline_torque": 64.0,
+            "ratcheting_torque": 40.0,
+        }
+    )
+    assert joint.torque_limit == pytest.approx(28.8)
+    assert "limit by ratcheting: 40 N m of the output" in joint.lines()
+    bare = joint_model(made_joint())
+    assert bare.part_limits == {} and bare.torque_limit == 60.0
+    weak = strengths()
+    weak["load_limits"]["goodman_torque"][:] = -1.0  # bending alone breaks it
+    assert "flexspline_torque" not in joint_model(made_joint(more=weak)).part_limits

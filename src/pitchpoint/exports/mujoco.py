@@ -13,6 +13,7 @@ from pitchpoint.exports.simulators import (
     Simulated,
     friction_at_load,
     heading,
+    limit_words,
     lost_without_load,
     most_torque,
     xml_comment,
@@ -66,7 +67,7 @@ def _fragment(given: Simulated, fit: FrictionFit, lost: list[str]) -> str:
         f"frictionloss and damping are nearest to the map at {given.load:.6g} {unit['torque']} and "
         f"{given.temperature:g} degC; MuJoCo has no friction that grows with the load. armature is that of "
         f"the drive{'' if joint.rotor_inertia is None else ' and the rotor'} at the output; ctrlrange is "
-        "what the map asks of the driver, not what a motor gives. solreffriction and solimpfriction keep a "
+        f"the torque of the driver at {limit_words(given)}. solreffriction and solimpfriction keep a "
         "joint at rest that would creep by degrees a second with the usual ones.",
         "\n".join(lost),
     ]

@@ -2,7 +2,14 @@
 
 from pathlib import Path
 
-from pitchpoint.exports.simulators import HandedOver, Simulated, heading, lost_lines, xml_comment
+from pitchpoint.exports.simulators import (
+    HandedOver,
+    Simulated,
+    heading,
+    limit_words,
+    lost_lines,
+    xml_comment,
+)
 from pitchpoint.results.store import write_text
 
 __all__ = ["write_ros2_control"]
@@ -27,7 +34,9 @@ def write_ros2_control(given: Simulated, folder: Path) -> HandedOver:
     )
     remark = (
         "mechanical_reduction is the speed of the driver over that of the output; it is negative where they "
-        "turn opposite ways. A motor that is mounted the other way round changes its sign."
+        "turn opposite ways. A motor that is mounted the other way round changes its sign. The joint takes "
+        f"its limits as min and max of its command_interface: effort {given.joint.torque_limit:.6g}, which "
+        f"is {limit_words(given)}, velocity {given.joint.limits['largest_speed']:.6g}, the end of the map."
     )
     text = (
         f"{xml_comment([*heading(given, what), remark, chr(10).join(lost)])}"

@@ -94,6 +94,7 @@ def _content(given: Simulated) -> dict[str, Any]:
         "speed_ratio": table.speed_ratio,
         "armature": joint.armature,
         "stiffness": np.nan if joint.wind_up is None else joint.wind_up.at_load,
+        "limits": {"torque": joint.torque_limit, **joint.limits},
         "units": {name: inert(unit) for name, unit in joint.units.items()},
         "title": visible(joint.title),
         "law": joint.law,

@@ -24,7 +24,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import SIGNS, inert
 from pitchpoint.input.quantities import shown
 from pitchpoint.results.store import make_folder
-from pitchpoint.runs.joint_model import JointModel, joint_model, part_of_map, quantity_of
+from pitchpoint.runs.joint_model import PARTS, JointModel, joint_model, part_of_map, quantity_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.units import degrees_celsius
 
@@ -37,6 +37,7 @@ __all__ = [
     "hand_over",
     "heading",
     "holding_friction",
+    "limit_words",
     "lost_lines",
     "lost_without_load",
     "most_torque",
@@ -206,6 +207,12 @@ def heading(given: Simulated, what: str) -> Iterator[str]:
         f"{joint.limits['largest_speed']:.6g} {unit['speed']} of the output, and from "
         f"{joint.table.temperatures[0]:g} to {joint.table.temperatures[-1]:g} degC."
     )
+    if joint.part_limits:
+        yield (
+            "Torque of the output at which a safety is 1, by those under the load of operation: "
+            + ", ".join(f"{PARTS[name]} {value:.6g}" for name, value in joint.part_limits.items())
+            + f" {unit['torque']}. Loads and lives that change are another matter: see a duty cycle."
+        )
     if joint.lacks:
         yield "Not known of this drive: " + inert(
             "; ".join(f"{name.replace('_', ' ')} ({why})" for name, why in joint.lacks.items())
@@ -297,13 +304,22 @@ def holding_friction(given: Simulated, moving: float) -> float:
     return max(moving, sum(known) / max(len(known), 1), *stuck)
 
 
-def most_torque(given: Simulated) -> float:
-    """Largest torque of the driver on the map [torque of the driver]."""
-    table = given.joint.table
-    lost = (
-        table.lost(table.torques[-1], n, given.temperature, given.joint.law) for n in table.speeds
+def limit_words(given: Simulated) -> str:
+    """What the largest torque of the output in a file is, which is not what a motor gives."""
+    joint = given.joint
+    if joint.torque_limit < joint.limits["largest_torque"]:
+        return "the least torque that a part of it bears, not what a motor gives"
+    return "the end of the map, not what a motor gives" + (
+        "" if joint.part_limits else " or the teeth bear, which the result does not know"
     )
-    return (table.torques[-1] + max(0.0, *lost)) * table.speed_ratio
+
+
+def most_torque(given: Simulated) -> float:
+    """Torque of the driver for the largest torque of the output that is allowed, or its load if more."""
+    table, joint = given.joint.table, given.joint
+    most = min(table.torques[-1], max(joint.torque_limit, given.load))
+    lost = (table.lost(most, n, given.temperature, joint.law) for n in table.speeds)
+    return (most + max(0.0, *lost)) * table.speed_ratio
 
 
 def xml_comment(paragraphs: Iterable[str]) -> str:

@@ -7,6 +7,7 @@ from pitchpoint.exports.simulators import (
     Simulated,
     friction_at_load,
     heading,
+    limit_words,
     lost_without_load,
     xml_comment,
 )
@@ -35,8 +36,8 @@ def write_urdf(given: Simulated, folder: Path) -> HandedOver:
     what = "Joint of URDF: copy dynamics and limit into the joint of your robot."
     remarks = (
         f"friction [{unit['torque']}] and damping [{unit['torque']} over {unit['speed']}] are nearest to the "
-        f"loss map at {given.load:.6g} {unit['torque']} and {given.temperature:g} degC. effort and velocity "
-        "are the ends of the map, not what a motor or the teeth bear. URDF has no armature: the inertia of "
+        f"loss map at {given.load:.6g} {unit['torque']} and {given.temperature:g} degC. velocity is "
+        f"the end of the map, effort {limit_words(given)}. URDF has no armature: the inertia of "
         f"the drive{'' if joint.rotor_inertia is None else ' and the rotor'} at the output is "
         f"{joint.armature:.6g} {unit['inertia']}."
     )
@@ -47,7 +48,7 @@ def write_urdf(given: Simulated, folder: Path) -> HandedOver:
         '      <mass value="1"/>\n      <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/>\n'
         f'    </inertial>\n  </link>\n  <joint name="{given.name}_joint" type="{kind}">\n'
         '    <parent link="base"/>\n    <child link="output"/>\n    <axis xyz="0 0 1"/>\n'
-        f'    <limit effort="{joint.limits["largest_torque"]:.9g}" '
+        f'    <limit effort="{joint.torque_limit:.9g}" '
         f'velocity="{joint.limits["largest_speed"]:.9g}" lower="{-ENDS[kind]}" upper="{ENDS[kind]}"/>\n'
         f'    <dynamics damping="{fit.viscous:.9g}" friction="{fit.constant:.9g}"/>\n'
         "  </joint>\n</robot>\n"

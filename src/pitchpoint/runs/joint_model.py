@@ -29,6 +29,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.units import degrees_celsius
 
 __all__ = [
+    "PARTS",
     "AngleWaves",
     "JointModel",
     "WindUpTable",
@@ -41,6 +42,15 @@ __all__ = [
 
 LEAST_WAVE = 0.01
 """Part of the largest wave of an error from which on one counts."""
+
+PARTS: Mapping[str, str] = {
+    "flank_torque": "flanks of the teeth",
+    "root_torque": "roots of the teeth at a safety of 1",
+    "flexspline_torque": "the flexspline for endless life",
+    "ratcheting_torque": "ratcheting",
+    "buckling_torque": "buckling of the flexspline",
+}
+"""What limits the torque of the output by the strength of a part, in words, by its name."""
 
 MOST_WAVES = 32
 """Waves that are handed over, the largest ones."""
@@ -105,7 +115,8 @@ class JointModel:
         kinematic_error: waves of the output's position by deviations of the teeth [rad or m].
         transmission_error: of the teeth under the load of operation, peak to peak [rad or m].
         torque_ripple: of the driver at the operating point, peak to peak [torque of the driver].
-        limits: largest torque and speed of the output in the map, by name.
+        limits: largest torque and speed of the output in the map, by name, and the torques of it that its
+            parts bear, see `PARTS` [torque].
         lacks: why an attribute is None, in a sentence, by its name.
         warnings: of the result.
 
@@ -194,6 +205,16 @@ class JointModel:
     def armature(self) -> float:
         """Inertia of drive and rotor at the output; what is not known of it counts as zero [kg m2 or kg]."""
         return (self.inertia or 0.0) + (self.rotor_inertia or 0.0) * self.ratio**2
+
+    @property
+    def part_limits(self) -> dict[str, float]:
+        """Torques of the output that parts bear, by name, those that the record has [torque]."""
+        return {name: self.limits[name] for name in PARTS if name in self.limits}
+
+    @property
+    def torque_limit(self) -> float:
+        """Least of the torques that parts bear, and of the end of the map [torque]."""
+        return min(self.limits["largest_torque"], *self.part_limits.values(), math.inf)
 
     @property
     def play(self) -> float:
@@ -305,6 +326,10 @@ def _told(joint: JointModel) -> Any:
         f"{joint.limits['largest_speed']:.4g} {unit['speed']}, {joint.table.temperatures[0]:g} to "
         f"{joint.table.temperatures[-1]:g} degC; starts without load at {rest.highest:.4g} {unit['driver']}"
     )
+    yield from (
+        f"limit by {PARTS[name]}: {torque:.4g} {unit['torque']} of the output"
+        for name, torque in joint.part_limits.items()
+    )
     yield f"armature {joint.armature:.4g} {unit['inertia']}"
     if joint.wind_up is not None:
         slope = f"{joint.wind_up.at_load:.4g} {unit['torque']}/{unit['travel']}"
@@ -350,7 +375,11 @@ def joint_model(
         speed=_operating_speed(record, speed, ratio),
         temperature=float(data.attrs["degree"]),
         rotor_inertia=rotor,
-        limits={"largest_torque": table.torques[-1], "largest_speed": speed},
+        limits={
+            "largest_torque": table.torques[-1],
+            "largest_speed": speed,
+            **_part_limits(outcome, float(data.attrs["load"])),
+        },
         lacks=lacks,
         warnings=tuple(map(str, record["warnings"])),
         **found,
@@ -454,6 +483,47 @@ def law_of(table: LossTable, law: str | None) -> str:
         return law or names[0]
     told = f"{shown(law)} is not a friction law of this result{nearest(law, names)}"
     raise InputError(told, key="law")
+
+
+def _part_limits(outcome: Outcome, load: float) -> dict[str, float]:
+    """Torques of the output at which a part is at its limit, from safeties and margins under the load.
+
+    The stress of a flank goes by the root of the load and that of a root by the load; factors of the rating
+    stay those of the load of operation, though they fall with more of it.
+    """
+    least: dict[str, float] = {}
+    for part, name, scaled in _LIMITED:
+        data = outcome.parts.get(part)
+        if data is not None and name in data:
+            least |= {key: _least(value) * load for key, value in scaled(data).items()}
+    return {name: torque for name, torque in least.items() if 0.0 < torque < math.inf}
+
+
+def _least(values: Any) -> float:
+    """The least of what is known; infinite where nothing is."""
+    known = np.asarray(values)[np.isfinite(values)]
+    return float(known.min()) if known.size else math.inf
+
+
+def _margins(data: xr.Dataset) -> dict[str, Any]:
+    """Margins of a strain wave gear against what the case gives, by name of the limit."""
+    each = zip(data["against"].values, data["limit_margin"].values, strict=True)
+    return {f"{against}_torque": margin for against, margin in each}
+
+
+_LIMITED: tuple[tuple[str, str, Any], ...] = (
+    ("strength", "flank_safety", lambda data: {"flank_torque": data["flank_safety"].values ** 2}),
+    ("strength", "root_safety", lambda data: {"root_torque": data["root_safety"].values}),
+    (
+        "load_limits",
+        "goodman_torque",
+        lambda data: {
+            "flexspline_torque": data["goodman_torque"].values / float(data["flexspline_torque"])
+        },
+    ),
+    ("load_limits", "limit_margin", _margins),
+)
+"""Parts of a result, the variable in it, and its loads over that of operation by name of the limit."""
 
 
 def _rates(record: Mapping[str, Any]) -> dict[str, float]:
