@@ -5,6 +5,7 @@ import runpy
 import xml.etree.ElementTree as ElementTree
 import zipfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -73,6 +74,24 @@ def test_every_target_takes_every_drive(target: str, kind: str, tmp_path: Path) 
                 assert not {"nan", "inf", "None"} & {
                     word for value in values for word in value.split()
                 }
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_the_head_of_a_file_has_the_table_of_the_screen(target: str, tmp_path: Path) -> None:
+    """Whole, with the rows of the range that somebody names, in one file of each target."""
+    wishes = replace(WISHES, rotor_inertia="2 kg cm2")
+    paths, lost = handed(made_joint(), tmp_path, target, wishes)
+    assert [line.split()[0] for line in lost[2:6]] == ["the", "the", "range", "range"]
+    assert all(float(row[2]) > 0 for row in rows(lost)) and len(rows(lost)) == 4
+    texts = [
+        "\n".join(line.removeprefix("//").removeprefix("%").strip() for line in text.splitlines())
+        for one in paths
+        for path in unpacked(one)
+        if path.suffix != ".mat"
+        for text in [path.read_text("utf-8")]
+    ]
+    head = "\n".join(line.strip() for line in lost[:6])
+    assert any(head in text for text in texts)
 
 
 @pytest.mark.parametrize("target", TARGETS)
