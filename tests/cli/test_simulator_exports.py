@@ -1,5 +1,6 @@
 """Joints for simulators: every target of every kind of drive, with what is lost in it."""
 
+import ast
 import re
 import runpy
 import xml.etree.ElementTree as ElementTree
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from made_joints import TITLE, locking, made_joint, plain, strengths, torsion
+from made_joints import TITLE, error, locking, made_joint, plain, strengths, torsion
 from scipy.io import loadmat
 
 from pitchpoint.exports.simulators import TARGETS, Asked, HandedOver, hand_over
@@ -111,6 +112,72 @@ def test_what_somebody_typed_ends_no_remark(target: str, tmp_path: Path) -> None
             assert all(re.fullmatch(r"[A-Za-z]\w*", name) for name in names)
         elif path.suffix == ".py":
             compile(text, path.name, "exec")
+
+
+HOSTILE = (
+    '*/ int x; /* """ \\ --> ]]> & ??/ \' ; %{ \n end MadeDrive; \r\n x = 1 // é \u2028 </p> $(x)'
+)
+
+
+def hostile() -> Outcome:
+    """Every text that a file has from a result, as somebody may have typed it."""
+    made = made_joint(more={"torsion": torsion(), "kinematic_error": error()})
+    made.manifest["members"][0] = HOSTILE
+    made.manifest |= {
+        "title": HOSTILE,
+        "case": HOSTILE + "/made.toml",
+        "variant": HOSTILE,
+        "driver": HOSTILE,
+        "warnings": [HOSTILE],
+        "lacks": {"bodies": HOSTILE, "strength": HOSTILE},
+    }
+    data = made.parts["four_quadrants"]
+    data.attrs |= dict.fromkeys(("note", "version", "fingerprint"), HOSTILE)
+    made.parts["four_quadrants"] = data.assign_coords(law=[HOSTILE])
+    turns = f"{HOSTILE} against circular spline"
+    made.parts["kinematic_error"] = error().assign_attrs(turn_angle=turns)
+    made.parts["torsion"] = made.parts["torsion"].assign_coords(law=[HOSTILE])
+    made.parts["torsion"]["torsional_stiffness"].attrs["covers"] = HOSTILE
+    return made
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_hostile_texts_of_a_result_stay_texts(target: str, tmp_path: Path) -> None:
+    """XML has the elements, C, Python, MATLAB and Modelica the statements that they have without them."""
+    plain_paths, hostile_paths = (
+        [
+            path
+            for one in handed(made, tmp_path / name, target, ROTOR).paths
+            for path in unpacked(one)
+        ]
+        for name, made in (("plain", harmless()), ("hostile", hostile()))
+    )
+    for path, twin in zip(hostile_paths, plain_paths, strict=True):
+        assert statements(path) == statements(twin), path.name
+
+
+def harmless() -> Outcome:
+    """The same result without such texts."""
+    made = made_joint(more={"torsion": torsion(), "kinematic_error": error()})
+    made.manifest["title"] = "joint"
+    return made
+
+
+def statements(path: Path) -> list[str]:
+    """What a file of source does, without its remarks and the contents of its texts."""
+    if path.suffix == ".mat":
+        return []
+    text = path.read_text("utf-8")
+    if path.suffix in (".xml", ".urdf"):
+        return [one.tag for one in ElementTree.fromstring(text).iter()]
+    if path.suffix == ".py":
+        return [
+            type(one).__name__ for one in ast.walk(ast.parse(text)) if isinstance(one, ast.stmt)
+        ]
+    if path.suffix == ".html":
+        return re.findall(r"<(/?\w+)", text)
+    kind = r"'[^'\n]*'|%.*" if path.suffix == ".m" else r'"(?:[^"\\]|\\.)*"|//.*|/\*(?s:.*?)\*/'
+    return re.findall(r"[^\W\d]\w+", re.sub(kind, " ", text))
 
 
 def test_a_joint_of_urdf_has_the_friction_that_its_table_is_of(tmp_path: Path) -> None:

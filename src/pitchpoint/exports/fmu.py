@@ -246,12 +246,13 @@ def _description(given: Simulated, unit: Unit, lost: list[str]) -> str:
     from_all = outputs.replace(
         "{}", "" if any(one.parameter for one in unit.variables) else depends
     )
-    name, joint = unit.name, given.joint
+    name, title = unit.name, quoteattr(visible(given.joint.title))
+    tool = quoteattr(visible(f"Pitchpoint {given.joint.version}"))
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f"{xml_comment([*heading(given, unit.what), chr(10).join(lost)])}"
         f'<fmiModelDescription fmiVersion="2.0" modelName="{name}" guid="{_guid(given, unit)}" '
-        f'description={quoteattr(visible(joint.title))} generationTool="Pitchpoint {joint.version}" '
+        f"description={title} generationTool={tool} "
         'variableNamingConvention="flat">\n'
         f'  <CoSimulation modelIdentifier="{name}" canHandleVariableCommunicationStepSize="true" '
         'canGetAndSetFMUstate="true" canSerializeFMUstate="true">\n'
