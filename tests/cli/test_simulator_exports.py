@@ -14,6 +14,7 @@ import pytest
 from made_joints import TITLE, error, locking, made_joint, plain, strengths, torsion
 from scipy.io import loadmat
 
+from pitchpoint.errors import InputError
 from pitchpoint.exports.simulators import TARGETS, Asked, HandedOver, hand_over
 from pitchpoint.runs.joint_model import joint_model
 from pitchpoint.runs.run import Outcome
@@ -154,6 +155,13 @@ def test_hostile_texts_of_a_result_stay_texts(target: str, tmp_path: Path) -> No
     )
     for path, twin in zip(hostile_paths, plain_paths, strict=True):
         assert statements(path) == statements(twin), path.name
+
+
+def test_a_unit_that_somebody_made_up_is_refused(tmp_path: Path) -> None:
+    made = made_joint()
+    made.parts["four_quadrants"]["output_torque"].attrs["units"] = 'N m""" \nimport os'
+    with pytest.raises(InputError, match="is not as this version writes it; run the case again"):
+        handed(made, tmp_path, "isaac")
 
 
 def harmless() -> Outcome:

@@ -167,14 +167,21 @@ def _writer(target: str) -> Writer:
     return found
 
 
+_OF_OTHERS = "the loss map of the output is not as this version writes it; run the case again"
+
+_UNITS = {"N m", "N", "rad/s", "m/s"}
+"""Units of a loss map, which stand in sources as they are."""
+
+
 def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
     try:
         joint = joint_model(outcome, law=asked.law, rotor_inertia=asked.rotor_inertia)
     except (AttributeError, LookupError, TypeError, ValueError) as error:
         if isinstance(error, InputError):
             raise (error if error.key else error.at(key=key)) from None
-        told = "the loss map of the output is not as this version writes it; run the case again"
-        raise InputError(told, key=key) from None
+        raise InputError(_OF_OTHERS, key=key) from None
+    if not {*joint.table.units} <= _UNITS:
+        raise InputError(_OF_OTHERS, key=key)
     load = quantity_of(asked.load, joint.units["torque"], "--load")
     warm = quantity_of(asked.temperature, "K", "--temperature")
     degree = float(degrees_celsius(np.asarray(joint.temperature if warm is None else warm)))
