@@ -612,7 +612,8 @@ def export(
         bool, typer.Option("--isaac", help="Friction and armature for Isaac Lab on PhysX.")
     ] = False,
     modelica: Annotated[
-        bool, typer.Option("--modelica", help="A package of Modelica around LossyGear.")
+        bool,
+        typer.Option("--modelica", help="A package of Modelica: LossyGear, and the map itself."),
     ] = False,
     fmu: Annotated[
         bool, typer.Option("--fmu", help="The loss map as a unit of FMI 2.0 for co-simulation.")

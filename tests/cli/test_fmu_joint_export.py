@@ -19,7 +19,6 @@ from pitchpoint._jax import array
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.joint import Joint, Sliding
 from pitchpoint.dynamics.joint_course import Drive, course
-from pitchpoint.errors import InputError
 from pitchpoint.exports.simulators import Asked, HandedOver, hand_over
 from pitchpoint.loading.wind_up_curve import WindUpCurve
 from pitchpoint.runs.joint_model import JointModel, joint_model
@@ -30,7 +29,7 @@ pytestmark = pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no
 STRICT = ("gcc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-shared", "-fPIC")
 ROTOR, LOAD = 0.7, 1.2
 WISHES = Asked(rotor_inertia=f"{ROTOR / RATIO**2} kg m2", temperature="40 degC")
-NAMES = ["motor_torque", "load_torque", "temperature", "load_inertia", "damping"]
+NAMES = ["motor_torque", "load_torque", "temperature", "inertia", "load_inertia", "damping"]
 NAMES += ["start_angle", "start_speed", "start_wind_up", "start_wind_up_rate"]
 NAMES += ["motor_angle", "motor_speed", "output_angle", "output_speed", "wind_up", "torque"]
 NAMES += ["friction", "loss"]
@@ -45,17 +44,19 @@ def lossless(torque: np.ndarray, speed: np.ndarray, degree: np.ndarray) -> np.nd
     return 0.0 * (torque + speed + degree)
 
 
-def handed(made: Outcome, folder: Path) -> HandedOver:
-    return hand_over({"default": made}, folder, ["fmu_joint"], WISHES)["fmu_joint"]
+def handed(made: Outcome, folder: Path, wishes: Asked | None = None) -> HandedOver:
+    return hand_over({"default": made}, folder, ["fmu_joint"], wishes or WISHES)["fmu_joint"]
 
 
 class Unit:
     """A unit in a process, which starts as it is set and runs by steps of a millisecond."""
 
-    def __init__(self, made: Outcome, folder: Path, **start: float) -> None:
+    def __init__(
+        self, made: Outcome, folder: Path, wishes: Asked | None = None, **start: float
+    ) -> None:
         from fmpy.fmi2 import FMU2Slave
 
-        self.path = handed(made, folder).paths[0]
+        self.path = handed(made, folder, wishes).paths[0]
         described: Any = fmpy.read_model_description(str(self.path))
         place = fmpy.extract(str(self.path), unzipdir=str(folder / "unit"))
         name = described.coSimulation.modelIdentifier
@@ -184,8 +185,18 @@ def test_it_is_whole_clean_and_refuses_what_is_no_number(tmp_path: Path) -> None
             unit.put(**wrong)
     with pytest.raises(Exception, match="fmi2SetReal"):
         unit.put(start_speed=1.0)  # it runs
-    with pytest.raises(InputError, match=r"knows no inertia.*--rotor-inertia"):
-        hand_over({"default": made_joint()}, tmp_path, ["fmu_joint"])
+
+
+def test_without_an_inertia_it_is_handed_over_and_starts_when_it_is_set(tmp_path: Path) -> None:
+    _, lost = hand_over({"default": made_joint()}, tmp_path, ["fmu_joint"])["fmu_joint"]
+    assert "No inertia of the drive is known: set inertia and load_inertia" in " ".join(lost)
+    with pytest.raises(Exception, match="fmi2ExitInitializationMode"):
+        Unit(made_joint(), tmp_path / "a", Asked())
+    unit = Unit(made_joint(), tmp_path / "b", Asked(), inertia=ROTOR)
+    known = Unit(made_joint(), tmp_path / "c")
+    found, expected = (one.run(0.1, motor_torque=1.0) for one in (unit, known))
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+    assert unit.of("motor_speed")[0] > 0.1
 
 
 @pytest.mark.parametrize("more", [{}, with_play()], ids=["rigid", "wound up"])

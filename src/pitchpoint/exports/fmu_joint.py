@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 
-from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import inert
 from pitchpoint.exports.fmu import Unit, Variable, write_unit
 from pitchpoint.exports.simulators import LOCKED_SHARE, HandedOver, Simulated
@@ -32,14 +31,8 @@ def write_joint_fmu(given: Simulated, folder: Path) -> HandedOver:
         folder: of the file.
 
     Raises:
-        InputError: no inertia is known of drive or rotor, or the map is too large for a file of source.
+        InputError: the map is too large for a file of source.
     """
-    if not given.joint.armature > 0.0:
-        raise InputError(
-            "the result knows no inertia of the drive, without which its joint cannot move; say that of "
-            'the motor, --rotor-inertia "0.3 kg cm2"',
-            key="--fmu-joint",
-        )
     unit = Unit(
         f"{given.name}_joint",
         "Joint with states for co-simulation, FMI 2.0: rotor and load, friction that sticks, wind-up, play.",
@@ -56,14 +49,15 @@ def write_joint_fmu(given: Simulated, folder: Path) -> HandedOver:
 def _variables(given: Simulated) -> list[Variable]:
     unit = given.joint.units
     torque, speed, driver, travel = (unit[name] for name in ("torque", "speed", "driver", "travel"))
-    slides = given.joint.slides
+    slides, inertia = given.joint.slides, (unit["inertia"], given.joint.armature)
     turning = "rad/s" if driver == "N m" else "m/s"
     turned = "rad" if driver == "N m" else "m"
     return [
         Variable("motor_torque", "of the motor on the driver", driver, 0.0),
         Variable("load_torque", "of the output on its load", torque, 0.0),
         Variable("temperature", "of the oil", "degC", given.temperature),
-        Variable("load_inertia", "of the load", unit["inertia"], given.joint.armature, "tunable"),
+        Variable("inertia", "of drive and rotor at the output", *inertia, "tunable"),
+        Variable("load_inertia", "of the load", *inertia, "tunable"),
         Variable("damping", "of the wind-up", "N s/m" if slides else "N m s/rad", 0.0, "tunable"),
         Variable("start_angle", "of the driver over the ratio", travel, 0.0, True),
         Variable("start_speed", "of the driver over the ratio", speed, 0.0, True),
@@ -132,7 +126,14 @@ def _lacks(joint: JointModel) -> list[str]:
         "backlash": "It has no play",
         "kinematic_error": "It has no error over the angle",
     }
-    return [f"{words}: {joint.lacks[name]}." for name, words in told.items() if name in joint.lacks]
+    still = (
+        "No inertia of the drive is known: set inertia and load_inertia, without which the unit does not "
+        "start."
+    )
+    moves = [still] if not joint.armature > 0.0 else []
+    return moves + [
+        f"{words}: {joint.lacks[name]}." for name, words in told.items() if name in joint.lacks
+    ]
 
 
 def _holds(joint: JointModel) -> list[str]:

@@ -96,8 +96,7 @@ FMI2_EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component c)
 
 FMI2_EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
-    joint_start(c);
-    return fmi2OK;
+    return joint_start(c) ? fmi2OK : fmi2Error;
 }
 
 FMI2_EXPORT fmi2Status fmi2Terminate(fmi2Component c)

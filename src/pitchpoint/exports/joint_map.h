@@ -62,9 +62,10 @@ static int joint_set(struct joint *joint, unsigned number, double value)
     return 1;
 }
 
-static void joint_start(struct joint *joint)
+static int joint_start(struct joint *joint)
 {
     (void)joint;
+    return 1;
 }
 
 static int joint_step(struct joint *joint, double step)

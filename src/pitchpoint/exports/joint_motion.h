@@ -12,6 +12,7 @@ enum {
     MOTOR_TORQUE,
     LOAD_TORQUE,
     TEMPERATURE,
+    INERTIA,
     LOAD_INERTIA,
     DAMPING,
     START_ANGLE,
@@ -106,6 +107,12 @@ static double joint_sliding(const struct joint *joint, double torque, double spe
     return joint_lost(joint, torque, fabs(speed) > least ? speed : least, sense);
 }
 
+/* An inertia; that which is not known and was not set is small until the start, which it forbids. */
+static double joint_inertia(const struct joint *joint, int which)
+{
+    return fmax(joint->inputs[which], 1e-12);
+}
+
 static double joint_motor(const struct joint *joint)
 {
     return joint->inputs[MOTOR_TORQUE] / LOSS_TABLE_SPEED_RATIO;
@@ -115,11 +122,11 @@ static double joint_motor(const struct joint *joint)
 static double joint_excess(const struct joint *joint, const struct forces *at, double speed, double sense,
                            double torque)
 {
-    const double inertia = joint->inputs[LOAD_INERTIA], gain = 1.0 - at->slope;
+    const double inertia = joint_inertia(joint, LOAD_INERTIA), gain = 1.0 - at->slope;
     double acceleration = 0.0;
     if (sense != 0.0)
         acceleration = (joint_motor(joint) - sense * joint_sliding(joint, torque, speed, sense) - torque * gain) /
-                       JOINT_ARMATURE;
+                       joint_inertia(joint, INERTIA);
     return torque - joint->inputs[LOAD_TORQUE] - inertia * (gain * acceleration - at->bend * speed * speed);
 }
 
@@ -161,10 +168,11 @@ static struct forces joint_forces(const struct joint *joint, const struct motion
                                : joint_rigid(joint, &found, at->speed, sense);
     found.friction = sense == 0.0 ? joint_motor(joint) - found.torque * (1.0 - found.slope)
                                   : sense * joint_sliding(joint, found.torque, at->speed, sense);
-    found.acceleration = (joint_motor(joint) - found.friction - found.torque * (1.0 - found.slope)) / JOINT_ARMATURE;
+    found.acceleration = (joint_motor(joint) - found.friction - found.torque * (1.0 - found.slope)) /
+                         joint_inertia(joint, INERTIA);
     if (sense == 0.0)
         found.acceleration = 0.0;
-    found.load_acceleration = JOINT_KNOTS ? (found.torque - joint->inputs[LOAD_TORQUE]) / joint->inputs[LOAD_INERTIA]
+    found.load_acceleration = JOINT_KNOTS ? (found.torque - joint->inputs[LOAD_TORQUE]) / joint_inertia(joint, LOAD_INERTIA)
                                           : (1.0 - found.slope) * found.acceleration -
                                                 found.bend * at->speed * at->speed;
     return found;
@@ -255,7 +263,7 @@ static void joint_small_step(struct joint *joint, double step)
 /* Longest step inside. */
 static double joint_longest(const struct joint *joint)
 {
-    const double yields = 1.0 / JOINT_ARMATURE + 1.0 / joint->inputs[LOAD_INERTIA];
+    const double yields = 1.0 / joint_inertia(joint, INERTIA) + 1.0 / joint_inertia(joint, LOAD_INERTIA);
     const double damped = joint->inputs[DAMPING] * yields;
     const double waving = JOINT_HIGHEST_ORDER * fabs(joint->now.speed);
     double step = LONGEST_STEP;
@@ -276,7 +284,7 @@ static int joint_step(struct joint *joint, double step)
 {
     const struct motion before = joint->now;
     double left = step;
-    if (!(step >= 0.0) || step > MOST_STEPS * joint_longest(joint))
+    if (!joint->started || !(step >= 0.0) || step > MOST_STEPS * joint_longest(joint))
         return 0;
     while (left > 0.0) {
         const double count = ceil(left / joint_longest(joint) - 1e-9), part = count > 1.0 ? left / count : left;
@@ -308,7 +316,7 @@ static void joint_reset(struct joint *joint)
     for (int k = 0; k < SETTABLE; ++k)
         joint->inputs[k] = 0.0;
     joint->inputs[TEMPERATURE] = JOINT_TEMPERATURE;
-    joint->inputs[LOAD_INERTIA] = JOINT_ARMATURE;
+    joint->inputs[INERTIA] = joint->inputs[LOAD_INERTIA] = JOINT_ARMATURE;
     joint->time = 0.0;
     joint->started = 0;
     joint_begin(joint);
@@ -319,7 +327,7 @@ static int joint_set(struct joint *joint, unsigned number, double value)
 {
     if (number >= SETTABLE || !isfinite(value))
         return 0;
-    if ((number == LOAD_INERTIA && value <= 0.0) || (number == DAMPING && value < 0.0))
+    if (((number == INERTIA || number == LOAD_INERTIA) && value <= 0.0) || (number == DAMPING && value < 0.0))
         return 0;
     if (number >= START_ANGLE && joint->started)
         return 0;
@@ -329,9 +337,10 @@ static int joint_set(struct joint *joint, unsigned number, double value)
     return 1;
 }
 
-static void joint_start(struct joint *joint)
+/* Whether it can start: nothing moves without inertia. */
+static int joint_start(struct joint *joint)
 {
-    joint->started = 1;
+    return joint->started = joint->inputs[INERTIA] > 0.0 && joint->inputs[LOAD_INERTIA] > 0.0;
 }
 
 static double joint_output(const struct joint *joint, unsigned number)
