@@ -21,7 +21,7 @@ from pitchpoint.exports.evaluator import demand_room, header
 from pitchpoint.exports.simulators import HandedOver, Simulated, heading, lost_lines, xml_comment
 from pitchpoint.results.store import write_bytes
 
-__all__ = ["Unit", "Variable", "write_fmu", "write_unit"]
+__all__ = ["SimulationUnit", "UnitVariable", "write_fmu", "write_unit"]
 
 BESIDE = (
     "The unit is the loss map itself: nothing of it is lost. It has no state: inertia, stiffness, play, "
@@ -57,7 +57,7 @@ _UNITS = {
 }
 
 
-class Variable(NamedTuple):
+class UnitVariable(NamedTuple):
     """A variable of a unit, whose place is its value reference.
 
     Attributes:
@@ -74,7 +74,7 @@ class Variable(NamedTuple):
     parameter: bool | str = False
 
 
-class Unit(NamedTuple):
+class SimulationUnit(NamedTuple):
     """What makes a unit beside its joint.
 
     Attributes:
@@ -88,7 +88,7 @@ class Unit(NamedTuple):
 
     name: str
     what: str
-    variables: list[Variable]
+    variables: list[UnitVariable]
     model: str
     numbers: str = ""
     notes: tuple[str, ...] = ()
@@ -105,11 +105,13 @@ def write_fmu(given: Simulated, folder: Path) -> HandedOver:
         InputError: the map is too large for a file of source.
     """
     what = "Loss map of a drive for co-simulation, FMI 2.0."
-    unit = Unit(given.name, what, _variables(given), "joint_map.h")
+    unit = SimulationUnit(given.name, what, _variables(given), "joint_map.h")
     return write_unit(given, folder, unit, "--fmu", BESIDE)
 
 
-def write_unit(given: Simulated, folder: Path, unit: Unit, key: str, beside: str) -> HandedOver:
+def write_unit(
+    given: Simulated, folder: Path, unit: SimulationUnit, key: str, beside: str
+) -> HandedOver:
     """Write a unit: description, sources with CMake, documentation, and a binary if a compiler is there.
 
     Args:
@@ -150,7 +152,7 @@ def _zipped(content: dict[str, bytes]) -> bytes:
     return image.getvalue()
 
 
-def _guid(given: Simulated, unit: Unit) -> str:
+def _guid(given: Simulated, unit: SimulationUnit) -> str:
     joint = given.joint
     told = repr(
         (
@@ -166,7 +168,7 @@ def _guid(given: Simulated, unit: Unit) -> str:
     return "{" + str(UUID(bytes=sha256(told.encode()).digest()[:16])) + "}"
 
 
-def _sources(given: Simulated, unit: Unit) -> dict[str, str]:
+def _sources(given: Simulated, unit: SimulationUnit) -> dict[str, str]:
     joint = given.joint
     law = [*joint.table.loss_torques].index(joint.law)
     code = files("pitchpoint.exports")
@@ -181,7 +183,7 @@ def _sources(given: Simulated, unit: Unit) -> dict[str, str]:
     }
 
 
-def _binary(unit: Unit, sources: dict[str, str]) -> dict[str, bytes]:
+def _binary(unit: SimulationUnit, sources: dict[str, str]) -> dict[str, bytes]:
     """Library for this machine by its place in the archive; nothing without a compiler."""
     place = _platform()
     compiler = shutil.which(os.environ.get("CC", "cc")) or shutil.which("gcc")
@@ -206,28 +208,28 @@ def _platform() -> tuple[str, str] | None:
     return ("darwin64", "dylib") if sys.platform == "darwin" else None
 
 
-def _variables(given: Simulated) -> list[Variable]:
+def _variables(given: Simulated) -> list[UnitVariable]:
     unit = given.joint.units
     torque, speed, driver = unit["torque"], unit["speed"], unit["driver"]
     return [
-        Variable("torque", "of the output on its load", torque, 0.0),
-        Variable("speed", "of the output", speed, 0.0),
-        Variable("temperature", "of the oil", "degC", given.temperature),
-        Variable("loss", "power lost; 0 where friction locks the drive", "W"),
-        Variable("efficiency", "power out over power in; 0 where no power comes out", "1"),
-        Variable(
+        UnitVariable("torque", "of the output on its load", torque, 0.0),
+        UnitVariable("speed", "of the output", speed, 0.0),
+        UnitVariable("temperature", "of the oil", "degC", given.temperature),
+        UnitVariable("loss", "power lost; 0 where friction locks the drive", "W"),
+        UnitVariable("efficiency", "power out over power in; 0 where no power comes out", "1"),
+        UnitVariable(
             "input_torque",
             "of the driver; at rest the middle of the band that holds, 0 where friction locks the drive",
             driver,
         ),
-        Variable("lowest", "torque of the driver that holds, -1e30 without an end", driver),
-        Variable("highest", "torque of the driver that holds, 1e30 without an end", driver),
-        Variable("locked", "friction locks the drive against its output"),
-        Variable("outside", "beyond the map, whose nearest point it is then"),
+        UnitVariable("lowest", "torque of the driver that holds, -1e30 without an end", driver),
+        UnitVariable("highest", "torque of the driver that holds, 1e30 without an end", driver),
+        UnitVariable("locked", "friction locks the drive against its output"),
+        UnitVariable("outside", "beyond the map, whose nearest point it is then"),
     ]
 
 
-def _description(given: Simulated, unit: Unit, lost: list[str]) -> str:
+def _description(given: Simulated, unit: SimulationUnit, lost: list[str]) -> str:
     used = dict.fromkeys(one.unit for one in unit.variables if one.unit)
     units = "".join(
         f"    <Unit name={quoteattr(name)}><BaseUnit {_UNITS[name]}/></Unit>\n".replace(" />", "/>")
@@ -265,7 +267,7 @@ def _description(given: Simulated, unit: Unit, lost: list[str]) -> str:
     )
 
 
-def _variable(number: int, one: Variable) -> str:
+def _variable(number: int, one: UnitVariable) -> str:
     kind = "Real" if one.unit else "Boolean"
     unit = f" unit={quoteattr(one.unit)}" if one.unit else ""
     start = "" if one.start is None else f' start="{one.start!r}"'
@@ -282,7 +284,7 @@ def _variable(number: int, one: Variable) -> str:
     )
 
 
-def _page(given: Simulated, unit: Unit, lost: list[str]) -> str:
+def _page(given: Simulated, unit: SimulationUnit, lost: list[str]) -> str:
     words = "".join(f"<p>{escape(one)}</p>\n" for one in (*heading(given, unit.what), *unit.notes))
     rows = "".join(
         f"<li><b>{one.name}</b> [{escape(one.unit or 'true or false')}]: {escape(one.words)}</li>\n"

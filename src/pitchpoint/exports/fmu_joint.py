@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from pitchpoint.exports.evaluator import inert
-from pitchpoint.exports.fmu import Unit, Variable, write_unit
+from pitchpoint.exports.fmu import SimulationUnit, UnitVariable, write_unit
 from pitchpoint.exports.simulators import LOCKED_SHARE, HandedOver, Simulated
 from pitchpoint.runs.joint_model import JointModel, WindUpTable
 
@@ -33,7 +33,7 @@ def write_joint_fmu(given: Simulated, folder: Path) -> HandedOver:
     Raises:
         InputError: the map is too large for a file of source.
     """
-    unit = Unit(
+    unit = SimulationUnit(
         f"{given.name}_joint",
         "Joint with states for co-simulation, FMI 2.0: rotor and load, friction that sticks, wind-up, play.",
         _variables(given),
@@ -46,33 +46,37 @@ def write_joint_fmu(given: Simulated, folder: Path) -> HandedOver:
     )
 
 
-def _variables(given: Simulated) -> list[Variable]:
+def _variables(given: Simulated) -> list[UnitVariable]:
     unit = given.joint.units
     torque, speed, driver, travel = (unit[name] for name in ("torque", "speed", "driver", "travel"))
     slides, inertia = given.joint.slides, (unit["inertia"], given.joint.armature)
     turning = "rad/s" if driver == "N m" else "m/s"
     turned = "rad" if driver == "N m" else "m"
     return [
-        Variable("motor_torque", "of the motor on the driver", driver, 0.0),
-        Variable("load_torque", "of the output on its load", torque, 0.0),
-        Variable("temperature", "of the oil", "degC", given.temperature),
-        Variable("inertia", "of drive and rotor at the output", *inertia, "tunable"),
-        Variable("load_inertia", "of the load", *inertia, "tunable"),
-        Variable("damping", "of the wind-up", "N s/m" if slides else "N m s/rad", 0.0, "tunable"),
-        Variable("start_angle", "of the driver over the ratio", travel, 0.0, True),
-        Variable("start_speed", "of the driver over the ratio", speed, 0.0, True),
-        Variable("start_wind_up", "from the middle of the play", travel, 0.0, True),
-        Variable("start_wind_up_rate", "of the wind-up", speed, 0.0, True),
-        Variable("motor_angle", "of the driver, along that of the output", turned),
-        Variable("motor_speed", "of the driver, along that of the output", turning),
-        Variable("output_angle", "of the load", travel),
-        Variable("output_speed", "of the load", speed),
-        Variable("wind_up", "from the middle of the play; 0 of a rigid drive", travel),
-        Variable("torque", "of the drive on its output", torque),
-        Variable("friction", "torque at the driver against its motion, or that holds it", driver),
-        Variable("loss", "power lost to friction", "W"),
-        Variable("sticks", "friction holds the driver at rest"),
-        Variable("outside", "beyond the map, whose nearest point it is then"),
+        UnitVariable("motor_torque", "of the motor on the driver", driver, 0.0),
+        UnitVariable("load_torque", "of the output on its load", torque, 0.0),
+        UnitVariable("temperature", "of the oil", "degC", given.temperature),
+        UnitVariable("inertia", "of drive and rotor at the output", *inertia, "tunable"),
+        UnitVariable("load_inertia", "of the load", *inertia, "tunable"),
+        UnitVariable(
+            "damping", "of the wind-up", "N s/m" if slides else "N m s/rad", 0.0, "tunable"
+        ),
+        UnitVariable("start_angle", "of the driver over the ratio", travel, 0.0, True),
+        UnitVariable("start_speed", "of the driver over the ratio", speed, 0.0, True),
+        UnitVariable("start_wind_up", "from the middle of the play", travel, 0.0, True),
+        UnitVariable("start_wind_up_rate", "of the wind-up", speed, 0.0, True),
+        UnitVariable("motor_angle", "of the driver, along that of the output", turned),
+        UnitVariable("motor_speed", "of the driver, along that of the output", turning),
+        UnitVariable("output_angle", "of the load", travel),
+        UnitVariable("output_speed", "of the load", speed),
+        UnitVariable("wind_up", "from the middle of the play; 0 of a rigid drive", travel),
+        UnitVariable("torque", "of the drive on its output", torque),
+        UnitVariable(
+            "friction", "torque at the driver against its motion, or that holds it", driver
+        ),
+        UnitVariable("loss", "power lost to friction", "W"),
+        UnitVariable("sticks", "friction holds the driver at rest"),
+        UnitVariable("outside", "beyond the map, whose nearest point it is then"),
     ]
 
 
