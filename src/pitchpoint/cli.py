@@ -704,12 +704,15 @@ def duty(
         Path,
         typer.Argument(
             metavar="CYCLE",
-            help="Comma separated values with heads such as time [s], torque [N m], speed [rpm], "
-            "and temperature [degC] where it changes.",
+            help="Comma separated values with heads such as time \\[s], torque \\[N m], speed \\[rpm], "
+            "and temperature \\[degC] where it changes.",
         ),
     ],
     variant: Annotated[str | None, typer.Option("--variant", help="Of the result.")] = None,
-    law: Annotated[str, typer.Option("--law", help="Of friction; the first one by default.")] = "",
+    law: Annotated[
+        str,
+        typer.Option("--law", help="Of friction; the first one, with all beside it, by default."),
+    ] = "",
     teeth: Annotated[
         bool, typer.Option("--teeth", help="With damage and life of the teeth by ISO 6336.")
     ] = False,
@@ -718,7 +721,8 @@ def duty(
     """Energy, torques and loss of a drive over a duty cycle of its output.
 
     Torque is that of the output on its load, positive along positive speeds. The result is one of a run with
-    --set loss_map.quadrants=4. Motor, heat and life of bearings are added from Python, see `docs duty`.
+    --set loss_map.quadrants=4. Motor, heat and rated lives are added by the table duty of the case file, or
+    from Python, see `docs duty`.
     """
     from pitchpoint.notebook.duty_cycle import duty as over_cycle
     from pitchpoint.notebook.result import open_result

@@ -811,6 +811,9 @@ def test_a_duty_cycle_is_told_by_the_map(
     assert told["lost_energy"] == pytest.approx(2.0 * lost[0] + lost[1], rel=1e-9)
     assert told["output_energy"] == pytest.approx(2.0 * 20.0 * speed, rel=1e-12)
     assert told["returned_energy"] == pytest.approx(20.0 * speed, rel=1e-12)
+    assert command("duty", "--help") == 0
+    help_ = capsys.readouterr().out
+    assert all(head in help_ for head in ("time [s]", "torque [N m]", "speed [rpm]"))
     assert command("duty", folder, path, "--law", "xu") == 2
     assert "is not a friction law of this result" in capsys.readouterr().err
     path.write_text(head + "2, 20, 60, 400\n")
