@@ -15,6 +15,7 @@ from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.document import read, resolve
 from pitchpoint.cases.schema import Case, DriveCase, keys, quantity_at, validate
 from pitchpoint.cases.template import FAMILIES, template
+from pitchpoint.duty_cycle.table import DutyTable, HeatTable
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.runs.check import check
@@ -62,6 +63,14 @@ def test_every_remark_is_a_key_with_a_value_that_it_may_have(family: str) -> Non
         for one in value if isinstance(value, list) else [value]:
             if quantity is not None and one != FROM_CENTRE_DISTANCE:
                 quantity.read(one)
+
+
+def test_tables_by_names_of_ones_own_have_one_in_their_remark() -> None:
+    told = remarks(template("spur"))
+    lives = DutyTable.model_validate({"file": "cycle.csv", "lives": told["duty.lives"]}).lives
+    assert [life.exponent for life in lives.values()] == [3.0]
+    heat = {"gears": "name"} | {key: told[f"duty.heat.{key}"] for key in ("bodies", "resistances")}
+    assert [*HeatTable.model_validate(heat).bodies] == ["name"]
 
 
 @pytest.mark.parametrize("family", ["spur", "two_stages", "planetary"])

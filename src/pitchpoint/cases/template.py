@@ -223,7 +223,8 @@ def _example(info: FieldInfo) -> Any:
     if tables:
         table = next(iter(tables.values()))
         made = {key: _example(one) for key, one in table.model_fields.items() if one.is_required()}
-        return [made] if get_origin(info.annotation) is tuple else made
+        kind = get_origin(info.annotation)
+        return [made] if kind is tuple else {"name": made} if kind is dict else made
     return False if bool in (info.annotation, *get_args(info.annotation)) else "text"
 
 
