@@ -53,7 +53,7 @@ def actuator_map(
         >>> found.power[2].round(3).tolist()  # 2 N m at -5, 0 and 5 rad/s
         [-7.695, nan, 12.705]
         >>> found.efficiency[2].round(3).tolist()
-        [0.769, nan, 0.787]
+        [0.77, nan, 0.787]
     """
     torque = np.asarray(table.torques)
     speed = np.array(sorted({sign * one for one in table.speeds for sign in (-1.0, 1.0)}))
