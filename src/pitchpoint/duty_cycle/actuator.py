@@ -46,6 +46,8 @@ def actuator_map(
         winding: temperature of the winding [K].
 
     Example:
+        >>> from pitchpoint.duty_cycle.motor import Motor
+        >>> from pitchpoint.efficiency.loss_table import LossTable
         >>> lost = {"own": (((0.1,), (0.1,)), ((0.1,), (0.1,)), ((0.1,), (0.1,)))}
         >>> table = LossTable((-2.0, 0.0, 2.0), (0.0, 5.0), (40.0,), lost, 0.1)
         >>> motor = Motor(torque_constant=0.1, resistance=0.5)
