@@ -50,7 +50,7 @@ from pitchpoint.runs.run import Outcome, describe, keep, load_case, open_result
 from pitchpoint.views import show
 from pitchpoint.views.registry import DUTY as DUTY_SECTION
 from pitchpoint.views.sections.beside import BESIDE
-from pitchpoint.views.sections.duty import operating_points
+from pitchpoint.views.sections.duty import actuator_points, operating_points
 from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -869,6 +869,10 @@ def test_a_run_answers_with_its_duty_cycle(
     dots = figure.data[1]
     np.testing.assert_allclose(dots["x"], [60.0, -60.0, 0.0], rtol=1e-4, atol=1e-12)
     assert dots["y"] == [20.0, 20.0, 10.0] and "oil at 40" in figure.note
+    for name in ("map_actuator_efficiency", "map_electrical_power"):
+        drawn = actuator_points(name, 0, made)
+        assert drawn.drawn and drawn.data[1]["y"] == dots["y"] and "actuator" in drawn.title
+    assert any(row[""] == "Electrical energy" for row in next(iter(DUTY_SECTION.screen(made))).rows)
     (printed,) = DUTY_SECTION.screen(made)
     assert [row[""] for row in printed.rows][-1] == "Fails first"
 
