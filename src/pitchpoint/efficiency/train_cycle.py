@@ -28,8 +28,9 @@ __all__ = ["NODES_OF_TRAINS", "MeshState", "TrainCycle", "train_cycle"]
 Nodes = Float[Array, " node"]
 Copies = Float[Array, "copy node"]
 Lanes = Float[Array, "pair slice copy node"]
-Forces = Float[Array, "node force"]
-Arms = Float[Array, "node row force"]
+Forces = Float[Array, "force node"]
+Arms = Float[Array, "row force node"]
+Rows = Float[Array, "row #node"]
 Vectors = Float[Array, "3 copy node"]
 OfPlanets = Float[Array, "_ node"]
 
@@ -218,7 +219,7 @@ def train_cycle(
     _leave_open(every)
     solved = _solve(train, every, operation)
     lost = solved.code != int(Code.SOLVED)
-    forces = _by_mesh(every, jnp.where(lost[:, None], jnp.nan, solved.forces))
+    forces = _by_mesh(every, jnp.where(lost, jnp.nan, solved.forces))
     states = tuple(one.state(force) for one, force in zip(every, forces, strict=True))
     places = _places(train, every, forces, operation)
     torques = _torques(train, every, forces, places)
@@ -290,6 +291,10 @@ class _Meshing:
         self.sense = jnp.where(jnp.abs(slip) > 1e-13 * jnp.abs(roll), jnp.sign(slip), 0.0)
         self.turn = jnp.sign(roll)
         self.carrying = self.contacts.active & (self.share > 0.0) & self.there
+        self.normal = jnp.stack([total(self.share * n) for n in self.contacts.normal])
+        self.sliding = self.share * self.sense
+        self.direction = jnp.stack([total(self.share * d) for d in self.contacts.direction])
+        self.rolls = models.rolling.name != "none"
 
     def carry(self, nominal: Copies) -> None:
         """Take these as the normal forces without friction."""
@@ -310,7 +315,7 @@ class _Meshing:
         at = replace(self.unloaded, load=jnp.where(self.carrying, self.share, 1.0) * pushed)
         loaded = self.carrying & (self.nominal > 0.0)
         coefficient = jnp.where(loaded, self.models.coefficient(at), 0.0)
-        if self.models.rolling.name == "none":
+        if not self.rolls:
             return coefficient, jnp.zeros_like(coefficient)
         resistance = evaluate(self.models.rolling, at) * self.contacts.weight
         return coefficient, jnp.where(loaded, resistance, 0.0)
@@ -321,12 +326,14 @@ class _Meshing:
 
     def torques(self, coefficient: Lanes, force: Copies) -> Float[Array, "dof copy node"]:
         """Torques from outside on the coordinates that a unit of normal force on each copy asks for."""
-        slip, mu = self.contacts.slip_arm, coefficient * self.sense * self.pressing(force)
-        each = zip(self.contacts.normal, slip, strict=True)
-        return jnp.stack([total(self.share * (n + mu * t)) * self.there for n, t in each])
+        rubbing = coefficient * self.sliding
+        friction = jnp.stack([total(rubbing * arm) for arm in self.contacts.slip_arm])
+        return (self.normal + friction * self.pressing(force)) * self.there
 
     def rolling_torques(self, resistance: Lanes) -> Float[Array, "dof copy node"]:
         """Torques from outside on the coordinates that rolling resistance asks for."""
+        if not self.rolls:
+            return jnp.zeros_like(self.normal)
         return jnp.stack([total(resistance * self.turn * arm) for arm in self.contacts.roll_arm])
 
     def pressed(self, body: str, force: Copies) -> Vectors:
@@ -340,9 +347,7 @@ class _Meshing:
         planet = next((k for k, name in enumerate(self.mesh.bodies) if name in self.planets), 1)
         outward = jnp.sign(places[planet] - places[1 - planet])
         toward = outward * self.pressing(force)
-        unit = (2.0 * number - 1.0) * jnp.stack(
-            [total(self.share * d) for d in self.contacts.direction]
-        )
+        unit = (2.0 * number - 1.0) * self.direction
         return (
             unit * force * jnp.stack([toward, outward * jnp.ones_like(force), jnp.ones_like(force)])
         )
@@ -394,7 +399,11 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
         forces, _, steps = held
         each = _by_mesh(every, forces)
         laws = [one.laws(force) for one, force in zip(every, each, strict=True)]
-        taken = [one.of_rolling(rolling) for one, (_, rolling) in zip(every, laws, strict=True)]
+        taken = [
+            one.of_rolling(rolling)
+            for one, (_, rolling) in zip(every, laws, strict=True)
+            if one.rolls
+        ]
         arms = _arms(
             train,
             [
@@ -402,42 +411,43 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
                 for one, (mu, _), force in zip(every, laws, each, strict=True)
             ],
         )
-        wanted = asked - jnp.sum(_arms(train, taken), axis=-1)
+        wanted = asked - jnp.sum(_arms(train, taken), axis=1) if taken else asked
         if train.drag:
-            wanted -= _on_rows(train, _places(train, every, each, operation))
-        left = jnp.einsum("nrf,nf->nr", arms, forces) - wanted
-        size = jnp.max(jnp.abs(arms) * jnp.abs(forces)[:, None], axis=-1)
+            wanted = wanted - _on_rows(train, _places(train, every, each, operation))
+        each_torque = arms * forces
+        left = jnp.sum(each_torque, axis=1) - wanted
+        size = jnp.max(jnp.abs(each_torque), axis=1)
         # A body that idles is in balance within rounding of the forces in the rest of the train.
-        size = jnp.maximum(size, IDLE * jnp.max(size, axis=-1, keepdims=True))
-        residual = jnp.max(jnp.abs(left) / jnp.where(size > 0.0, size, 1.0), axis=-1)
-        return usual * _least(arms * usual[:, None], wanted), residual, steps + 1
+        size = jnp.maximum(size, IDLE * jnp.max(size, axis=0))
+        residual = jnp.max(jnp.abs(left) / jnp.where(size > 0.0, size, 1.0), axis=0)
+        return usual * _least(arms * usual, wanted), residual, steps + 1
 
     def goes_on(held: tuple[Forces, Nodes, Array]) -> Array:
         _, residual, steps = held
         return (steps < MOST_STEPS) & jnp.any(residual > NEAR)
 
-    nominal = jnp.concatenate([one.nominal for one in every]).T
-    largest = jnp.max(nominal, axis=-1, keepdims=True)
+    nominal = jnp.concatenate([one.nominal for one in every])
+    largest = jnp.max(nominal, axis=0)
     idle = nominal <= IDLE * largest
     nominal = jnp.maximum(nominal, jnp.where(largest > 0.0, IDLE * largest, 1.0))
     # Forces of a mesh that idles without losses are free to become what these ask for.
     usual = jnp.where(idle & (largest > 0.0), largest, nominal)
-    first = nominal, jnp.full(nominal.shape[0], jnp.inf), jnp.asarray(0)
+    first = nominal, jnp.full(nominal.shape[1], jnp.inf), jnp.asarray(0)
     forces, residual, steps = jax.lax.while_loop(goes_on, step, first)
-    pulled = forces < -IDLE * jnp.max(jnp.abs(forces), axis=-1, keepdims=True)
+    pulled = forces < -IDLE * jnp.max(jnp.abs(forces), axis=0)
     # Where other flanks may be pressed, no forces hold a train that is locked.
     either = [jnp.broadcast_to(one.either, one.nominal.shape) for one in every]
-    pulled = jnp.any(pulled & ~jnp.concatenate(either).T, axis=-1)
+    pulled = jnp.any(pulled & ~jnp.concatenate(either), axis=0)
     code = jnp.where(pulled, int(Code.LOCKED), int(Code.SOLVED))
     code = jnp.where(residual <= UNSOLVED, code, int(Code.NOT_CONVERGED))
     return _Balanced(forces, residual, steps, code)
 
 
-def _asked(train: Train, operation: Operation) -> Float[Array, " row"]:
+def _asked(train: Train, operation: Operation) -> Float[Array, "row 1"]:
     """Torques from outside on the bodies in equilibrium."""
     rates, roles = jnp.stack([train.rates[body] for body in train.bodies]), train.roles
     load = -jnp.sign(rates[roles.loaded]) * operation.load
-    return jnp.zeros(roles.rows.shape).at[0].set(load)
+    return jnp.zeros((*roles.rows.shape, 1)).at[0].set(load)
 
 
 def _levers(train: Train, every: Sequence[_Meshing]) -> Float[Array, "2 node body mesh"]:
@@ -469,35 +479,49 @@ def _arms(train: Train, every: Sequence[Mapping[str, Copies]]) -> Arms:
                 row = rows.get((body, copy if body in train.planets else 0))
                 if row is not None:
                     column[row] = column[row] + values[copy]
-            columns.append(jnp.stack(column, axis=-1)[:, train.roles.rows])
-    return jnp.stack(columns, axis=-1)
+            columns.append(jnp.stack(column)[train.roles.rows])
+    return jnp.stack(columns, axis=1)
 
 
-def _least(arms: Arms, wanted: Float[Array, "node row"]) -> Forces:
+def _least(arms: Arms, wanted: Rows) -> Forces:
     """Parts of the nominal forces of the least sum of squares that give the torques wanted.
 
     By Lagrange's multipliers, one for each row, which takes a fourth of the time of forces and multipliers in
     one system; a second pass takes off what rounding leaves of the first.
     """
-    size = jnp.max(jnp.abs(arms), axis=-1, keepdims=True)
+    size = jnp.max(jnp.abs(arms), axis=1, keepdims=True)
     absent = size == 0.0  # of a planet that is not there
     size = jnp.where(absent, 1.0, size)
-    arms, wanted = arms / size, wanted / size[..., 0]
-    system = jnp.einsum("nrf,nsf->nrs", arms, arms) + jnp.eye(arms.shape[-2]) * absent
+    arms, wanted = arms / size, wanted / size[:, 0]
+    system = jnp.sum(arms[:, None] * arms[None], axis=2)
+    inverse = _inverse(system + jnp.eye(arms.shape[0])[..., None] * absent)
 
-    def solved(right: Float[Array, "node row"]) -> Forces:
-        multipliers = jnp.linalg.solve(system, right[..., None])[..., 0]
-        found: Forces = jnp.einsum("nrf,nr->nf", arms, multipliers)
-        return found
+    def solved(right: Rows) -> Forces:
+        multipliers = jnp.sum(inverse * right, axis=1)
+        return jnp.sum(arms * multipliers[:, None], axis=0)
 
     forces = solved(wanted)
-    return forces + solved(wanted - jnp.einsum("nrf,nf->nr", arms, forces))
+    return forces + solved(wanted - jnp.sum(arms * forces, axis=1))
+
+
+def _inverse(system: Float[Array, "row row node"]) -> Float[Array, "row row node"]:
+    """Inverses of positive definite matrices, by as many steps of elimination as they have rows.
+
+    LAPACK takes some microseconds for each matrix of a few rows, this one of them for ten.
+    """
+    for row in range(system.shape[0]):
+        pivot = 1.0 / system[row, row]
+        taken = system[row] * pivot
+        rest = system - system[:, row, None] * taken[None]
+        rest = rest.at[:, row].set(-system[:, row] * pivot)
+        system = rest.at[row].set(taken.at[row].set(pivot))
+    return system
 
 
 def _by_mesh(every: Sequence[_Meshing], forces: Forces) -> list[Copies]:
     """Forces of the copies of each mesh."""
     ends = np.cumsum([one.mesh.places for one in every])[:-1]
-    split: list[Copies] = jnp.split(forces.T, ends)
+    split: list[Copies] = jnp.split(forces, ends)
     return split
 
 
@@ -616,7 +640,7 @@ def _size(vector: Float[Array, "3 _ node"]) -> OfPlanets:
     return size
 
 
-def _on_rows(train: Train, places: Sequence[_Place]) -> Float[Array, "node row"]:
+def _on_rows(train: Train, places: Sequence[_Place]) -> Rows:
     """Torques that overcome losses beside the teeth, on the bodies in equilibrium."""
     nodes = places[0].pressed.shape
     rows = {row: jnp.zeros(nodes) for row in train.rows()}
@@ -626,7 +650,7 @@ def _on_rows(train: Train, places: Sequence[_Place]) -> Float[Array, "node row"]
                 if (body, number) in rows:
                     taken = torque[number] if body in train.planets else jnp.sum(torque, axis=0)
                     rows[body, number] += taken
-    return jnp.stack([*rows.values()], axis=-1)[:, train.roles.rows]
+    return jnp.stack([*rows.values()])[train.roles.rows]
 
 
 def _leave_open(every: Sequence[_Meshing]) -> None:
