@@ -20,6 +20,8 @@ from pitchpoint.duty_cycle.history import load_steps
 from pitchpoint.efficiency import train_summary
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case
+from pitchpoint.views.sections.train import TRAIN
+from pitchpoint.views.train_picture import train_pictures
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TABLES = {
@@ -911,3 +913,51 @@ def test_stages_of_a_train_name_their_bodies():
     stages = [{key: one[key] for key in ("gears",)} for one in THREE_K["stages"]]
     with pytest.raises(InputError, match=r"stages.1.bodies: is missing; name the 2 bodies"):
         load_case(THREE_K | {"stages": stages})
+
+
+def faced(angle, seen, count):
+    """Part of a pitch by which the nearest tooth of a gear misses a direction, both clockwise [deg]."""
+    return (angle - 90.0 - seen) * count / 360.0
+
+
+@pytest.mark.parametrize("tree", [SET | {"teeth": [25, 29, 83], "planets": 4}, STEPPED])
+def test_a_picture_of_a_set_has_teeth_in_spaces_wherever_it_turns(tree):
+    """Without backlash a tooth of one gear faces the middle of a space of its mate on the line of centres."""
+    (outcome,) = pp.run({"gears": tree, **TABLES}, analyses=["teeth"]).values()
+    (train,) = outcome.manifest["trains"]
+    planes = train_pictures(outcome, train)
+    assert len(planes) == (2 if "second" in tree else 1)
+    for turns in (0.0, 0.3, 7.77):
+        for plane in planes:
+            carrier = 360.0 * turns * plane["carrier"]
+            turned = [
+                (
+                    gear,
+                    gear["turn"]
+                    + 360.0 * turns * gear["rate"]
+                    + carrier * (gear["at"] is not None),
+                )
+                for gear in plane["gears"]
+            ]
+            planets = [(gear, angle) for gear, angle in turned if gear["at"] is not None]
+            for mate, standing in (one for one in turned if one[0]["at"] is None):
+                for planet, angle in planets:
+                    out = planet["at"] + carrier
+                    inwards = out if mate["ring"] else out + 180.0
+                    of_planet = faced(angle, inwards, len(planet["repeats"]))
+                    of_mate = faced(standing, out, len(mate["repeats"]))
+                    off = of_mate - of_planet if mate["ring"] else of_mate + of_planet
+                    assert off % 1.0 == pytest.approx(0.5, abs=2e-3)
+
+
+def test_the_motion_of_a_set_is_told_with_its_mesh_frequencies_and_hunting_teeth():
+    (outcome,) = pp.run({"gears": SET, **TABLES}, analyses=["teeth"]).values()
+    (words, bodies, meshes, _) = TRAIN.screen(outcome)
+    assert words.line == "sun drives, carrier turns the same way, ring held: ratio 4.5."
+    speeds = {row["body"]: row["speed [rpm]"] for row in bodies.rows}
+    assert speeds == {"sun": "3000", "planet": "−1200", "ring": "0", "carrier": "666.67"}
+    for row, turns in zip(
+        meshes.rows, ("5 turns of the sun", "14 turns of the planet"), strict=True
+    ):
+        assert float(row["frequency [Hz]"]) == pytest.approx(50 * 84 / 108 * 24, rel=1e-4)
+        assert (row["common divisor"], row["same two teeth again after"]) == ("6", turns)

@@ -46,6 +46,7 @@ GOOD: dict[str, Any] = {
     "period": 0.1,
     "pitch": "base pitch",
     "stages": [],
+    "trains": [],
     "against": "",
     "travels": [],
     "lacks": {},

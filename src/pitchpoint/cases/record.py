@@ -256,6 +256,37 @@ class StageRecord(_Kept):
     travels: list[End]
 
 
+class TrainMeshRecord(_Kept):
+    """A mesh of a set: its label among the stages, its bodies, where its axes sit, its numbers of teeth."""
+
+    label: int | str
+    bodies: list[str]
+    carrier: str
+    teeth: list[float]
+    planet_gear: int
+
+
+class TrainRecord(_Kept):
+    """Meshes that turn together.
+
+    Attributes:
+        stage: number of the stage of a drive that they are; 0 of a case of them alone.
+        speed: of the input [rad/s].
+        rates: of the bodies for one of the input.
+        ends: bodies that drive, take the load, are held.
+        planets: bodies of which there are several.
+        angles: at which they stand on their carrier [rad].
+    """
+
+    stage: int
+    speed: float
+    rates: dict[str, float]
+    ends: list[str]
+    planets: list[str]
+    angles: list[float]
+    meshes: list[TrainMeshRecord]
+
+
 class Manifest(_Kept):
     """What a variant was computed from and with, and how far it got.
 
@@ -266,6 +297,7 @@ class Manifest(_Kept):
         briefs: of these and of the warnings for a screen, see `Doubt`; none in a record of an older build.
         members: body of each coordinate.
         stages: the same of each mesh of a drive by itself, in the order of the power.
+        trains: sets of meshes that turn together; none in a record of an older build.
         motion: nominal rate of each coordinate for one radian of the driver.
         period: driver angle after which the mesh repeats [rad].
         pitch: what a period is.
@@ -294,6 +326,7 @@ class Manifest(_Kept):
     loaded: str
     members: list[str]
     stages: list[StageRecord] = []
+    trains: list[TrainRecord] = []
     motion: list[float]
     period: float
     pitch: str = "period"

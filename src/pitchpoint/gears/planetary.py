@@ -170,6 +170,15 @@ _USUAL_SHIFTS: Any = 0.0, 0.0, FROM_CENTRE_DISTANCE
 class OfPlanetAndRing(Pair):
     """A value for the second gear of the planets and one for its ring, or one for both."""
 
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """What editors know of the values: shifts may be the text of what follows."""
+        each = self.each.json_schema
+        item = {"anyOf": [each, {"const": FROM_CENTRE_DISTANCE}]} if self.each is SHIFT else each
+        both = {"type": "array", "items": item, "minItems": 2, "maxItems": 2}
+        return {"anyOf": [each, both], "description": self.told}
+
     def read(self, value: Any) -> Any:
         """SI values of both; the text where that of the ring is to follow."""
         every = list(value) if isinstance(value, list | tuple) else [value] * 2

@@ -820,6 +820,36 @@ def _stage(label: Label, bodies: str, built: Built | BuiltTrain) -> dict[str, An
     }
 
 
+def _trains(built: Ready) -> list[dict[str, Any]]:
+    """Sets of meshes that turn together: their bodies, how these move, and what meshes with what."""
+    return [_train(number, train, built) for number, train in built.trains.items()]
+
+
+def _train(number: int, train: BuiltTrain, built: Ready) -> dict[str, Any]:
+    """Record of one of them; rates are for one of its input."""
+    meshes = zip(built.mesh_labels, built.meshes, strict=True)
+    labels = [label for label, mesh in meshes if any(mesh is one for one in train.meshes)]
+    design = train.design
+    return {
+        "stage": number,
+        "speed": train.case.operation.speed,
+        "rates": dict(zip(train.case.bodies, train.motion, strict=True)),
+        "ends": [design.turned, design.loaded, *design.held],
+        "planets": sorted(design.planets),
+        "angles": [float(one) for one in design.angles][: train.planets],
+        "meshes": [
+            {
+                "label": label,
+                "bodies": list(one.bodies),
+                "carrier": one.carrier,
+                "teeth": [abs(teeth) for _, teeth, _ in one.link.gears],
+                "planet_gear": one.planet_gear,
+            }
+            for label, one in zip(labels, design.meshes, strict=True)
+        ],
+    }
+
+
 SET = "planetary set"
 """What a stage is whose meshes turn together."""
 
@@ -856,6 +886,7 @@ def _manifest(variant: Variant, built: Ready, rows: Sequence[inputs.Row]) -> dic
         "loaded": built.loaded,
         "members": list(case.bodies),
         "stages": _stages(built),
+        "trains": _trains(built),
         "motion": built.motion,
         **meshes[0].period._asdict(),
         "travels": sorted(built.travels),

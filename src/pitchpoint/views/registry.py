@@ -22,6 +22,7 @@ from pitchpoint.views.sections.stages import STAGES
 from pitchpoint.views.sections.strength import STRENGTH
 from pitchpoint.views.sections.studies import STUDIES
 from pitchpoint.views.sections.teeth import TEETH
+from pitchpoint.views.sections.train import TRAIN
 from pitchpoint.views.sections.vibration import VIBRATION
 
 __all__ = ["SECTIONS", "in_order", "register_section"]
@@ -199,6 +200,7 @@ SECTIONS: Registry[Section] = Registry(
     DRIVE,
     ARC,
     CYCLE,
+    TRAIN,
     TRAIN_PERIOD,
     PLANET_SHARING,
     FILM,

@@ -6,6 +6,8 @@
 
 {% include "drive.js" %}
 
+{% include "train.js" %}
+
   let page;
   let lists = [];
   const drawn = new Map();
@@ -246,6 +248,7 @@
   const places = [...document.querySelectorAll(".plot")];
   document.querySelectorAll(".variants").forEach(tab);
   document.querySelectorAll(".mesh").forEach(animate);
+  document.querySelectorAll(".train").forEach(train);
   document.querySelectorAll(".drive").forEach(drive);
   document.querySelectorAll("[data-plays]").forEach((button) => {
     const player = document.getElementById(button.dataset.plays).closest(".mesh, .drive").querySelector(".slider button");

@@ -1,0 +1,122 @@
+"""How the bodies of a planetary set or another train move: picture, speeds, mesh frequencies, hunting."""
+
+from collections.abc import Iterator, Mapping
+from math import gcd, pi
+from typing import Any
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Section, Table
+from pitchpoint.views.train_picture import train_pictures
+
+__all__ = ["TRAIN"]
+
+Record = Mapping[str, Any]
+
+BODIES = ["body", "speed [rpm]", "against the carrier [rpm]", "turns for one of the input"]
+MESHES = [
+    "mesh",
+    "frequency [Hz]",
+    "teeth",
+    "common divisor",
+    "same two teeth again after",
+]
+
+_NOTE = (
+    "Speeds are positive as the input turns; mesh frequencies and turns until two teeth meet again are those "
+    "against the carrier. Teeth whose "
+    "numbers have no common divisor meet all teeth of their mate (hunting)."
+)
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
+    for variant, outcome in page.outcomes.items():
+        for number, train in enumerate(outcome.manifest.get("trains", ())):
+            titles = [
+                variant if page.several else "",
+                f"stage {train['stage']}" if train["stage"] else "",
+            ]
+            if any(titles):
+                yield Heading(", ".join(filter(None, titles)))
+            if "teeth" in outcome.parts:
+                planes = train_pictures(outcome, train)
+                values = {"planes": planes, "name": f"train{number}", "words": _words(train)}
+                yield Drawn("train.html.jinja", {"t": values})
+            yield Table(BODIES, _bodies(train), compact=True, caption="Speeds")
+            yield Table(MESHES, _meshes(train), compact=True, caption="Meshes", wide=True)
+            yield Paragraph(_NOTE, "note")
+
+
+def _printed(outcome: Outcome) -> Iterator[Printed]:
+    """What the screen shows."""
+    for train in outcome.manifest.get("trains", ()):
+        of_stage = f"Stage {train['stage']}: " if train["stage"] else ""
+        yield Printed(line=f"{of_stage}{_words(train)}.")
+        yield Printed(rows=[dict(zip(BODIES, row, strict=True)) for row in _bodies(train)])
+        yield Printed(rows=[dict(zip(MESHES, row, strict=True)) for row in _meshes(train)])
+    if outcome.manifest.get("trains"):
+        yield Printed(line=_NOTE)
+
+
+def _words(train: Record) -> str:
+    """Ends and ratio of a set in words."""
+    turned, loaded, *held = train["ends"]
+    rate = train["rates"][loaded] / train["rates"][turned]
+    way = "the same way" if rate > 0.0 else "the other way"
+    stands = f", {' and '.join(held)} held" if held else ""
+    return f"{turned} drives, {loaded} turns {way}{stands}: ratio {show.number(1.0 / rate, 6)}"
+
+
+def _carrier(train: Record) -> float:
+    """Rate of the carrier for one of the input; zero where there is none."""
+    carriers = [one["carrier"] for one in train["meshes"] if one["carrier"] in train["rates"]]
+    return float(train["rates"][carriers[0]]) if carriers else 0.0
+
+
+def _bodies(train: Record) -> list[tuple[str, ...]]:
+    minute, carrier = 30.0 * train["speed"] / pi, _carrier(train)
+    sense = train["rates"][train["ends"][0]]
+    return [
+        (
+            body,
+            *(show.number(sense * one * minute, 5) for one in (rate, rate - carrier)),
+            show.number(sense * rate, 5),
+        )
+        for body, rate in train["rates"].items()
+    ]
+
+
+def _meshes(train: Record) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = []
+    for one in train["meshes"]:
+        first, second = (round(teeth) for teeth in one["teeth"])
+        against = train["rates"][one["bodies"][0]] - train["rates"].get(one["carrier"], 0.0)
+        divisor = gcd(first, second)
+        turns = second // divisor
+        rows.append(
+            (
+                " and ".join(one["bodies"]),
+                show.number(abs(against) * first * train["speed"] / (2.0 * pi), 5),
+                f"{first} and {second}",
+                "none, hunting" if divisor == 1 else str(divisor),
+                f"{turns} turn{'s' * (turns != 1)} of the {one['bodies'][0]}",
+            )
+        )
+    return rows
+
+
+def _lacks(page: Page) -> str | None:
+    there = any(outcome.manifest.get("trains") for outcome in page.outcomes.values())
+    return None if there else ""
+
+
+TRAIN = Section(
+    name="train",
+    title="Motion of the set",
+    short="Motion of the set",
+    order=40.0,
+    blocks=_blocks,
+    lacks=_lacks,
+    screen=_printed,
+)
