@@ -157,6 +157,20 @@ def test_members_of_a_train_are_inspected_by_their_names(pair: dict[str, Outcome
     assert any("turn of planet, the other one held" in row[0] for row in tables[0].rows)
 
 
+def test_variants_of_a_set_stand_beside_each_other_by_its_members(
+    pair: dict[str, Outcome], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    meshes = [
+        {"number": k, "bodies": "sun and planet", "members": ["sun", "planet"]} for k in (1, 2)
+    ]
+    planetary = {"table": "gears", "key": "family", "value": "planetary", "status": "given"}
+    outcome = doubting(pair["default"], stages=meshes, inputs=[planetary])
+    known = [KeyFigure(1.0, "Safety", "2.5", "detail", beside="2.5 at sun of stage 1")]
+    monkeypatch.setattr("pitchpoint.views.first_screen.key_figures", lambda *_: known)
+    *_, row = beside_each_other({"first": outcome, "second": outcome})
+    assert row == {"": "Safety", "first": "2.5 at sun", "second": "2.5 at sun"}
+
+
 def test_a_set_without_stages_of_its_own_is_told_by_its_members(
     pair: dict[str, Outcome], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -117,7 +117,10 @@ def first_screen(
 
 def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     """Values of the key figures of several variants: a row for each figure, a column for each variant."""
-    figures = {variant: key_figures(in_order(), outcome) for variant, outcome in outcomes.items()}
+    figures = {
+        variant: figures_by_members(outcome, key_figures(in_order(), outcome))
+        for variant, outcome in outcomes.items()
+    }
     values = {
         variant: {figure.name: figure.beside or figure.value for figure in every}
         for variant, every in figures.items()

@@ -709,6 +709,7 @@ def figures_by_members(outcome: Outcome, figures: Iterable[KeyFigure]) -> list[K
             figure,
             name=by_members(outcome, figure.name),
             detail=by_members(outcome, figure.detail),
+            beside=by_members(outcome, figure.beside),
         )
         for figure in figures
     ]
