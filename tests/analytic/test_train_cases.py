@@ -204,9 +204,37 @@ def test_life_of_planet_bearings():
     history = load_steps([1.0, 1.0], [60.0, -120.0], [speed * 24 / 108, -speed * 12 / 108], 333.15)
     twice = np.hypot(2.2 * 60.0 / 3 / 27e-3, pull / 4)
     part = 0.5 + 0.25 * (twice / load) ** (10 / 3)
-    lives = rated_lives(built)
+    lives = rated_lives(built, history)
     assert lives["pin"].life(history) == pytest.approx(life / part, rel=1e-9)
     assert lives["pin"].count == 3
+    assert data["equivalent_bearing_load"].item() == pytest.approx(load, rel=1e-9)
+
+
+def test_life_of_planet_bearings_over_a_duty_hangs_on_no_operating_load():
+    """With a seal on the carrier, whose share of the load on teeth does not grow with that of the output."""
+    seal = {"between": ["carrier", "housing"], "seal_torque": "1 N m"}
+    losses = {"pin": {**PIN, "dynamic_load_rating": "8 kN"}, "seal": seal}
+    history = load_steps(1.0, 60.0, np.pi * 10.0, 333.15)
+    lives = []
+    for torque in ("60 N m", "5 N m", "0 N m"):
+        case = PLANETARY | {
+            "losses": losses,
+            "operation": PLANETARY["operation"] | {"torque": torque},
+        }
+        built, _ = figures(case)
+        lives.append(rated_lives(built, history)["pin"].life(history))
+    assert lives[1:] == pytest.approx(lives[:1] * 2, rel=1e-9)
+    bears_nothing = load_steps(1.0, 0.0, np.pi * 10.0, 333.15)
+    assert rated_lives(built, bears_nothing) == {}
+
+
+def test_a_bearing_around_which_planets_cancel_has_no_life():
+    rated = {"between": ["carrier", "housing"], "dynamic_load_rating": "8 kN"} | {
+        key: value for key, value in PIN.items() if key != "between"
+    }
+    built, _ = figures(PLANETARY | {"losses": {"main": rated, "pin": PIN}})
+    data = ANALYSES["operation"].compute(built, {}, lambda *_: None)
+    assert np.isinf(data["bearing_life"].values[0, 0, 0])
 
 
 def test_torque_and_forces_over_the_period_have_the_means_of_the_operating_point():

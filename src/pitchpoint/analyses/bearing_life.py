@@ -1,5 +1,6 @@
 """Life of the rolling bearings of a drive by their dynamic load ratings: ISO 281."""
 
+from collections.abc import Callable
 from math import acos, inf, nan, sin, sqrt, tan
 from typing import Any
 
@@ -20,33 +21,46 @@ Vector = tuple[float, float, float]
 
 def bearing_lives(
     built: Ready, loads: Float[np.ndarray, "law place"]
-) -> Float[np.ndarray, "law place"]:
-    """Lives of bearings at the operating point [s]; NaN of places without a rating.
+) -> tuple[Float[np.ndarray, "law place"], Float[np.ndarray, "law place"]]:
+    """Lives of bearings at the operating point [s], and the loads that give them [N].
 
     Args:
         built: the drive.
         loads: on the bearing of each place at the operating point, by friction law [N].
+
+    Returns:
+        NaN of places without a rating; lives are infinite where a bearing bears nothing.
     """
     speed = float(built.operation.speed) * built.output_rate
-    there = load_steps(1.0, built.case.operation.load, speed, float(built.operation.temperature))
-    each = [rated_bearings(built, row) for row in loads]
-    lives = [
-        [row[name].life(there) if name in row else nan for name in built.places] for row in each
-    ]
-    return np.array(lives)
+    load = built.case.operation.load
+    there = load_steps(1.0, load, speed, float(built.operation.temperature))
+    each = [rated_bearings(built, row, load) for row in loads]
+
+    def of_places(value: Callable[[RatedBearing], float]) -> Float[np.ndarray, "law place"]:
+        names = built.places
+        return np.array([[value(row[n]) if n in row else nan for n in names] for row in each])
+
+    return of_places(lambda one: one.life(there)), of_places(
+        lambda one: float(one.load(load, speed))
+    )
 
 
-def rated_bearings(built: Ready, loads: Float[np.ndarray, " place"]) -> dict[str, RatedBearing]:
+def rated_bearings(
+    built: Ready, loads: Float[np.ndarray, " place"], load: float
+) -> dict[str, RatedBearing]:
     """Bearings that have a dynamic load rating, by the name of their place.
 
     Args:
         built: the drive.
-        loads: on the bearing of each place at the operating point [N], in the order of `built.places`.
+        loads: on the bearing of each place at the speed of the operating point [N], in the order of
+            `built.places`.
+        load: torque or force of the output under which these are [N m or N].
 
-    The load of the teeth is taken to grow with that of the output, and so are losses.
+    The load of the teeth is taken to grow with that of the output, and so are losses: take them under a load
+    like those that a life is asked for.
     """
-    places = iter(zip(built.places, loads.tolist(), strict=True))
-    output, load = float(built.operation.speed) * built.output_rate, built.case.operation.load
+    places = iter(zip(built.places, _beyond_rounding(loads), strict=True))
+    output = float(built.operation.speed) * built.output_rate
     found: dict[str, RatedBearing] = {}
     for level in built.with_losses if output > 0.0 else ():
         rates = dict(zip(level.case.bodies, level.motion, strict=True))
@@ -69,6 +83,16 @@ def rated_bearings(built: Ready, loads: Float[np.ndarray, " place"]) -> dict[str
                 level.planets if _in_planets(level, loss) else 1,
             )
     return found
+
+
+def _beyond_rounding(loads: Float[np.ndarray, " place"]) -> list[float]:
+    """Loads without those that are nothing beside the others, as of planets that cancel around a carrier."""
+    found: list[float] = np.where(loads > ROUNDING * loads.max(initial=0.0), loads, 0.0).tolist()
+    return found
+
+
+ROUNDING = 1e-9
+"""Load of a bearing over the largest one below which it bears nothing."""
 
 
 def _in_planets(level: Any, loss: Loss) -> bool:
@@ -111,11 +135,11 @@ def _of_teeth(level: Any, loss: Loss, borne: float, pull: float) -> Vector:
 
 
 def _on_planet(built: BuiltTrain) -> Float[np.ndarray, " 3"]:
-    """Force on a planet by all its meshes without friction, for an equal share: see `_of_teeth` [N]."""
-    train, load = built.design, built.case.operation.load
+    """Force on a planet for a unit load, by all meshes without friction, in equal shares [N per N m or N]."""
+    train = built.design
     links = [one.link for one in train.meshes]
     ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
-    shares = train_torques(links, ends, load, [1.0] * len(links)).shares
+    shares = train_torques(links, ends, 1.0, [1.0] * len(links)).shares
     force = np.zeros(3)
     for link, share, copies in zip(links, shares, built.copies, strict=True):
         if link.carrier != HOUSING:

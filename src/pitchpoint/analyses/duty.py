@@ -1,13 +1,14 @@
 """Energy, torques, lives and heat over the duty cycle of a case, of its loss map of the output."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint._jax import double_precision
+from pitchpoint._jax import array, double_precision
 from pitchpoint.analyses.bearing_life import rated_bearings
 from pitchpoint.analyses.four_quadrants import (
     both,
@@ -21,9 +22,10 @@ from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.duty import DutyInputs, duty_inputs
 from pitchpoint.doubts import fails, stored
 from pitchpoint.duty_cycle.cycle import duty_dataset
-from pitchpoint.duty_cycle.energy import demand_inside
+from pitchpoint.duty_cycle.energy import demand_inside, mean_load
 from pitchpoint.duty_cycle.heat import RunawayError
-from pitchpoint.duty_cycle.life import RatedBearing
+from pitchpoint.duty_cycle.history import LoadHistory
+from pitchpoint.duty_cycle.life import BALL, RatedBearing
 from pitchpoint.duty_cycle.recorded_lives import recorded_lives
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
@@ -51,7 +53,7 @@ def duty_of_map(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         asked.history,
         law=asked.law,
         motor=asked.motor,
-        lives={**rated_lives(built), **asked.lives},
+        lives={**rated_lives(built, asked.history), **asked.lives},
         recorded=recorded_lives(others, float(built.operation.load), abs(speed)),
         teeth=partial(tooth_life, built) if rated else None,
         travels="loaded" in built.travels,
@@ -83,17 +85,23 @@ def _too_hot(data: xr.Dataset, limits: Mapping[str, float]) -> Iterator[str]:
 
 
 @double_precision()
-def rated_lives(built: Ready) -> dict[str, RatedBearing]:
+def rated_lives(built: Ready, history: LoadHistory) -> dict[str, RatedBearing]:
     """Bearings with a dynamic load rating under the first friction law; a table of lives overrides them.
 
     Args:
         built: the case.
+        history: of the output, whose mean load the loads on bearings are computed at; nothing where it bears
+            nothing, or friction locks the drive.
     """
-    if not built.rates_bearings:
+    load = mean_load(history, BALL)
+    if not built.rates_bearings or not load > 0.0:
         return {}
     kind: Any = built
-    figures = kind.figures_of([(built.design, built.operation)], built.models[0])
-    return rated_bearings(built, figures["bearing_load"][0])
+    point = replace(built.operation, load=array(load))
+    figures = kind.figures_of([(built.design, point)], built.models[0])
+    if bool(figures["locked"][0]):
+        return {}
+    return rated_bearings(built, figures["bearing_load"][0], load)
 
 
 def demand_in_map(built: Ready) -> None:

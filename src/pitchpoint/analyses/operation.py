@@ -43,9 +43,10 @@ def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     if built.rates_bearings:
         from pitchpoint.analyses.bearing_life import bearing_lives  # few cases ask for it
 
-        lives = bearing_lives(built, data["bearing_load"].values[:, 0])
-        found = {"bearing_life": (("law", "point", "place"), lives[:, None])}
-        data["bearing_life"] = dataset(found, {}, title="lives")["bearing_life"]
+        lives, loads = bearing_lives(built, data["bearing_load"].values[:, 0])
+        each = {"bearing_life": lives, "equivalent_bearing_load": loads}
+        rated = {name: (("law", "point", "place"), one[:, None]) for name, one in each.items()}
+        data = data.assign(dataset(rated, {}, title="lives").data_vars)
     beyond = *_implausible(built), *_rated_below(built, data)
     data.attrs.update(stored([*doubts_of(data.attrs), *beyond]))
     return data

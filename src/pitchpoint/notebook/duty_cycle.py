@@ -98,7 +98,7 @@ def duty(
         history,
         law=law,
         motor=motor,
-        lives={**(rated_lives(built) if rated and built else {}), **(lives or {})},
+        lives={**(rated_lives(built, history) if rated and built else {}), **(lives or {})},
         heating=heating,
         recorded=recorded_lives(outcome.parts.values(), joint.load, joint.speed),
         teeth=partial(tooth_life, built) if teeth and built else None,

@@ -567,6 +567,7 @@ VARIABLES: dict[str, Variable] = {
     "axial_reaction_1": force("mean axial load of the teeth on the bearings of gear 1", "F_a1"),
     "axial_reaction_2": force("mean axial load of the teeth on the bearings of gear 2", "F_a2"),
     "bearing_load": force("mean load on the bearing", "F_B"),
+    "equivalent_bearing_load": force("load on the bearing that gives its life", "P"),
     "mean_drag_loss": power("mean power loss beside the teeth", "P_drag mean"),
     "latent_power": power("mean power that rolls through all meshes of sets", "P_roll"),
     "mean_efficiency": percent("mean efficiency", "η mean"),

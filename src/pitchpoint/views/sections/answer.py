@@ -325,7 +325,10 @@ def _lives(data: xr.Dataset, law: int) -> list[tuple[str, str]]:
         return []
     each = zip(data["place"].values, data["bearing_life"].values[law, 0], strict=True)
     return [
-        (f"life of {place}".replace("_", " "), show.quantity("bearing_life", life))
+        (
+            f"life of {place}".replace("_", " "),
+            "without load" if np.isinf(life) else show.quantity("bearing_life", life),
+        )
         for place, life in each
         if not np.isnan(life)
     ]
@@ -590,10 +593,12 @@ def _shortest_life(data: xr.Dataset) -> Iterator[KeyFigure]:
     if "bearing_life" not in data or np.isnan(lives := data["bearing_life"].values[0, 0]).all():
         return
     at = int(np.nanargmin(lives))
+    if np.isinf(lives[at]):
+        return  # none bears anything
     place = str(data["place"].values[at]).replace("_", " ")
-    load = show.quantity("bearing_load", float(data["bearing_load"].values[0, 0, at]))
+    load = show.quantity("bearing_load", float(data["equivalent_bearing_load"].values[0, 0, at]))
     life = show.quantity("bearing_life", float(lives[at]))
-    yield KeyFigure(43.0, "Life of bearings", life, f"L10 of {place} by ISO 281; mean load {load}")
+    yield KeyFigure(43.0, "Life of bearings", life, f"L10 of {place} by ISO 281 under {load}")
 
 
 def _times_input(outcome: Outcome, data: xr.Dataset) -> str:
