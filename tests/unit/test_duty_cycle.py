@@ -488,6 +488,12 @@ def test_lives_that_a_result_has_are_those_of_its_operating_point() -> None:
     ]
 
 
+def test_lives_over_another_duty_cycle_are_none_of_the_operating_point() -> None:
+    """A case with [duty] has that cycle among its parts."""
+    before = duty_dataset(table(), history(), lives={"output": RatedLife(40.0, 1e8)})
+    assert not recorded_lives([before], 40.0, 1.5).bearings
+
+
 def test_flanks_wear_with_the_load_times_the_way_of_the_side_that_bears() -> None:
     (worn,) = recorded_lives([part()], 40.0, 1.0).worn.values()
     assert worn.until_as_deep(load_steps([1.0], [40.0], [-1.0], WARM)) == pytest.approx(3e6)
@@ -507,6 +513,10 @@ def test_flanks_wear_with_the_load_times_the_way_of_the_side_that_bears() -> Non
     [
         ({"law": "masjedi_khonsari_2015"}, "wear at other loads"),
         ({"end": "turns"}, "wear to a limit"),
+        ({"end": "pressure"}, "wear to a pressure"),
+        ({"end": "hardness"}, "wear to a pressure"),
+        ({"end": "lost"}, "wear that is not solved"),
+        ({"end": "outgrown"}, "wear that is not solved"),
     ],
 )
 def test_wear_without_a_life_is_told(attributes: dict[str, str], why: str) -> None:
@@ -516,6 +526,26 @@ def test_wear_without_a_life_is_told(attributes: dict[str, str], why: str) -> No
     assert math.isnan(float(data["shortest_life"]))
     if of.worn:  # how deep a cycle wears is known
         assert float(data["cycle_wear"][0]) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("end", "why"),
+    [
+        ("lost", "wear that is not solved"),
+        ("pressure", "wear to a pressure"),
+        ("tip land", ""),
+    ],
+)
+def test_a_march_that_ends_as_new_has_no_turns(end: str, why: str) -> None:
+    at_once = part(end=end).assign(life_hours=((), 0.0), final_depth=((), 0.0))
+    of = recorded_lives([at_once], 40.0, 1.0)
+    data = duty_dataset(table(), history(), recorded=of)
+    assert of.left_out == ((why,) if why else ())
+    if why:
+        assert not of.worn and data.attrs["left_out"].endswith(why)
+        return
+    assert data.attrs["first_to_fail"] == "wear of flanks" and float(data["shortest_life"]) == 0.0
+    assert math.isnan(float(data["cycle_wear"][0]))
 
 
 def test_energies_under_all_laws_stand_beside_the_first_where_none_is_chosen() -> None:

@@ -231,7 +231,10 @@ def _lives(history: LoadHistory, lives: Mapping[str, RatedLife | RatedBearing]) 
 
 
 def _wear(history: LoadHistory, recorded: RecordedLives | None) -> xr.Dataset:
-    """Life of worn flanks, NaN where their march ended before a limit, and depth of one cycle."""
+    """Life of worn flanks, NaN where their march ended before a limit, and depth of one cycle.
+
+    That is NaN where flanks are at a limit as new.
+    """
     if recorded is None:
         return xr.Dataset()
     unworn = {"unworn": json.dumps([*recorded.left_out])}
@@ -240,7 +243,7 @@ def _wear(history: LoadHistory, recorded: RecordedLives | None) -> xr.Dataset:
     times = {name: one.until_as_deep(history) for name, one in recorded.worn.items()}
     total = float(history.duration.sum())
     worn = recorded.worn.items()
-    depths = [one.depth * total / times[name] for name, one in worn]
+    depths = [one.depth * total / (times[name] or np.nan) for name, one in worn]
     lives = [times[name] if one.limited else np.nan for name, one in worn]
     data = {"wear_life": (("worn",), lives), "cycle_wear": (("worn",), depths)}
     return xr.Dataset(data, {"worn": [*times]}, unworn)

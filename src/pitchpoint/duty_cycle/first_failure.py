@@ -23,8 +23,12 @@ WITHOUT_LIFE = {
     "wear": "Wear has no life here: the result has no march of wear, for which [wear] asks.",
     "wear at other loads": "Wear has no life here: the rate of its law hangs on film or pressure, so that at "
     "other loads flanks wear otherwise than in proportion.",
-    "wear to a limit": "Wear has no life here: its march ended before a limit of depth, pressure, tip land "
-    "or backlash; more wear.cycles reach it.",
+    "wear to a limit": "Wear has no life here: its march ended before a limit of depth, tip land or "
+    "backlash; more wear.cycles reach it.",
+    "wear to a pressure": "Wear has no life here: its march ended at a limit of pressure, which at other "
+    "loads is reached at another depth.",
+    "wear that is not solved": "Wear has no life here: its march ended where loads of the worn flanks were "
+    "not found, or their contacts outgrew Hertz's theory.",
 }
 """Why parts have no life, by what they are."""
 

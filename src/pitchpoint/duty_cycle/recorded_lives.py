@@ -18,8 +18,16 @@ BEARING_LIFE, MARCHED = "bearing_life", "life_hours"
 READ = (BEARING_LIFE, MARCHED)
 """Variables by which parts of a result with lives are known."""
 
-_AT_A_LIMIT = frozenset({"depth", "module", "pressure", "hardness", "tip land", "backlash"})
-"""Ends of a march of wear at which the flanks have had their life."""
+_AT_A_LIMIT = frozenset({"depth", "module", "tip land", "backlash"})
+"""Ends of a march of wear at which the flanks have had their life: those that go with the depth."""
+
+_WITHOUT_LIFE = {
+    "pressure": "wear to a pressure",
+    "hardness": "wear to a pressure",
+    "lost": "wear that is not solved",
+    "outgrown": "wear that is not solved",
+}
+"""Keys of `WITHOUT_LIFE` by other ends; those that are not here come before a limit."""
 
 _PROPORTIONAL = 1.0
 """Exponent of the life of flanks over their load where the specific rate is the same at any load."""
@@ -29,12 +37,12 @@ class WornFlanks(NamedTuple):
     """Flanks that wear at one specific rate: as deep as the load times the way.
 
     Attributes:
-        march: turns of the output, at the load of the march, until it ended.
+        march: turns of the output, at the load of the march, until it ended; None at a limit from the start.
         depth: largest one there [m].
         limited: True where it ended at a limit, so that its end is that of the life.
     """
 
-    march: RatedLife
+    march: RatedLife | None
     depth: float
     limited: bool
 
@@ -44,8 +52,11 @@ class WornFlanks(NamedTuple):
         Args:
             history: of the output, whose sign says which side bears.
         """
+        march = self.march
+        if march is None:
+            return 0.0
         sides = (np.maximum(sign * history.torque, 0.0) for sign in (1.0, -1.0))
-        return min(self.march.life(history._replace(torque=side)) for side in sides)
+        return min(march.life(history._replace(torque=side)) for side in sides)
 
 
 class RecordedLives(NamedTuple):
@@ -66,7 +77,8 @@ def recorded_lives(parts: Iterable[xr.Dataset], torque: float, speed: float) -> 
     """Lives of bearings, of wave generators and of worn flanks in the parts of a result.
 
     Args:
-        parts: any; those without `bearing_life` or a march of wear say nothing.
+        parts: any; those without `bearing_life` or a march of wear say nothing, and neither does the duty
+            cycle of the result itself, whose lives are those over its own loads.
         torque: of the output at the operating point [N m or N].
         speed: of the output there [rad/s or m/s].
 
@@ -80,9 +92,9 @@ def recorded_lives(parts: Iterable[xr.Dataset], torque: float, speed: float) -> 
             bearings[name + stage] = RatedLife(torque, _turns(life, speed), exponent)
         if MARCHED in data:
             why = _without_life(data)
-            if why != "wear at other loads":
-                ended = np.inf if data.attrs["end"] == "no wear" else float(data[MARCHED])
-                march = RatedLife(torque, _turns(ended, speed), _PROPORTIONAL)
+            ended = np.inf if data.attrs["end"] == "no wear" else float(data[MARCHED])
+            march = RatedLife(torque, _turns(ended, speed), _PROPORTIONAL) if ended > 0.0 else None
+            if why != "wear at other loads" and (march or not why):
                 depth = float(data["final_depth"])
                 worn[f"wear of flanks{stage}"] = WornFlanks(march, depth, not why)
             left_out |= {why: None} if why else {}
@@ -97,6 +109,8 @@ def _turns(seconds: float, speed: float) -> float:
 def _of_stages(parts: Iterable[xr.Dataset]) -> Iterator[tuple[str, xr.Dataset]]:
     """Parts with lives, those of drives stage by stage, with the stage in words."""
     for data in parts:
+        if "shortest_life" in data:  # a duty cycle
+            continue
         labels = stages_of(data) if any(name in data for name in READ) else ()
         yield from ((f", stage {label}", of_stage(data, label)) for label in labels)
         if not labels:
@@ -124,4 +138,5 @@ def _without_life(data: xr.Dataset) -> str:
     law = WEAR_LAWS.get(str(data.attrs["law"]))
     if law is None or not law.proportional:
         return "wear at other loads"
-    return "" if data.attrs["end"] in {*_AT_A_LIMIT, "no wear"} else "wear to a limit"
+    end = str(data.attrs["end"])
+    return "" if end in {*_AT_A_LIMIT, "no wear"} else _WITHOUT_LIFE.get(end, "wear to a limit")
