@@ -314,6 +314,30 @@ def test_a_gear_that_locks_holds_its_load_and_is_driven_down(tmp_path: Path) -> 
     assert speed < -0.01
 
 
+@pytest.mark.parametrize("inertia", [30.0, 100.0])
+def test_a_heavy_load_jams_a_rigid_drive_that_locks(inertia: float, tmp_path: Path) -> None:
+    """Above 20 times the armature no torque brakes the load: 1.05 of it holds the driver."""
+    unit = Unit(made_joint(locking), tmp_path)
+    unit.unit.reset()
+    unit.begin(start_speed=50.0, load_inertia=inertia)
+    assert np.isfinite(unit.of(*NAMES)).all()
+    rows = unit.run(0.01, motor_torque=0.0, load_torque=0.0)
+    np.testing.assert_array_equal(rows, 0.0)
+    assert unit.sticks and unit.of("motor_angle", "friction", "loss") == [0.0, 0.0, 0.0]
+    # A motor that drives the load down against friction finds its torque, from rest and thrown.
+    (*_, (speed, output, torque)) = unit.run(0.1, motor_torque=4.0 / 50.0, load_torque=-30.0)
+    assert speed == pytest.approx(abs(output)) and speed > 0.0
+    assert torque * np.sign(output) > 0.0
+
+
+def test_a_load_beyond_the_map_is_told_at_rest(tmp_path: Path) -> None:
+    unit = Unit(made_joint(locking), tmp_path)
+    for load, beyond in ((0.0, 0), (59.0, 0), (61.0, 1), (-59.0, 0), (-61.0, 1)):
+        unit.run(0.001, load_torque=load)
+        assert unit.sticks
+        assert [*unit.unit.getBoolean([len(NAMES) + 1])] == [beyond]
+
+
 def test_whatever_it_is_asked_it_has_numbers(tmp_path: Path) -> None:
     """At random: at rest, locked, beyond the map, thrown, at steps of any length."""
     random = np.random.default_rng(2)
@@ -326,6 +350,7 @@ def test_whatever_it_is_asked_it_has_numbers(tmp_path: Path) -> None:
                     motor_torque=scale * random.choice([0.0, 1.0, -1.0]),
                     load_torque=50.0 * scale * random.choice([0.0, 1.0, -1.0]),
                     temperature=random.uniform(-50.0, 200.0),
+                    load_inertia=LOAD * random.choice([1.0, 50.0]),
                 )
                 unit.unit.doStep(0.0, float(random.choice([0.0, 1e-7, 1e-3, 0.013])))
                 assert np.isfinite(unit.of(*NAMES)).all()

@@ -4,7 +4,8 @@
  *     J1 a'' = motor - friction - T (1 - e'(a)),    J2 b'' = T - load,
  *     T = curve(a - b - e(a)) + damping (a - b - e(a))',
  * with the error e by which the output lags. Without a curve the drive is rigid, b = a - e(a), and T follows from
- * both inertias. Friction is the torque that the loss map loses under T; at rest it is what holds. */
+ * both inertias. Friction is the torque that the loss map loses under T; at rest it is what holds. A rigid drive
+ * that a heavy load is to turn against friction that locks has no such T: it jams, and stands at once. */
 #ifndef JOINT_MOTION_H
 #define JOINT_MOTION_H
 
@@ -45,6 +46,7 @@ static const double joint_turn = 6.283185307179586;
 
 struct motion {
     double angle, speed, output, output_speed;
+    int jams; /* no torque goes on with this motion, whose numbers are none then */
 };
 
 struct joint {
@@ -57,6 +59,7 @@ struct joint {
 /* Forces on a state; friction is that along the motion, against which way it is counted by the sense. */
 struct forces {
     double wind_up, rate, slope, bend, torque, friction, acceleration, load_acceleration;
+    int jams;
 };
 
 static double joint_error(double angle, double *slope, double *bend)
@@ -130,15 +133,28 @@ static double joint_excess(const struct joint *joint, const struct forces *at, d
     return torque - joint->inputs[LOAD_TORQUE] - inertia * (gain * acceleration - at->bend * speed * speed);
 }
 
-/* Torque of a rigid drive on its load, by the rule of false position that halves what stays (Illinois). */
-static double joint_rigid(const struct joint *joint, const struct forces *at, double speed, double sense)
+/* Torque of a rigid drive on its load, by the rule of false position that halves what stays (Illinois).
+ * Where friction locks, the excess of torques that push along the motion falls while they grow: none of them brakes
+ * a heavy load, and the drive jams. No number where there is no torque. */
+static double joint_rigid(const struct joint *joint, const struct forces *at, double speed, double sense, int *jams)
 {
     double low = joint->inputs[LOAD_TORQUE] - 1.0, high = low + 2.0, middle = low;
     double below = joint_excess(joint, at, speed, sense, low), above = joint_excess(joint, at, speed, sense, high);
+    if (below > 0.0 || above < 0.0) {
+        const double free = joint_excess(joint, at, speed, sense, 0.0);
+        if (low < 0.0 && free <= 0.0)
+            low = 0.0, below = free;
+        if (high > 0.0 && free >= 0.0)
+            high = 0.0, above = free;
+    }
+    const double first = below, last = above;
     for (double more = 2.0; below > 0.0 && more < UNBOUNDED; more *= 4.0)
         below = joint_excess(joint, at, speed, sense, low -= more);
     for (double more = 2.0; above < 0.0 && more < UNBOUNDED; more *= 4.0)
         above = joint_excess(joint, at, speed, sense, high += more);
+    *jams = (below > 0.0 && below > first) || (above < 0.0 && above < last);
+    if (!(below <= 0.0 && above >= 0.0))
+        return NAN;
     for (int k = 0, stays = 0; k < HALVINGS && below < 0.0 && above > 0.0; ++k) {
         middle = high - above * ((high - low) / (above - below));
         const double there = joint_excess(joint, at, speed, sense, middle);
@@ -164,8 +180,9 @@ static struct forces joint_forces(const struct joint *joint, const struct motion
     const double error = joint_error(at->angle, &found.slope, &found.bend);
     found.wind_up = JOINT_KNOTS ? at->angle - at->output - error : 0.0;
     found.rate = JOINT_KNOTS ? at->speed * (1.0 - found.slope) - at->output_speed : 0.0;
+    found.jams = 0;
     found.torque = JOINT_KNOTS ? joint_spring(found.wind_up) + joint->inputs[DAMPING] * found.rate
-                               : joint_rigid(joint, &found, at->speed, sense);
+                               : joint_rigid(joint, &found, at->speed, sense, &found.jams);
     found.friction = sense == 0.0 ? joint_motor(joint) - found.torque * (1.0 - found.slope)
                                   : sense * joint_sliding(joint, found.torque, at->speed, sense);
     found.acceleration = (joint_motor(joint) - found.friction - found.torque * (1.0 - found.slope)) /
@@ -217,10 +234,11 @@ static struct motion joint_advanced(const struct joint *joint, double step, doub
     to.output_speed += step / 6.0 * (first.load_acceleration + 2.0 * (second.load_acceleration +
                                                                        third.load_acceleration) +
                                      fourth.load_acceleration);
+    to.jams = first.jams || second.jams || third.jams || fourth.jams;
     return to;
 }
 
-/* Part of a step after which the driver comes to rest. */
+/* Part of a step after which the driver comes to rest or jams; none where it does at once. */
 static double joint_stops(const struct joint *joint, double step, double sense)
 {
     double low = 0.0, high = step;
@@ -228,7 +246,7 @@ static double joint_stops(const struct joint *joint, double step, double sense)
         const double middle = 0.5 * (low + high);
         *(sense * joint_advanced(joint, middle, sense).speed > 0.0 ? &low : &high) = middle;
     }
-    return high;
+    return low;
 }
 
 /* A rigid load follows its driver. */
@@ -247,11 +265,11 @@ static void joint_small_step(struct joint *joint, double step)
         const double before = joint->now.speed;
         double sense = before == 0.0 ? joint_breaks(joint, &joint->now) : copysign(1.0, before), part = step;
         struct motion next = joint_advanced(joint, step, turns < CREEPS ? sense : 0.0);
-        if (sense * next.speed < 0.0 && before == 0.0)
+        if ((next.jams || sense * next.speed < 0.0) && before == 0.0)
             next = joint_advanced(joint, step, sense = 0.0);
-        if (sense * next.speed < 0.0) {
+        if (next.jams || sense * next.speed < 0.0) {
             part = joint_stops(joint, step, sense);
-            next = joint_advanced(joint, part, sense);
+            next = part > 0.0 ? joint_advanced(joint, part, sense) : joint->now;
             next.speed = 0.0;
         }
         joint->now = next;
@@ -304,6 +322,7 @@ static void joint_begin(struct joint *joint)
     double slope, bend;
     const double *start = joint->inputs;
     const double error = joint_error(start[START_ANGLE], &slope, &bend);
+    joint->now.jams = 0;
     joint->now.angle = start[START_ANGLE];
     joint->now.speed = start[START_SPEED];
     joint->now.output = start[START_ANGLE] - error - (JOINT_KNOTS ? start[START_WIND_UP] : 0.0);
@@ -343,13 +362,20 @@ static int joint_start(struct joint *joint)
     return joint->started = joint->inputs[INERTIA] > 0.0 && joint->inputs[LOAD_INERTIA] > 0.0;
 }
 
+static int joint_outside(const struct joint *joint, double torque, double sense)
+{
+    return loss_table_outside(sense * torque, fabs(joint->now.speed), joint->inputs[TEMPERATURE]);
+}
+
 static double joint_output(const struct joint *joint, unsigned number)
 {
     const struct motion *now = &joint->now;
     if (number < SETTABLE)
         return joint->inputs[number];
-    const double sense = now->speed == 0.0 ? joint_breaks(joint, now) : copysign(1.0, now->speed);
-    const struct forces here = joint_forces(joint, now, sense);
+    double sense = now->speed == 0.0 ? joint_breaks(joint, now) : copysign(1.0, now->speed);
+    struct forces here = joint_forces(joint, now, sense);
+    if (here.jams)
+        here = joint_forces(joint, now, sense = 0.0);
     switch (number) {
     case ANGLE:
         return now->angle / LOSS_TABLE_SPEED_RATIO;
@@ -369,8 +395,9 @@ static double joint_output(const struct joint *joint, unsigned number)
         return fabs(here.friction * now->speed);
     case STICKS:
         return sense == 0.0;
-    default:
-        return loss_table_outside(sense * here.torque, fabs(now->speed), joint->inputs[TEMPERATURE]);
+    default: /* at rest a torque may come to push along the motion or against it */
+        return joint_outside(joint, here.torque, sense == 0.0 ? 1.0 : sense) ||
+               (sense == 0.0 && joint_outside(joint, here.torque, -1.0));
     }
 }
 
