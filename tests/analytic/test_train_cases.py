@@ -11,7 +11,7 @@ from pitchpoint.analyses.duty import rated_lives
 from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.strength import ratings_of
-from pitchpoint.analyses.tooth_life import member_names
+from pitchpoint.analyses.tooth_life import mesh_member_names
 from pitchpoint.doubts import doubts_of
 from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.drive.thrusts import axial_loads
@@ -464,7 +464,7 @@ def test_planets_share_a_load_bear_both_ways_and_meet_sun_and_ring_in_turn(plane
     built = load_case(PLANETARY, settings=settings)
     data = ANALYSES["strength"].compute(built, {}, lambda *_: None)
     names = ["sun", "planet on sun", "planet on ring", "ring"]
-    assert member_names(built, built.mesh_labels) == names
+    assert mesh_member_names(built, built.mesh_labels) == names
     sun, ring = (data.sel(stage=stage) for stage in (1, 2))
     turns = 1000 * 3600 * 50 * 84 / 108 * np.array([1, 24 / 30, 24 / 84])
     assert sun["flank_cycles"].values == pytest.approx(turns[:2] * [planets, 1])

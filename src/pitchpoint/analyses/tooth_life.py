@@ -24,7 +24,7 @@ __all__ = [
     "cycles_on_curve",
     "cycles_to_failure",
     "load_classes",
-    "member_names",
+    "mesh_member_names",
     "tooth_life",
 ]
 
@@ -190,11 +190,11 @@ def tooth_life(built: Ready, history: LoadHistory) -> xr.Dataset:
         data,
         coordinates,
         unrated=len(built.meshes) - len(every),
-        members=member_names(built, [label for label, _ in every]),
+        members=mesh_member_names(built, [label for label, _ in every]),
     )
 
 
-def member_names(built: Ready, labels: Sequence[Label]) -> list[str]:
+def mesh_member_names(built: Ready, labels: Sequence[Label]) -> list[str]:
     """Names of both gears of each mesh: of a set its bodies, a planet with what it meshes with.
 
     Args:
