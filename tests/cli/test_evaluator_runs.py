@@ -927,11 +927,15 @@ resistances.arm = { between = ["gears", "ambient"], resistance = "%s" }
 
 
 def heated(
-    moving: tuple[Ready, Outcome], folder: Path, resistance: str, ambient: str
+    moving: tuple[Ready, Outcome],
+    folder: Path,
+    resistance: str,
+    ambient: str,
+    steps: str = STEPS,
 ) -> xr.Dataset:
     """The duty cycle of the pair with a resistance to its surroundings."""
     more = (HEAT % resistance).replace("bodies", f'ambient = "{ambient}"\nbodies')
-    built = on_duty(folder, more=more).built({})
+    built = on_duty(folder, steps, more).built({})
     return DUTY_CYCLE.joined(built, [moving[1].parts[FOUR_QUADRANTS.name]])
 
 
@@ -949,6 +953,35 @@ def test_heat_that_runs_away_or_is_too_much_is_told_first(
     assert f"gears gets {hottest:.4g} degC" in sentence and "bears 45 degC" in sentence
     cool = heated(moving, tmp_path, "0.01 K/W", "42 degC")
     assert not apart(doubts_of(cool.attrs))["implausible"]
+
+
+@pytest.mark.parametrize(
+    ("resistance", "ambient", "steps", "first", "edge"),
+    [
+        (
+            "1e6 K/W",
+            "45 degC",
+            "2, 20, 60, 30\n",
+            "no steady temperature",
+            "at 30 degC is taken at 40",
+        ),
+        ("0.01 K/W", "74 degC", STEPS, "gears gets 76", "at 76.* degC is taken at 60"),
+        ("0.01 K/W", "20 degC", STEPS, "", "at 21.* degC is taken at 40"),
+    ],
+)
+def test_oil_beyond_the_map_does_not_end_the_run(
+    moving: tuple[Ready, Outcome],
+    tmp_path: Path,
+    resistance: str,
+    ambient: str,
+    steps: str,
+    first: str,
+    edge: str,
+) -> None:
+    part = heated(moving, tmp_path, resistance, ambient, steps)
+    *hot, at_edge = doubts_of(part.attrs)
+    assert len(hot) == bool(first) and all(first in sentence for sentence in hot)
+    assert re.search(edge, at_edge) and float(part["lost_energy"]) > 0.0
 
 
 def test_a_law_of_a_duty_cycle_is_one_of_the_case(tmp_path: Path) -> None:

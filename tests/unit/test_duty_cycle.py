@@ -1,6 +1,7 @@
 """Duty cycles by hand: energies of a loss map, means, lives, resistances."""
 
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from scipy.integrate import solve_ivp
 
 from pitchpoint.analyses.tooth_life import cycles_on_curve, cycles_to_failure, load_classes
 from pitchpoint.cases.duty import _heating
+from pitchpoint.doubts import BRIEF, doubts_of
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
 from pitchpoint.duty_cycle.energy import driver_course, energies, mean_load
 from pitchpoint.duty_cycle.first_failure import WITHOUT_LIFE, first_failure
@@ -260,6 +262,23 @@ def test_a_body_that_gets_too_hot_fails_at_once(most: float, fails: str) -> None
     data = duty_dataset(table(), history(), heating=heating, teeth=teeth(math.inf, math.inf))
     assert data.attrs["first_to_fail"] == fails
     assert float(data["shortest_life"]) == (0.0 if fails else math.inf)
+
+
+@pytest.mark.parametrize("ambient", [363.15, 263.15])
+def test_oil_that_its_loss_heats_beyond_the_map_loses_as_at_its_edge(ambient: float) -> None:
+    network = ThermalNetwork({"drive": 1e9}, {("drive", "ambient"): 0.01}, ambient=ambient)
+    data = duty_dataset(table(), history(), heating=Heating(network, "drive"))
+    edge = duty_dataset(
+        table(), history().at_temperature(np.full(4, WARM if ambient > WARM else 293.15))
+    )
+    assert float(data["lost_energy"]) == pytest.approx(float(edge["lost_energy"]), rel=1e-12)
+    assert abs(float(data["temperature"][0]) - ambient) < 0.2
+    (told,) = doubts_of(data.attrs)
+    assert re.search(r"oil at (90|-9).* is taken at (40|20) degC, the edge .* = \[\"", told)
+    assert len(told.brief) <= BRIEF and "warnings" not in edge.attrs
+    far = history()._replace(torque=np.full(4, 60.0))
+    with pytest.raises(InputError, match="torque: 4 of 4 samples lie beyond the loss map"):
+        duty_dataset(table(), far, heating=Heating(network, "drive"))
 
 
 def test_limits_of_bodies_are_kelvins_of_bodies_that_are_there() -> None:

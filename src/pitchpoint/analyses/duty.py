@@ -1,6 +1,6 @@
 """Energy, torques, lives and heat over the duty cycle of a case, of its loss map of the output."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -20,8 +20,8 @@ from pitchpoint.analyses.strength import rating_inputs
 from pitchpoint.analyses.tooth_life import load_classes, tooth_life
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.duty import DutyInputs, duty_inputs
-from pitchpoint.doubts import fails, stored
-from pitchpoint.duty_cycle.cycle import duty_dataset
+from pitchpoint.doubts import doubts_of, fails, stored
+from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
 from pitchpoint.duty_cycle.energy import demand_inside, mean_load
 from pitchpoint.duty_cycle.heat import RunawayError
 from pitchpoint.duty_cycle.history import LoadHistory
@@ -59,15 +59,21 @@ def duty_of_map(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         travels="loaded" in built.travels,
     )
     try:
-        found = compute(heating=asked.heating)
+        return _told_first(compute, asked.heating)
+    except InputError as error:
+        raise _of_duty(error) from None
+
+
+def _told_first(compute: Callable[..., xr.Dataset], heating: Heating | None) -> xr.Dataset:
+    """The cycle as heat lets it be, with what is too hot before all else."""
+    try:
+        found = compute(heating=heating)
     except RunawayError as error:
         told = f"{error}; the duty cycle is that at the temperatures of its file."
         brief = f"The duty cycle heats {error.body} without end."
         return compute(runaway=error.body, warnings=[fails(told, brief)])
-    except InputError as error:
-        raise InputError(error.message, key=f"duty.{error.key}") from None
-    limits = {} if asked.heating is None else asked.heating.limits
-    return found.assign_attrs(stored([*_too_hot(found, limits)]))
+    limits = {} if heating is None else heating.limits
+    return found.assign_attrs(stored([*_too_hot(found, limits), *doubts_of(found.attrs)]))
 
 
 def _too_hot(data: xr.Dataset, limits: Mapping[str, float]) -> Iterator[str]:
@@ -114,9 +120,6 @@ def demand_in_map(built: Ready) -> None:
     if asked.law and asked.law not in built.law_names:
         told = f"{shown(asked.law)} is no friction law of this case{nearest(asked.law, built.law_names)}"
         raise InputError(told, key="duty.law")
-    history = asked.history
-    if asked.heating is not None:  # whose temperatures are not known yet
-        history = history.at_temperature(np.full(history.time.size, degrees[0]))
     empty = LossTable(
         torques=both(loads).tolist(),
         speeds=(speeds * speed_ratio(built)).tolist(),
@@ -126,10 +129,16 @@ def demand_in_map(built: Ready) -> None:
     )
     if "loaded" in built.travels:
         empty = empty._replace(units=("N", "m/s", "N m"))
-    try:
-        demand_inside(empty, history)
+    try:  # temperatures that follow from the losses are not known yet
+        demand_inside(empty, asked.history, warm=asked.heating is None)
     except InputError as error:
-        raise InputError(error.message, key="duty.file") from None
+        raise _of_duty(error) from None
+
+
+def _of_duty(error: InputError) -> InputError:
+    """The same with the key of the case: that of the motor, or the file whose load cannot be."""
+    of_motor = str(error.key).startswith("motor.")
+    return InputError(error.message, key=f"duty.{error.key}" if of_motor else "duty.file")
 
 
 def _asked(built: Ready) -> DutyInputs:

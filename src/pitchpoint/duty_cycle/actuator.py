@@ -5,14 +5,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pitchpoint.duty_cycle.history import ICE_POINT
 from pitchpoint.duty_cycle.motor import Motor
 from pitchpoint.efficiency.loss_table import LossTable
 
-__all__ = ["ActuatorMap", "actuator_map", "efficiency"]
+__all__ = ["ActuatorMap", "actuator_efficiency", "actuator_map"]
 
 Floats = NDArray[np.float64]
-
-_ZERO = 273.15
 
 
 class ActuatorMap(NamedTuple):
@@ -60,16 +59,16 @@ def actuator_map(
     torque = np.asarray(table.torques)
     speed = np.array(sorted({sign * one for one in table.speeds for sign in (-1.0, 1.0)}))
     load, pace = torque[:, None], speed[None, :]
-    given = np.asarray(table.at_many(load, pace, temperature - _ZERO, law).input_torque)
+    given = np.asarray(table.at_many(load, pace, temperature - ICE_POINT, law).input_torque)
     turning = pace / table.speed_ratio + 0.0 * load
     beyond = (np.abs(given) > motor.largest_torque) | (np.abs(turning) > motor.largest_speed)
     power = given * turning + motor.copper_loss(given, winding) + motor.iron_losses(turning)
     power = np.where(beyond, np.nan, power)
     output = np.where(load * pace == 0.0, np.nan, load * pace)
-    return ActuatorMap(torque, speed, power, efficiency(output, power))
+    return ActuatorMap(torque, speed, power, actuator_efficiency(output, power))
 
 
-def efficiency(output: Floats, electrical: Floats) -> Floats:
+def actuator_efficiency(output: Floats, electrical: Floats) -> Floats:
     """Power out over power in: electrical to the load, or from the load back; 0 where both go in.
 
     Args:

@@ -10,7 +10,14 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from pitchpoint.duty_cycle.actuator import actuator_map
-from pitchpoint.duty_cycle.energy import DriverCourse, driver_course, energies, mean_load
+from pitchpoint.duty_cycle.energy import (
+    DriverCourse,
+    at_the_edge,
+    demand_inside,
+    driver_course,
+    energies,
+    mean_load,
+)
 from pitchpoint.duty_cycle.first_failure import first_failure
 from pitchpoint.duty_cycle.heat import ThermalNetwork
 from pitchpoint.duty_cycle.history import LoadHistory, demand_kelvins
@@ -129,7 +136,10 @@ def duty_dataset(
         teeth: damage and life of the teeth over a history, see `tooth_life`; not known by default.
         runaway: body that gets ever hotter, where somebody found that; it fails first.
         travels: the output travels.
-        attributes: of the dataset beside.
+        attributes: of the dataset beside, with `warnings` that come before its own.
+
+    Temperatures that follow from `heating`, or that a runaway leaves to the history, may lie beyond the map:
+    losses are those of its edge then, and a warning says so.
 
     Returns:
         Courses over `time`, energies and means as single numbers, energies over `quadrant` and `law`, lives
@@ -141,10 +151,9 @@ def duty_dataset(
         ConvergenceError: there is no periodic temperature.
     """
     laws = [law] if law else [*table.loss_torques]
+    demand_inside(table, history, warm=heating is None and not runaway)
     warm = _warmed(table, history, laws[0], motor, heating)
-    driver = driver_course(
-        table, warm.history, law=laws[0], motor=motor, winding_temperature=warm.winding
-    )
+    driver = _course_of(table, warm, laws[0], motor)
     parts = [
         _heated(warm, heating),
         _lives(warm.history, (recorded.bearings if recorded else {}) | dict(lives or {})),
@@ -158,6 +167,8 @@ def duty_dataset(
     failing = first_failure(extra, None if heating is None else heating.limits)
     ends: tuple[End, ...] = ("loaded",) if travels else ()
     numbers = energies(warm.history, driver)
+    if warnings := [*attributes.pop("warnings", []), *at_the_edge(table, warm.history)]:
+        attributes["warnings"] = warnings
     numbers |= {
         "mean_torque_of_balls": mean_load(warm.history, BALL),
         "mean_torque_of_rollers": mean_load(warm.history, ROLLER),
@@ -208,6 +219,13 @@ def _warmed(
     bodies = heating.periodic(table, history, law, motor)
     warm = history.at_temperature(bodies[:, heating.place(heating.gears)])
     return _Warm(warm, bodies, bodies[:, heating.place(heating.winding)])
+
+
+def _course_of(table: LossTable, warm: _Warm, law: str, motor: Motor | None) -> DriverCourse:
+    """Of loads that lie in the map, which oil may leave."""
+    return driver_course(
+        table, warm.history, law=law, motor=motor, winding_temperature=warm.winding, inside=False
+    )
 
 
 def _heated(warm: _Warm, heating: Heating | None) -> xr.Dataset:
@@ -291,10 +309,7 @@ def _by_law(
     for law in laws[1:]:
         try:
             warm = _warmed(table, history, law, motor, heating)
-            course = driver_course(
-                table, warm.history, law=law, motor=motor, winding_temperature=warm.winding
-            )
-            rows.append(_sums(history, course))
+            rows.append(_sums(history, _course_of(table, warm, law, motor)))
         except (InputError, ConvergenceError):
             rows.append((np.nan, np.nan))
     lost, given = zip(*rows, strict=True)

@@ -5,16 +5,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pitchpoint.duty_cycle.history import LoadHistory
+from pitchpoint.doubts import Doubt
+from pitchpoint.duty_cycle.history import ICE_POINT, LoadHistory
 from pitchpoint.duty_cycle.motor import Motor
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 
-__all__ = ["DriverCourse", "demand_inside", "driver_course", "energies", "mean_load"]
+__all__ = [
+    "DriverCourse",
+    "at_the_edge",
+    "demand_inside",
+    "driver_course",
+    "energies",
+    "mean_load",
+]
 
 Floats = NDArray[np.float64]
 
-_ZERO = 273.15
 _RPM = 30.0 / np.pi
 
 
@@ -62,7 +69,7 @@ def driver_course(
     """
     if inside:
         demand_inside(table, history)
-    degrees = history.temperature - _ZERO
+    degrees = history.temperature - ICE_POINT
     point = table.at_many(history.torque, history.speed, degrees, law)
     _demand_free(np.asarray(point.locked), history)
     moving = history.speed != 0.0
@@ -90,15 +97,16 @@ def _holding(table: LossTable, torques: Floats, degrees: Floats, law: str) -> Fl
     return np.array(holding)[places.ravel()] if holding else torques
 
 
-def demand_inside(table: LossTable, history: LoadHistory) -> None:
+def demand_inside(table: LossTable, history: LoadHistory, *, warm: bool = True) -> None:
     """InputError unless all samples lie in a map, with what lies outside by how much.
 
     Args:
         table: the map.
         history: of its output.
+        warm: also by their temperatures.
     """
     along = np.where(history.speed >= 0.0, 1.0, -1.0) * history.torque
-    degrees = history.temperature - _ZERO
+    degrees = history.temperature - ICE_POINT
     torque, speed, _ = table.units
     turns = speed == "rad/s"
     scale, unit = (_RPM, "rpm") if turns else (1.0, speed)
@@ -108,7 +116,7 @@ def demand_inside(table: LossTable, history: LoadHistory) -> None:
         ("speed", np.abs(history.speed) * scale, paces, unit),
         ("temperature", degrees, np.array(table.temperatures), "degC"),
     )
-    for name, values, axis, shown in rows:
+    for name, values, axis, shown in rows if warm else rows[:2]:
         room = 1e-9 * (axis[-1] - axis[0])  # of converted units
         beyond = (values < axis[0] - room) | (values > axis[-1] + room)
         if beyond.any():
@@ -121,6 +129,30 @@ def demand_inside(table: LossTable, history: LoadHistory) -> None:
             )
 
 
+def at_the_edge(table: LossTable, history: LoadHistory) -> list[Doubt]:
+    """What to say of oil beyond the temperatures of a map, whose losses are those of its edge.
+
+    Args:
+        table: the map.
+        history: of its output.
+
+    Returns:
+        A sentence, or none.
+    """
+    degrees, axis = history.temperature - ICE_POINT, np.array(table.temperatures)
+    out = np.maximum(axis[0] - degrees, degrees - axis[-1])
+    at = int(np.argmax(out))
+    if not out[at] > 1e-6:
+        return []
+    edge = axis[0] if degrees[at] < axis[0] else axis[-1]
+    sentence = (
+        f"The loss of the drive with oil at {degrees[at]:.4g} degC is taken at {edge:.4g} degC, the edge of "
+        f"the loss map; {_wider(history, table, 'temperature')} in the case holds it."
+    )
+    brief = f"Losses with oil at {degrees[at]:.4g} degC are those at {edge:.4g} degC."
+    return [Doubt(sentence, "edge of the map", out[at], brief=brief)]
+
+
 def _wider(history: LoadHistory, table: LossTable, beyond: str) -> str:
     """Setting of a map that holds what lies beyond."""
     if beyond == "torque":
@@ -129,7 +161,7 @@ def _wider(history: LoadHistory, table: LossTable, beyond: str) -> str:
     if beyond == "speed":
         driver = float(np.abs(history.speed).max()) / table.speed_ratio * _RPM
         return f'loss_map.speed = "{_at_least(driver)} rpm" of the driver'
-    degrees = history.temperature - _ZERO
+    degrees = history.temperature - ICE_POINT
     low = min(np.floor(degrees.min()), table.temperatures[0])
     high = max(np.ceil(degrees.max()), table.temperatures[-1])
     return f'loss_map.temperatures = ["{low:g} degC", "{high:g} degC"]'

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
+from pitchpoint.duty_cycle.history import ICE_POINT
 from pitchpoint.errors import ConvergenceError, InputError
 
 __all__ = ["AMBIENT", "RunawayError", "ThermalNetwork"]
@@ -42,7 +43,7 @@ class RunawayError(ConvergenceError):
 
     def __init__(self, body: str) -> None:
         super().__init__(
-            f"there is no steady temperature below {_HOTTEST - 273.15:.0f} degC: more is lost than the "
+            f"there is no steady temperature below {_HOTTEST - ICE_POINT:.0f} degC: more is lost than the "
             f"resistances carry away, or losses grow faster with the temperature, first at {body}"
         )
         self.body = body

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = [
+    "ICE_POINT",
     "LARGEST",
     "LoadHistory",
     "demand_kelvins",
@@ -29,6 +30,9 @@ Floats = NDArray[np.float64]
 
 _COLDEST, _HOTTEST = 150.0, 600.0
 """Temperatures of an oil that are plausible [K]; below lies what was meant in degC."""
+
+ICE_POINT = 273.15
+"""0 degC [K], which large arrays take off without the conversion of units."""
 
 LARGEST = 1 << 28
 """Bytes of a file; ten million samples have some 200 MB."""
@@ -304,6 +308,6 @@ def demand_kelvins(degree: float, key: str, body: str) -> None:
     if not _COLDEST <= degree <= _HOTTEST:
         meant = "; plain numbers are in K" if degree < _COLDEST else ""
         raise InputError(
-            f"{degree:.6g} K, which are {degree - 273.15:.6g} degC, is no temperature of {body}{meant}",
+            f"{degree:.6g} K, which are {degree - ICE_POINT:.6g} degC, is no temperature of {body}{meant}",
             key=key,
         )

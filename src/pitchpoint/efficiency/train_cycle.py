@@ -111,7 +111,8 @@ class TrainCycle(eqx.Module):
             in the first part of it that repeats but for that, see `Train.turns`.
         weight: of each node; they sum to one.
         meshes: states of the meshes at the nodes.
-        torques: from outside on every body that is not free, by name [N m or N]; none of a train without names.
+        torques: from outside on every body that is not free, by name; none of a train without names
+            [N m or N].
         drag_loss: power lost beside the teeth [W].
         pressed: load on the bearing of each place, of several planets the mean [N].
         input_power, output_power: at the nodes [W].
