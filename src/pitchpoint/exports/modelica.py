@@ -8,7 +8,7 @@ from textwrap import wrap
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog, lsq_linear
+from scipy.optimize import lsq_linear
 
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.exports.evaluator import inert
@@ -99,11 +99,15 @@ def _line(
     return float(found[0]), float(found[1])
 
 
-def least_line_error(torque: np.ndarray, lost: np.ndarray) -> float:
+def least_line_error(place: np.ndarray, value: np.ndarray) -> float:
     """Largest error of that straight line whose largest error is least; 0 through two points or fewer.
 
     Args:
-        torque, lost: points.
+        place: of the points, ascending, shape (n,).
+        value: there, shape (n,).
+
+    Half the largest distance of a point from a chord of two others around it: no line is nearer to all three
+    (Chebyshev), and one that is as near to all is between both hulls of the points.
 
     Example:
         >>> import numpy as np
@@ -112,26 +116,41 @@ def least_line_error(torque: np.ndarray, lost: np.ndarray) -> float:
         >>> round(least_line_error(x, x**2), 9)
         0.125
     """
-    if torque.size < 3:
-        return 0.0
-    columns = np.stack([torque / np.abs(torque).max(), np.ones(torque.size)], axis=-1)
-    within = -np.ones((torque.size, 1))
-    both = np.concatenate([np.hstack([columns, within]), np.hstack([-columns, within])])
-    ends = np.concatenate([lost, -lost])
-    found = linprog(
-        [0.0, 0.0, 1.0], A_ub=both, b_ub=ends, bounds=[(None, None)] * 2 + [(0.0, None)]
+    farthest = 0.0
+    for at in range(1, place.size - 1):
+        before, behind = place[at] - place[:at, None], place[None, at + 1 :] - place[at]
+        chords = behind * value[:at, None] + before * value[None, at + 1 :]
+        farthest = max(farthest, float(np.abs(value[at] - chords / (before + behind)).max()))
+    return 0.5 * farthest
+
+
+def _least_bend_error(place: np.ndarray, value: np.ndarray) -> float:
+    """The same of two lines that change anywhere, by bisection: each is off by more with more points."""
+    low, high = 0, place.size
+    while low < high:
+        middle = (low + high) // 2
+        first, second = (
+            least_line_error(place[part], value[part])
+            for part in (slice(middle + 1), slice(middle + 1, None))
+        )
+        low, high = (low, middle) if first >= second else (middle + 1, high)
+    return min(
+        max(least_line_error(place[:at], value[:at]), least_line_error(place[at:], value[at:]))
+        for at in (low, low + 1)
     )
-    return float(found.x[-1])
 
 
 def _least_error(table: LossTable, temperature: float, law: str) -> float:
-    """Error of the driver's torque that no table of LossyGear can be without, at one temperature."""
+    """Error of the driver's torque that no table of LossyGear can be without, at one temperature.
+
+    At one speed it has that torque over the one of the output as a line where the driver drives, and another
+    where the load does; its table says where one ends.
+    """
     torques, errors = np.asarray(table.torques), [0.0]
     for speed in table.speeds[1:]:
-        lost = np.asarray(table.at_many(torques, speed, temperature, law).loss) / speed
-        for way in (torques >= 0.0, torques <= 0.0):
-            there = way & np.isfinite(lost)
-            errors.append(least_line_error((torques + lost)[there], lost[there]))
+        driving = torques + np.asarray(table.at_many(torques, speed, temperature, law).loss) / speed
+        there = np.isfinite(driving)
+        errors.append(_least_bend_error(torques[there], driving[there]))
     return max(errors) * table.speed_ratio
 
 
@@ -195,7 +214,8 @@ def _beside(given: Simulated, least: float, near: float) -> str:
     """What LossyGear cannot hold, by how much, and what the model of the map itself loses."""
     unit = given.joint.units["driver"]
     return (
-        f"{BESIDE} No line is nearer than {least:.4g} {unit} to the map at {given.temperature:.4g} degC. "
+        f"{BESIDE} No table of LossyGear is nearer than {least:.4g} {unit} to the map at "
+        f"{given.temperature:.4g} degC. "
         f"{MAP_GEAR} and JointOfMap have the map itself: their largest error is {near:.2g} {unit}, by the "
         "digits of their tables. Where friction locks the drive they have what holds a little more than the "
         "load."
