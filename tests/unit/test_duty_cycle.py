@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -84,6 +85,13 @@ def test_power_balances_with_a_rotor_that_is_sped_up() -> None:
     of = energies(half, driver_course(table(), half, motor=motor))
     assert of["rotor_energy"] == pytest.approx(kinetic, rel=1e-5)
     assert energies(moved, course)["rotor_energy"] == pytest.approx(0.0, abs=1e-9 * kinetic)
+    # The rotor takes and gives energy before the drive: through that goes what it has without a motor.
+    heavy = replace(motor, inertia=1e-2)
+    whole = energies(moved, driver_course(table(), moved, motor=heavy))
+    assert whole["recovered_energy"] > 0.0
+    bare = energies(moved, driver_course(table(), moved))
+    assert whole["drive_efficiency"] == pytest.approx(20.0 / 24.0, rel=1e-12)
+    assert bare["actuator_efficiency"] == pytest.approx(whole["drive_efficiency"], rel=1e-12)
 
 
 def test_motor_losses_are_those_of_its_current_and_speed() -> None:

@@ -209,8 +209,8 @@ def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
     Returns:
         By name. Power balances at each sample but for what speeds the rotor up, which a cycle gives back:
         input_energy - recovered_energy = output_energy - returned_energy + lost_energy + rotor_energy. An
-        efficiency is what comes out at either end over what goes in at either; without a motor that of the
-        actuator is that of the drive.
+        efficiency is what comes out at either end over what goes in at either: that of the drive without what
+        speeds the rotor up before it, that of the actuator with it. Without a motor both are the same.
     """
     seconds = history.duration
     out, given = history.power, driver.power
@@ -240,7 +240,7 @@ def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
         "motor_lost_energy": whole(driver.motor_loss),
         "electrical_energy": whole(np.maximum(electrical, 0.0)),
         "electrical_recovered_energy": whole(np.maximum(-electrical, 0.0)),
-        "drive_efficiency": of(out, given),
+        "drive_efficiency": of(out, out + driver.loss),
         "actuator_efficiency": of(out, electrical),
         "mean_electrical_power": whole(electrical) / total,
         "peak_electrical_power": float(np.abs(electrical).max()),
