@@ -875,6 +875,13 @@ def test_a_run_answers_with_its_duty_cycle(
     assert any(row[""] == "Electrical energy" for row in next(iter(DUTY_SECTION.screen(made))).rows)
     (printed,) = DUTY_SECTION.screen(made)
     assert [row[""] for row in printed.rows][-1] == "Fails first"
+    # The actuator is at the mean over time, of the samples it is 50 degC.
+    hot = CYCLE + "5, 20, 60, 40\n1, 20, -60, 60\n"
+    (tmp_path / "hot.csv").write_text(hot)
+    motor = pp.Motor(torque_constant=0.1, resistance=0.5)
+    cycle = pp.duty(pp.open_result(folder), tmp_path / "hot.csv", motor=motor)
+    made = replace(made, parts={**made.parts, DUTY_CYCLE.name: cycle})
+    assert "oil at 43.33" in actuator_points("map_electrical_power", 0, made).note
 
 
 def test_a_duty_cycle_brings_the_map_that_it_reads(tmp_path: Path) -> None:

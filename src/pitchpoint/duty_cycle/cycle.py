@@ -144,7 +144,8 @@ def duty_dataset(
     Returns:
         Courses over `time`, energies and means as single numbers, energies over `quadrant` and `law`, lives
         over `bearing` and `worn`, temperatures over `time` and `body`, electrical power over `map_torque` and
-        `map_speed`; the part that fails first, see `first_failure`.
+        `map_speed`; the part that fails first, see `first_failure`. The attribute `mean_temperature` is that
+        of the oil over time [K], at which the actuator is.
 
     Raises:
         InputError: samples beyond the map or the limits of the motor, or where friction locks the drive.
@@ -196,6 +197,7 @@ def duty_dataset(
         law=laws[0],
         chosen_law=int(bool(law)),
         motor=int(motor is not None),
+        mean_temperature=_mean(warm.history.temperature, warm.history),
         first_to_fail=failing.part,
         parts_compared=failing.compared,
         left_out=", ".join(failing.left_out),
@@ -279,12 +281,8 @@ def _of_actuator(table: LossTable, warm: _Warm, law: str, motor: Motor | None) -
     """Electrical power and efficiency over the map, at the mean temperatures of the cycle."""
     if motor is None:
         return xr.Dataset()
-    oil = float(np.average(warm.history.temperature, weights=warm.history.duration))
-    hot = (
-        oil
-        if warm.winding is None
-        else float(np.average(warm.winding, weights=warm.history.duration))
-    )
+    oil = _mean(warm.history.temperature, warm.history)
+    hot = oil if warm.winding is None else _mean(warm.winding, warm.history)
     found = actuator_map(table, motor, law=law, temperature=oil, winding=hot)
     axes = ("map_torque", "map_speed")
     data = {
@@ -292,6 +290,11 @@ def _of_actuator(table: LossTable, warm: _Warm, law: str, motor: Motor | None) -
         "map_actuator_efficiency": (axes, found.efficiency),
     }
     return xr.Dataset(data, dict(zip(axes, (found.torque, found.speed), strict=True)))
+
+
+def _mean(values: Floats, history: LoadHistory) -> float:
+    """Over time."""
+    return float(np.average(values, weights=history.duration))
 
 
 def _by_law(

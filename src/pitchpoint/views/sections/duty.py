@@ -34,14 +34,14 @@ _PART = "duty"
 
 
 def operating_points(name: str, outcome: Outcome) -> Figure:
-    """Operating points of a cycle over the efficiency of the drive, at the temperature next to their mean.
+    """Operating points of a cycle over the efficiency of the drive, at the temperature next to its mean.
 
     Args:
         name: of the figure.
         outcome: with a duty cycle and its map.
     """
     data, cycle = outcome.parts[OF_OUTPUT.part], outcome.parts[_PART]
-    mean = float(cycle["temperature"].mean())
+    mean = float(cycle.attrs["mean_temperature"])
     place = int(np.argmin(np.abs(data["temperature"].values - mean)))
     points, thinned = _points(cycle)
     law = laws(data).index(str(cycle.attrs["law"]))
@@ -82,13 +82,10 @@ def actuator_points(name: str, place: int, outcome: Outcome) -> Figure:
     values = cycle[name].values[None, :, :, None]
     dims = ("law", "output_torque", "output_speed", "temperature")
     axes = {"output_torque": cycle["map_torque"].values, "output_speed": cycle["map_speed"].values}
+    mean = float(cycle.attrs["mean_temperature"])
     known = dataset(
         {name: (dims, values)},
-        {
-            "law": [str(cycle.attrs["law"])],
-            **axes,
-            "temperature": [float(cycle["temperature"].mean())],
-        },
+        {"law": [str(cycle.attrs["law"])], **axes, "temperature": [mean]},
         travels=[end for end in ("loaded",) if cycle["output_torque"].attrs["units"] == "N"],
         speed_ratio=outcome.parts[OF_OUTPUT.part].attrs["speed_ratio"],
     )
@@ -97,7 +94,7 @@ def actuator_points(name: str, place: int, outcome: Outcome) -> Figure:
         name, replace(outcome, parts=parts), OF_OUTPUT, 0, 0, colour_scale(name, [values])
     )
     points, thinned = _points(cycle)
-    oil = show.quantity("temperature", float(cycle["temperature"].mean()), of=cycle)
+    oil = show.quantity("temperature", mean, of=cycle)
     told = (
         f"Dots are the operating points of the cycle{thinned}; drive and motor with oil at {oil}."
     )
