@@ -18,14 +18,13 @@ from xml.sax.saxutils import quoteattr
 
 from pitchpoint.errors import visible
 from pitchpoint.exports.evaluator import demand_room, header
-from pitchpoint.exports.simulators import HandedOver, Simulated, heading, lost_lines, xml_comment
+from pitchpoint.exports.simulators import HandedOver, Simulated, heading, nothing_lost, xml_comment
 from pitchpoint.results.store import write_bytes
 
 __all__ = ["SimulationUnit", "UnitVariable", "write_fmu", "write_unit"]
 
 BESIDE = (
-    "The unit is the loss map itself: nothing of it is lost. It has no state: inertia, stiffness, play, "
-    "ripple and kinematic error are not in it."
+    "The unit has no state: inertia, stiffness, play, ripple and kinematic error are not in it."
 )
 
 FLAGS = ("-std=c99", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off")
@@ -125,7 +124,7 @@ def write_unit(
         InputError: the map is too large for a file of source.
     """
     demand_room(given.joint.table, key)
-    lost = lost_lines(given, given.loss_of_map, beside)
+    lost = nothing_lost(beside)
     sources = _sources(given, unit)
     binaries = _binary(unit, sources)
     if not binaries:

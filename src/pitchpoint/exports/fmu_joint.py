@@ -12,8 +12,8 @@ from pitchpoint.runs.joint_model import JointModel, WindUpTable
 __all__ = ["write_joint_fmu"]
 
 BESIDE = (
-    "In steady motion the unit has the loss map itself: nothing of it is lost. Lost are the ripple of "
-    "friction over the angle, the hysteresis of the wind-up, and the change of temperature by the losses."
+    "That holds in steady motion. Lost are the ripple of friction over the angle, the hysteresis of the "
+    "wind-up, and the change of temperature by the losses."
 )
 
 STEPS = (

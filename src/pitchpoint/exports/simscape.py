@@ -9,7 +9,7 @@ from scipy.interpolate import NearestNDInterpolator
 
 from pitchpoint.errors import visible
 from pitchpoint.exports.evaluator import inert
-from pitchpoint.exports.simulators import HandedOver, Simulated, heading, lost_lines
+from pitchpoint.exports.simulators import HandedOver, Simulated, heading, nothing_lost
 from pitchpoint.results.store import write_bytes, write_text
 
 __all__ = ["filled", "write_simscape"]
@@ -41,7 +41,7 @@ def write_simscape(given: Simulated, folder: Path) -> HandedOver:
     """
     from scipy.io import savemat
 
-    lost = lost_lines(given, given.loss_of_map, BESIDE)
+    lost = nothing_lost(BESIDE)
     image = io.BytesIO()
     savemat(image, _content(given), long_field_names=True, do_compression=True, oned_as="column")
     write_bytes(folder / "joint.mat", image.getvalue())

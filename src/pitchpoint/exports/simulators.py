@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from textwrap import fill, wrap
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -102,10 +102,6 @@ class Simulated(NamedTuple):
     def kelvins(self) -> float:
         """The temperature as the joint takes it [K]."""
         return self.temperature + 273.15
-
-    def loss_of_map(self, torque: Any, speed: Any, degree: Any) -> Any:
-        """Torque that the joint loses by its map, at temperatures in degC as a law of loss has them."""
-        return self.joint.loss_torque(torque, speed, degree + 273.15)
 
     @property
     def fit(self) -> FrictionFit:
@@ -250,6 +246,16 @@ def lost_lines(given: Simulated, law: LossLaw, beside: str) -> list[str]:
             f"Friction locks the drive at {locked} more points, where the map has no torque."
         )
     return [*lines, *wrap(beside, 78)]
+
+
+def nothing_lost(beside: str) -> list[str]:
+    """The same of a target that has the numbers of the map: held against themselves they would tell nothing.
+
+    Args:
+        beside: what the target leaves out, in a sentence.
+    """
+    told = "What is lost: nothing of the torque of the driver, by construction: the map itself is in it."
+    return wrap(f"{told} {beside}", 78)
 
 
 def lost_without_load(given: Simulated, fit: FrictionFit, beside: str) -> list[str]:
