@@ -711,7 +711,10 @@ def duty(
     variant: Annotated[str | None, typer.Option("--variant", help="Of the result.")] = None,
     law: Annotated[
         str,
-        typer.Option("--law", help="Of friction; the first one, with all beside it, by default."),
+        typer.Option(
+            "--law",
+            help="Of friction; by default the first one, with energies under all beside it.",
+        ),
     ] = "",
     teeth: Annotated[
         bool, typer.Option("--teeth", help="With damage and life of the teeth by ISO 6336.")
@@ -730,7 +733,8 @@ def duty(
 
     data = over_cycle(open_result(result), cycle, variant=variant, law=law, teeth=teeth)
     if json_:
-        figures = {n: data[n].values.tolist() for n in data if data[n].dims != ("time",)}
+        every = [*data, *data.coords]
+        figures = {n: data[n].values.tolist() for n in every if "time" not in data[n].dims}
         _emit({**figures, **{name: data.attrs[name] for name in ("first_to_fail", "left_out")}})
         return
     console = _console()

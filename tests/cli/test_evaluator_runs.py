@@ -814,6 +814,11 @@ def test_a_duty_cycle_is_told_by_the_map(
     assert command("duty", "--help") == 0
     help_ = capsys.readouterr().out
     assert all(head in help_ for head in ("time [s]", "torque [N m]", "speed [rpm]"))
+    assert command("duty", folder, path, "--json") == 0
+    told = json.loads(capsys.readouterr().out)
+    by_law = dict(zip(told["law"], told["law_lost_energy"], strict=True))
+    assert by_law["frictionless"] == pytest.approx(2.0 * lost[0] + lost[1], rel=1e-9)
+    assert told["quadrant"] == ["I", "II", "III", "IV", "rest"] and "time" not in told
     assert command("duty", folder, path, "--law", "xu") == 2
     assert "is not a friction law of this result" in capsys.readouterr().err
     path.write_text(head + "2, 20, 60, 400\n")
