@@ -1,11 +1,15 @@
 """A drive as a package of Modelica: tables against the map, by the equations of LossyGear."""
 
+import math
 import re
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from made_joints import Lost, locking, made_joint, plain, torsion
+from scipy.interpolate import RegularGridInterpolator
 from scipy.optimize import brentq, linprog
 
 from pitchpoint.analyses.four_quadrants import table_of
@@ -110,6 +114,9 @@ def test_the_package_is_whole(tmp_path: Path) -> None:
             assert "annotation(Documentation(info" in model
         stiff = re.findall(r"stiffness = (\S+)$", code, re.MULTILINE)
         assert {*map(float, stiff)} == {{"turns": 1000.0, "slides": 0.4, "bare": 1.0}[name]}
+        play = re.findall(r"Angle backlash = (\S+) ", code)
+        assert [*map(float, play)] == [{"turns": 2e-4, "slides": 1e-2, "bare": 0.0}[name]] * 2
+        assert code.count("c = stiffness, d = damping, b = backlash) if elastic;") == 2
 
 
 def syntax_errors(path: Path) -> list[str]:
@@ -186,6 +193,160 @@ def test_the_model_of_the_map_has_the_map(law: Lost, tmp_path: Path) -> None:
             (torque - starts[1], band.lowest),
         ):
             assert np.isnan(end) or found_end / 50.0 == pytest.approx(end)
+
+
+class Lookup:
+    """A table of the library by its matrix: linear between its points, held beyond them."""
+
+    def __init__(self, matrix: np.ndarray) -> None:
+        self._table = RegularGridInterpolator((matrix[1:, 0], matrix[0, 1:]), matrix[1:, 1:])
+        self._ends = matrix[1:, 0], matrix[0, 1:]
+
+    @property
+    def y(self) -> float:
+        near = [
+            min(max(u, axis[0]), axis[-1])
+            for u, axis in zip((self.u1, self.u2), self._ends, strict=True)  # type: ignore[attr-defined]
+        ]
+        return float(self._table(near)[0])
+
+
+def python(code: str) -> str:
+    """An expression of Modelica as one of Python; arrays have a first element that is none."""
+    code = re.sub(r"\b(der|pre)\(([\w.]+)\)", r'\1["\2"]', code)
+    code = re.sub(r"for k in 1:(\d+)", lambda m: f"for k in range(1, {int(m[1]) + 1})", code)
+    opened, words = [], []
+    for word in re.findall(r'"[^"]*"|\w+|\s+|.', code):
+        if word in ("(", "[", "if"):
+            opened.append(word)
+        while word in (")", "]") and opened[-1] == "if":
+            opened.pop()
+            words.append(")")
+        if word in (")", "]"):
+            opened.pop()
+        words.append({"if": "choice(", "then": ",", "else": ","}.get(word, word))
+    return " ".join("".join([*words, ")" * opened.count("if")]).split())
+
+
+def equations(text: str) -> list[tuple[str, str]]:
+    """Both sides of each equation of the model of the map."""
+    model = text[text.index("model MapGear") :]
+    block = model[model.index("  equation\n") + 11 : model.index("    annotation(Documentation")]
+
+    def of_each(loop: re.Match[str]) -> str:
+        return "".join(loop[2].replace("[k]", f"[{k}]") for k in range(1, int(loop[1]) + 1))
+
+    block = re.sub(r"for k in 1:(\d+) loop(.*?)end for;", of_each, block, flags=re.DOTALL)
+    sides = [one.split(" = ", 1) for one in block.split(";") if one.strip()]
+    return [(python(left.strip()), python(right)) for left, right in sides]
+
+
+def residuals(text: str, known: dict[str, float], names: dict[str, Any]) -> dict[str, float]:
+    """What equations leave whose both sides are known; others give their left side a value, in any order."""
+    *moving, rest = map(Lookup, matrices(text))
+    both = Lookup(matrices(text)[-1])
+    held: dict[str, Any] = {
+        **names, "moving": [None, *moving], "on": rest, "back": both, "share": [None] * 8,
+        "flange_a": SimpleNamespace(), "flange_b": SimpleNamespace(), "log": math.log,
+        "choice": lambda which, yes, no: yes if which else no, "initial": lambda: False,
+    }  # fmt: skip
+    for name in ("degrees", "below", "above"):
+        (found,) = re.findall(rf"{name}\[7\] = \{{(.*?)\}}", text)
+        held[name] = [None, *map(float, found.split(","))]
+    for name in ("ratio", "travel"):
+        (held[name],) = map(float, re.findall(rf"constant Real {name} = (\S+)", text))
+    for name, value in known.items():
+        exec(f"{name} = {value!r}", held)
+    left, seen = equations(text), {}
+    while left:
+        waiting = []
+        for first, second in left:
+            try:
+                value = eval(second, held)
+            except (NameError, AttributeError, TypeError):
+                waiting.append((first, second))
+                continue
+            try:
+                there = eval(first, held)
+            except (NameError, AttributeError):
+                there = None
+            if there is None:
+                exec(
+                    f"{first} = value", {**held, "value": value}
+                ) if "." in first or "[" in first else (held.update({first: value}))
+            else:
+                seen[f"{first} = {second}"] = float(there) - float(value)
+        assert len(waiting) < len(left), waiting
+        left = waiting
+    return seen
+
+
+MOTIONS = [(w, load) for w in (0.3, -0.3) for load in (25.0, -25.0)]
+"""Speed and torque of the output in all quadrants."""
+
+
+def unbalanced(text: str, made: Outcome) -> float:
+    """Largest residual of the model of the map in motions and at rest that the product knows."""
+    joint, slides = joint_model(made), made.manifest["travels"] != []
+    ratio, travel = (1.0, abs(joint.ratio)) if slides else (joint.ratio, 1.0)
+    worst = 0.0
+
+    def hold(pace: float, load: float, path: float, lost: float, gain: float, **names: Any) -> None:
+        nonlocal worst
+        # Power: what the driver gives is what the load takes and friction loses.
+        driving = (load + lost) / (ratio * travel)
+        known = {
+            "flange_b.phi": 0.7, "flange_a.phi": 0.7 * ratio, "flange_b.tau": -load / travel,
+            "flange_a.tau": driving, "temperature": 50.0, "path": path, "friction": lost, **names,
+        }  # fmt: skip
+        rates = {"flange_b.phi": pace * travel, "speed": gain}
+        pre = {"mode": int(np.sign(pace))}
+        found = residuals(text, known, {"der": rates, "pre": pre})
+        assert len(found) >= 4
+        worst = max(worst, *map(abs, found.values()))
+
+    for speed, load in MOTIONS:
+        way = math.copysign(1.0, speed)
+        lost = float(joint.loss_torque(way * load, abs(speed), 323.15))
+        band = joint.holding_band(load, 323.15)
+        starts = abs(joint.ratio) * (band.highest if way > 0.0 else -band.lowest) - way * load
+        hold(speed, load, way * (starts + 0.25), way * lost, 0.25 * way, mode=int(way), speed=speed)
+    for load in (25.0, -25.0):
+        band = joint.holding_band(load, 323.15)
+        low, high = (abs(joint.ratio) * end - load for end in (band.lowest, band.highest))
+        rest = {"mode": 0, "speed": 0.0, "torque": load}
+        for path in (0.99 * low + 0.01 * high, 0.01 * low + 0.99 * high):
+            hold(0.0, load, path, path, 0.0, **rest, forwards=False, backwards=False)
+        for path, way in ((high + 0.1, 1.0), (low - 0.1, -1.0)):
+            lost = way * float(joint.loss_torque(way * load, 0.01, 323.15))
+            hold(0.0, load, path, lost, 0.1 * way, **rest, forwards=way > 0, backwards=way < 0)
+    return worst
+
+
+@pytest.mark.parametrize("slides", [False, True])
+def test_the_equations_of_the_map_are_those_of_the_product(slides: bool, tmp_path: Path) -> None:
+    """In four quadrants and at rest, by power; and one that is another is seen."""
+    made = made_joint(slides=slides)
+    (path,), _ = handed(made, tmp_path)
+    text = path.read_text("utf-8")
+    assert unbalanced(text, made) < 1e-7
+    for before, after in (
+        ("flange_a.phi = ratio", "flange_a.phi = -ratio"),
+        ("torque = -flange_b.tau", "torque = flange_b.tau"),
+        ("= friction / travel", "= -friction / travel"),
+        ("if backwards then -torque else torque", "torque"),
+        ("if backwards then -lost", "if backwards then lost"),
+        ("else if backwards then path + back.y", "else if backwards then path - back.y"),
+        ("path > on.y", "path > 1.1 * on.y"),
+        ("path < -back.y", "path < back.y"),
+        ("share[k] * moving[k].y", "moving[k].y"),
+        ("(degrees[k] - warm) / below[k]", "(degrees[k] - warm) / 20"),
+        ("log(max(abs(speed)", "(max(abs(speed)"),
+        ("mode = if forwards and speed > 0", "mode = if forwards and speed < 0"),
+        *([("der(flange_b.phi) / travel", "der(flange_b.phi) * travel")] if slides else []),
+    ):
+        assert text.count(before) == 1
+        assert unbalanced(text.replace(before, after), made) > 1e-3, before
 
 
 def steep(torque: np.ndarray, speed: np.ndarray, degree: np.ndarray) -> np.ndarray:
