@@ -14,15 +14,18 @@ from pitchpoint.analyses.four_quadrants import speed_ratio
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.document import read, resolve
 from pitchpoint.cases.schema import Case, DriveCase, keys, quantity_at, validate
-from pitchpoint.cases.template import FAMILIES, template
+from pitchpoint.cases.template import FAMILIES, sample_tree, template
 from pitchpoint.duty_cycle.table import DutyTable, HeatTable
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
+from pitchpoint.gears.planetary import PLANETARY
 from pitchpoint.runs.check import check
 from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.for_ratio import (
     MODULES,
     SAFETIES,
+    _planetary,
+    _three_k,
     case_for_ratio,
     planetary_teeth,
     stepped_teeth,
@@ -233,20 +236,36 @@ def test_the_module_is_the_smallest_that_bears_the_torque(family: str, ratio: fl
     assert built.case.operation.load == 200.0
 
 
-@pytest.mark.parametrize(("family", "ratio"), [("planetary", 5.0), ("3k", 100.0)])
+@pytest.mark.parametrize(
+    ("family", "ratio"), [("planetary", 5.0), ("planetary", 30.0), ("3k", 100.0)]
+)
 def test_several_sets_are_variants_each_of_which_opens(family: str, ratio: float) -> None:
+    """Each has the gears that it was sized with, and nothing of those of the first set."""
     text = case_for_ratio(family, ratio, count=3)
     variants = tomllib.loads(text)["variants"]
     assert [*variants] == ["set_1", "set_2", "set_3"] and variants["set_1"] == {}
+    found = (_planetary if family == "planetary" else _three_k)(ratio, 3, 3)
     seen = set()
-    for name in variants:
+    for name, (make, _) in zip(variants, found, strict=False):
         built = load_case(tomllib.loads(text), variant=name)
+        alone = load_case(sample_tree(PLANETARY if family == "planetary" else "3K", make(1.0)))
+        assert built.case.gears == alone.case.gears
+        pin = make(1.0).get("losses", {}).get("pin", {}).get("mean_diameter")
+        assert pin is None or f'losses.pin]\n# mean_diameter = "{pin}"' in _of_set(text, name)
         teeth = [one.design.mesh.teeth.tolist() for one in built.meshes]
         assert abs(float(built.design.ratio)) == pytest.approx(ratio, rel=0.03)
         assert f"{name}: Ratio {float(built.design.ratio):.6g}" in text
         seen.add(str(teeth))
     assert len(seen) == 3
     assert "set_1" not in case_for_ratio(family, ratio)
+
+
+def _of_set(text: str, name: str) -> str:
+    """Lines of a variant; of the first one the pin of the file."""
+    if name == "set_1":
+        pin = re.search(r"(losses.pin\]\n)(?:# .*\n)*?(# mean_diameter.*)", text)
+        return "".join(pin.groups()) if pin else ""
+    return text.partition(f"[variants.{name}.gears]")[2].partition(".gears]\nteeth")[0]
 
 
 LONG_RATIOS = [pytest.param(ratio, marks=pytest.mark.whole) for ratio in (30.0, -80.0, 320.0)]

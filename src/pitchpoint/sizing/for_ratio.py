@@ -164,7 +164,7 @@ def case_for_ratio(
         each = [f"set_{number}: {told}" for number, told in enumerate(each, 1)]
     told = _FACTORS if torque else "The module is not sized: --torque is what the output bears."
     text = template(named, sized[0][0], [*each, told])
-    return text + _variants([tree["gears"] for tree, _ in sized]) if len(found) > 1 else text
+    return text + _variants([tree for tree, _ in sized]) if len(found) > 1 else text
 
 
 _FACTORS = "Load factors but K_v and that of planets are 1: give those of your drive in [strength]."
@@ -190,12 +190,20 @@ def _with_rest(named: str, make: Making, torque: str | None) -> tuple[Tree, str]
     )
 
 
-def _variants(gears: Sequence[Tree]) -> str:
-    """Tables of variants with the gears of each set."""
+def _variants(sets: Sequence[Tree]) -> str:
+    """Tables of variants with the gears of each set, and its losses as remarks, as [losses] are."""
     lines = ["", "# Sets for this ratio, the best one first; each is computed.", "[variants.set_1]"]
-    for number, table in enumerate(gears[1:], 2):
-        lines += ["", tomlkit.dumps({"variants": {f"set_{number}": {"gears": table}}}).strip()]
+    for number, tree in enumerate(sets[1:], 2):
+        lines += ["", *_of_variant(number, {"gears": tree["gears"]})]
+        if "losses" in tree:
+            losses = _of_variant(number, {"losses": tree["losses"]})
+            lines += ["", *(f"# {line}" for line in losses)]
     return "\n".join(lines) + "\n"
+
+
+def _of_variant(number: int, tables: Tree) -> list[str]:
+    """Lines of what a set has beside those of the first one."""
+    return tomlkit.dumps({"variants": {f"set_{number}": tables}}).strip().splitlines()
 
 
 def _strain_wave(ratio: float, others: Mapping[str, Any]) -> str:
@@ -302,25 +310,30 @@ def _simple_sets(arranged: tuple[Any, ...], ratio: float, planets: int) -> Itera
     turned, loaded, held, basic, back = arranged
     ends = {} if held == "ring" else {"input": turned, "output": loaded, "held": held}
     for sun, planet, ring in planetary_teeth(basic(ratio), planets):
-        gears: Tree = {"teeth": [sun, planet, ring], "planets": planets, **ends}
-        if any(shifts := [_without_undercut(sun), _in_ring(planet)]):
-            gears["profile_shift"] = shifts
+        # Of no shift as well: a variant takes what it leaves out from the first set.
+        shifts = [_without_undercut(sun), _in_ring(planet)]
+        gears: Tree = {
+            "teeth": [sun, planet, ring],
+            "planets": planets,
+            "profile_shift": shifts,
+            **ends,
+        }
         yield gears, USUAL_BEARING * planet, back(ring / sun)
 
 
 def _stepped_sets(ratio: float, planets: int) -> Iterator[Set]:
     """Sets of stepped planets from sun to carrier, the nearest and smallest one first."""
     for sun, first, second, ring in stepped_teeth(ratio, planets):
+        shift = _without_undercut(sun)
         gears: Tree = {
             "teeth": [sun, first],
             "planets": planets,
+            "profile_shift": [shift, 0.0 - shift],  # which leaves the centre distance as it is
             "second": {
                 "teeth": [second, ring],
                 "profile_shift": [_in_ring(second), FROM_CENTRE_DISTANCE],
             },
         }
-        if shift := _without_undercut(sun):
-            gears["profile_shift"] = [shift, -shift]  # which leaves the centre distance as it is
         yield gears, USUAL_BEARING * second, 1.0 + first * ring / (sun * second)
 
 
