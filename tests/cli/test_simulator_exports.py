@@ -78,13 +78,20 @@ def test_every_target_takes_every_drive(target: str, kind: str, tmp_path: Path) 
                 }
 
 
+HOLDS_THE_MAP = ("fmu", "fmu_joint", "simscape")
+"""Targets that lose nothing of the map, and have no table of it."""
+
+
 @pytest.mark.parametrize("target", TARGETS)
 def test_the_head_of_a_file_has_the_table_of_the_screen(target: str, tmp_path: Path) -> None:
     """Whole, with the rows of the range that somebody names, in one file of each target."""
     wishes = replace(WISHES, rotor_inertia="2 kg cm2")
     paths, lost = handed(made_joint(), tmp_path, target, wishes)
-    assert [line.split()[0] for line in lost[2:6]] == ["the", "the", "range", "range"]
-    assert all(float(row[2]) > 0 for row in rows(lost)) and len(rows(lost)) == 4
+    if target in HOLDS_THE_MAP:
+        assert rows(lost) == []
+    else:
+        assert [line.split()[0] for line in lost[2:6]] == ["the", "the", "range", "range"]
+        assert all(float(row[2]) > 0 for row in rows(lost)) and len(rows(lost)) == 4
     texts = [
         "\n".join(line.removeprefix("//").removeprefix("%").strip() for line in text.splitlines())
         for one in paths
