@@ -12,6 +12,7 @@ from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.tooth_life import mesh_member_names
+from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import doubts_of
 from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.drive.thrusts import axial_loads
@@ -795,14 +796,36 @@ def test_shifts_that_follow_are_set_from_python(key):
         case.set({"gears.teeth": [18, 36, "from centre distance"]})
 
 
-def test_advice_for_planets_of_a_stage_has_the_keys_of_the_stage():
-    stages = [{"gears": gears([23, 61])}, {"gears": SET | {"teeth": [25, 30, 84]}}]
-    with pytest.raises(
-        InputError, match=r"stages.2.gears.planets: the planets do not fit"
-    ) as caught:
+@pytest.mark.parametrize(
+    ("changes", "words", "keys"),
+    [
+        ({"teeth": [25, 30, 84]}, r"planets: the planets do not fit", ["teeth", "planet_angles"]),
+        (
+            {"profile_shift": [0.3, 0.1, 0.0]},
+            r"centre_distance: .* sum to -0.4 instead of 0.1; it runs with profile_shift = \[",
+            ["profile_shift"],  # another centre distance would not suit sun and planet
+        ),
+        (
+            {"teeth": [12, 18, 48]},
+            r"gear 1 parts them; it runs with addendum = \[.*, or with fillet_radius = \[",
+            ["addendum", "fillet_radius"],
+        ),
+    ],
+)
+def test_advice_for_a_set_that_is_a_stage_has_the_keys_of_the_stage(changes, words, keys):
+    stages = [{"gears": gears([23, 61])}, {"gears": SET | changes}]
+    with pytest.raises(InputError, match=rf"stages.2.gears.*{words}") as caught:
         load_case({"stages": stages, **TABLES})
-    keys = [[*cure] for cure in caught.value.cures]
-    assert keys == [["stages.2.gears.teeth"], ["stages.2.gears.planet_angles"]]
+    cures = caught.value.cures
+    assert [[*cure] for cure in cures] == [[f"stages.2.gears.{key}"] for key in keys]
+    for cure in cures:
+        load_case({"stages": stages, **TABLES}, settings=cure)
+
+
+def test_a_set_that_is_not_advised_has_no_change_that_was_not_tried():
+    variant = Variant({"gears": SET, **TABLES}, "set.toml", "default")
+    (left,) = variant.built_each([{"gears.profile_shift": [0.3, 0.1, 0.0]}])
+    assert str(left).endswith("sum to -0.4 instead of 0.1") and left.cures == ()
 
 
 @pytest.mark.whole

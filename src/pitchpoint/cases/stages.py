@@ -118,27 +118,31 @@ def as_spelt(error: InputError, document: Document, *, advised: bool = False) ->
     for one in error.every:
         if isinstance(one, InputError):
             spelt = in_words_of_set(one, gears)
-            of_mesh = advised and spelt.cures and (one.key or "").startswith(STAGES)
-            others = {key for key in keys if key != one.key}
-            wrong.add(_with_sound_cures(spelt, document, others) if of_mesh else spelt)
+            if spelt.cures and (one.key or "").startswith(STAGES):
+                others = {key for key in keys if key != one.key}
+                every = spelt.cures if advised else ()
+                sound = [change for change in every if _mends(change, document, others)]
+                spelt = _ended_with_cures(spelt, sound)
+            wrong.add(spelt)
     return wrong.error if wrong else error
 
 
-def _with_sound_cures(error: InputError, document: Document, others: set[str | None]) -> InputError:
-    """An error of a mesh of a set with those changes that mend it, where others may be wrong still."""
+def _mends(change: Tree, document: Document, others: set[str | None]) -> bool:
+    """True if a set runs after a change, but for what is wrong with other keys."""
+    try:
+        _changed_drive(document, change)
+    except InputError as left:
+        return {one.key for one in left.every if isinstance(one, InputError)} <= others
+    return True
+
+
+def _ended_with_cures(error: InputError, sound: Sequence[Tree]) -> InputError:
+    """An error of a mesh of a set with changes that mend it."""
     from pitchpoint.gears.cylindrical.cures import told_with_cures
 
-    def mends(change: Tree) -> bool:
-        try:
-            _changed_drive(document, change)
-        except InputError as left:
-            return {one.key for one in left.every if isinstance(one, InputError)} <= others
-        return True
-
-    sound = tuple(filter(mends, error.cures))
     longer = copy.copy(error)
     bare = [{key.removeprefix("gears."): one for key, one in each.items()} for each in sound]
-    longer.message, longer.cures = told_with_cures(error.message, bare), sound
+    longer.message, longer.cures = told_with_cures(error.message, bare), tuple(sound)
     return longer
 
 
@@ -164,8 +168,8 @@ class _Stage(NamedTuple):
     document: Document
 
 
-def _alone(case: DriveCase, document: Document) -> list[_Stage]:
-    """Each stage as a case of its own, at the load and speed of the drive."""
+def _alone(case: DriveCase, document: Document, *, advised: bool = False) -> list[_Stage]:
+    """Each stage as a case of its own, at the load and speed of the drive; `advised` as in `ready`."""
     wrong = Complaints()
     found: list[_Stage] = []
     for number in range(1, len(case.stages) + 1):
@@ -173,13 +177,13 @@ def _alone(case: DriveCase, document: Document) -> list[_Stage]:
 
         def read(inside: Document = inside, number: int = number) -> _Stage:
             spelt_out = with_meshes(inside)
-            with _spelt(inside):
+            with _spelt(inside, advised):
                 return _Stage(number, validate(spelt_out), spelt_out)
 
         found += filter(None, [wrong.tried(_in_stage, document, number, read)])
     wrong.demand_none()
     for one in found:
-        wrong.tried(_turns, one, document)
+        wrong.tried(_turns, one, document, advised=advised)
     wrong.demand_none()
     return found
 
@@ -193,7 +197,7 @@ def _built(
         case, document, own: see `ready`.
         advised: True if it is told of planets that do not fit in which ones do.
     """
-    alone = _alone(case, document)
+    alone = _alone(case, document, advised=advised)
     _check_laws(alone)
     _check_rated(case)
     if case.train is None:
@@ -465,21 +469,25 @@ def _mesh_alone(one: Case) -> Mesh:
     return gears[0]
 
 
-def _turns(stage: _Stage, document: Document) -> tuple[float, float]:
-    """Rates of the driver and of the loaded end of a stage; of a set of bodies for one of its input."""
+def _turns(stage: _Stage, document: Document, *, advised: bool = False) -> tuple[float, float]:
+    """Rates of the driver and of the loaded end of a stage; of a set of bodies for one of its input.
+
+    Args:
+        stage, document: of the drive.
+        advised: see `ready`.
+    """
     if isinstance(stage.case, Case):
         return ends_of(stage.case, _mesh(stage.case, stage.number, document))
-    return 1.0, _in_stage(
-        document, stage.number, partial(_rate_of_output, stage.case, stage.document)
-    )
+    rate = partial(_rate_of_output, stage.case, stage.document, advised=advised)
+    return 1.0, _in_stage(document, stage.number, rate)
 
 
-def _rate_of_output(case: DriveCase, document: Document) -> float:
+def _rate_of_output(case: DriveCase, document: Document, *, advised: bool) -> float:
     """Rate of the output of a set for one of its input."""
     from pitchpoint.cases.trains import rates_of
 
     assert case.train is not None
-    with _spelt(document):
+    with _spelt(document, advised):
         _, meshes = _of_train(_alone(case, document), document)
         rates = rates_of(case, meshes)
     return rates[case.train.output] / rates[case.train.input]
