@@ -716,6 +716,7 @@ ANGLES = ("gears.planet_angles",)
         ({"gears": SET | {"planets": 5}}, [TEETH], 4.5),
         ({"gears": SET | {"teeth": [25, 30, 84]}}, [TEETH, ANGLES], 4.36),
         ({"gears": SET | {"planet_angles": APART}}, [ANGLES], 4.5),
+        ({"gears": SET | {"planet_angles": ["11 deg", *APART[1:]]}}, [ANGLES], 4.5),
         ({"gears": STEPPED | {"planets": 4}}, [BOTH], 7.5),
         ({"gears": THREE_K_SET | {"planets": 4}}, [BOTH], 176.0),
         ({"gears": THREE_K_SET | LARGE_SUN}, [BOTH, ANGLES], 73.5),
@@ -734,6 +735,24 @@ def test_advice_for_planets_that_do_not_fit_in_runs(tree, keys, ratio):
         assert all(key in str(caught.value) for key in cure)
         sideways = any("press sun, rings and carrier sideways" in told for told in built.told)
         assert sideways == ([*cure] == [*ANGLES])
+
+
+@pytest.mark.parametrize("first", [0.0, 10.0, -50.4])
+def test_angles_of_planets_may_be_rounded_wherever_the_first_one_stands(first):
+    """To 1 % of the step of 360/109 deg, by which others stand from the first one."""
+    step = 360.0 / 109.0
+    for off, fits in ((0.0, True), (0.009, True), (0.02, False)):
+        angles = [f"{first + steps * step:.9g} deg" for steps in (0.0, 36.0 + off, 73.0 - off)]
+        tree = {"gears": SET | {"teeth": [25, 30, 84], "planet_angles": angles}, **TABLES}
+        if fits:
+            (train,) = load_case(tree).trains.values()
+            stand = np.degrees(train.design.angles[:3])  # behind them what stands in the housing
+            assert stand == pytest.approx(first + step * np.array([0, 36, 73]), abs=1e-6)
+        else:
+            with pytest.raises(InputError, match="number 2 misses") as caught:
+                load_case(tree)
+            (cure,) = caught.value.cures
+            assert cure["gears.planet_angles"][0] == f"{first:g} deg"
 
 
 ONE_PLANET = STEPPED | {"planets": 1, "teeth": [12, 18], "profile_shift": [0.3, -0.3]}

@@ -52,17 +52,22 @@ def places_around(meshes: Sequence[tuple[int, int]]) -> int:
 
 
 def nearest_places(angles: Float[np.ndarray, " copy"], places: int) -> Float[np.ndarray, " copy"]:
-    """Angles at which planets fit in, nearest to others [rad].
+    """Angles at which planets fit in beside the first one, nearest to others [rad].
 
     Args:
-        angles: wanted ones [rad].
+        angles: wanted ones [rad]; the first planet may stand anywhere, and stays where it is.
         places: see `places_around`; where it is 0 all angles do.
+
+    Example:
+        >>> import numpy as np
+        >>> np.degrees(nearest_places(np.radians([10.0, 128.9, 251.1]), 109)).round(4)
+        array([ 10.    , 128.8991, 251.1009])
     """
     if not places:
         return angles
     # Half a step goes up at every planet, so that opposite ones stay opposite where they can.
-    steps = [floor(angle * places / (2.0 * pi) + 0.5 + FITS) for angle in angles]
-    return np.array(steps) * (2.0 * pi / places)
+    steps = [floor(angle * places / (2.0 * pi) + 0.5 + FITS) for angle in angles - angles[0]]
+    return np.asarray(angles[0] + np.array(steps) * (2.0 * pi / places))
 
 
 def check_neighbours(
