@@ -73,14 +73,14 @@ def test_standard_teeth_are_thinned_by_half_the_backlash_each() -> None:
 )
 def test_the_pair_has_the_backlash_and_the_tips_of_nominal_teeth(gears: dict[str, Any]) -> None:
     asked, nominal = table(**gears, backlash="0.3 mm"), table(**gears)
-    pair, told = FAMILY.build(asked, "gear 1", 1)
+    pair, told = FAMILY.build(asked, 1)
     backlash, tips = _measured(pair)
     assert float(backlash) == pytest.approx(3e-4, rel=1e-12)
     assert not any("overlap" in sentence for sentence in told)
     shift, other = asked.infeed
     assert shift == other < 0.0
     if nominal.centre_distance != 0.0599:
-        unlike, _ = FAMILY.build(nominal, "gear 1", 1)
+        unlike, _ = FAMILY.build(nominal, 1)
         assert np.asarray(tips) == pytest.approx(np.asarray(_measured(unlike)[1]), rel=1e-14)
         assert float(pair.centre_distance) == float(unlike.centre_distance)
 

@@ -11,6 +11,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.checks import _measure, check_cylindrical
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.nominal_motion import mesh_ends, nominal_motion
 
 ANGLE = np.deg2rad(20.0)
 MODULE = 2e-3
@@ -39,7 +40,7 @@ def _figures(mesh):
         *("transverse_pressure_angle", "working_pressure_angle", "base_helix_angle"),
         *("centre_distance", "tip_alteration", "tip_radii", "base_radii", "base_pitch", "limits"),
         *("points", "tangent_length", "pitch_position", "transverse_contact_ratio"),
-        *("overlap_ratio", "contact_ratio", "module", "teeth", "working_radii", "motion"),
+        *("overlap_ratio", "contact_ratio", "module", "teeth", "working_radii"),
         *("backlash", "normal_backlash", "zero_backlash_centre_distance"),
     )
     of_gears = (
@@ -47,6 +48,7 @@ def _figures(mesh):
         *("profile_shift", "pitch_half_angle", "root_land_angle"),
     )
     found = {name: getattr(mesh, name) for name in names}
+    found["motion"] = nominal_motion(mesh, *mesh_ends(mesh))
     return found | {name: jnp.stack([getattr(g, name) for g in mesh.gears]) for name in of_gears}
 
 

@@ -119,7 +119,7 @@ def vibrating(phase, shaking, speed):
     contacts = PAIR.contacts(phase)
     load = jnp.where(contacts.active, 3000.0, 0.0)
     point = dataclasses.replace(POINT, speed=speed)
-    rates = PAIR.motion[:, None] * speed + jnp.stack([jnp.zeros_like(shaking), shaking])
+    rates = DESIGN.motion[:, None] * speed + jnp.stack([jnp.zeros_like(shaking), shaking])
     given = {"load": load, "nominal_load": jnp.asarray(3000.0)}
     at = DESIGN.conditions(contacts, point, **given, rates=rates)
     slip = along(contacts.slip_arm, rates)
@@ -137,7 +137,7 @@ def test_a_vibration_asks_the_same_laws_with_its_own_rates():
     sliding, slip, _, usual, active = vibrating(phase, still, jnp.asarray(300.0))
     np.testing.assert_allclose(sliding, slip, rtol=1e-13, atol=1e-14)
     # Twice the speed is a vibration that adds the nominal rate once more, for laws of one contact.
-    faster = PAIR.motion[1] * 150.0 + still
+    faster = DESIGN.motion[1] * 150.0 + still
     _, _, own, _, _ = vibrating(phase, faster, jnp.asarray(150.0))
     _, _, expected, _, _ = vibrating(phase, still, jnp.asarray(150.0))
     np.testing.assert_allclose(own, expected, rtol=1e-13)  # gear 1 turns as before

@@ -176,7 +176,7 @@ def test_heat_modulus_and_friction_are_in_balance(warm):
     found = heat(warm.design, warm.operation, warm.models[0])
     figures = {name: float(value) for name, value in found.items()}
     cool = surrounded(warm.solids, warm.case.operation.temperature)
-    again = heated(warm.case, warm.design.mesh, cool, figures)
+    again = heated(warm.case, warm.design, cool, figures)
     for ours, theirs in zip(warm.solids, again, strict=True):
         np.testing.assert_allclose(ours.temperature, theirs.temperature, rtol=1e-12)
         np.testing.assert_allclose(ours.solid.young, theirs.solid.young, rtol=1e-11)

@@ -21,7 +21,7 @@ from pitchpoint.duty_cycle.history import load_steps
 from pitchpoint.efficiency import train_summary
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case
-from pitchpoint.views.sections.train import TRAIN
+from pitchpoint.views.registry import TRAIN
 from pitchpoint.views.train_picture import train_pictures
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -1,7 +1,7 @@
 """All sections of the report and the screen; those of parts that few results have are loaded for them."""
 
 from pitchpoint.registry import Registry
-from pitchpoint.views.section import Section, of_part
+from pitchpoint.views.section import Section, of_part, of_trains, without_trains
 from pitchpoint.views.sections.answer import ANSWER
 from pitchpoint.views.sections.arc import ARC
 from pitchpoint.views.sections.beside import BESIDE
@@ -22,7 +22,6 @@ from pitchpoint.views.sections.stages import STAGES
 from pitchpoint.views.sections.strength import STRENGTH
 from pitchpoint.views.sections.studies import STUDIES
 from pitchpoint.views.sections.teeth import TEETH
-from pitchpoint.views.sections.train import TRAIN
 from pitchpoint.views.sections.vibration import VIBRATION
 
 __all__ = ["SECTIONS", "in_order", "register_section"]
@@ -152,6 +151,15 @@ PLANET_SHARING = Section(
     blocks="pitchpoint.views.sections.planet_sharing:sharing_blocks",
     answer=of_part("planet_sharing", "pitchpoint.views.sections.planet_sharing:sharing_facts"),
     screen=of_part("planet_sharing", "pitchpoint.views.sections.planet_sharing:sharing_printed"),
+)
+TRAIN = Section(
+    name="train",
+    title="Motion of the set",
+    short="Motion of the set",
+    order=40.0,
+    blocks="pitchpoint.views.sections.train:train_blocks",
+    lacks=without_trains,
+    screen=of_trains("pitchpoint.views.sections.train:train_printed"),
 )
 TRAIN_PERIOD = Section(
     name="train_period",

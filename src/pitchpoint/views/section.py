@@ -43,6 +43,7 @@ __all__ = [
     "naming",
     "of_meshes",
     "of_part",
+    "of_trains",
     "panels",
     "reason",
     "said",
@@ -50,6 +51,7 @@ __all__ = [
     "tabbed",
     "told_of_variants",
     "turned",
+    "without_trains",
 ]
 
 Made = TypeVar("Made")
@@ -753,6 +755,21 @@ def of_part(part: str, place: str) -> Callable[..., Any]:
         return code_at(place)(outcome, *law) if part in outcome.parts else ()
 
     return told
+
+
+def of_trains(place: str) -> Callable[..., Any]:
+    """What a section says of an outcome with sets whose meshes turn together, likewise; see `of_part`."""
+
+    def told(outcome: Outcome) -> Any:
+        return code_at(place)(outcome) if outcome.manifest.get("trains") else ()
+
+    return told
+
+
+def without_trains(page: Page) -> str | None:
+    """None where an outcome has such a set; nobody asks for the motion of others."""
+    there = any(outcome.manifest.get("trains") for outcome in page.outcomes.values())
+    return None if there else ""
 
 
 def reason(page: Page, *parts: str) -> str:

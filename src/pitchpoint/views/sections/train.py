@@ -6,10 +6,10 @@ from typing import Any
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Section, Table
+from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Table
 from pitchpoint.views.train_picture import train_pictures
 
-__all__ = ["TRAIN"]
+__all__ = ["train_blocks", "train_printed"]
 
 Record = Mapping[str, Any]
 
@@ -29,7 +29,7 @@ _NOTE = (
 )
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def train_blocks(page: Page) -> Iterator[Block]:
     """Blocks of the section."""
     for variant, outcome in page.outcomes.items():
         for number, train in enumerate(outcome.manifest.get("trains", ())):
@@ -48,7 +48,7 @@ def _blocks(page: Page) -> Iterator[Block]:
             yield Paragraph(_NOTE, "note")
 
 
-def _printed(outcome: Outcome) -> Iterator[Printed]:
+def train_printed(outcome: Outcome) -> Iterator[Printed]:
     """What the screen shows."""
     for train in outcome.manifest.get("trains", ()):
         of_stage = f"Stage {train['stage']}: " if train["stage"] else ""
@@ -104,19 +104,3 @@ def _meshes(train: Record) -> list[tuple[str, ...]]:
             )
         )
     return rows
-
-
-def _lacks(page: Page) -> str | None:
-    there = any(outcome.manifest.get("trains") for outcome in page.outcomes.values())
-    return None if there else ""
-
-
-TRAIN = Section(
-    name="train",
-    title="Motion of the set",
-    short="Motion of the set",
-    order=40.0,
-    blocks=_blocks,
-    lacks=_lacks,
-    screen=_printed,
-)
