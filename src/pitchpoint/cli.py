@@ -951,7 +951,9 @@ def new(
     ] = None,
     count: Annotated[
         int | None,
-        typer.Option(help="With --ratio: at most so many sets as variants of the file, the best first."),
+        typer.Option(
+            help="With --ratio: at most so many sets as variants of the file, the best first."
+        ),
     ] = None,
     output: Annotated[
         Path | None,
