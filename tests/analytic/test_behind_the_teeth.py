@@ -144,7 +144,10 @@ def test_parts_sum_up_to_the_wind_up(given):
     drive = build(**given)
     found, contacts = at(drive, 40.0)
     several = jax.tree.map(lambda x: np.asarray(x)[None], found)
-    parts = {k: v[0] for k, v in body_parts(drive, SOLIDS, contacts, several).items()}
+    parts = {
+        k: v[0]
+        for k, v in body_parts(drive, mesh_ends(drive)[1], SOLIDS, contacts, several).items()
+    }
     every = [found.of_teeth, found.of_gaps, *parts.values()]
     np.testing.assert_allclose(sum(every), found.wind_up, rtol=1e-9)
     assert min(float(np.min(part)) for part in every) >= 0.0
@@ -180,7 +183,8 @@ def test_derivatives_go_through_all_that_yields():
         balls = replace(balls, stiffness=stiffness, bending=bending)
         series = replace(drive.series, bottom=by[3] * drive.series.bottom)
         other = replace(drive, rim=rim, bearing=balls, series=series)
-        found = wind_up(other, SOLIDS, TERMS, jnp.full(3, 40.0), jnp.asarray(PHASES), contacts)
+        given = SOLIDS, TERMS, jnp.full(3, 40.0), jnp.asarray(PHASES), contacts
+        found = wind_up(other, mesh_ends(drive)[1], *given)
         return jnp.mean(found.wind_up)
 
     value, slopes = turned(jnp.ones(4))
