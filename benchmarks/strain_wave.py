@@ -109,8 +109,8 @@ def given(built: Built) -> rival.Drive:
 
 @eqx.filter_jit
 def _compliance(built_in: Any, contacts: Any, terms: Any, torque: Any) -> Any:
-    mesh, solids = built_in
-    yields = compliance(mesh, contacts, solids, terms, torque)
+    mesh, loaded, solids = built_in
+    yields = compliance(mesh, loaded, contacts, solids, terms, torque)
     teeth = yields.of_teeth(contacts)
     lanes = teeth.reshape(-1, *teeth.shape[2:])
     count = lanes.shape[0]
@@ -170,7 +170,7 @@ def theirs(
     drive = given(built)
     _, speeds, degrees = map_axes(built)
     nu = np.asarray(built.design.lubricant.kinematic_viscosity(degrees))
-    tree = built.design.mesh, built.design.solids
+    tree = built.design.mesh, built.design.loaded, built.design.solids
     weight = np.asarray(known.weight)
     once, found = timed(lambda: rival.geometry(drive, np.asarray(known.phase)))
     same = package_geometry(built, known)

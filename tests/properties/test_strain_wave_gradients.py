@@ -65,7 +65,15 @@ def figures_and_rates(values, direction, mesh, choice):
         given, laws = design(values, mesh), models(choice)
         run = cycle(given, OPERATION, laws, nodes=3)
         load = jnp.full_like(run.phase, OPERATION.load)
-        at = wind_up(given.mesh, given.solids, laws.compliance, load, run.phase, run.state.contacts)
+        at = wind_up(
+            given.mesh,
+            given.loaded,
+            given.solids,
+            laws.compliance,
+            load,
+            run.phase,
+            run.state.contacts,
+        )
         (first, later, _), (near, far, _) = at.stiffness, at.wind_up
         return jnp.log(jnp.stack([run.mean_efficiency, first, near, later, far]))
 
