@@ -137,14 +137,21 @@ def _of_figure(
     if not np.ptp(rows[:2]) > ROUNDING * np.abs(rows[:2]).max():
         names = ("first_order", "total_order")
         return {name + end: nothing for name in names for end in ("", "_low", "_high")}
-    given = {"f_A": rows[0][None], "f_B": rows[1][None], "f_AB": rows[2:, None]}
-    found = parted(func=given, n=rows.shape[1], rng=np.random.default_rng(seed))
-    bounds = found.bootstrap(confidence_level=CONFIDENCE, n_resamples=RESAMPLES)
+    rng = np.random.default_rng(seed)
+    count = rows.shape[1]
+    picked = [np.arange(count), *rng.integers(count, size=(RESAMPLES, count))]
+    given = (rows[:, each] for each in picked)
+    every = [
+        parted(func={"f_A": one[0][None], "f_B": one[1][None], "f_AB": one[2:, None]}, n=count)
+        for one in given
+    ]
     made: dict[str, Any] = {}
     for name in ("first_order", "total_order"):
-        between = getattr(bounds, name).confidence_interval
-        ends = {"": getattr(found, name), "_low": between.low, "_high": between.high}
-        made |= {name + end: np.asarray(values).reshape(keys) for end, values in ends.items()}
+        found, *others = (np.reshape(getattr(one, name), keys) for one in every)
+        low, high = np.quantile(
+            others, [(1.0 - CONFIDENCE) / 2.0, (1.0 + CONFIDENCE) / 2.0], axis=0
+        )
+        made |= {name: found, f"{name}_low": low, f"{name}_high": high}
     return made
 
 
