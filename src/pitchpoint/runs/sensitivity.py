@@ -13,7 +13,7 @@ from pitchpoint.input.quantities import shown
 from pitchpoint.registry import nearest
 from pitchpoint.runs.case import CaseLike
 from pitchpoint.runs.run import FrictionChoice, Progress
-from pitchpoint.runs.study import drawn_values, study
+from pitchpoint.runs.study import drawn_values, sobol_shares, study
 
 __all__ = ["indices_of", "sobol_indices"]
 
@@ -25,8 +25,6 @@ CONFIDENCE = 0.95
 
 RESAMPLES = 200
 """Resampled indices from which the bounds come."""
-
-Rows = Float[np.ndarray, "figure design"]
 
 
 def sobol_indices(
@@ -63,11 +61,6 @@ def sobol_indices(
 
     From Sobol (2001) by the estimators of Saltelli et al. (2010), on a scrambled Sobol' sequence.
     """
-    if n < FEWEST or n & (n - 1):
-        raise InputError(
-            f"{n} designs were asked for; a Sobol' sequence is even with a power of two of them, "
-            f"{FEWEST} at least"
-        )
     shares = _shares(len(over), n, seed)
     values = drawn_values(case, over, shares.reshape(shares.shape[0] * n, len(over)), variant)
     found = study(
@@ -161,10 +154,7 @@ ROUNDING = 1e-9
 
 def _shares(keys: int, n: int, seed: int) -> Float[np.ndarray, "sample design key"]:
     """Both samples, and the first one with each key in turn from the second, as shares of the ranges."""
-    from scipy.stats import qmc
-
-    both = qmc.Sobol(2 * keys, rng=np.random.default_rng(seed)).random(n)
-    first, second = np.split(both, 2, axis=1)
+    first, second = np.split(sobol_shares(n, 2 * keys, seed, FEWEST), 2, axis=1)
     swapped = [np.where(np.arange(keys) == key, second, first) for key in range(keys)]
     return np.stack([first, second, *swapped])
 

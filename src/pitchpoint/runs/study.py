@@ -9,6 +9,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
+from jaxtyping import Float
 
 from pitchpoint import units as units_of_numbers
 from pitchpoint._jax import double_precision
@@ -26,7 +27,7 @@ from pitchpoint.runs.case import Case, CaseLike, as_case, written
 from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import FrictionChoice, Progress, compute_alone, own_law
 
-__all__ = ["drawn_values", "study"]
+__all__ = ["drawn_values", "sobol_shares", "study"]
 
 How = Literal["grid", "zip", "latin_hypercube", "sobol"]
 
@@ -238,17 +239,34 @@ def _latin_hypercube(axes: _Axes, n: int | None, seed: int) -> _Layout:
     return {"design": n}, [axis.drawn(shares[:, k]) for k, axis in enumerate(axes.values())]
 
 
-def _sobol(axes: _Axes, n: int | None, seed: int) -> _Layout:
+def sobol_shares(
+    n: int | None, keys: int, seed: int, least: int = 1
+) -> Float[np.ndarray, "design key"]:
+    """Shares of ranges by a scrambled Sobol' sequence.
+
+    Args:
+        n: of designs, a power of two.
+        keys: that change.
+        seed: the same one draws the same designs.
+        least: of designs.
+
+    Raises:
+        InputError: n is no power of two, less than the least, or more than a study has.
+    """
     from scipy.stats import qmc
 
-    if n is None or n < 1 or n & (n - 1):
-        raise InputError(
-            f"{'no number' if n is None else n} of designs was given; a Sobol' sequence is even with a power "
-            "of two of them"
-        )
+    if n is None or n < least or n & (n - 1):
+        told = "no number of designs was given" if n is None else f"{n} designs were asked for"
+        most = f", {least} at least" if least > 1 else ""
+        raise InputError(f"{told}; a Sobol' sequence is even with a power of two of them{most}")
     _demand_count(n)
-    shares = qmc.Sobol(d=len(axes), rng=np.random.default_rng(seed)).random(n)
-    return {"design": n}, [axis.drawn(shares[:, k]) for k, axis in enumerate(axes.values())]
+    return np.asarray(qmc.Sobol(d=keys, rng=np.random.default_rng(seed)).random(n))
+
+
+def _sobol(axes: _Axes, n: int | None, seed: int) -> _Layout:
+    shares = sobol_shares(n, len(axes), seed)
+    columns = [axis.drawn(shares[:, k]) for k, axis in enumerate(axes.values())]
+    return {"design": len(shares)}, columns
 
 
 _LAID_OUT: dict[How, Callable[[_Axes, int | None, int], _Layout]] = {
