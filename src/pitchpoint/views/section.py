@@ -750,26 +750,28 @@ def of_part(part: str, place: str) -> Callable[..., Any]:
         part: of a result.
         place: of the function, see `registry.code_at`.
     """
-
-    def told(outcome: Outcome, *law: str) -> Any:
-        return code_at(place)(outcome, *law) if part in outcome.parts else ()
-
-    return told
+    return _of_some(lambda outcome: part in outcome.parts, place)
 
 
 def of_trains(place: str) -> Callable[..., Any]:
     """What a section says of an outcome with sets whose meshes turn together, likewise; see `of_part`."""
+    return _of_some(_has_trains, place)
 
-    def told(outcome: Outcome) -> Any:
-        return code_at(place)(outcome) if outcome.manifest.get("trains") else ()
+
+def _of_some(there: Callable[[Outcome], bool], place: str) -> Callable[..., Any]:
+    def told(outcome: Outcome, *law: str) -> Any:
+        return code_at(place)(outcome, *law) if there(outcome) else ()
 
     return told
 
 
+def _has_trains(outcome: Outcome) -> bool:
+    return bool(outcome.manifest.get("trains"))
+
+
 def without_trains(page: Page) -> str | None:
     """None where an outcome has such a set; nobody asks for the motion of others."""
-    there = any(outcome.manifest.get("trains") for outcome in page.outcomes.values())
-    return None if there else ""
+    return None if any(map(_has_trains, page.outcomes.values())) else ""
 
 
 def reason(page: Page, *parts: str) -> str:
