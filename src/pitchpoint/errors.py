@@ -11,6 +11,7 @@ __all__ = [
     "CollectedInputError",
     "Complaints",
     "ConvergenceError",
+    "Cure",
     "InputError",
     "PitchpointError",
     "shorten",
@@ -22,6 +23,9 @@ LONGEST_PLACE = 240
 
 RUNS_WITH = "; it runs with "
 """What stands between a refusal and changes that mend it, see `InputError.cures`."""
+
+Cure = dict[str, Any]
+"""A change that mends an input: values of a case file by dotted key."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -73,7 +77,7 @@ class InputError(PitchpointError, ValueError):
         self.key = key
         self.value = value
         self.allowed = tuple(allowed)
-        self.cures: tuple[dict[str, Any], ...] = ()
+        self.cures: tuple[Cure, ...] = ()
 
     def __str__(self) -> str:
         where = (shorten(part, LONGEST_PLACE) for part in (self.file, self.key) if part)

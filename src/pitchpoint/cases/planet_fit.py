@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from math import pi
 from typing import Any
 
@@ -10,13 +9,16 @@ import numpy as np
 from jaxtyping import Int
 
 from pitchpoint.cases.schema import DriveCase, TrainTable
-from pitchpoint.drive.assembly import equal_angles, nearest_places, places_around
-from pitchpoint.errors import InputError
+from pitchpoint.drive.assembly import (
+    equal_angles,
+    fit_at_equal_angles,
+    nearest_places,
+    places_around,
+)
+from pitchpoint.errors import Cure, InputError
+from pitchpoint.gears.cylindrical.cures import change_words
 
 __all__ = ["with_fitting"]
-
-Cure = dict[str, Any]
-"""Values of a case file by dotted key."""
 
 Attempt = Callable[[Cure], float]
 """Ratio of the train after a change; InputError where it cannot run."""
@@ -49,22 +51,13 @@ def with_fitting(error: InputError, case: DriveCase, ratio: float, attempt: Atte
     if found is not None:
         teeth, reached = found
         cures.append(teeth)
-        told.append(f"{_spelt(teeth)} (ratio {reached:.6g}, here {ratio:.6g})")
+        told.append(f"{change_words(teeth)} (ratio {reached:.6g}, here {ratio:.6g})")
     if angles := _nearest_angles(case, attempt):
         cures.append(angles)
-        told.append(_spelt(angles))
+        told.append(change_words(angles))
     longer = error.followed_by(f"it runs with {', or with '.join(told)}" if told else "")
     longer.cures = tuple(cures)
     return longer
-
-
-def _spelt(change: Cure) -> str:
-    def value(one: Any) -> str:
-        return f'"{one}"' if isinstance(one, str) else f"{one:g}"
-
-    return " and ".join(
-        f"{key} = [{', '.join(map(value, every))}]" for key, every in change.items()
-    )
 
 
 def _first(changes: Iterator[Cure], attempt: Attempt) -> tuple[Cure, float] | None:
@@ -187,10 +180,7 @@ def _nearest_teeth(case: DriveCase, ratio: float) -> Iterator[Cure]:
 
 def _fits(meshes: Sequence[tuple[np.ndarray, np.ndarray]], planets: int) -> np.ndarray:
     """True where planets fit in at equal angles, and beside each other, with rings around them."""
-    fits = np.ones(meshes[0][0].shape, bool)
-    for (first, mate), (second, other) in combinations(meshes, 2):
-        step = planets * np.maximum(np.gcd(first, second), 1)
-        fits &= (second * mate - first * other) % step == 0
+    fits = fit_at_equal_angles(meshes, planets)
     for planet, mate in meshes:
         fits &= (planet >= 5) & (np.where(mate < 0, -mate - planet, mate) >= 5)
         if planets > 1:

@@ -21,7 +21,7 @@ from pitchpoint.cases.build import (
     without_bearing,
 )
 from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
-from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
+from pitchpoint.cases.document import STAGES, Document, Provenance, Tree, setting
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import (
     OF_SET,
@@ -254,13 +254,9 @@ def _with_fitting(
 def _changed(document: Document, change: Tree) -> Document:
     """A document with other values; a planetary set has its meshes to be made anew."""
     of_set = (STAGES, "train") if is_planetary(document.tree) else ()
-    tree = copy.deepcopy({key: one for key, one in document.tree.items() if key not in of_set})
+    tree = {key: one for key, one in document.tree.items() if key not in of_set}
     for key, value in change.items():
-        *above, last = key.split(".")
-        table = tree
-        for name in above:
-            table = table[name]
-        table[last] = value
+        tree = setting(tree, key, value)
     return replace(document, tree=tree)
 
 

@@ -5,20 +5,30 @@ from itertools import combinations
 from math import floor, gcd, pi
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float, Int
 
 from pitchpoint._jax import array
 from pitchpoint.drive.kinematics import Link
 from pitchpoint.errors import InputError
 from pitchpoint.gears.pairs import planet_gears
 
-__all__ = ["check_neighbours", "equal_angles", "nearest_places", "places_around", "planet_phases"]
+__all__ = [
+    "check_neighbours",
+    "equal_angles",
+    "fit_at_equal_angles",
+    "nearest_places",
+    "places_around",
+    "planet_phases",
+]
 
 FITS = 1e-6
 """Part of a pitch by which a planet may miss a tooth space: that of rounding, not of play."""
 
 Body = tuple[str, int]
 """A body by name and number."""
+
+Counts = Int[np.ndarray, "..."]
+"""Numbers of teeth."""
 
 Teeth = tuple[float, float]
 """Angle of the middle of a tooth against the carrier, and pitch with the sense of its turning [rad]."""
@@ -49,6 +59,29 @@ def places_around(meshes: Sequence[tuple[int, int]]) -> int:
         for (first, mate), (second, other) in combinations(meshes, 2)
     ]
     return gcd(*steps)
+
+
+def fit_at_equal_angles(
+    meshes: Sequence[tuple[Counts, Counts]], planets: int
+) -> Bool[np.ndarray, "..."]:
+    """True for numbers of teeth with which planets fit in at equal angles; the rule of `places_around`.
+
+    Args:
+        meshes: teeth of the gear of the planets, and of its central mate, negative for a ring; arrays of one
+            shape, or that broadcast.
+        planets: their number.
+
+    Example:
+        >>> import numpy as np
+        >>> planet = np.array([30, 31])
+        >>> fit_at_equal_angles([(planet, np.array(24)), (planet, -(24 + 2 * planet))], 4).tolist()
+        [True, False]
+    """
+    fits = np.ones((), bool)
+    for (first, mate), (second, other) in combinations(meshes, 2):
+        step = planets * np.maximum(np.gcd(first, second), 1)
+        fits = fits & ((second * mate - first * other) % step == 0)
+    return fits
 
 
 def nearest_places(angles: Float[np.ndarray, " copy"], places: int) -> Float[np.ndarray, " copy"]:

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, m
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from pitchpoint.errors import RUNS_WITH, InputError
+from pitchpoint.errors import RUNS_WITH, Cure, InputError
 from pitchpoint.gears.cylindrical.inspection import (
     Toothing,
     distance_without_backlash,
@@ -638,10 +638,6 @@ class PlanetaryGears(Table):
         if self.centre_distance is not None or first:
             found["centre_distance"] = SIValue(self.distance)
         return found
-
-
-Cure = dict[str, Any]
-"""Values of a case file by dotted key."""
 
 
 def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:

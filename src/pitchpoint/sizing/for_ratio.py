@@ -14,6 +14,7 @@ from pitchpoint._jax import double_precision
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.template import sample_tree, template
 from pitchpoint.cases.trains import USUAL_BEARING
+from pitchpoint.drive.assembly import fit_at_equal_angles
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.planetary import PLANETARY, PLANETS
@@ -356,7 +357,7 @@ def stepped_teeth(ratio: float, planets: int) -> Iterator[tuple[int, int, int, i
     ring = sun + first + second
     met = 1.0 + first * ring / (sun * second)
     fits = (first > second) & (ring <= LARGEST_RING) & (np.abs(met / ratio - 1.0) < 0.03)
-    fits &= (sun * second + ring * first) % (planets * np.gcd(first, second)) == 0
+    fits &= fit_at_equal_angles([(first, sun), (second, -ring)], planets)
     if planets > 1:
         fits &= (sun + first) * sin(pi / planets) >= first + _BETWEEN_PLANETS
     found = [(sun.flat[i], first.flat[j], second.flat[k]) for i, j, k in np.argwhere(fits).tolist()]

@@ -6,19 +6,16 @@ from itertools import product
 from math import ceil, nan, pi
 from typing import Any
 
-from pitchpoint.errors import RUNS_WITH, InputError
+from pitchpoint.errors import RUNS_WITH, Cure, InputError
 from pitchpoint.gears.cylindrical.checks import Remedy
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE, LEAST_TIP, CylindricalGears
 from pitchpoint.gears.table import ANGLE, DISTANCE, FILLET, RACK, SHIFT
 from pitchpoint.input.quantities import Quantity
 
-__all__ = ["cures", "told_with_cures"]
+__all__ = ["change_words", "cures", "told_with_cures"]
 
 MOST_CURES = 2
-
-Cure = dict[str, Any]
-"""Values by key of the gears table, as a case file has them."""
 
 Attempt = Callable[[CylindricalGears], CylindricalPair | None]
 
@@ -209,11 +206,17 @@ def told_with_cures(message: str, changes: Sequence[Cure]) -> str:
         >>> told_with_cures("too short", [{"addendum": [1.0, 0.872]}, {"pressure_angle": "25 deg"}])
         'too short; it runs with addendum = [1, 0.872], or with pressure_angle = "25 deg"'
     """
-    shown = (
-        " and ".join(f"{key} = {_shown(value)}" for key, value in change.items())
-        for change in changes
-    )
-    return RUNS_WITH.join(filter(None, (message, ", or with ".join(shown))))
+    return RUNS_WITH.join(filter(None, (message, ", or with ".join(map(change_words, changes)))))
+
+
+def change_words(change: Cure) -> str:
+    """A change as lines of a case file have it.
+
+    Example:
+        >>> change_words({"teeth": [24, 30], "planet_angles": ["0 deg", "120 deg"]})
+        'teeth = [24, 30] and planet_angles = ["0 deg", "120 deg"]'
+    """
+    return " and ".join(f"{key} = {_shown(value)}" for key, value in change.items())
 
 
 def _shown(value: Any) -> str:
