@@ -1,5 +1,7 @@
 """Quasi-static efficiency against closed forms: loss factor, identities, exponents, limits."""
 
+from functools import partial
+
 import equinox as eqx
 import numpy as np
 import pytest
@@ -141,12 +143,16 @@ def test_loss_factor_as_friction_vanishes(design, sharing, expected):
 
 
 def test_extremes_do_not_run_beyond_kinks():
-    phase, weight = (each.ravel() for each in nodes(jnp.zeros(1), 8))
-    values = jnp.maximum(phase - 0.55, 0.0)
+    phase, weight = jax.jit(lambda: [each.ravel() for each in nodes(jnp.zeros(1), 8)])()
+    values = np.maximum(np.asarray(phase) - 0.55, 0.0)
     unread = object.__new__(State)
-    assert Cycle(phase, weight, unread, 8).extremes(values)[0] < -1e-3
-    kinked = Cycle(phase, weight, unread, 8, smooth=False)
-    low, high = kinked.extremes(jnp.stack([values, -values]))
+
+    @partial(jax.jit, static_argnames="smooth")
+    def extremes(values, smooth):
+        return Cycle(phase, weight, unread, 8, smooth=smooth).extremes(values)
+
+    assert extremes(values, True)[0] < -1e-3
+    low, high = extremes(np.stack([values, -values]), False)
     np.testing.assert_array_equal(low, [0.0, -values.max()])
     np.testing.assert_array_equal(high, [values.max(), 0.0])
 

@@ -209,13 +209,15 @@ def test_grease_is_its_base_oil_in_a_computation():
 def test_an_oil_for_the_cold_goes_through_its_three_viscosities(name):
     record = lubricants.find(name)
     oil = record.build()
-    found = oil.kinematic_viscosity(jnp.array([233.15, 313.15, 373.15]))
+    viscosity = eqx.filter_jit(oil.kinematic_viscosity)
+    temperatures = np.concatenate(
+        [[233.15, 313.15, 373.15, 313.15 - 1e-9, 313.15 + 1e-9], np.linspace(233.15, 393.15, 33)]
+    )
+    found, beside, course = np.split(np.asarray(viscosity(temperatures)), [3, 5])
     known = [float(value) for value in (oil.nu_0, oil.nu_1, oil.nu_2)]
     np.testing.assert_allclose(found, known, rtol=1e-12)
     assert float(oil.T_min) == pytest.approx(233.15, rel=1e-14)
-    degrees = jnp.linspace(233.15, 393.15, 33)
-    assert np.all(np.diff(np.asarray(oil.kinematic_viscosity(degrees))) < 0.0)
-    beside = oil.kinematic_viscosity(jnp.array([313.15 - 1e-9, 313.15 + 1e-9]))
+    assert np.all(np.diff(course) < 0.0)
     assert float(beside[0]) == pytest.approx(float(beside[1]), rel=1e-9)
     alone = d341(T=233.15, nu_1=oil.nu_1, T_1=313.15, nu_2=oil.nu_2, T_2=373.15)
     assert 1.7 < float(alone) / known[0] < 2.3

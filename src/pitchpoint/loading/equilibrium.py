@@ -148,10 +148,12 @@ def equilibrium(
     steps.
 
     Example:
+        >>> import equinox as eqx
         >>> import jax.numpy as jnp
         >>> springs, gaps = jnp.full((2, 1), 1e-8), jnp.asarray([[0.0], [1e-6]])
         >>> all_touch = {"arm": jnp.ones((2, 1)), "active": jnp.ones((2, 1), bool)}
-        >>> found = equilibrium(springs, None, gap=gaps, load=jnp.asarray(300.0), **all_touch)
+        >>> compiled = eqx.filter_jit(equilibrium)
+        >>> found = compiled(springs, None, gap=gaps, load=jnp.asarray(300.0), **all_touch)
         >>> [round(float(force)) for force in found.force[:, 0]]
         [200, 100]
     """
