@@ -172,7 +172,7 @@ def toy(**changes) -> Analysis:
         compute=passed,
         joined=lambda built, parts: xr.concat(parts, "speed", combine_attrs="override"),
         main=("teeth_passed",),
-        variables={"teeth_passed": Variable("teeth that pass", "n z", "1/s")},
+        variables={"teeth_passed": Variable(long_name="teeth that pass", symbol="n z", unit="1/s")},
         **changes,
     )
 

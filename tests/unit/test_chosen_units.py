@@ -9,6 +9,7 @@ import pytest
 from pitchpoint import units
 from pitchpoint.errors import InputError
 from pitchpoint.results.chosen_units import choosable, shown_in, unit_choice, unit_in_use
+from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
 from pitchpoint.views.figures import display, short_axis
@@ -109,3 +110,25 @@ def test_a_choice_holds_within_its_block_and_thread_alone() -> None:
             raise ZeroDivisionError
         assert unit_in_use("torque", "N m") == "N cm"
     assert unit_in_use("torque", "N m") == "N m"
+
+
+@pytest.mark.parametrize(
+    ("unit", "shown", "kind"),
+    [
+        ("v_s", "m/s", "velocity"),  # the symbol
+        ("m/s", "v_s", "velocity"),
+        ("mm", "mm", "length"),
+        ("mm", "", "dimensionless"),
+        ("W", "kW", "dimensionless"),
+    ],
+)
+def test_a_variable_has_the_unit_of_its_kind(unit, shown, kind):
+    with pytest.raises(
+        ValueError, match=f"sliding: a quantity of kind '{kind}' has no unit '{unit}'"
+    ):
+        Variable(long_name="sliding", symbol="v_s", unit=unit, shown=shown, kind=kind)
+
+
+def test_names_of_a_variable_are_not_taken_by_their_order():
+    with pytest.raises(TypeError, match="positional"):
+        Variable("sliding velocity", "v_s", "m/s")

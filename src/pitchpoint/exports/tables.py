@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from pitchpoint.errors import InputError
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
@@ -100,8 +102,18 @@ def _described(data: xr.Dataset, name: str) -> Variable:
     try:
         return variable_of(data, name)
     except KeyError:  # of a publication, which describes its own in the data
-        own = data[name].attrs
-        return Variable(own.get("long_name", name.replace("_", " ")), "", own.get("units", "1"))
+        return _of_attributes(name, data[name].attrs)
+
+
+def _of_attributes(name: str, attributes: Mapping[str, Any]) -> Variable:
+    long_name, unit = (
+        attributes.get("long_name", name.replace("_", " ")),
+        attributes.get("units", "1"),
+    )
+    try:
+        return Variable(long_name=long_name, symbol="", unit=unit)
+    except ValueError:
+        raise InputError(f"{name} of the result is in {unit!r}, which is no unit of SI") from None
 
 
 def sheets(outcome: Outcome, *, si: bool = False) -> Iterator[Sheet]:

@@ -17,7 +17,15 @@ from pitchpoint.lubrication.ehl.patch.heat import TEMPERATURES
 from pitchpoint.lubrication.ehl.patch.transient import PatchMoment
 from pitchpoint.lubrication.ehl.solve import Ended, Films
 from pitchpoint.results.store import dataset, describe
-from pitchpoint.results.variable import Variable, deviation, length, percent, pressure
+from pitchpoint.results.variable import (
+    Variable,
+    deviation,
+    dimensionless,
+    length,
+    percent,
+    pressure,
+    time,
+)
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 
@@ -25,27 +33,23 @@ __all__ = ["film_dataset", "films_of_dataset", "march_dataset", "patch_dataset"]
 
 
 def _on_line(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "N/m")
+    return Variable(long_name=long_name, symbol=symbol, unit="N/m")
 
 
 def _force(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "N")
+    return Variable(long_name=long_name, symbol=symbol, unit="N")
 
 
 def _power(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "W/m")
+    return Variable(long_name=long_name, symbol=symbol, unit="W/m")
 
 
 def _rise(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "K")
+    return Variable(long_name=long_name, symbol=symbol, unit="K")
 
 
 def _flux(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "W/m2")
-
-
-def _number(long_name: str, symbol: str = "") -> Variable:
-    return Variable(long_name, symbol, "1")
+    return Variable(long_name=long_name, symbol=symbol, unit="W/m2")
 
 
 _FILM: Final = {
@@ -67,10 +71,14 @@ _FILM: Final = {
     "rolling": _on_line("rolling resistance of each surface", "F_r/l"),
     "shear_force": _on_line("shear of the oil on member 0", "F_s/l"),
     "boundary_force": _on_line("friction of asperities on member 0", "F_b/l"),
-    "friction": _number("friction coefficient of oil and asperities", "μ"),
-    "film_ratio": _number("smallest film over composite Rq", "Λ"),
-    "stiffness": Variable("stiffness of the film, by the mean film, for a length", "k/l", "N/m2"),
-    "damping": Variable("squeeze damping of the film, for a length", "c/l", "N s/m2"),
+    "friction": dimensionless("friction coefficient of oil and asperities", "μ"),
+    "film_ratio": dimensionless("smallest film over composite Rq", "Λ"),
+    "stiffness": Variable(
+        long_name="stiffness of the film, by the mean film, for a length", symbol="k/l", unit="N/m2"
+    ),
+    "damping": Variable(
+        long_name="squeeze damping of the film, for a length", symbol="c/l", unit="N s/m2"
+    ),
     "pumping_power": _power("heat of the flow under pressure", "P_p/l"),
     "half_width": length("half-width of the dry contact", "b"),
     "hertz_pressure": pressure("largest pressure of the dry contact", "p_H"),
@@ -88,19 +96,19 @@ _HEAT: Final = {
     "power_a": _power("heat into member 0", "P_0/l"),
     "power_b": _power("heat into member 1", "P_1/l"),
     "expansion_power": _power("work of the oil as it expands", "P_e/l"),
-    "peclet_a": _number("Peclet number of member 0", "Pe_0"),
-    "peclet_b": _number("Peclet number of member 1", "Pe_1"),
+    "peclet_a": dimensionless("Peclet number of member 0", "Pe_0"),
+    "peclet_b": dimensionless("Peclet number of member 1", "Pe_1"),
 }
 _ENDED: Final = {
-    "code": _number("status of the film"),
-    "reynolds": _number("defect of the balance of a cell, over Hertz's pressure"),
-    "load": _number("defect of the load over it"),
-    "gap": _number("defect of the gap over the smallest one"),
-    "iterations": _number("iterations of Newton's method"),
-    "grid": _number("estimated error of the film in the middle by the grid"),
-    "grid_minimum": _number("estimated error of the smallest film by the grid"),
-    "temperature": _number("defect of the temperature over the largest rise"),
-    "turns": _number("turns between pressure and temperature"),
+    "code": dimensionless("status of the film"),
+    "reynolds": dimensionless("defect of the balance of a cell, over Hertz's pressure"),
+    "load": dimensionless("defect of the load over it"),
+    "gap": dimensionless("defect of the gap over the smallest one"),
+    "iterations": dimensionless("iterations of Newton's method"),
+    "grid": dimensionless("estimated error of the film in the middle by the grid"),
+    "grid_minimum": dimensionless("estimated error of the smallest film by the grid"),
+    "temperature": dimensionless("defect of the temperature over the largest rise"),
+    "turns": dimensionless("turns between pressure and temperature"),
 }
 _PARTS: Final = {"": _FILM, "heat_": _HEAT, "ended_": _ENDED}
 """Variables of the film, of its heat and of how its solve ended, by the beginning of their names."""
@@ -134,30 +142,36 @@ _PATCH: Final = {
     "near_ends": pressure("largest pressure across, near the ends of the line", "p_e"),
     "shear_force": _force("shear of the oil on member 0", "F_s"),
     "boundary_force": _force("friction of asperities on member 0", "F_b"),
-    "friction_magnitude": _number("integral of the magnitude of the traction over the load", "μ_t"),
-    "boundary_magnitude": _number("its part by asperities", "μ_b"),
+    "friction_magnitude": dimensionless(
+        "integral of the magnitude of the traction over the load", "μ_t"
+    ),
+    "boundary_magnitude": dimensionless("its part by asperities", "μ_b"),
     "rolling": _force("rolling resistance of each surface", "F_r"),
-    "sliding_power": Variable("heat by sliding", "P_s", "W"),
-    "pumping_power": Variable("heat of the flow under pressure", "P_p", "W"),
+    "sliding_power": Variable(long_name="heat by sliding", symbol="P_s", unit="W"),
+    "pumping_power": Variable(long_name="heat of the flow under pressure", symbol="P_p", unit="W"),
     "separation": deviation("by which the bodies are further apart than without oil", "h_s"),
-    "stiffness": Variable("stiffness of the film, in series with the dry contact", "k", "N/m"),
-    "damping": Variable("squeeze damping of the film", "c", "N s/m"),
+    "stiffness": Variable(
+        long_name="stiffness of the film, in series with the dry contact", symbol="k", unit="N/m"
+    ),
+    "damping": Variable(long_name="squeeze damping of the film", symbol="c", unit="N s/m"),
 }
 _PATCH_HEAT: Final = {
     **{f"heat_{name}": one for name, one in _HEAT.items()},
-    "heat_power_a": Variable("heat into member 0", "P_0", "W"),
-    "heat_power_b": Variable("heat into member 1", "P_1", "W"),
-    "heat_expansion_power": Variable("work of the oil as it expands", "P_e", "W"),
+    "heat_power_a": Variable(long_name="heat into member 0", symbol="P_0", unit="W"),
+    "heat_power_b": Variable(long_name="heat into member 1", symbol="P_1", unit="W"),
+    "heat_expansion_power": Variable(
+        long_name="work of the oil as it expands", symbol="P_e", unit="W"
+    ),
 }
 _MARCH: Final = {
-    "time": Variable("time", "t", "s", "ms", "time"),
-    "time_steps": _number("steps of time since the time before"),
-    "newton_steps": _number("steps of Newton's method since the time before"),
+    "time": time("time", "t", shown="ms"),
+    "time_steps": dimensionless("steps of time since the time before"),
+    "newton_steps": dimensionless("steps of Newton's method since the time before"),
 }
 _OWN: Final = {
     f"{start}{name}": one for start, part in _PARTS.items() for name, one in part.items()
 }
-_OWN["domain"] = _number("first and last place, over the half-width", "x/b")
+_OWN["domain"] = dimensionless("first and last place, over the half-width", "x/b")
 
 
 def film_dataset(films: Films, dims: Sequence[str] | None = None) -> xr.Dataset:

@@ -1,5 +1,6 @@
 """What a quantity of a result is: its names, its unit, and how it is shown."""
 
+import re
 from collections.abc import Collection
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, overload
@@ -16,30 +17,45 @@ __all__ = [
     "Variable",
     "angle",
     "deviation",
+    "dimensionless",
     "energy",
     "force",
+    "frequency",
     "length",
+    "mass",
+    "moment_of_inertia",
     "percent",
     "power",
     "pressure",
+    "rotational_speed",
     "speed",
     "stiffness",
+    "temperature",
     "temperature_rise",
+    "time",
     "torque",
     "torsional_stiffness",
+    "viscosity",
 ]
+
+_BASE = "(m|kg|s|K|N|Pa|W|J|rad)[2-4]?"
+_SI = re.compile(f"(1|{_BASE}( {_BASE})*)(/{_BASE})?")
 
 End = Literal["driver", "loaded"]
 """One of the two members whose motion a drive passes on."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Variable:
     """A quantity of a result: long name, symbol, SI unit, and unit and kind for display.
 
     Attributes:
         end: whose motion it counts in, None where it has nothing to do with one.
         travel: the quantity where that member travels.
+
+    Raises:
+        ValueError: the unit is not in SI, is not that of the kind, or is shown in one of another kind: a
+            mistake of who registers it, which would be met only where a result is shown.
     """
 
     long_name: str
@@ -49,6 +65,17 @@ class Variable:
     kind: str = "dimensionless"
     end: End | None = None
     travel: "Variable | None" = None
+
+    def __post_init__(self) -> None:
+        if self.kind == "dimensionless":
+            fits = bool(_SI.fullmatch(self.unit)) and (self.unit == "1" or not self.shown)
+        else:
+            fits = self.unit == units.si_unit(self.kind) and self.usual in units.units_of(self.kind)
+        if not fits:
+            raise ValueError(
+                f"{self.long_name}: a quantity of kind {self.kind!r} has no unit {self.unit!r} shown in"
+                f" {self.usual!r}"
+            )
 
     @property
     def usual(self) -> str:
@@ -73,66 +100,112 @@ class Variable:
         return self.travel if self.travel is not None and self.end in travels else self
 
 
+def _of_kind(long_name: str, symbol: str, kind: str, shown: str) -> Variable:
+    return Variable(
+        long_name=long_name, symbol=symbol, unit=units.si_unit(kind), shown=shown, kind=kind
+    )
+
+
+def dimensionless(long_name: str, symbol: str = "") -> Variable:
+    """A number without a unit."""
+    return Variable(long_name=long_name, symbol=symbol, unit="1")
+
+
 def percent(long_name: str, symbol: str) -> Variable:
     """A share, shown in percent."""
-    return Variable(long_name, symbol, "1", "%")
+    return Variable(long_name=long_name, symbol=symbol, unit="1", shown="%")
 
 
-def torque(long_name: str, symbol: str) -> Variable:
-    """A torque [N m]."""
-    return Variable(long_name, symbol, "N m", "N m", "torque")
+def angle(long_name: str, symbol: str, shown: str = "deg") -> Variable:
+    """An angle [rad]."""
+    return _of_kind(long_name, symbol, "angle", shown)
 
 
-def stiffness(long_name: str, symbol: str) -> Variable:
-    """A stiffness along a line [N/m], shown in N/um."""
-    return Variable(long_name, symbol, "N/m", "N/um", "stiffness")
+def deviation(long_name: str, symbol: str, shown: str = "um") -> Variable:
+    """A small length [m]."""
+    return _of_kind(long_name, symbol, "length", shown)
 
 
-def torsional_stiffness(long_name: str, symbol: str) -> Variable:
-    """A stiffness against rotation [N m/rad], shown in kN m/rad."""
-    return Variable(long_name, symbol, "N m/rad", "kN m/rad", "torsional stiffness")
-
-
-def temperature_rise(long_name: str, symbol: str) -> Variable:
-    """A difference of temperatures [K]."""
-    return Variable(long_name, symbol, "K", "K", "temperature difference")
-
-
-def pressure(long_name: str, symbol: str) -> Variable:
-    """A pressure [Pa], shown in MPa."""
-    return Variable(long_name, symbol, "Pa", "MPa", "pressure")
-
-
-def deviation(long_name: str, symbol: str) -> Variable:
-    """A small length [m], shown in um."""
-    return Variable(long_name, symbol, "m", "um", "length")
-
-
-def length(long_name: str, symbol: str) -> Variable:
-    """A length [m], shown in mm."""
-    return Variable(long_name, symbol, "m", "mm", "length")
-
-
-def energy(long_name: str, symbol: str) -> Variable:
+def energy(long_name: str, symbol: str, shown: str = "J") -> Variable:
     """An energy or a work [J]."""
-    return Variable(long_name, symbol, "J", "J", "energy")
+    return _of_kind(long_name, symbol, "energy", shown)
 
 
-def power(long_name: str, symbol: str) -> Variable:
-    """A power [W]."""
-    return Variable(long_name, symbol, "W", "W", "power")
-
-
-def force(long_name: str, symbol: str) -> Variable:
+def force(long_name: str, symbol: str, shown: str = "N") -> Variable:
     """A force [N]."""
-    return Variable(long_name, symbol, "N", "N", "force")
+    return _of_kind(long_name, symbol, "force", shown)
 
 
-def angle(long_name: str, symbol: str) -> Variable:
-    """An angle [rad], shown in degrees."""
-    return Variable(long_name, symbol, "rad", "deg", "angle")
+def frequency(long_name: str, symbol: str, shown: str = "Hz") -> Variable:
+    """A frequency [1/s]."""
+    return _of_kind(long_name, symbol, "frequency", shown)
 
 
-def speed(long_name: str, symbol: str) -> Variable:
+def length(long_name: str, symbol: str, shown: str = "mm") -> Variable:
+    """A length [m]."""
+    return _of_kind(long_name, symbol, "length", shown)
+
+
+def mass(long_name: str, symbol: str, shown: str = "kg") -> Variable:
+    """A mass [kg]."""
+    return _of_kind(long_name, symbol, "mass", shown)
+
+
+def moment_of_inertia(long_name: str, symbol: str, shown: str = "kg cm2") -> Variable:
+    """A moment of inertia [kg m2]."""
+    return _of_kind(long_name, symbol, "moment of inertia", shown)
+
+
+def power(long_name: str, symbol: str, shown: str = "W") -> Variable:
+    """A power [W]."""
+    return _of_kind(long_name, symbol, "power", shown)
+
+
+def pressure(long_name: str, symbol: str, shown: str = "MPa") -> Variable:
+    """A pressure [Pa]."""
+    return _of_kind(long_name, symbol, "pressure", shown)
+
+
+def rotational_speed(long_name: str, symbol: str, shown: str = "rpm") -> Variable:
+    """A rotational speed [rad/s]."""
+    return _of_kind(long_name, symbol, "rotational speed", shown)
+
+
+def speed(long_name: str, symbol: str, shown: str = "m/s") -> Variable:
     """A speed [m/s]."""
-    return Variable(long_name, symbol, "m/s", "m/s", "velocity")
+    return _of_kind(long_name, symbol, "velocity", shown)
+
+
+def stiffness(long_name: str, symbol: str, shown: str = "N/um") -> Variable:
+    """A stiffness along a line [N/m]."""
+    return _of_kind(long_name, symbol, "stiffness", shown)
+
+
+def temperature(long_name: str, symbol: str, shown: str = "degC") -> Variable:
+    """A temperature [K]."""
+    return _of_kind(long_name, symbol, "temperature", shown)
+
+
+def temperature_rise(long_name: str, symbol: str, shown: str = "K") -> Variable:
+    """A difference of temperatures [K]."""
+    return _of_kind(long_name, symbol, "temperature difference", shown)
+
+
+def time(long_name: str, symbol: str, shown: str = "s") -> Variable:
+    """A time [s]."""
+    return _of_kind(long_name, symbol, "time", shown)
+
+
+def torque(long_name: str, symbol: str, shown: str = "N m") -> Variable:
+    """A torque [N m]."""
+    return _of_kind(long_name, symbol, "torque", shown)
+
+
+def torsional_stiffness(long_name: str, symbol: str, shown: str = "kN m/rad") -> Variable:
+    """A stiffness against rotation [N m/rad]."""
+    return _of_kind(long_name, symbol, "torsional stiffness", shown)
+
+
+def viscosity(long_name: str, symbol: str, shown: str = "mPa s") -> Variable:
+    """A dynamic viscosity [Pa s]."""
+    return _of_kind(long_name, symbol, "dynamic viscosity", shown)

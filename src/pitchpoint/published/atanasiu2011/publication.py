@@ -4,17 +4,15 @@ from dataclasses import replace
 
 from pitchpoint.published.atanasiu2011.table import PairInMotion
 from pitchpoint.published.publication import Beside, Curves, Point, Publication, Read
-from pitchpoint.results.variable import Variable, deviation, force, percent, stiffness
+from pitchpoint.results.variable import deviation, dimensionless, force, mass, percent, stiffness
 
 __all__ = ["PUBLICATION"]
 
 _VARIABLES = {
-    "printed_undercut_limit_1": Variable(
-        "smallest profile shift of gear 1, formula as printed", "x_min1", "1"
+    "printed_undercut_limit_1": dimensionless(
+        "smallest profile shift of gear 1, formula as printed", "x_min1"
     ),
-    "printed_equivalent_mass": Variable(
-        "equivalent mass, formula as printed", "m_e", "kg", "g", "mass"
-    ),
+    "printed_equivalent_mass": mass("equivalent mass, formula as printed", "m_e", shown="g"),
 }
 
 _PROCEDURES = {
@@ -32,8 +30,8 @@ _NUMBERS = {
     "other_error_range": deviation(
         "variation of the transmission error at the second torque", "Δδ_b"
     ),
-    "pair_largest_factor": Variable("largest dynamic factor of a pair of teeth", "c_d", "1"),
-    "pair_status": Variable("status of the vibration", "", "1"),
+    "pair_largest_factor": dimensionless("largest dynamic factor of a pair of teeth", "c_d"),
+    "pair_status": dimensionless("status of the vibration"),
 }
 
 
@@ -43,7 +41,7 @@ def _of_procedures(name: str) -> tuple[str, ...]:
 
 _IN_TURN = {
     "stiffness": stiffness("stiffness of a pair of teeth", "k_i"),
-    "factor": Variable("dynamic factor of a pair of teeth", "c_d", "1"),
+    "factor": dimensionless("dynamic factor of a pair of teeth", "c_d"),
     "load": force("dynamic load of a pair of teeth", "F_d"),
 }
 """Courses of the pair itself and of the two that follow it."""
@@ -140,7 +138,7 @@ PUBLICATION = Publication(
     readings=("pitchpoint.published.atanasiu2011.printed:readings", _in_motion),
     variables={
         **_VARIABLES,
-        "pair_time": Variable("time since the pair entered over the meshing time", "t/t_z", "1"),
+        "pair_time": dimensionless("time since the pair entered over the meshing time", "t/t_z"),
         **{
             f"line_stiffness_difference_{name}": percent(
                 f"largest difference of the stiffness by both procedures over its mean, {words}",

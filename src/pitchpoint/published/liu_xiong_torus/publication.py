@@ -8,10 +8,14 @@ from pitchpoint.results.variable import (
     Variable,
     angle,
     deviation,
+    dimensionless,
     force,
+    frequency,
     length,
     percent,
     power,
+    pressure,
+    rotational_speed,
     stiffness,
 )
 
@@ -22,15 +26,15 @@ PAIRS = ("torus", "standard")
 
 
 def _pressure(long_name: str) -> Variable:
-    return Variable(long_name, "p_H", "Pa", "GPa", "pressure")
+    return pressure(long_name, "p_H", shown="GPa")
 
 
 def _plain(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "1")
+    return dimensionless(long_name, symbol)
 
 
 def _tilt(long_name: str) -> Variable:
-    return Variable(long_name, "γ", "rad", "mrad", "angle")
+    return angle(long_name, "γ", shown="mrad")
 
 
 _GEOMETRY = {
@@ -43,8 +47,8 @@ _GEOMETRY = {
     "pitch_point_passed": _plain(
         "part of a mesh cycle at which a pair passes the pitch point", "t_p/t_c"
     ),
-    "contact_roll": Variable("roll of the pinion in contact", "φ", "rad", "deg", "angle"),
-    "mesh_rate": Variable("mesh frequency", "1/t_c", "1/s", "Hz", "frequency"),
+    "contact_roll": angle("roll of the pinion in contact", "φ"),
+    "mesh_rate": frequency("mesh frequency", "1/t_c"),
     "static_force": force("normal force without friction", "F_n"),
     "quadratic_place": length("place of the contact across the face, parabola", "z"),
     "quadratic_approach": deviation("approach by misalignment, parabola", "δ"),
@@ -95,12 +99,8 @@ _OF_MOTION = {
     "friction_heat": power("mean loss by sliding", "P_v"),
     "energy_imbalance": percent("energy that the printed signs create, of the input", "ΔE/E"),
     "mean_force": force("mean normal force over whole mesh cycles", "F_n"),
-    "mean_gear_speed": Variable(
-        "mean speed of the gear", "ω_g", "rad/s", "rad/s", "rotational speed"
-    ),
-    "force_peak": Variable(
-        "frequency of the highest line of the normal force", "f", "1/s", "Hz", "frequency"
-    ),
+    "mean_gear_speed": rotational_speed("mean speed of the gear", "ω_g", shown="rad/s"),
+    "force_peak": frequency("frequency of the highest line of the normal force", "f"),
     "highest_line": force("highest line of the normal force", "F_n"),
 }
 """Numbers of the motion by the printed equations, of one pair."""
@@ -133,7 +133,7 @@ _PLACES = {
 
 _COURSES = {
     "error": deviation("dynamic transmission error", "ε_d"),
-    "gear_speed": Variable("speed of the gear", "ω_g", "rad/s", "rad/s", "rotational speed"),
+    "gear_speed": rotational_speed("speed of the gear", "ω_g", shown="rad/s"),
     "spectrum": force("amplitude of the normal force", "F_n"),
     "force_both": force("normal force of both pairs of teeth", "F_n"),
     **{f"force_{pair}": force(f"normal force of pair {pair}", "F_n") for pair in (0, 1)},

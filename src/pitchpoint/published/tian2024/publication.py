@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from pitchpoint.published.publication import Beside, Curves, Point, Publication, Read
 from pitchpoint.published.tian2024.table import PairOnPath
-from pitchpoint.results.variable import Variable, percent, torque
+from pitchpoint.results.variable import Variable, dimensionless, percent, torque
 
 __all__ = ["PUBLICATION"]
 
@@ -22,7 +22,7 @@ _ENDS = {
 
 
 def _plain(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "1")
+    return dimensionless(long_name, symbol)
 
 
 _COURSES = {

@@ -9,67 +9,61 @@ from pitchpoint.results.variable import (
     Variable,
     angle,
     deviation,
+    dimensionless,
     force,
     length,
     percent,
     pressure,
+    rotational_speed,
     speed,
     stiffness,
+    temperature,
     torque,
+    viscosity,
 )
 
 __all__ = ["PUBLICATION"]
 
 _VARIABLES = {
-    "largest_tooth_force": Variable("largest tooth force", "F_0", "N", "N", "force"),
-    "one_zone_tooth_force": Variable(
-        "largest tooth force if one zone carried all", "F_0", "N", "N", "force"
-    ),
-    "printed_largest_tooth_force": Variable(
-        "largest tooth force, formula as printed", "F_0", "N", "N", "force"
-    ),
-    "printed_least_tooth_force": Variable(
-        "least tooth force, formula as printed", "F_min", "N", "N", "force"
-    ),
+    "largest_tooth_force": force("largest tooth force", "F_0"),
+    "one_zone_tooth_force": force("largest tooth force if one zone carried all", "F_0"),
+    "printed_largest_tooth_force": force("largest tooth force, formula as printed", "F_0"),
+    "printed_least_tooth_force": force("least tooth force, formula as printed", "F_min"),
     "recovered_torque": torque("torque that the tooth forces carry", "T"),
-    "tooth_ratio": Variable("teeth of the flexspline over tooth difference", "i", "1"),
+    "tooth_ratio": dimensionless("teeth of the flexspline over tooth difference", "i"),
     "base_radius_flexspline": length("base radius of the flexspline", "r_b1"),
     "base_radius_circular_spline": length("base radius of the circular spline", "r_b2"),
-    "printed_radius_root": Variable(
-        "relative radius on the long axis, formula as printed", "R", "m", "m", "length"
+    "printed_radius_root": length(
+        "relative radius on the long axis, formula as printed", "R", shown="m"
     ),
-    "printed_radius_10": Variable(
-        "relative radius at 10 degrees, formula as printed", "R", "m", "m", "length"
+    "printed_radius_10": length(
+        "relative radius at 10 degrees, formula as printed", "R", shown="m"
     ),
-    "printed_radius_end": Variable(
-        "relative radius at the end of the zone, formula as printed", "R", "m", "m", "length"
+    "printed_radius_end": length(
+        "relative radius at the end of the zone, formula as printed", "R", shown="m"
     ),
     "conformal_angle": angle("angle at which the printed radii of curvature agree", "φ"),
     "least_opposed_speed": speed("least mesh point speed, tangential parts opposed", "u"),
     "largest_opposed_speed": speed("largest mesh point speed, tangential parts opposed", "u"),
     "least_added_speed": speed("least mesh point speed, tangential parts added", "u"),
     "largest_added_speed": speed("largest mesh point speed, tangential parts added", "u"),
-    "viscosity": Variable(
-        "viscosity without pressure by Roelands' law", "η", "Pa s", "mPa s", "dynamic viscosity"
-    ),
-    "printed_viscosity": Variable(
-        "viscosity without pressure, formula as printed", "η", "Pa s", "mPa s", "dynamic viscosity"
-    ),
-    "effective_modulus": Variable("equivalent modulus", "E'", "Pa", "GPa", "pressure"),
+    "viscosity": viscosity("viscosity without pressure by Roelands' law", "η"),
+    "printed_viscosity": viscosity("viscosity without pressure, formula as printed", "η"),
+    "effective_modulus": pressure("equivalent modulus", "E'", shown="GPa"),
     "composite_roughness": deviation("composite Rq", "σ"),
 }
 
 
 def _plain(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "1")
+    return dimensionless(long_name, symbol)
 
 
 def _turning(long_name: str) -> Variable:
-    return Variable(long_name, "n", "rad/s", "rpm", "rotational speed")
+    return rotational_speed(long_name, "n")
 
 
 def _radius(long_name: str) -> Variable:
-    return Variable(long_name, "R", "m", "m", "length")
+    return length(long_name, "R", shown="m")
 
 
 _OF_ENVELOPE = {
@@ -126,7 +120,7 @@ _AXES = {
     "counted_angle": angle("angle of a tooth from the long axis", "φ"),
     "tooth_angle": angle("angle of a tooth from the long axis", "φ"),
     "film_speed": _turning("speed of the wave generator"),
-    "film_temperature": Variable("temperature of the oil", "T", "K", "degC", "temperature"),
+    "film_temperature": temperature("temperature of the oil", "T"),
     "film_place": _plain("place along the face, over its width", "y/b"),
     "film_cut": _plain("place across the contact, over the half-width", "x/a"),
     "film_map_x": _plain("place across the contact, over the half-width", "x/a"),
@@ -175,12 +169,8 @@ _OF_POINT = {
     "point_entrainment": speed("entrainment, eq. 3 and its factor", "u"),
     "half_width": length("half-width of the dry contact", "a"),
     "speed_of_one": _turning("speed at which the film is as thick as the roughness"),
-    "temperature_of_one": Variable(
-        "temperature at which the film is as thick as the roughness",
-        "T",
-        "K",
-        "degC",
-        "temperature",
+    "temperature_of_one": temperature(
+        "temperature at which the film is as thick as the roughness", "T"
     ),
     "slow_share": percent("part of the load on asperities at 100 rpm", "W"),
     "rated_film_ratio": _plain("mean film over roughness at the operating point", "λ"),

@@ -8,9 +8,12 @@ from pitchpoint.results.variable import (
     Variable,
     angle,
     deviation,
+    dimensionless,
+    force,
     length,
     percent,
     pressure,
+    temperature,
     temperature_rise,
     torque,
 )
@@ -20,17 +23,11 @@ __all__ = ["BRANCHES", "PUBLICATION"]
 BRANCHES = ("deep", "outer")
 
 _VARIABLES = {
-    "largest_tangential_load": Variable(
-        "largest tangential load per face width and length of the ring",
-        "q_t",
-        "Pa",
-        "MPa",
-        "pressure",
+    "largest_tangential_load": pressure(
+        "largest tangential load per face width and length of the ring", "q_t"
     ),
-    "largest_tooth_force": Variable("largest tooth force", "F_0", "N", "N", "force"),
-    "printed_least_tooth_force": Variable(
-        "least tooth force, formula as printed", "F_min", "N", "N", "force"
-    ),
+    "largest_tooth_force": force("largest tooth force", "F_0"),
+    "printed_least_tooth_force": force("least tooth force, formula as printed", "F_min"),
     "recovered_torque": torque("torque that the tooth forces carry", "T"),
     "printed_recovered_torque": torque(
         "torque that the tooth forces carry, formula as printed", "T"
@@ -49,16 +46,16 @@ _VARIABLES = {
 
 
 def _plain(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "1")
+    return dimensionless(long_name, symbol)
 
 
 _WEAR = {
     "wear_rate": Variable(
-        "depth per pressure, sliding and cycle",
-        "κ",
-        "1/Pa",
-        "1/Pa",
-        "pressure-viscosity coefficient",
+        long_name="depth per pressure, sliding and cycle",
+        symbol="κ",
+        unit="1/Pa",
+        shown="1/Pa",
+        kind="pressure-viscosity coefficient",
     ),
     "wear_depth": length("largest wear depth of the flexspline's flank", "h"),
     "wear_depth_without_offset": length("the same without the turn of the teeth", "h"),
@@ -84,9 +81,7 @@ _WEAR = {
         "largest sliding step over that of involute teeth at the same point", "s/s"
     ),
     "tip_flash": temperature_rise("flash temperature at the tip, at most", "ΔT"),
-    "contact_temperature": Variable(
-        "contact temperature at the tip, bulk and flash", "T_s", "K", "degC", "temperature"
-    ),
+    "contact_temperature": temperature("contact temperature at the tip, bulk and flash", "T_s"),
     "adsorbed_film_defect": _plain("fractional film defect", "ψ"),
     "film_defect_ratio": _plain("fractional film defect over that of the reference", "ψ/ψ"),
     "wear_regression_ratio": _plain("wear coefficient over that of the reference, eq. 29", "K/K"),
@@ -130,12 +125,8 @@ _ALONG = {
 }
 
 _LOADS = {
-    "tangential_load": Variable(
-        "tangential load per face width and length of the ring", "q_t", "Pa", "MPa", "pressure"
-    ),
-    "radial_load": Variable(
-        "radial load per face width and length of the ring", "q_r", "Pa", "MPa", "pressure"
-    ),
+    "tangential_load": pressure("tangential load per face width and length of the ring", "q_t"),
+    "radial_load": pressure("radial load per face width and length of the ring", "q_r"),
 }
 """Loads of new flanks along the way from the tip, eq. 13."""
 

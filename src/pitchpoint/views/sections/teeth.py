@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.results.variable import Variable, angle, deviation, length
+from pitchpoint.results.variable import Variable, angle, deviation, dimensionless, length
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, pair_key
@@ -32,7 +32,7 @@ __all__ = ["TEETH", "dimensions"]
 _PARTS = ("teeth.layer_tooth",)
 
 LENGTH, DEVIATION, ANGLE = length("", ""), deviation("", ""), angle("", "")
-PLAIN = Variable("", "", "1")
+PLAIN = dimensionless("", "")
 
 
 def _blocks(page: Page) -> Iterator[Block]:
