@@ -68,8 +68,8 @@ def _moment(order: float, ratio: Array) -> Array:
 
 
 @_moment.defjvp
-def _slope(order: float, given: tuple[Array], along: tuple[Array]) -> tuple[Array, Array]:
-    (ratio,), (step,) = given, along
+def _slope(order: float, primals: tuple[Array], along: tuple[Array]) -> tuple[Array, Array]:
+    (ratio,), (step,) = primals, along
     # F_(n-1) = (F_(n+1) + u F_n)/n would lose digits; below -1/2 nothing is integrable any more.
     below = _moment(order - 1.0, ratio) if order > 0.0 else _by_parts(order, ratio)
     return _moment(order, ratio), -order * below * step
@@ -127,8 +127,8 @@ def greenwood_tripp_1970(
         10.805
     """
     stiff = greenwood_tripp_stiffness(modulus, eta_beta_sigma, sigma_over_beta)
-    found: Each = stiff * gaussian_moment(gap / roughness_rq, 2.5)
-    return found
+    pressure: Each = stiff * gaussian_moment(gap / roughness_rq, 2.5)
+    return pressure
 
 
 def greenwood_tripp_stiffness(
@@ -138,9 +138,9 @@ def greenwood_tripp_stiffness(
 
     Arguments as in `greenwood_tripp_1970`. Source: Greenwood and Tripp (1970).
     """
-    whole = 16.0 * np.sqrt(2.0) * np.pi / 15.0 * eta_beta_sigma**2 * jnp.sqrt(sigma_over_beta)
-    found: Array = whole * 0.5 * modulus
-    return found
+    per_modulus = 16.0 * np.sqrt(2.0) * np.pi / 15.0 * eta_beta_sigma**2 * jnp.sqrt(sigma_over_beta)
+    stiffness: Array = per_modulus * 0.5 * modulus
+    return stiffness
 
 
 def greenwood_williamson_1966(

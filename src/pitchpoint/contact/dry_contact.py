@@ -97,9 +97,9 @@ class _Pressed(eqx.Module):
 
     def _sharpened(self, defect: Array) -> Array:
         """Pressure that would deflect by as much if every row stood alone and had no end."""
-        own = self.bodies.own
-        period = 2 * (own.shape[1] - 1)
-        waves = jnp.fft.rfft(defect, n=period, axis=1) / own
+        row_spectrum = self.bodies.own
+        period = 2 * (row_spectrum.shape[1] - 1)
+        waves = jnp.fft.rfft(defect, n=period, axis=1) / row_spectrum
         return jnp.fft.irfft(waves, n=period, axis=1)[:, : defect.shape[1]] * self.modulus
 
     @property
@@ -168,39 +168,39 @@ def pressed_by(
     return _solved(_Pressed(bodies, gap, modulus, None, approach), most)
 
 
-def _solved(given: _Pressed, most: int) -> DryContact:
+def _solved(pair: _Pressed, most: int) -> DryContact:
     def unfinished(at: _State) -> Array:
         return (at.residual > TOLERANCE) & (at.steps < most)
 
-    state = jax.lax.while_loop(unfinished, lambda at: _step(given, at), _start(given))
-    end = _at(given, state, state.pressure, given.deflection(state.pressure))
-    found = end.residual < ENOUGH
-    code = jnp.where(found, Code.SOLVED, Code.NOT_CONVERGED)
-    numbers = end.pressure, end.defect, end.level, given.sum(end.pressure)
-    pressure, gap, level, load = (jnp.where(found, one, jnp.nan) for one in numbers)
+    state = jax.lax.while_loop(unfinished, lambda at: _step(pair, at), _start(pair))
+    end = _at(pair, state, state.pressure, pair.deflection(state.pressure))
+    converged = end.residual < ENOUGH
+    code = jnp.where(converged, Code.SOLVED, Code.NOT_CONVERGED)
+    numbers = end.pressure, end.defect, end.level, pair.sum(end.pressure)
+    pressure, gap, level, load = (jnp.where(converged, number, jnp.nan) for number in numbers)
     return DryContact(pressure, gap, level, load, Status(code, end.residual, end.steps))
 
 
-def _start(given: _Pressed) -> _State:
+def _start(pair: _Pressed) -> _State:
     """The load spread evenly, or every row as soft as it is alone."""
-    shape, zero = given.gap.shape, jnp.zeros(given.gap.shape)
-    if given.approach is None:
-        pressure = jnp.broadcast_to(given.scale(jnp.ones(shape)), shape)
+    shape, zero = pair.gap.shape, jnp.zeros(pair.gap.shape)
+    if pair.approach is None:
+        pressure = jnp.broadcast_to(pair.scale(jnp.ones(shape)), shape)
     else:
-        alone = jnp.asarray(given.bodies.own)[:, :1] / given.modulus
-        pressure = jnp.maximum(given.approach - given.gap, 0.0) / alone
+        alone = jnp.asarray(pair.bodies.own)[:, :1] / pair.modulus
+        pressure = jnp.maximum(pair.approach - pair.gap, 0.0) / alone
     blank = jnp.zeros(()), jnp.zeros((), int)
     state = _State(
         pressure, zero, blank[0], zero, zero, zero, jnp.ones(()), jnp.array(True), *blank
     )
-    return _at(given, state, pressure, given.deflection(pressure))
+    return _at(pair, state, pressure, pair.deflection(pressure))
 
 
-def _at(given: _Pressed, state: _State, pressure: Array, deflection: Array) -> _State:
+def _at(pair: _Pressed, state: _State, pressure: Array, deflection: Array) -> _State:
     """The state with another pressure."""
     held = pressure > 0.0
-    raised = given.gap + deflection
-    level = given.level(raised, held)
+    raised = pair.gap + deflection
+    level = pair.level(raised, held)
     defect = raised - level
     off = jnp.max(jnp.where(held, jnp.abs(defect), -defect))
     return state._replace(
@@ -208,34 +208,34 @@ def _at(given: _Pressed, state: _State, pressure: Array, deflection: Array) -> _
         deflection=deflection,
         level=level,
         defect=defect,
-        residual=off / (level - jnp.min(given.gap)),
+        residual=off / (level - jnp.min(pair.gap)),
     )
 
 
-def _step(given: _Pressed, state: _State) -> _State:
+def _step(pair: _Pressed, state: _State) -> _State:
     """One step along a conjugate direction, and cells that leave the contact or join it."""
     held = state.pressure > 0.0
     defect = _kept(state.defect, held)
-    change = given.towards(state.defect, held)
-    power = given.sum(defect * change)
-    turn = (power - given.sum(state.before * change)) / state.power
+    change = pair.towards(state.defect, held)
+    power = pair.sum(defect * change)
+    turn = (power - pair.sum(state.before * change)) / state.power
     direction = _kept(change + jnp.where(state.fresh, 0.0, turn) * state.direction, held)
-    yields = given.deflection(direction)
-    length = given.sum(defect * direction) / given.sum(yields * direction)
+    yields = pair.deflection(direction)
+    length = pair.sum(defect * direction) / pair.sum(yields * direction)
     free = state.pressure - length * direction
     joins = ~held & (state.defect < 0.0)
-    pressure = jnp.where(joins, -JOINING * state.defect / given.soft, jnp.maximum(free, 0.0))
+    pressure = jnp.where(joins, -JOINING * state.defect / pair.soft, jnp.maximum(free, 0.0))
     fresh = jnp.any(joins)
     deflection = jax.lax.cond(
         fresh | jnp.any(free < 0.0),
-        lambda: given.deflection(pressure),
+        lambda: pair.deflection(pressure),
         lambda: state.deflection - length * yields,
     )
     state = state._replace(
         direction=direction, before=defect, power=power, fresh=fresh, steps=state.steps + 1
     )
-    scale = given.scale(pressure)
-    return _at(given, state, pressure * scale, deflection * scale)
+    scale = pair.scale(pressure)
+    return _at(pair, state, pressure * scale, deflection * scale)
 
 
 def _kept(field: Array, held: Array) -> Array:
@@ -287,13 +287,15 @@ def dry_contact(
         (906, 1.58)
     """
     _check(bodies, gap, modulus, load, approach)
-    given = array(gap), array(modulus)
+    arguments = array(gap), array(modulus)
     if load is not None:
-        found = _by_load(bodies, *given, array(load))
+        contact = _by_load(bodies, *arguments, array(load))
     else:
-        found = _by_approach(bodies, *given, array(approach if approach is not None else np.nan))
-    _check_grid(np.asarray(found.pressure) > 0.0, to_ends)
-    return found
+        contact = _by_approach(
+            bodies, *arguments, array(approach if approach is not None else np.nan)
+        )
+    _check_grid(np.asarray(contact.pressure) > 0.0, to_ends)
+    return contact
 
 
 def near_ends(
@@ -308,8 +310,8 @@ def near_ends(
     """
     ridge, edges = np.max(pressure, axis=1), np.asarray(bodies.edges)
     inwards = np.asarray(bodies.y) - edges[0], (edges[-1] - np.asarray(bodies.y))[::-1]
-    found = zip(inwards, (ridge, ridge[::-1]), strict=True)
-    return np.stack([np.interp(distances, at, one, left=np.nan) for at, one in found])
+    ends = zip(inwards, (ridge, ridge[::-1]), strict=True)
+    return np.stack([np.interp(distances, at, profile, left=np.nan) for at, profile in ends])
 
 
 def _check(

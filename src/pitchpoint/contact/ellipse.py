@@ -60,9 +60,9 @@ def hertz_1881(*, load: Each, radius: Each, transverse_radius: Each, modulus: Ea
         (938, 1.61)
     """
     ratio = _ratio_of_axes(jnp.asarray(transverse_radius / radius))
-    whole, cosine, sine = complete(ratio**-2)
-    second = cosine + sine / ratio**2
-    return _ellipse(load, radius, transverse_radius, modulus, (ratio, whole, second))
+    first_kind, cosine, sine = complete(ratio**-2)
+    second_kind = cosine + sine / ratio**2
+    return _ellipse(load, radius, transverse_radius, modulus, (ratio, first_kind, second_kind))
 
 
 def hamrock_brewe_1983(
@@ -89,12 +89,12 @@ def hamrock_brewe_1983(
     power = slender ** (2.0 / jnp.pi)
     lying = jnp.asarray(transverse_radius) >= radius
     ratio = jnp.where(lying, power, 1.0 / power)
-    second = 1.0 + (jnp.pi / 2.0 - 1.0) / slender
-    whole = jnp.pi / 2.0 + (jnp.pi / 2.0 - 1.0) * jnp.log(slender)
+    second_kind = 1.0 + (jnp.pi / 2.0 - 1.0) / slender
+    first_kind = jnp.pi / 2.0 + (jnp.pi / 2.0 - 1.0) * jnp.log(slender)
     # Both are fitted for the shorter axis as unit; those of an ellipse that lies the other way follow.
     turned = jnp.where(lying, 1.0, power)
     return _ellipse(
-        load, radius, transverse_radius, modulus, (ratio, whole / turned, second * turned)
+        load, radius, transverse_radius, modulus, (ratio, first_kind / turned, second_kind * turned)
     )
 
 
@@ -102,20 +102,20 @@ def _ellipse(
     load: Each, radius: Each, transverse_radius: Each, modulus: Each, of: tuple[Array, Array, Array]
 ) -> Ellipse:
     """The contact from the ratio of its axes a/b and the complete integrals K and E, m = 1 - b^2/a^2."""
-    ratio, whole, second = of
+    ratio, first_kind, second_kind = of
     combined = 1.0 / (1.0 / radius + 1.0 / transverse_radius)
     carries = jnp.asarray(load) > 0.0
     pressed = jnp.where(carries, load, 1.0)
-    across = jnp.cbrt(6.0 * ratio**2 * second * pressed * combined / (jnp.pi * modulus))
-    approach = 3.0 * whole * pressed / (jnp.pi * across * modulus)
-    found = (
+    across = jnp.cbrt(6.0 * ratio**2 * second_kind * pressed * combined / (jnp.pi * modulus))
+    approach = 3.0 * first_kind * pressed / (jnp.pi * across * modulus)
+    fields = (
         across / ratio,
         across,
         1.5 * pressed * ratio / (jnp.pi * across**2),
         approach,
         1.5 * pressed / approach,
     )
-    return Ellipse(*(jnp.where(carries, each, 0.0) for each in found))
+    return Ellipse(*(jnp.where(carries, field, 0.0) for field in fields))
 
 
 def _ratio_of_axes(radii: Float[Array, "*b"]) -> Float[Array, "*b"]:
@@ -125,8 +125,8 @@ def _ratio_of_axes(radii: Float[Array, "*b"]) -> Float[Array, "*b"]:
         _, cosine, sine = complete(ratio**-2)
         return jnp.log(ratio**2 * cosine / (sine * radii))
 
-    found, _ = root(missing, radii ** (2.0 / jnp.pi), 2.0 * jnp.maximum(radii, 1.0))
-    return found
+    ratio_of_axes, _ = root(missing, radii ** (2.0 / jnp.pi), 2.0 * jnp.maximum(radii, 1.0))
+    return ratio_of_axes
 
 
 def largest_shear(contact: Ellipse, poisson: Each) -> tuple[Float[Array, "*b"], Float[Array, "*b"]]:
@@ -152,10 +152,10 @@ def largest_shear(contact: Ellipse, poisson: Each) -> tuple[Float[Array, "*b"], 
     squeeze = short / jnp.where(carries, jnp.maximum(contact.along, contact.across), 1.0)
 
     def slope(depth: Float[Array, "*b"]) -> Float[Array, "*b"]:
-        found: Float[Array, "*b"] = jax.jvp(
+        derivative: Float[Array, "*b"] = jax.jvp(
             lambda at: _shear_below(at, squeeze, poisson), (depth,), (jnp.ones_like(depth),)
         )[1]
-        return -found
+        return -derivative
 
     depth, _ = root(slope, jnp.full_like(short, 0.6), _DEEPEST)
     stress = contact.pressure * _shear_below(depth, squeeze, poisson)
@@ -182,10 +182,10 @@ def _principal_stresses(depth: Array, squeeze: Array, poisson: Each) -> tuple[Ar
     towards = jnp.sqrt((squeeze**2 + depth**2) * out)
     part = out / (1.0 + towards)
     sine_part, cosine_part = _incomplete(depth, squeeze)
-    first, second = depth * sine_part, depth * stretched * cosine_part
-    long = -part / 2.0 + first + poisson * (stretched * (part - 1.0) + second)
+    sine_term, cosine_term = depth * sine_part, depth * stretched * cosine_part
+    long = -part / 2.0 + sine_term + poisson * (stretched * (part - 1.0) + cosine_term)
     ending = (part + 2.0 * stretched * depth**2 * out) / (2.0 * towards)
-    short = -ending + second + poisson * (-part + first)
+    short = -ending + cosine_term + poisson * (-part + sine_term)
     return -squeeze * out / towards, 2.0 * squeeze * long, 2.0 * squeeze * short
 
 
@@ -194,7 +194,7 @@ def _incomplete(depth: Array, squeeze: Array) -> tuple[Array, Array]:
     sine = 1.0 / (1.0 + depth**2)
     cosine = depth**2 * sine
     square = cosine + squeeze**2 * sine
-    one, scale = jnp.ones_like(sine), sine * jnp.sqrt(sine) / 3.0
-    of_sine = scale * carlson_rd(cosine, square, one)
-    of_cosine = squeeze**2 * scale * carlson_rd(cosine, one, square)
+    unit, scale = jnp.ones_like(sine), sine * jnp.sqrt(sine) / 3.0
+    of_sine = scale * carlson_rd(cosine, square, unit)
+    of_cosine = squeeze**2 * scale * carlson_rd(cosine, unit, square)
     return of_sine, of_cosine + depth * sine / jnp.sqrt(square)

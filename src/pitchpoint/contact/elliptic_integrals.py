@@ -25,11 +25,11 @@ def carlson_rf(x: Each, y: Each, z: Each) -> Float[Array, "*b"]:
         >>> round(float(carlson_rf(0.0, 1.0, 1.0)), 12)  # pi/2
         1.570796326795
     """
-    found, _ = _approached(x, y, z)
-    mean = sum(found) / 3.0
-    one, two = (1.0 - each / mean for each in found[:2])
-    three = -(one + two)
-    second, third = one * two - three**2, one * two * three
+    arguments, _ = _approached(x, y, z)
+    mean = sum(arguments) / 3.0
+    dx, dy = (1.0 - argument / mean for argument in arguments[:2])
+    dz = -(dx + dy)
+    second, third = dx * dy - dz**2, dx * dy * dz
     series = 1.0 - second / 10.0 + third / 14.0 + second**2 / 24.0 - 3.0 * second * third / 44.0
     return series / jnp.sqrt(mean)
 
@@ -47,15 +47,15 @@ def carlson_rd(x: Each, y: Each, z: Each) -> Float[Array, "*b"]:
         >>> round(float(carlson_rd(0.0, 2.0, 1.0)), 12)
         1.797210352103
     """
-    found, passed = _approached(x, y, z)
-    mean = (found[0] + found[1] + 3.0 * found[2]) / 5.0
-    one, two = (1.0 - each / mean for each in found[:2])
-    last = -(one + two) / 3.0
-    both = one * two
-    second = both - 6.0 * last**2
-    third = (3.0 * both - 8.0 * last**2) * last
-    fourth = 3.0 * (both - last**2) * last**2
-    fifth = both * last**3
+    arguments, passed = _approached(x, y, z)
+    mean = (arguments[0] + arguments[1] + 3.0 * arguments[2]) / 5.0
+    dx, dy = (1.0 - argument / mean for argument in arguments[:2])
+    dz = -(dx + dy) / 3.0
+    both = dx * dy
+    second = both - 6.0 * dz**2
+    third = (3.0 * both - 8.0 * dz**2) * dz
+    fourth = 3.0 * (both - dz**2) * dz**2
+    fifth = both * dz**3
     series = (
         1.0
         - 3.0 * second / 14.0
@@ -78,10 +78,10 @@ def complete(complement: Each) -> tuple[Float[Array, "*b"], Float[Array, "*b"], 
 
     Source: Carlson (1995), eqs. 4.5 to 4.7; NIST Handbook of Mathematical Functions (2010), 19.25(i).
     """
-    none, one = jnp.zeros_like(complement), jnp.ones_like(complement)
-    whole = carlson_rf(none, complement, one)
-    sine = carlson_rd(none, complement, one) / 3.0
-    return whole, complement * carlson_rd(none, one, complement) / 3.0, sine
+    none, unit = jnp.zeros_like(complement), jnp.ones_like(complement)
+    first_kind = carlson_rf(none, complement, unit)
+    sine = carlson_rd(none, complement, unit) / 3.0
+    return first_kind, complement * carlson_rd(none, unit, complement) / 3.0, sine
 
 
 _Three = tuple[Array, Array, Array]
@@ -89,13 +89,13 @@ _Three = tuple[Array, Array, Array]
 
 def _approached(x: Each, y: Each, z: Each) -> tuple[_Three, Array]:
     """Arguments after all doublings, and what the doublings leave behind in R_D over 3."""
-    x, y, z = jnp.broadcast_arrays(*(jnp.asarray(each, float) for each in (x, y, z)))
+    x, y, z = jnp.broadcast_arrays(*(jnp.asarray(argument, float) for argument in (x, y, z)))
 
     def double(
         carry: tuple[_Three, Array, Array], _: None
     ) -> tuple[tuple[_Three, Array, Array], None]:
         (a, b, c), passed, power = carry
-        roots = [_root(each) for each in (a, b, c)]
+        roots = [_root(argument) for argument in (a, b, c)]
         shift = roots[0] * roots[1] + roots[1] * roots[2] + roots[2] * roots[0]
         passed = passed + power / (roots[2] * (c + shift))
         return (
@@ -105,8 +105,8 @@ def _approached(x: Each, y: Each, z: Each) -> tuple[_Three, Array]:
         ), None
 
     start = (x, y, z), jnp.zeros_like(x), jnp.asarray(1.0)
-    (found, passed, _), _ = jax.lax.scan(double, start, None, _DOUBLINGS)
-    return found, passed
+    (arguments, passed, _), _ = jax.lax.scan(double, start, None, _DOUBLINGS)
+    return arguments, passed
 
 
 def _root(square: Array) -> Array:

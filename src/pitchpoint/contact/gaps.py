@@ -35,13 +35,13 @@ def line_gap(
         radius: relative radius along x at every row, or one for all, shape (y,) or () [m].
         relief: by which the bodies lie apart at every row, shape (y,) or () [m]; see `missing_along`.
     """
-    found: Arrays = bodies.x**2 / (2.0 * _column(radius)) + _column(relief)
-    return found + 0.0 * bodies.y[:, None]
+    gap: Arrays = bodies.x**2 / (2.0 * _column(radius)) + _column(relief)
+    return gap + 0.0 * bodies.y[:, None]
 
 
 def _column(values: Numbers) -> Numbers:
-    found: Numbers = values[:, None] if jnp.ndim(values) else values
-    return found
+    column: Numbers = values[:, None] if jnp.ndim(values) else values
+    return column
 
 
 def missing_along(surfaces: tuple[Surface, ...], y: Float[Arrays, " y"]) -> Float[Array, " y"]:

@@ -81,9 +81,9 @@ class HalfSpace(eqx.Module):
         nodes, period = pressure.shape[1], 2 * (self.own.shape[1] - 1)
         waves = jnp.fft.rfft(pressure, n=period, axis=1).T
         # Both parts at once, as rows: so every matrix is read once and in the order in which it lies.
-        given = self._apart(jnp.stack([waves.real, waves.imag], axis=1))
-        found = self._together(jnp.einsum("pkcj,pkji->pkci", given, self.spectrum))
-        back = jnp.fft.irfft((found[:, 0] + 1j * found[:, 1]).T, n=period, axis=1)
+        loads = self._apart(jnp.stack([waves.real, waves.imag], axis=1))
+        deflected = self._together(jnp.einsum("pkcj,pkji->pkci", loads, self.spectrum))
+        back = jnp.fft.irfft((deflected[:, 0] + 1j * deflected[:, 1]).T, n=period, axis=1)
         return back[:, :nodes] / modulus
 
     def _apart(self, field: Float[Array, "wave 2 y"]) -> Float[Array, "part wave 2 half"]:
@@ -91,16 +91,16 @@ class HalfSpace(eqx.Module):
         if self.spectrum.shape[0] == 1:
             return field[None]
         half = self.spectrum.shape[-1]
-        one, image = field[..., :half], field[..., ::-1][..., :half]
-        return jnp.stack([one + image, one - image])
+        side, image = field[..., :half], field[..., ::-1][..., :half]
+        return jnp.stack([side + image, side - image])
 
     def _together(self, field: Float[Array, "part wave 2 half"]) -> Float[Array, "wave 2 y"]:
         """All rows from those parts."""
         if self.spectrum.shape[0] == 1:
             return field[0]
         images = len(self.edges) - 1 - field.shape[-1]
-        one, image = field[0] + field[1], field[0] - field[1]
-        return jnp.concatenate([one, image[..., :images][..., ::-1]], axis=-1)
+        side, image = field[0] + field[1], field[0] - field[1]
+        return jnp.concatenate([side, image[..., :images][..., ::-1]], axis=-1)
 
     def lines(self) -> Float[Arrays, "y x x"]:
         """Deflection times E' in a row by a pressure of one on each of its own cells, shape (y, x, x) [m]."""
@@ -139,17 +139,21 @@ def half_space(
     _check(x, edges, ends)
     middles = 0.5 * (edges[1:] + edges[:-1])
     even = np.allclose(edges + edges[::-1], edges[0] + edges[-1], 0.0, EVEN * np.ptp(edges))
-    asked = middles[: (len(middles) + 1) // 2] if even else middles
+    targets = middles[: (len(middles) + 1) // 2] if even else middles
     away = (np.arange(_period(len(x)) // 2 + 1) + 0.5) * (x[-1] - x[0]) / (len(x) - 1)
-    cells = _deflections(away, asked, edges)
+    cells = _deflections(away, targets, edges)
     if share := ENDS[ends]:
-        cells += share * sum(_mirrored(away, asked, edges, face) for face in (edges[0], edges[-1]))
+        cells += share * sum(
+            _mirrored(away, targets, edges, face) for face in (edges[0], edges[-1])
+        )
     rows = np.diagonal(cells, axis1=1, axis2=2)
-    rows = np.concatenate((rows, rows[:, : len(middles) - len(asked)][:, ::-1]), axis=1)
+    rows = np.concatenate((rows, rows[:, : len(middles) - len(targets)][:, ::-1]), axis=1)
     parts = np.stack([_spectrum(part) for part in _parts(cells)])
-    own, near = (np.ascontiguousarray(one.T) for one in (_spectrum(rows), rows[: len(x)]))
-    found: Any = x, edges, parts, own, near
-    return HalfSpace(*found)
+    row_spectrum, near = (
+        np.ascontiguousarray(kernel.T) for kernel in (_spectrum(rows), rows[: len(x)])
+    )
+    fields: Any = x, edges, parts, row_spectrum, near
+    return HalfSpace(*fields)
 
 
 def graded_edges(length: float, cells: int, end: float) -> NDArray[np.float64]:
@@ -225,8 +229,8 @@ def _corner(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float6
     distance = np.sqrt(x**2 + across**2)
     beside = np.where(across == 0.0, 1.0, across)
     one_way = x * np.log((across + distance) / x) + across * np.log((x + distance) / beside)
-    found: NDArray[np.float64] = np.sign(y) * one_way
-    return found
+    integral: NDArray[np.float64] = np.sign(y) * one_way
+    return integral
 
 
 def _mirrored(away: _Cells, asked: _Cells, edges: _Cells, face: np.float64) -> NDArray[np.float64]:
@@ -239,11 +243,11 @@ def _parts(cells: NDArray[np.float64]) -> list[NDArray[np.float64]]:
     loaded, half = cells.shape[1:]
     if loaded == half:
         return [cells]
-    one, image = cells[:, :half], cells[:, ::-1][:, :half]
-    total = 0.5 * (one + image)
+    side, image = cells[:, :half], cells[:, ::-1][:, :half]
+    total = 0.5 * (side + image)
     if loaded % 2:
         total[:, -1] *= 0.5  # the middle row is its own image, and twice in a sum
-    return [total, 0.5 * (one - image)]
+    return [total, 0.5 * (side - image)]
 
 
 def _spectrum(cells: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -252,8 +256,8 @@ def _spectrum(cells: NDArray[np.float64]) -> NDArray[np.float64]:
     number = np.arange(steps + 1)
     weight = np.where((number == 0) | (number == steps), 1.0, 2.0)
     cosine = np.cos(np.pi * (np.outer(number, number) % (2 * steps)) / steps) * weight
-    found: NDArray[np.float64] = (cosine @ cells.reshape(steps + 1, -1)).reshape(cells.shape)
-    return found
+    spectrum: NDArray[np.float64] = (cosine @ cells.reshape(steps + 1, -1)).reshape(cells.shape)
+    return spectrum
 
 
 def _check(x: NDArray[np.float64], edges: NDArray[np.float64], ends: str) -> None:

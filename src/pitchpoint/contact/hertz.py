@@ -31,8 +31,8 @@ def line_half_width(*, line_load: Each, radius: Each, modulus: Each) -> Each:
         >>> round(float(half_width) * 1e6)
         106
     """
-    found: Each = root(8.0 * line_load * radius / (jnp.pi * modulus))
-    return found
+    half_width: Each = root(8.0 * line_load * radius / (jnp.pi * modulus))
+    return half_width
 
 
 def line_pressure(*, line_load: Each, radius: Each, modulus: Each) -> Each:
@@ -50,8 +50,8 @@ def line_pressure(*, line_load: Each, radius: Each, modulus: Each) -> Each:
         >>> round(float(pressure) / 1e6)
         600
     """
-    found: Each = root(line_load * modulus / (2.0 * jnp.pi * radius))
-    return found
+    pressure: Each = root(line_load * modulus / (2.0 * jnp.pi * radius))
+    return pressure
 
 
 def line_shear(*, pressure: Each, half_width: Each) -> tuple[Each, Each]:

@@ -47,8 +47,8 @@ class Relief(Surface):
         at_tip: bool = True,
     ) -> Self:
         """Relief at one end of a flank; arguments as the attributes."""
-        end, other = (flank.tip, flank.root) if at_tip else (flank.root, flank.tip)
-        start = end + jnp.sign(other - end) * length
+        end, opposite = (flank.tip, flank.root) if at_tip else (flank.root, flank.tip)
+        start = end + jnp.sign(opposite - end) * length
         return cls(amount, length, start**2 / flank.arcs, end**2 / flank.arcs, power, at_tip)
 
     def fitted(self, flank: Flank) -> Self:
@@ -133,8 +133,8 @@ class LogRelief(Surface):
     def missing(self, spot: Spot) -> Lanes:
         """Nothing in the middle, the drop at the ends."""
         share = -jnp.expm1(-self.drop / self.amount)
-        found: Lanes = -self.amount * jnp.log1p(-share * (2.0 * spot.across / self.width) ** 2)
-        return found
+        relief: Lanes = -self.amount * jnp.log1p(-share * (2.0 * spot.across / self.width) ** 2)
+        return relief
 
 
 class LeadSlope(Surface):

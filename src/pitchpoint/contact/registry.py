@@ -83,18 +83,22 @@ class EndProfile:
     @property
     def parameters(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Names of its own numbers that have to be given, and of all that may be."""
-        own = [
-            one
-            for one in signature(self.function).parameters.values()
-            if one.name not in ("width", "modulus")
+        numbers = [
+            parameter
+            for parameter in signature(self.function).parameters.values()
+            if parameter.name not in ("width", "modulus")
         ]
-        needed = tuple(one.name for one in own if one.default is one.empty)
-        return needed, tuple(one.name for one in own)
+        needed = tuple(
+            parameter.name for parameter in numbers if parameter.default is parameter.empty
+        )
+        return needed, tuple(parameter.name for parameter in numbers)
 
     def of_face(self, width: float, modulus: float) -> dict[str, float]:
         """What the function asks for beside its own numbers [m, Pa]: the modulus where a load decides."""
-        known = {"width": width, "modulus": modulus}
-        return {name: known[name] for name in signature(self.function).parameters if name in known}
+        of_face = {"width": width, "modulus": modulus}
+        return {
+            name: of_face[name] for name in signature(self.function).parameters if name in of_face
+        }
 
 
 END_PROFILES = Registry(

@@ -45,8 +45,8 @@ class Stresses(eqx.Module):
 
     def largest_shear(self) -> Section:
         """Half the difference of the outer principal stresses (Tresca), shape (depth, x) [Pa]."""
-        found = self.principal()
-        return 0.5 * (found[..., 2] - found[..., 0])
+        principal = self.principal()
+        return 0.5 * (principal[..., 2] - principal[..., 0])
 
     def von_mises(self) -> Section:
         """Stress that is equivalent by the energy of distortion, shape (depth, x) [Pa]."""
@@ -127,8 +127,8 @@ def stresses_below(
         jnp.fft.rfft(kernels, n=period, axis=-1),
         jnp.fft.rfft(pressure, n=period, axis=-1),
     )
-    found = jnp.fft.irfft(waves, n=period, axis=-1)[..., nodes - 1 : 2 * nodes - 1]
-    return Stresses(depth, *found)
+    stresses = jnp.fft.irfft(waves, n=period, axis=-1)[..., nodes - 1 : 2 * nodes - 1]
+    return Stresses(depth, *stresses)
 
 
 _below = fast_program(stresses_below)
@@ -161,7 +161,7 @@ def _corners(x: Array, y: Array, z: Array, poisson: Array) -> Array:
     slack = 1.0 - 2.0 * poisson
     spread_x = jnp.arctan2(both * (distance - z), x**2 * distance + z * y**2)
     spread_y = jnp.arctan2(both * (distance - z), y**2 * distance + z * x**2)
-    found = (
+    stresses = (
         2.0 * poisson * sink - z * bend_x - slack * spread_x,
         2.0 * poisson * sink - z * bend_y - slack * spread_y,
         sink + z * (bend_x + bend_y),
@@ -169,7 +169,7 @@ def _corners(x: Array, y: Array, z: Array, poisson: Array) -> Array:
         z**2 * x / (across * distance),
         z**2 * y / (along * distance),
     )
-    return jnp.stack(found)
+    return jnp.stack(stresses)
 
 
 def _check(

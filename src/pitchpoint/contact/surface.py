@@ -141,7 +141,7 @@ def missing(surfaces: tuple[Surface, ...], spot: Spot) -> Lanes:
         surfaces: of the member.
         spot: where on it.
     """
-    return sum((one.missing(spot) for one in surfaces), jnp.zeros_like(spot.flank))
+    return sum((surface.missing(spot) for surface in surfaces), jnp.zeros_like(spot.flank))
 
 
 def other_side(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
@@ -150,7 +150,7 @@ def other_side(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
     Args:
         surfaces: of a member.
     """
-    return tuple(one for one in surfaces if one.both)
+    return tuple(surface for surface in surfaces if surface.both)
 
 
 def with_surfaces(contacts: Contacts, surfaces: Surfaces, spots: tuple[Spot, Spot]) -> Contacts:
@@ -168,10 +168,10 @@ def with_surfaces(contacts: Contacts, surfaces: Surfaces, spots: tuple[Spot, Spo
     separation.
     """
     gap, curvature, felt = contacts.gap, contacts.curvature, contacts.felt
-    for member, (own, spot) in enumerate(zip(surfaces, spots, strict=True)):
-        if own:
-            gap = gap + missing(own, spot)
-            bend = sum((one.bent(spot) for one in own[1:]), own[0].bent(spot))
+    for member, (of_member, spot) in enumerate(zip(surfaces, spots, strict=True)):
+        if of_member:
+            gap = gap + missing(of_member, spot)
+            bend = sum((surface.bent(spot) for surface in of_member[1:]), of_member[0].bent(spot))
             curvature = curvature.at[member].add(bend)
             felt = felt if felt is None else felt + bend[0]
     return replace(contacts, gap=gap, curvature=curvature, felt=felt)
@@ -188,5 +188,5 @@ def _second(surface: Surface, spot: Spot, name: str) -> Lanes:
         return tangent
 
     place = getattr(spot, name)
-    found: Lanes = jax.jvp(slope, (place,), (jnp.ones_like(place),))[1]
-    return found
+    bend: Lanes = jax.jvp(slope, (place,), (jnp.ones_like(place),))[1]
+    return bend

@@ -91,7 +91,7 @@ class Worn(Surface):
             across = jnp.zeros((1,) * jnp.ndim(across))
         aside = _weights(across, self.across, strips, straight=False)
         depth = sum(
-            (other[..., None] * self.depth.T[j] for j, other in aside),
+            (weight[..., None] * self.depth.T[j] for j, weight in aside),
             jnp.zeros((*jnp.shape(across), count)),
         )
         return _MeanBend(_pieces(depth), (flank - start) / length - 0.5, length)
@@ -101,7 +101,10 @@ class Worn(Surface):
         along = _weights(flank, self.flank, self.depth.shape[0], straight)
         aside = _weights(across, self.across, self.depth.shape[1], straight)
         return sum(
-            (one * other * self.depth[k, j] for (k, one), (j, other) in product(along, aside)),
+            (
+                along_flank * across_face * self.depth[k, j]
+                for (k, along_flank), (j, across_face) in product(along, aside)
+            ),
             jnp.zeros(jnp.broadcast_shapes(flank.shape, across.shape)),
         )
 
@@ -123,8 +126,8 @@ class _MeanBend(eqx.Module):
         """Average over contacts that wide [1/m], see `averaged`."""
         reach = _REACH * jnp.maximum(half_width / self.length, BRIDGED)
         ends = jnp.stack([self.middle - reach, self.middle + reach])
-        last = self.pieces.shape[-2] - 1
-        piece = jnp.clip(jnp.floor(jax.lax.stop_gradient(ends)) + 1.0, 0.0, last)
+        last_piece = self.pieces.shape[-2] - 1
+        piece = jnp.clip(jnp.floor(jax.lax.stop_gradient(ends)) + 1.0, 0.0, last_piece)
         t = ends - jnp.maximum(piece - 1.0, 0.0)
         rows = jnp.take_along_axis(
             self.pieces[None], piece.astype(int)[..., None, None], axis=-2, mode="clip"
@@ -147,7 +150,8 @@ def _pieces(depth: Float[Array, "*b cell"]) -> Float[Array, "*b piece 5"]:
     third = jnp.pad(jnp.diff(bend, axis=-1), [*rim, (1, 1)])
     height, slope = depth + bend / 6.0, jnp.asarray(jnp.gradient(depth, axis=-1))
     height, slope, bend = (
-        jnp.concatenate([one[..., :1], one], axis=-1) for one in (height, slope, bend)
+        jnp.concatenate([coefficient[..., :1], coefficient], axis=-1)
+        for coefficient in (height, slope, bend)
     )
     inner = (height + slope / 2.0 + bend / 6.0 + third / 24.0)[..., 1:-1]
     area = jnp.pad(jnp.cumsum(inner, axis=-1), [*rim, (2, 0)])
@@ -190,13 +194,13 @@ def averaged(
     loaded = contacts.active & (target > 0.0)
     target = jnp.where(loaded, target, 1.0)
     sharper = jnp.maximum(contacts.curvature[0, 0], contacts.curvature[1, 0])
-    flank = jnp.min(jnp.stack([one.flank[1] - one.flank[0] for one in worn]))
+    flank = jnp.min(jnp.stack([member.flank[1] - member.flank[0] for member in worn]))
     half_space = jnp.minimum(WIDEST / jnp.where(loaded, sharper, 1.0), flank)
     as_new = jnp.sqrt(target / jnp.where(loaded, new, 1.0))
     widest = jnp.maximum(half_space, as_new)
     bends = [
-        one.mean_bend(jnp.broadcast_to(place, lanes), contacts.width)
-        for one, place in zip(worn, contacts.flank, strict=True)
+        member.mean_bend(jnp.broadcast_to(place, lanes), contacts.width)
+        for member, place in zip(worn, contacts.flank, strict=True)
     ]
     least = BRIDGED * jnp.minimum(bends[0].length, bends[1].length)
     balance = _Balance(new, (bends[0], bends[1]), target)
@@ -287,9 +291,9 @@ class WornAt(Surface):
             worn: with one strip across the face.
             spot: the places.
         """
-        given, span = (worn.flank, worn.depth.shape[0]), worn.span[0]
-        height = _parts(spot.flank[None], (1.0,), *given, straight=False)
-        bend = _parts(_beside(spot.flank, span), (-2.0, 1.0, 1.0), *given, straight=True) / span**2
+        axis, span = (worn.flank, worn.depth.shape[0]), worn.span[0]
+        height = _parts(spot.flank[None], (1.0,), *axis, straight=False)
+        bend = _parts(_beside(spot.flank, span), (-2.0, 1.0, 1.0), *axis, straight=True) / span**2
         return cls(worn.depth[:, 0], height, bend)
 
     def at(self, depth: Float[Array, " cell"]) -> Self:
@@ -322,17 +326,17 @@ def _second(values: Lanes, span: Array) -> Lanes:
 
 def new_and_worn(surfaces: Surfaces) -> tuple[Surfaces, Surfaces]:
     """Surfaces of both members as made, and what wear has added."""
-    first, second = surfaces
-    worn = _worn(first), _worn(second)
-    return (_made(first), _made(second)), worn
+    a, b = surfaces
+    worn = _worn(a), _worn(b)
+    return (_made(a), _made(b)), worn
 
 
 def _made(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
-    return tuple(one for one in surfaces if not isinstance(one, Worn))
+    return tuple(surface for surface in surfaces if not isinstance(surface, Worn))
 
 
 def _worn(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
-    return tuple(one for one in surfaces if isinstance(one, Worn))
+    return tuple(surface for surface in surfaces if isinstance(surface, Worn))
 
 
 def with_worn(
@@ -347,14 +351,14 @@ def with_worn(
 
     They stay on the normals of flanks as new, and keep a part of their relative curvatures.
     """
-    found = with_surfaces(contacts, worn, spots)
-    own, least = 1.0 / found.radius, FLATTEST / contacts.radius
-    kept, flat = replace(found, felt=jnp.maximum(own, least)), own < least
+    worn_contacts = with_surfaces(contacts, worn, spots)
+    curvature, least = 1.0 / worn_contacts.radius, FLATTEST / contacts.radius
+    limited, flat = replace(worn_contacts, felt=jnp.maximum(curvature, least)), curvature < least
     if contacts.shape == "line":
-        return kept, flat
-    lacks = FLATTEST * contacts.relative_curvature[1] - found.relative_curvature[1]
-    across = found.curvature.at[0, 1].add(jnp.maximum(lacks, 0.0))
-    return replace(kept, curvature=across), flat | (lacks > 0.0)
+        return limited, flat
+    lacks = FLATTEST * contacts.relative_curvature[1] - worn_contacts.relative_curvature[1]
+    across = worn_contacts.curvature.at[0, 1].add(jnp.maximum(lacks, 0.0))
+    return replace(limited, curvature=across), flat | (lacks > 0.0)
 
 
 def _weights(
@@ -365,11 +369,11 @@ def _weights(
         return [(jnp.zeros(jnp.shape(place), int), jnp.ones(jnp.shape(place)))]
     anywhere = (place - ends[0]) / (ends[1] - ends[0]) * cells - 0.5
     at = jnp.clip(anywhere, 0.0, cells - 1.0)
-    first = jax.lax.stop_gradient(jnp.clip(jnp.floor(at), 0.0, cells - 2.0))
-    t = at - first
+    lower = jax.lax.stop_gradient(jnp.clip(jnp.floor(at), 0.0, cells - 2.0))
+    t = at - lower
     before, after = (1.0 - t) ** 3 / 6.0, t**3 / 6.0
-    low, high = first == 0.0, first == cells - 2.0
-    number = first.astype(int)
+    low, high = lower == 0.0, lower == cells - 2.0
+    number = lower.astype(int)
     beyond = anywhere - at if straight else jnp.zeros_like(at)
     # Cells that would lie beyond an end go straight on from the last two: no curvature comes from there.
     here = (4.0 - 6.0 * t**2 + 3.0 * t**3) / 6.0 - jnp.where(high, after, 0.0) - beyond
@@ -397,13 +401,13 @@ def _parts(
     low, before = _spline(at + 1.0), jnp.minimum(beyond, 0.0)
     high, behind = _spline(at - cells), jnp.maximum(beyond, 0.0)
     cell = jnp.arange(float(cells))
-    found = sum(n * _spline(one[..., None] - cell) for n, one in zip(times, at, strict=True))
+    weights = sum(n * _spline(place[..., None] - cell) for n, place in zip(times, at, strict=True))
     # What would lie beyond an end goes straight on from the last two cells.
-    first, last = (2.0 * low - before, before - low), (-high - behind, 2.0 * high + behind)
-    for number, part in zip((0, 1, cells - 2, cells - 1), (*first, *last), strict=True):
-        whole = jnp.tensordot(jnp.asarray(times), part, 1)
-        found = found + jnp.where(cell == number, whole[..., None], 0.0)
-    return jnp.asarray(found)
+    at_start, at_end = (2.0 * low - before, before - low), (-high - behind, 2.0 * high + behind)
+    for number, part in zip((0, 1, cells - 2, cells - 1), (*at_start, *at_end), strict=True):
+        summed = jnp.tensordot(jnp.asarray(times), part, 1)
+        weights = weights + jnp.where(cell == number, summed[..., None], 0.0)
+    return jnp.asarray(weights)
 
 
 def _spline(distance: Arrays) -> Arrays:
