@@ -209,15 +209,15 @@ def _factors(number: int) -> list[int]:
     return [number]
 
 
-def _deflections(away: _Cells, asked: _Cells, loaded: _Cells) -> NDArray[np.float64]:
+def _deflections(away: _Cells, targets: _Cells, loaded: _Cells) -> NDArray[np.float64]:
     """Deflection times E' by cells 0, 1, ... steps of x away, shape (step, cell, y).
 
     Args:
         away: 0.5, 1.5, ... steps of x.
-        asked: places y where it is asked for.
+        targets: places y where it is asked for.
         loaded: edges of the loaded cells.
     """
-    distance = asked - loaded[:, None]
+    distance = targets - loaded[:, None]
     corner = _corner(away[:, None, None], distance)
     strip = corner[:, :-1] - corner[:, 1:]
     return 2.0 / np.pi * np.concatenate((2.0 * strip[:1], np.diff(strip, axis=0)))
@@ -233,9 +233,11 @@ def _corner(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float6
     return integral
 
 
-def _mirrored(away: _Cells, asked: _Cells, edges: _Cells, face: np.float64) -> NDArray[np.float64]:
+def _mirrored(
+    away: _Cells, targets: _Cells, edges: _Cells, face: np.float64
+) -> NDArray[np.float64]:
     """Deflection times E' by the cells mirrored at a face, in their own order."""
-    return _deflections(away, asked, (2.0 * face - edges)[::-1])[:, ::-1]
+    return _deflections(away, targets, (2.0 * face - edges)[::-1])[:, ::-1]
 
 
 def _parts(cells: NDArray[np.float64]) -> list[NDArray[np.float64]]:

@@ -44,8 +44,8 @@ def applies(law: FrictionLaw, mesh: Mesh) -> str | None:
         law: of friction.
         mesh: any family.
     """
-    if told := of_other_shape(law, mesh.shape):
-        return told
+    if reason := of_other_shape(law, mesh.shape):
+        return reason
     if has(mesh, pitch_point) or not asks_for_pitch_point(law):
         return None
     return f"'{law.name}' is a law for a whole mesh, and these gears have no pitch point"

@@ -95,8 +95,8 @@ def masjedi_khonsari_2012_regression(
     Source: Masjedi and Khonsari (2012), as Zhao et al. (2022) print it in equation 9.
     """
     film = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
-    own = {"s": roughness_rq / radius, "V": hardness / modulus}
-    groups = dict(zip("WUG", film, strict=True)) | own
+    surface = {"s": roughness_rq / radius, "V": hardness / modulus}
+    groups = dict(zip("WUG", film, strict=True)) | surface
     logs = {name: _log(value) for name, value in groups.items()}
     inner = jnp.log(4470.0) + _sum(logs, s=6.015, V=1.168, W=0.485, U=-3.741, G=-2.898)
     outer = jnp.log(0.005e-2) + _sum(logs, W=-0.408, U=-0.088, G=0.103)

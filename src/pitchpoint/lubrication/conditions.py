@@ -107,8 +107,8 @@ class Conditions(eqx.Module):
 
         Source: Hamrock and Dowson (1977), mean surface velocity.
         """
-        found: Lanes = product(jnp.abs(self.roll / 2.0), self.speed)
-        return found
+        entrainment: Lanes = product(jnp.abs(self.roll / 2.0), self.speed)
+        return entrainment
 
     @property
     def sliding(self) -> Lanes:
@@ -116,8 +116,8 @@ class Conditions(eqx.Module):
 
         Source: Johnson, Contact Mechanics (1985), section 1.2.
         """
-        found: Lanes = product(jnp.abs(self.slip), self.speed)
-        return found
+        sliding: Lanes = product(jnp.abs(self.slip), self.speed)
+        return sliding
 
     @property
     def slide_roll_ratio(self) -> Lanes:
@@ -224,8 +224,8 @@ class Conditions(eqx.Module):
         Source: Murch and Wilson (1975); Aihara (1987), equation 20.
         """
         speed = as_array(self.entrainment)
-        found: Lanes = self.viscosity_slope * self.viscosity * speed**2 / self.conductivity
-        return found
+        loading: Lanes = self.viscosity_slope * self.viscosity * speed**2 / self.conductivity
+        return loading
 
     @property
     def ellipticity(self) -> Lanes:
@@ -426,7 +426,9 @@ def demand_shape(law: Law | Callable[..., Any], shape: Shape) -> None:
     why_not = of_other_shape(law, shape)
     if why_not is None:
         return
-    fitting = [one.name for one in getattr(law, "rivals", ()) if shape_of(one) in (None, shape)]
+    fitting = [
+        rival.name for rival in getattr(law, "rivals", ()) if shape_of(rival) in (None, shape)
+    ]
     choose = f"; choose one of {', '.join(fitting)}" if fitting else ""
     raise InputError(f"{why_not}{choose}")
 
@@ -438,11 +440,11 @@ def of_other_shape(law: Law | Callable[..., Any], shape: Shape) -> str | None:
         law: a record of the library, or a function.
         shape: of the contacts.
     """
-    own = shape_of(law)
-    if own is None or own == shape:
+    law_shape = shape_of(law)
+    if law_shape is None or law_shape == shape:
         return None
     name = getattr(law, "name", getattr(law, "__name__", "the law"))
-    return f"'{name}' holds for {KINDS[own]}, and these touch {TOUCH[shape]}"
+    return f"'{name}' holds for {KINDS[law_shape]}, and these touch {TOUCH[shape]}"
 
 
 def _function(law: Law | Callable[..., Any]) -> Callable[..., Any]:
@@ -452,8 +454,8 @@ def _function(law: Law | Callable[..., Any]) -> Callable[..., Any]:
 @lru_cache(maxsize=256)
 def _asked(function: Callable[..., Any]) -> Shape | None:
     """Shape that alone has what a law asks for; None if every contact has it."""
-    asked = inspect.signature(function).parameters
-    return next((_OF_SHAPE[name] for name in asked if name in _OF_SHAPE), None)
+    parameters = inspect.signature(function).parameters
+    return next((_OF_SHAPE[name] for name in parameters if name in _OF_SHAPE), None)
 
 
 def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
@@ -471,11 +473,11 @@ def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
 def _read_arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
     wanted, parameters = [], {}
     try:
-        asked = inspect.signature(law).parameters
+        accepts = inspect.signature(law).parameters
     except (TypeError, ValueError):  # of a builtin, say
-        told = "takes no conditions at a contact by their names; give a function of them"
-        raise InputError(f"the law {getattr(law, '__name__', 'given')} {told}") from None
-    for name, parameter in asked.items():
+        reason = "takes no conditions at a contact by their names; give a function of them"
+        raise InputError(f"the law {getattr(law, '__name__', 'given')} {reason}") from None
+    for name, parameter in accepts.items():
         if name in UNITS:
             wanted.append(name)
         elif parameter.default is not inspect.Parameter.empty:
@@ -514,11 +516,11 @@ def evaluate(
     function = _function(law)
     wanted, _ = arguments(function)
     values = {name: getattr(conditions, name) for name in wanted}
-    found = _once(function)(**values, **(parameters or {}))
+    law_value = _once(function)(**values, **(parameters or {}))
     heating = getattr(law, "heating", None)
     if heating is not None:
-        found = found * evaluate(heating, conditions)
-    return jnp.broadcast_to(found, conditions.load.shape).astype(conditions.load.dtype)
+        law_value = law_value * evaluate(heating, conditions)
+    return jnp.broadcast_to(law_value, conditions.load.shape).astype(conditions.load.dtype)
 
 
 @lru_cache(maxsize=64)

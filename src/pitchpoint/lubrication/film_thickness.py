@@ -223,11 +223,13 @@ def moes_1992(
     """
     groups = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
     film = (groups[0] > 0.0) & (groups[1] > 0.0)
-    load, speed, material = (jnp.log(jnp.where(film & (one > 0.0), one, _LEAST)) for one in groups)
+    load, speed, material = (
+        jnp.log(jnp.where(film & (group > 0.0), group, _LEAST)) for group in groups
+    )
     pace = speed + jnp.log(2.0)
     heavy, stiffening = load - 0.5 * pace, material + 0.25 * pace
-    found = jnp.exp(_moes_line(heavy, stiffening) + 0.5 * pace)
-    return jnp.where(film, radius * found, 0.0)
+    relative_film = jnp.exp(_moes_line(heavy, stiffening) + 0.5 * pace)
+    return jnp.where(film, radius * relative_film, 0.0)
 
 
 def hamrock_dowson_1977(

@@ -98,7 +98,7 @@ def patir_cheng_1978(*, ratio: Each, pattern: float = 1.0) -> Each:
         >>> round(float(patir_cheng_1978(ratio=2.0)), 4)
         0.7063
     """
-    return _between(pattern, [partial(_pressure, one, ratio) for one in _PRESSURE])
+    return _between(pattern, [partial(_pressure, constants, ratio) for constants in _PRESSURE])
 
 
 def _pressure(constants: _Pressure, ratio: Each) -> Array:
@@ -131,20 +131,23 @@ def patir_cheng_1979_shear(
         >>> round(float(patir_cheng_1979_shear(ratio=2.0, share=1.0)), 4)
         0.7266
     """
-    first, second = (
-        _between(pattern, [partial(_shear, one, ratio) for one in _SHEAR]) for pattern in patterns
+    factor_a, factor_b = (
+        _between(pattern, [partial(_shear, constants, ratio) for constants in _SHEAR])
+        for pattern in patterns
     )
-    carried: Each = share * first - (1.0 - share) * second
+    carried: Each = share * factor_a - (1.0 - share) * factor_b
     return carried
 
 
 def _shear(constants: _Shear, ratio: Each) -> Array:
     A1, a1, a2, a3, A2 = constants
-    given = jnp.asarray(ratio)
-    fitted = jnp.clip(given, _LEAST, 5.0)
+    film_ratio = jnp.asarray(ratio)
+    fitted = jnp.clip(film_ratio, _LEAST, 5.0)
     near = A1 * jnp.exp(a1 * jnp.log(fitted) - a2 * fitted + a3 * fitted**2)
-    far = A2 * jnp.exp(-0.25 * jnp.where(given > 5.0, given, 5.0))
-    return jnp.where(given > 5.0, far, jnp.where(given > _LEAST, near, _start(constants, given)))
+    far = A2 * jnp.exp(-0.25 * jnp.where(film_ratio > 5.0, film_ratio, 5.0))
+    return jnp.where(
+        film_ratio > 5.0, far, jnp.where(film_ratio > _LEAST, near, _start(constants, film_ratio))
+    )
 
 
 def _start(constants: _Shear, ratio: Array) -> Array:
@@ -157,10 +160,10 @@ def _start(constants: _Shear, ratio: Array) -> Array:
     return begun
 
 
-def _between(pattern: float, each: list[Callable[[], Array]]) -> Array:
+def _between(pattern: float, factors: list[Callable[[], Array]]) -> Array:
     """Interpolated in ln gamma from values at the patterns of the tables, of which two are asked for."""
-    place = float(np.interp(np.log(pattern), _PATTERNS, np.arange(len(each))))
+    place = float(np.interp(np.log(pattern), _PATTERNS, np.arange(len(factors))))
     low, part = int(place), place - int(place)
     if part < 1e-12:
-        return each[low]()
-    return (1.0 - part) * each[low]() + part * each[low + 1]()
+        return factors[low]()
+    return (1.0 - part) * factors[low]() + part * factors[low + 1]()

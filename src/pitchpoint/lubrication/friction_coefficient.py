@@ -51,8 +51,8 @@ def _power_product(*factors: tuple[Each, float], exponent: Each | float = 0.0) -
     A factor of negative power has no finite limit at zero: it is held at the floor.
     """
     logs = [(log(value, _FLOOR), power) for value, power in factors]
-    total = sum((power * one for one, power in sorted(logs, key=_size)), 0.0) + exponent
-    vanishes = [one <= math.log(_FLOOR) for one, power in logs if power > 0.0]
+    total = sum((power * logarithm for logarithm, power in sorted(logs, key=_size)), 0.0) + exponent
+    vanishes = [logarithm <= math.log(_FLOOR) for logarithm, power in logs if power > 0.0]
     return jnp.where(reduce(or_, vanishes), 0.0, jnp.exp(total))
 
 

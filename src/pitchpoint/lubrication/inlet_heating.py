@@ -108,9 +108,9 @@ def aihara_1987(*, thermal_loading: Each) -> Each:
 
 def _power(base: Each, exponent: float) -> Array:
     """A power below one, with a finite slope where its base is zero."""
-    given = jnp.asarray(base)
-    some = given > _LEAST
-    return jnp.where(some, jnp.exp(exponent * jnp.log(jnp.where(some, given, 1.0))), 0.0)
+    argument = jnp.asarray(base)
+    some = argument > _LEAST
+    return jnp.where(some, jnp.exp(exponent * jnp.log(jnp.where(some, argument, 1.0))), 0.0)
 
 
 def with_inlet_heating(law: Inlet, heating: InletHeating) -> Inlet:
@@ -121,8 +121,8 @@ def with_inlet_heating(law: Inlet, heating: InletHeating) -> Inlet:
         heating: of `INLET_HEATING`.
     """
     factor = heating.film if isinstance(law, FilmThickness) else heating.rolling
-    found: Inlet = law if factor is None else _with(law, factor)
-    return found
+    heated: Inlet = law if factor is None else _with(law, factor)
+    return heated
 
 
 @lru_cache(maxsize=64)

@@ -116,19 +116,19 @@ def check(contact: LineContact) -> None:
     for key, (value, what, scale, unit) in positive.items():
         low = np.min(np.asarray(value))
         if not low > 0.0 and not np.isnan(low):
-            told = f"{low * scale:.4g} {unit}".strip()
-            raise InputError(f"{what} of {told}: it must be positive", key=key)
+            amount = f"{low * scale:.4g} {unit}".strip()
+            raise InputError(f"{what} of {amount}: it must be positive", key=key)
 
 
 def of_conduction(given: Conduction) -> dict[str, tuple[Any, str, float, str]]:
     """What of conduction has to be positive: value, what it is, scale and unit, by its key."""
     of_oil = given.oil_conductivity, "a conductivity of the oil", 1.0, "W/m/K"
-    found: dict[str, tuple[Any, str, float, str]] = {"oil_conductivity": of_oil}
+    positive: dict[str, tuple[Any, str, float, str]] = {"oil_conductivity": of_oil}
     for member, body in enumerate((given.a, given.b)):
         conducts = body.conductivity, f"a conductivity of member {member}", 1.0, "W/m/K"
         stores = body.heat_capacity, f"a heat capacity of member {member}", 1e-6, "J/cm3/K"
-        found |= {f"conductivity_{member}": conducts, f"heat_capacity_{member}": stores}
-    return found
+        positive |= {f"conductivity_{member}": conducts, f"heat_capacity_{member}": stores}
+    return positive
 
 
 def warnings(
@@ -155,27 +155,32 @@ def warnings(
     yield from of_volume(contact.fluid)
     if not solved.any():
         return
-    each = lambda leaf: leaf[solved]  # noqa: E731
-    some, found = jax.tree.map(each, contact), jax.tree.map(each, film)
-    half_width = np.asarray(found.half_width)
-    yield from _of_thick(np.asarray(found.central_film))
-    yield from _of_pressure(some, np.asarray(found.hertz_pressure))
-    yield from _of_half_space(some, half_width, size)
-    yield from _of_inlet(some, half_width)
-    yield from _of_long_inlet(some, found)
+    select = lambda leaf: leaf[solved]  # noqa: E731
+    solved_contacts, solved_film = jax.tree.map(select, contact), jax.tree.map(select, film)
+    half_width = np.asarray(solved_film.half_width)
+    yield from _of_thick(np.asarray(solved_film.central_film))
+    yield from _of_pressure(solved_contacts, np.asarray(solved_film.hertz_pressure))
+    yield from _of_half_space(solved_contacts, half_width, size)
+    yield from _of_inlet(solved_contacts, half_width)
+    yield from _of_long_inlet(solved_contacts, solved_film)
     yield from of_grid(*grid_error[:, solved], grid=(nodes,))
-    yield from _of_shear(some, found)
-    if some.texture is not None:
-        yield from _of_roughness(np.asarray(some.texture.rq), half_width)
-    if found.heat is not None:
-        peclet = np.stack([found.heat.peclet_a, found.heat.peclet_b])
-        yield from of_heat(some.fluid, peclet, np.stack([some.speed_a, some.speed_b]), half_width)
+    yield from _of_shear(solved_contacts, solved_film)
+    if solved_contacts.texture is not None:
+        yield from _of_roughness(np.asarray(solved_contacts.texture.rq), half_width)
+    if solved_film.heat is not None:
+        peclet = np.stack([solved_film.heat.peclet_a, solved_film.heat.peclet_b])
+        yield from of_heat(
+            solved_contacts.fluid,
+            peclet,
+            np.stack([solved_contacts.speed_a, solved_contacts.speed_b]),
+            half_width,
+        )
 
 
 def _of_unsolved(code: NDArray[np.int_], every: int) -> Iterator[Doubt]:
     """How many contacts have no film, and why."""
-    kinds = [(Code(int(one)).sentence, np.sum(code == one)) for one in np.unique(code)]
-    why = (one if len(kinds) == 1 else f"{one} ({count})" for one, count in kinds)
+    kinds = [(Code(int(number)).sentence, np.sum(code == number)) for number in np.unique(code)]
+    why = (reason if len(kinds) == 1 else f"{reason} ({count})" for reason, count in kinds)
     if code.size:
         sentence = f"{code.size} of {every} contacts were not solved: {'; '.join(why)}"
         brief = f"{code.size} of {every} contacts were not solved"
@@ -185,7 +190,8 @@ def _of_unsolved(code: NDArray[np.int_], every: int) -> Iterator[Doubt]:
 def _of_units(contact: LineContact) -> Iterator[Doubt]:
     """Values that hint at another unit than the one that they are taken in."""
     radius, modulus, viscosity = (
-        np.asarray(one) for one in (contact.radius, contact.modulus, contact.fluid.viscosity)
+        np.asarray(quantity)
+        for quantity in (contact.radius, contact.modulus, contact.fluid.viscosity)
     )
     if radius.max() > LARGE:
         yield Doubt(
@@ -245,9 +251,9 @@ def _of_thick(film: NDArray[np.float64]) -> Iterator[Doubt]:
 
 
 def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterator[Doubt]:
-    told = contact.fluid.outside(pressure)
-    if told is not None:
-        sentence = f"{told}: films and traction there are extrapolated"
+    warning = contact.fluid.outside(pressure)
+    if warning is not None:
+        sentence = f"{warning}: films and traction there are extrapolated"
         brief = extrapolated_pressure(float(pressure.max()))
         yield Doubt(sentence, "pressure", pressure.max(), moves=GUESSED, brief=brief)
 
@@ -347,7 +353,7 @@ def _of_long_inlet(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
 
 def _of_shear(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
     """Stress that no oil bears: a Newtonian one has no limit."""
-    *others, last = (f"'{name}'" for name in SHEAR_STRESS if name != NEWTONIAN)
+    *others, final = (f"'{name}'" for name in SHEAR_STRESS if name != NEWTONIAN)
     drawn, width = np.abs(film.shear_force), 2e6 * film.half_width
     worst = np.argmax(drawn / contact.line_load)
     stress, pressure = drawn[worst] / width[worst], contact.line_load[worst] / width[worst]
@@ -355,7 +361,7 @@ def _of_shear(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
         yield Doubt(
             f"a Newtonian oil is sheared by {stress:.3g} MPa in the mean at a mean pressure of "
             f"{pressure:.3g} MPa, more than oils bear: a `shear_law` that lowers it is "
-            f"{', '.join(others)} or {last}",
+            f"{', '.join(others)} or {final}",
             "shear",
             stress / pressure,
             brief=f"a Newtonian oil sheared by {stress:.3g} MPa: more than oils bear",
@@ -424,18 +430,18 @@ def _finer(off: float, grid: tuple[int, ...], most: int, falls: float) -> tuple[
         which = "cells" if cells and cells[0] > nodes - 1 else "nodes"
         return f"{most - (which == 'cells')} {which} are the most", "no finer one"
     enough = f"{2**doubled * (nodes - 1) + 1} nodes"
-    whole = enough + "".join(f" and {2**doubled * number} cells" for number in cells)
+    finer_grid = enough + "".join(f" and {2**doubled * number} cells" for number in cells)
     left = off * falls**doubled
     if left <= COARSE:
-        return f"{whole} should bring that below {100.0 * COARSE:g} %", f"take {enough}"
-    return f"{whole}, the most, leave some {in_percent(left)}", f"take {enough}"
+        return f"{finer_grid} should bring that below {100.0 * COARSE:g} %", f"take {enough}"
+    return f"{finer_grid}, the most, leave some {in_percent(left)}", f"take {enough}"
 
 
 def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[Doubt]:
-    given, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
-    worst = np.argmin(given / needed)
-    if given[worst] < needed[worst] * (1.0 - 1e-9):
-        yield starved(given[worst], needed[worst])
+    inlet, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
+    worst = np.argmin(inlet / needed)
+    if inlet[worst] < needed[worst] * (1.0 - 1e-9):
+        yield starved(inlet[worst], needed[worst])
 
 
 def starved(given: float, needed: float) -> Doubt:
@@ -462,5 +468,5 @@ def flooded_inlet(contact: LineContact) -> NDArray[np.float64]:
     11 %: of contacts solved at M of 0.1 to 100 and Moes' L of 2 to 15.
     """
     oil = contact.fluid
-    given = oil.viscosity, contact.radius, contact.modulus
-    return 3.0 + 25.0 / load_parameter(contact.line_load, contact.entrainment, *given)
+    properties = oil.viscosity, contact.radius, contact.modulus
+    return 3.0 + 25.0 / load_parameter(contact.line_load, contact.entrainment, *properties)

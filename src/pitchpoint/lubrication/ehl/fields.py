@@ -180,8 +180,8 @@ def _spike(x: Arrays, pressure: Array) -> tuple[Array, Array]:
     valley = jnp.max(jnp.where((here < before) & (here < after) & (inner < peak), inner, 0))
     stands_out = pressure[peak] - pressure[valley] > STANDS_OUT * jnp.max(pressure)
     place, deepest = lowest(x, -pressure, peak)
-    found = (valley > 0) & stands_out
-    return jnp.where(found, place, jnp.nan), jnp.where(found, -deepest, jnp.nan)
+    exists = (valley > 0) & stands_out
+    return jnp.where(exists, place, jnp.nan), jnp.where(exists, -deepest, jnp.nan)
 
 
 def _turned(film: LineFilm, turned: Array) -> LineFilm:
@@ -190,9 +190,9 @@ def _turned(film: LineFilm, turned: Array) -> LineFilm:
         lambda leaf: jnp.where(turned, leaf[::-1], leaf) if leaf.ndim else leaf, film
     )
     sign = jnp.where(turned, -1.0, 1.0)
-    found: LineFilm = eqx.tree_at(
-        lambda one: (one.x, one.minimum_place, one.spike_place, one.rolling),
+    turned_film: LineFilm = eqx.tree_at(
+        lambda tree: (tree.x, tree.minimum_place, tree.spike_place, tree.rolling),
         mirrored,
         replace_fn=lambda v: sign * v,
     )
-    return found
+    return turned_film

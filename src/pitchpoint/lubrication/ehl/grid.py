@@ -111,16 +111,16 @@ def grid(nodes: int, ends: Ends = "entrained") -> Grid:
         (-16.0, 0.0, 1.5)
     """
     fewer(nodes)
-    first, last = ENDS[ends]
-    places = _places(first, last)
+    inlet, outlet = ENDS[ends]
+    places = _places(inlet, outlet)
     steps = np.linspace(0.0, 1.0, nodes)
     x = places(steps)
     faces = places(0.5 * (steps[1:] + steps[:-1]))
     edges = np.concatenate(([x[0]], faces, [x[-1]]))
     kernel = line_kernel(x, edges)
     reached = np.concatenate((kernel[:1], kernel))[:, 1:-1]
-    found: Any = x, np.diff(edges), np.diff(x), faces < 0.0, kernel, reached
-    return Grid(*found)
+    fields: Any = x, np.diff(edges), np.diff(x), faces < 0.0, kernel, reached
+    return Grid(*fields)
 
 
 def fewer(nodes: int) -> int | None:
@@ -129,8 +129,8 @@ def fewer(nodes: int) -> int | None:
     Raises:
         InputError: not a number of nodes that a grid may have.
     """
-    whole = isinstance(nodes, int | np.integer)
-    if not whole or nodes < FEWEST or (nodes - 1) & (nodes - 2):
+    is_integer = isinstance(nodes, int | np.integer)
+    if not is_integer or nodes < FEWEST or (nodes - 1) & (nodes - 2):
         raise InputError(
             f"{nodes} nodes across a contact; their number is one more than a power of two, "
             f"{FEWEST}, 65, 129, 257, ..."
@@ -157,11 +157,11 @@ def lowest(x: Arrays, values: Array, node: Array) -> tuple[Array, Array]:
     """Place and value of the lowest point of the parabola through a lowest node and its neighbours."""
     near = jnp.clip(node, 1, x.shape[0] - 2) + jnp.arange(-1, 2)
     (x0, x1, x2), (h0, h1, h2) = jnp.asarray(x)[near], values[near]
-    first, second = (h1 - h0) / (x1 - x0), (h2 - h1) / (x2 - x1)
-    bend = (second - first) / (x2 - x0)
+    slope, next_slope = (h1 - h0) / (x1 - x0), (h2 - h1) / (x2 - x1)
+    bend = (next_slope - slope) / (x2 - x0)
     level = jnp.where(bend > 0.0, bend, 1.0)
-    at = jnp.clip(0.5 * (x0 + x1 - first / level), x0, x2)
-    value = h0 + (at - x0) * (first + bend * (at - x1))
+    at = jnp.clip(0.5 * (x0 + x1 - slope / level), x0, x2)
+    value = h0 + (at - x0) * (slope + bend * (at - x1))
     return jnp.where(bend > 0.0, at, x1), jnp.where(bend > 0.0, value, h1)
 
 
@@ -175,18 +175,18 @@ def restricted(values: Float[Array, " node"]) -> Array:
 def prolongation(coarse: int, fine: int) -> NDArray[np.float64]:
     """Matrix from values at the nodes of a coarse grid to those of a finer one, shape (fine, coarse)."""
     at = np.linspace(0.0, coarse - 1.0, fine)
-    first = np.clip(np.floor(at).astype(int) - 1, 0, coarse - 4)
+    start = np.clip(np.floor(at).astype(int) - 1, 0, coarse - 4)
     matrix = np.zeros((fine, coarse))
-    for one in range(4):
-        others = [k for k in range(4) if k != one]
-        weight = np.prod([(at - first - k) / (one - k) for k in others], axis=0)
-        matrix[np.arange(fine), first + one] = weight
+    for node in range(4):
+        others = [k for k in range(4) if k != node]
+        weight = np.prod([(at - start - k) / (node - k) for k in others], axis=0)
+        matrix[np.arange(fine), start + node] = weight
     return matrix
 
 
-def _places(first: float, last: float) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+def _places(inlet: float, outlet: float) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
     """Places by the number of a node over that of the last; the middle is a node of the coarsest grid."""
-    x = np.linspace(first, last, 400_001)
+    x = np.linspace(inlet, outlet, 400_001)
     density = _density(x)
     count = np.concatenate(([0.0], np.cumsum(density[1:] + density[:-1])))
     count /= count[-1]
@@ -195,8 +195,8 @@ def _places(first: float, last: float) -> Callable[[NDArray[np.float64]], NDArra
     bend = (middle - node) / (node * (1.0 - node))
 
     def places(steps: NDArray[np.float64]) -> NDArray[np.float64]:
-        found = np.interp(steps + bend * steps * (1.0 - steps), count, x)
-        return np.where(np.abs(found) < 1e-9, 0.0, found)
+        nodes = np.interp(steps + bend * steps * (1.0 - steps), count, x)
+        return np.where(np.abs(nodes) < 1e-9, 0.0, nodes)
 
     return places
 

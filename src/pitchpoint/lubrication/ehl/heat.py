@@ -97,8 +97,8 @@ def _strip(
     speeds, passes = _forward(contact), passing(at.x, at.edges)
     spread = spread_of(_conduction(contact), speeds, length, room * flow.height, passes)
     none, sliding = jnp.zeros(()), contact.speed_b - contact.speed_a
-    given = pressure - asperities, gap, room, asperities, none, sliding
-    return Strip(*given, length, _power(problem), spread)
+    fields = pressure - asperities, gap, room, asperities, none, sliding
+    return Strip(*fields, length, _power(problem), spread)
 
 
 def _power(problem: Problem) -> Array:
@@ -108,8 +108,8 @@ def _power(problem: Problem) -> Array:
 
 def warmed(problem: Problem, rise: Array) -> Problem:
     """The contact with a film that is so much warmer than its inlet, shape (node,) [K]."""
-    found: Problem = eqx.tree_at(lambda one: one.flow, problem, warmer(problem.flow, rise))
-    return found
+    warm: Problem = eqx.tree_at(lambda tree: tree.flow, problem, warmer(problem.flow, rise))
+    return warm
 
 
 class Warm(NamedTuple):
@@ -153,8 +153,8 @@ def turned(contact: LineContact, problem: Problem, state: State, at: Grid) -> Wa
     begin = Warm(
         state, cold, jnp.asarray(jnp.inf), jnp.asarray(0), state.total, cold_past(at.x.shape[0])
     )
-    found: Warm = jax.lax.while_loop(unfinished, onward, begin)
-    return found
+    end: Warm = jax.lax.while_loop(unfinished, onward, begin)
+    return end
 
 
 def settled(
@@ -173,21 +173,21 @@ def settled(
     """
     nodes = at.x.shape[0]
 
-    def parts(found: Array) -> tuple[Problem, Array, Array]:
-        inner, level, rise = found[: nodes - 2], found[nodes - 2], found[nodes - 1 :]
+    def parts(solution: Array) -> tuple[Problem, Array, Array]:
+        inner, level, rise = solution[: nodes - 2], solution[nodes - 2], solution[nodes - 1 :]
         return warmed(problem, rise), jnp.pad(inner, 1), level
 
-    def left(contact: LineContact, problem: Problem, found: Array) -> Array:
-        _, pressure, level = parts(found)
-        so_warm = warmed(problem, found[nodes - 1 :])
+    def left(contact: LineContact, problem: Problem, solution: Array) -> Array:
+        _, pressure, level = parts(solution)
+        so_warm = warmed(problem, solution[nodes - 1 :])
         rise, heated, *_ = _balance(contact, so_warm, pressure, level, at)
         return jnp.append(residual(so_warm, pressure, level, at), rise - heated)
 
     state = warm.state
-    found = jnp.concatenate((state.pressure[1:-1], state.level[None], warm.rise))
-    *frozen, found = jax.lax.stop_gradient((contact, problem, found))
-    matrix = jax.jacfwd(left, 2)(*frozen, found)
-    return parts(found - jnp.linalg.solve(matrix, left(contact, problem, found)))
+    solution = jnp.concatenate((state.pressure[1:-1], state.level[None], warm.rise))
+    *frozen, solution = jax.lax.stop_gradient((contact, problem, solution))
+    matrix = jax.jacfwd(left, 2)(*frozen, solution)
+    return parts(solution - jnp.linalg.solve(matrix, left(contact, problem, solution)))
 
 
 def defect(
@@ -213,22 +213,22 @@ def temperatures(
     if contact.conduction is None:
         return None
     rise, _, heat, strip = _balance(contact, problem, pressure, level, at)
-    found = of_surfaces(strip.spread, heat)
+    surfaces = of_surfaces(strip.spread, heat)
     cells, half_width = at.widths * strip.length, contact.half_width
     a, b = contact.conduction.a, contact.conduction.b
     expansion = work_of_expansion(problem.flow, strip.oil, strip.gap, at)
     return Temperatures(
         film=rise,
-        surface_a=found.surface_a,
-        surface_b=found.surface_b,
-        flux_a=found.flux_a,
-        flux_b=found.flux_b,
+        surface_a=surfaces.surface_a,
+        surface_b=surfaces.surface_b,
+        flux_a=surfaces.flux_a,
+        flux_b=surfaces.flux_b,
         heat=heat,
         largest_film=jnp.max(rise),
-        largest_a=jnp.max(found.surface_a),
-        largest_b=jnp.max(found.surface_b),
-        power_a=cells @ found.flux_a,
-        power_b=cells @ found.flux_b,
+        largest_a=jnp.max(surfaces.surface_a),
+        largest_b=jnp.max(surfaces.surface_b),
+        power_a=cells @ surfaces.flux_a,
+        power_b=cells @ surfaces.flux_b,
         expansion_power=expansion * strip.power,
         peclet_a=peclet_number(speed=contact.speed_a, half_width=half_width, body=a),
         peclet_b=peclet_number(speed=contact.speed_b, half_width=half_width, body=b),

@@ -177,10 +177,10 @@ class Problem(eqx.Module):
 
     def at_speed(self, factor: Array) -> Problem:
         """The same contact at another speed."""
-        found: Problem = eqx.tree_at(
-            lambda one: one.flow.resistance, self, self.flow.resistance * factor
+        changed: Problem = eqx.tree_at(
+            lambda tree: tree.flow.resistance, self, self.flow.resistance * factor
         )
-        return found
+        return changed
 
 
 def problem_of(contact: LineContact, at: Grid) -> Problem:
@@ -238,7 +238,10 @@ def _lowered(contact: LineContact, at: Grid, length: Array) -> Array:
     # Grids follow the entrainment. Means between edges that fall are those between edges that rise.
     turned = jnp.where(contact.entrainment < 0.0, -length, length)
     beside = length * jnp.array([-1.0, 1.0])
-    return sum((one.over(turned * at.edges, beside)[0] for one in contact.heights), jnp.zeros(()))
+    return sum(
+        (height_map.over(turned * at.edges, beside)[0] for height_map in contact.heights),
+        jnp.zeros(()),
+    )
 
 
 def guess(contact: LineContact) -> Array:

@@ -180,7 +180,7 @@ def _check_temperature(oil: Lubricant, temperature: ArrayLike) -> None:
     """InputError for an oil too cold or too warm."""
     warm = np.asarray(temperature)
     if not np.all(np.asarray(oil.in_range(warm))):
-        low, high = (float(np.min(np.asarray(one))) - 273.15 for one in (oil.T_min, oil.T_max))
+        low, high = (float(np.min(np.asarray(limit))) - 273.15 for limit in (oil.T_min, oil.T_max))
         worst = warm.reshape(-1)[np.argmax(np.abs(warm - 0.5 * (oil.T_min + oil.T_max)))] - 273.15
         kelvin = "; temperatures are in kelvin" if worst < COLDEST else ""
         raise InputError(

@@ -77,13 +77,13 @@ def residual(problem: Problem, pressure: Array, level: Array, at: Grid) -> Array
     """
     gap = problem.gap(pressure, level, at)
     oil = pressure - problem.flow.asperity_pressure(gap)
-    gain, own = problem.flow.balance(oil, gap, at)
-    return _rest(problem, pressure, oil, gain, _scale(own, at), at)[0]
+    gain, diagonal = problem.flow.balance(oil, gap, at)
+    return _rest(problem, pressure, oil, gain, _scale(diagonal, at), at)[0]
 
 
-def _scale(own: Array, at: Grid) -> Array:
+def _scale(diagonal: Array, at: Grid) -> Array:
     """What turns a defect of balances into one of pressures; no part of derivatives."""
-    return jax.lax.stop_gradient(own + at.widths[1:-1])
+    return jax.lax.stop_gradient(diagonal + at.widths[1:-1])
 
 
 def _rest(
@@ -92,8 +92,8 @@ def _rest(
     """What is left of balances and load, and which cells are full of oil."""
     defect = -gain / scale
     full = (oil[1:-1] > defect) & problem.wet(at)
-    rest = jnp.where(full, defect, oil[1:-1])
-    return jnp.append(rest, at.widths @ pressure - problem.load), full
+    residuals = jnp.where(full, defect, oil[1:-1])
+    return jnp.append(residuals, at.widths @ pressure - problem.load), full
 
 
 def step(problem: Problem, pressure: Array, level: Array, at: Grid) -> tuple[Array, Array]:
@@ -105,13 +105,13 @@ def step(problem: Problem, pressure: Array, level: Array, at: Grid) -> tuple[Arr
     gap = problem.gap(pressure, level, at)
     carried, softer = jax.jvp(problem.flow.asperity_pressure, (gap,), (jnp.ones_like(gap),))
     oil = pressure - carried
-    found = banded(problem.flow, oil, gap, at)
-    scale = _scale(found.own, at)
-    rest, full = _rest(problem, pressure, oil, found.gain, scale, at)
-    by_pressure = jnp.where(full, -found.by_pressure / scale, 0.0).at[2].add(~full * 1.0)
-    by_gap = jnp.where(full, -found.by_gap / scale, 0.0) - by_pressure * _shifted(softer)
+    balance = banded(problem.flow, oil, gap, at)
+    scale = _scale(balance.own, at)
+    residuals, full = _rest(problem, pressure, oil, balance.gain, scale, at)
+    by_pressure = jnp.where(full, -balance.by_pressure / scale, 0.0).at[2].add(~full * 1.0)
+    by_gap = jnp.where(full, -balance.by_gap / scale, 0.0) - by_pressure * _shifted(softer)
     matrix = _matrix(problem.yielding * by_gap, by_pressure, jnp.sum(by_gap, axis=0), at)
-    return rest, matrix
+    return residuals, matrix
 
 
 def _shifted(values: Array) -> Array:
@@ -125,11 +125,11 @@ def _matrix(by_deflection: Array, by_pressure: Array, by_level: Array, at: Grid)
     """Derivatives of all balances to pressures and level, shape (node - 1, node - 1)."""
     inner = by_level.shape[0]
     block = sum(by_deflection[k][:, None] * at.reached[k : k + inner] for k in range(REACH))
-    rows, columns, kept = _bands(inner)
-    every, last = np.arange(inner), np.full(inner, inner)
+    rows, columns, inside = _bands(inner)
+    every, border = np.arange(inner), np.full(inner, inner)
     # One scatter: each of them copies the whole matrix.
-    values = jnp.concatenate((by_pressure.reshape(-1)[kept], by_level, at.widths[1:-1]))
-    where = np.concatenate((rows, every, last)), np.concatenate((columns, last, every))
+    values = jnp.concatenate((by_pressure.reshape(-1)[inside], by_level, at.widths[1:-1]))
+    where = np.concatenate((rows, every, border)), np.concatenate((columns, border, every))
     return jnp.pad(block, (0, 1)).at[where].add(values)
 
 
@@ -137,8 +137,8 @@ def _bands(inner: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.i
     """Rows and columns of what is known of each cell, and which of it is inside the matrix."""
     rows = np.tile(np.arange(inner), (REACH, 1))
     columns = rows + np.arange(REACH)[:, None] - 2
-    kept = np.flatnonzero((columns >= 0) & (columns < inner))
-    return rows.reshape(-1)[kept], columns.reshape(-1)[kept], kept
+    inside = np.flatnonzero((columns >= 0) & (columns < inner))
+    return rows.reshape(-1)[inside], columns.reshape(-1)[inside], inside
 
 
 def dry(problem: Problem, at: Grid, factor: Array | float = 1.0) -> tuple[Array, Array]:
@@ -157,34 +157,34 @@ def dry(problem: Problem, at: Grid, factor: Array | float = 1.0) -> tuple[Array,
 def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State:
     """Newton's iteration on one grid, from a guess; from thick films where that fails."""
     faster = jnp.asarray(FASTER)
-    last = len(FASTER) - 1
+    last_speed = len(FASTER) - 1
 
     def unfinished(state: State) -> Array:
-        return state.speed <= last
+        return state.speed <= last_speed
 
     def onward(state: State) -> State:
         factor = faster[state.speed]
-        rest, matrix = step(problem.at_speed(factor), state.pressure, state.level, at)
-        size = jnp.max(jnp.abs(rest))
-        asked = jnp.where(factor == 1.0, TOLERANCE, 1e-3)
+        residuals, matrix = step(problem.at_speed(factor), state.pressure, state.level, at)
+        size = jnp.max(jnp.abs(residuals))
+        tolerance = jnp.where(factor == 1.0, TOLERANCE, 1e-3)
         state = state._replace(residual=size, total=state.total + 1, steps=state.steps + 1)
-        ended = (size < asked) | ~jnp.isfinite(size) | (state.steps > MOST)
-        lost = ~(size < jnp.maximum(asked, ENOUGH))
-        ways = lambda: _next(state, lost), lambda: _moved(state, rest, matrix)
-        found: State = jax.lax.cond(ended, *ways)
-        return found
+        ended = (size < tolerance) | ~jnp.isfinite(size) | (state.steps > MOST)
+        lost = ~(size < jnp.maximum(tolerance, ENOUGH))
+        ways = lambda: _next(state, lost), lambda: _moved(state, residuals, matrix)
+        advanced: State = jax.lax.cond(ended, *ways)
+        return advanced
 
     def _next(state: State, lost: Array) -> State:
-        found = ~lost & (faster[state.speed] == 1.0)
+        solved = ~lost & (faster[state.speed] == 1.0)
         give_up = lost & (state.speed > 0)
-        speed = jnp.where(found | give_up, last + 1, state.speed + 1)
-        again = dry(problem, at, faster[jnp.minimum(speed, last)])
+        speed = jnp.where(solved | give_up, last_speed + 1, state.speed + 1)
+        again = dry(problem, at, faster[jnp.minimum(speed, last_speed)])
         pressure = jnp.where(lost & ~give_up, again[0], state.pressure)
         level = jnp.where(lost & ~give_up, again[1], state.level)
         return state._replace(pressure=pressure, level=level, speed=speed, steps=jnp.asarray(0))
 
-    def _moved(state: State, rest: Array, matrix: Array) -> State:
-        change = jnp.linalg.solve(matrix, -rest)
+    def _moved(state: State, residuals: Array, matrix: Array) -> State:
+        change = jnp.linalg.solve(matrix, -residuals)
         limit = jnp.minimum(1.0, LONGEST_STEP / jnp.max(jnp.abs(change[:-1])))
         return state._replace(
             pressure=state.pressure.at[1:-1].add(limit * change[:-1]),
@@ -195,8 +195,8 @@ def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State
     begin = State(
         pressure, level, zero, zero, zero, jnp.asarray(jnp.inf), jnp.full((2, 3), jnp.nan)
     )
-    found: State = jax.lax.while_loop(unfinished, onward, begin)
-    return found
+    end: State = jax.lax.while_loop(unfinished, onward, begin)
+    return end
 
 
 def from_coarse(problem: Problem, grids: Sequence[Grid]) -> State:
@@ -242,9 +242,9 @@ def polished(
     """
     frozen, pressure, level = jax.lax.stop_gradient((problem, state.pressure, state.level))
     _, matrix = step(frozen, pressure, level, at)
-    rest = residual(problem, pressure, level, at)
-    also = jnp.zeros((rest.shape[0], 0)) if pushed is None else pushed
+    residuals = residual(problem, pressure, level, at)
+    also = jnp.zeros((residuals.shape[0], 0)) if pushed is None else pushed
     # One factorisation: it is what a step takes most of its time for.
-    change = jnp.linalg.solve(matrix, -jnp.column_stack((rest, also)))
+    change = jnp.linalg.solve(matrix, -jnp.column_stack((residuals, also)))
     moved = change[:, 0]
     return pressure.at[1:-1].add(moved[:-1]), level + moved[-1], change[:, 1:]

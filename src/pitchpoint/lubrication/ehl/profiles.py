@@ -35,19 +35,19 @@ def check_profiles(contact: LineContact, nodes: int) -> None:
     """
     if not contact.heights:
         return
-    widths = [np.ravel(one) for one in _widths(replace(contact, heights=()))]
-    half_width, length = (float(one[np.nanargmax(widths[0])]) for one in widths)
+    widths = [np.ravel(extent) for extent in _widths(replace(contact, heights=()))]
+    half_width, length = (float(extent[np.nanargmax(widths[0])]) for extent in widths)
     ends = -half_width, half_width
-    for one in contact.heights:
-        _check_profile(one)
-        check_cover(one, "x", np.asarray(one.x), ends)
-        rough = partial(_rq_shown, one, half_width, length)
-        seen, whole = rough(nodes)
-        if not _enough(seen, whole):
+    for profile in contact.heights:
+        _check_profile(profile)
+        check_cover(profile, "x", np.asarray(profile.x), ends)
+        rough = partial(_rq_shown, profile, half_width, length)
+        seen, rq = rough(nodes)
+        if not _enough(seen, rq):
             finer = (number for number in _finer(nodes) if _enough(*rough(number)))
             remedy = next((f"take {number} nodes" for number in finer), _REMEDY)
             raise InputError(
-                f"{nodes} nodes show Rq = {1e9 * seen:.3g} nm of a profile with {1e9 * whole:.3g} nm: waves "
+                f"{nodes} nodes show Rq = {1e9 * seen:.3g} nm of a profile with {1e9 * rq:.3g} nm: waves "
                 f"shorter than about four cells are lost; {remedy}",
                 key="heights",
             )
@@ -62,41 +62,43 @@ def _finer(nodes: int) -> Iterator[int]:
         yield nodes
 
 
-def _check_profile(one: HeightMap) -> None:
+def _check_profile(profile: HeightMap) -> None:
     """InputError for heights that differ along a line, or that move."""
-    check_map(one)
-    heights = np.asarray(one.heights)
+    check_map(profile)
+    heights = np.asarray(profile.heights)
     if np.any(heights != heights[0]):
         raise InputError(
             "heights that differ along the line: lines without ends take a profile along the surface speeds, "
             "and patches take maps",
             key="heights",
         )
-    if one.member is not None:
+    if profile.member is not None:
         raise InputError(
-            f"heights that move with member {one.member} have no steady film: those of no member stay where "
-            "they are",
+            f"heights that move with member {profile.member} have no steady film: those of no member stay "
+            "where they are",
             key="heights",
         )
 
 
-def _enough(seen: float, whole: float) -> bool:
-    return seen >= SHOWN * whole
+def _enough(seen: float, rq: float) -> bool:
+    return seen >= SHOWN * rq
 
 
-def _rq_shown(one: HeightMap, half_width: float, length: float, nodes: int) -> tuple[float, float]:
+def _rq_shown(
+    height_map: HeightMap, half_width: float, length: float, nodes: int
+) -> tuple[float, float]:
     """Rq of what the cells of a contact see of a profile, and of the profile there [m]."""
     at = grid(nodes)
     inside = np.flatnonzero(length * np.abs(at.x) <= half_width)
     edges = length * (at.x[0] + np.append(0.0, np.cumsum(at.widths)))[inside[0] : inside[-1] + 2]
     places = edges[:-1, None] + np.diff(edges)[:, None] * (np.arange(SAMPLES) + 0.5) / SAMPLES
-    x, profile = np.asarray(one.x), np.asarray(one.heights)[0]
-    heights = np.interp(places, x, profile, period=np.ptp(x) if one.periodic else None)
+    x, profile = np.asarray(height_map.x), np.asarray(height_map.heights)[0]
+    heights = np.interp(places, x, profile, period=np.ptp(x) if height_map.periodic else None)
     share = np.diff(edges) / (edges[-1] - edges[0])
     seen = np.mean(heights, axis=-1)
     mean = share @ seen
-    whole = share @ np.mean((heights - mean) ** 2, axis=-1)
-    return float(np.sqrt(share @ (seen - mean) ** 2)), float(np.sqrt(whole))
+    variance = share @ np.mean((heights - mean) ** 2, axis=-1)
+    return float(np.sqrt(share @ (seen - mean) ** 2)), float(np.sqrt(variance))
 
 
 @program

@@ -28,21 +28,25 @@ def pushed(contact: LineContact, problem: Problem, at: Grid) -> Problem:
         at: the grid.
     """
 
-    def changed(more: Array) -> Problem:
-        load, approach = contact.line_load * (1.0 + more[0]), contact.approach + more[1]
-        given: Any = load, approach
-        other = eqx.tree_at(lambda one: (one.line_load, one.approach), contact, given)
-        return warmed(problem_of(other, at), problem.flow.temperature_rise)
+    def changed(change: Array) -> Problem:
+        load, approach = contact.line_load * (1.0 + change[0]), contact.approach + change[1]
+        load_and_approach: Any = load, approach
+        changed_contact = eqx.tree_at(
+            lambda tree: (tree.line_load, tree.approach), contact, load_and_approach
+        )
+        return warmed(problem_of(changed_contact, at), problem.flow.temperature_rise)
 
-    found: Problem = jax.jacfwd(changed)(jnp.zeros(2))
-    return found
+    push: Problem = jax.jacfwd(changed)(jnp.zeros(2))
+    return push
 
 
-def _both(function: Callable[..., Array], given: tuple[Any, ...], along: tuple[Any, ...]) -> Array:
+def _both(
+    function: Callable[..., Array], primals: tuple[Any, ...], along: tuple[Any, ...]
+) -> Array:
     """Derivatives along two directions, which are the last axis of what they are told as."""
-    one = lambda tangents: jax.jvp(function, given, tangents)[1]  # noqa: E731
-    each: Callable[..., Array] = jax.vmap(one, in_axes=-1, out_axes=-1)
-    return each(along)
+    derivative = lambda tangents: jax.jvp(function, primals, tangents)[1]  # noqa: E731
+    derivatives: Callable[..., Array] = jax.vmap(derivative, in_axes=-1, out_axes=-1)
+    return derivatives(along)
 
 
 def pushed_rest(
@@ -57,7 +61,7 @@ def pushed_rest(
         level: of the surfaces.
         at: the grid.
     """
-    return _both(lambda one: residual(one, pressure, level, at), (problem,), (push,))
+    return _both(lambda tree: residual(tree, pressure, level, at), (problem,), (push,))
 
 
 def answer(
@@ -65,8 +69,8 @@ def answer(
 ) -> Float[Array, "rest 2"]:
     """Changes of pressures and level of a solution, by the implicit function theorem, see `pushed_rest`."""
     _, matrix = step(problem, pressure, level, at)
-    found: Array = jnp.linalg.solve(matrix, -pushed_rest(problem, push, pressure, level, at))
-    return found
+    changes: Array = jnp.linalg.solve(matrix, -pushed_rest(problem, push, pressure, level, at))
+    return changes
 
 
 def stiffness_and_damping(
@@ -92,7 +96,7 @@ def stiffness_and_damping(
     Returns:
         -dw/dh [N/m2] and dw/dV [N s/m2]; the latter is not a number where surfaces stand still on each other.
     """
-    film = lambda one, *state: one.mean_film(*state, at) * one.flow.height  # noqa: E731
+    film = lambda tree, *state: tree.mean_film(*state, at) * tree.flow.height  # noqa: E731
     moved = jnp.pad(answers[:-1], ((1, 1), (0, 0)))
     by_load, by_approach = _both(film, (problem, pressure, level), (push, moved, answers[-1]))
     stiffness = -contact.line_load / by_load

@@ -98,9 +98,9 @@ class Flow(eqx.Module):
 
 def at_faces(values: Float[Arrays, "node *row"], ahead: Bool[Arrays, "face *#row"]) -> Array:
     """Mean of neighbours: geometric ahead of the middle, arithmetic behind; of positive values."""
-    one, other = values[:-1], values[1:]
-    product = jnp.maximum(one * other, 1e-300)
-    return jnp.where(ahead, jnp.sqrt(product), 0.5 * (one + other))
+    before, behind = values[:-1], values[1:]
+    product = jnp.maximum(before * behind, 1e-300)
+    return jnp.where(ahead, jnp.sqrt(product), 0.5 * (before + behind))
 
 
 def upwind(values: Float[Arrays, "node *row"]) -> Array:
@@ -128,7 +128,7 @@ def banded(flow: Flow, film_pressure: Nodes, gap: Nodes, at: Grid) -> Balance:
 
     Nodes that no cell knows together are moved together: four directions find a whole band matrix.
     """
-    gain, by, own = jax.linearize(
+    gain, by, diagonal = jax.linearize(
         lambda pressure, height: flow.balance(pressure, height, at),
         film_pressure,
         gap,
@@ -137,8 +137,8 @@ def banded(flow: Flow, film_pressure: Nodes, gap: Nodes, at: Grid) -> Balance:
     nodes = film_pressure.shape[0]
     colour = jnp.arange(nodes) % REACH == jnp.arange(REACH)[:, None]
     moved, still = colour.astype(gain.dtype), jnp.zeros(nodes)
-    pressure = jax.vmap(lambda one: by(one, still))(moved)
-    height = jax.vmap(lambda one: by(still, one))(moved)
+    pressure = jax.vmap(lambda direction: by(direction, still))(moved)
+    height = jax.vmap(lambda direction: by(still, direction))(moved)
     inner = jnp.arange(1, nodes - 1)
     which = (inner - 2 + jnp.arange(REACH)[:, None]) % REACH, inner - 1
-    return Balance(gain, own, pressure[which], height[which])
+    return Balance(gain, diagonal, pressure[which], height[which])

@@ -162,14 +162,14 @@ def line_films(contact: LineContact, nodes: int = NODES, ends: Ends = "entrained
 
     def one(alone: LineContact) -> LineFilm:
         single = replace(alone, heights=heights)
-        problem, pressure, level, found = _followed(single, grids)
+        problem, pressure, level, solved = _followed(single, grids)
         push = pushed(single, problem, grids[-1])
-        given = problem, push, pressure, level
-        response = stiffness_and_damping(single, *given, answer(*given, grids[-1]), grids[-1])
+        solution = problem, push, pressure, level
+        response = stiffness_and_damping(single, *solution, answer(*solution, grids[-1]), grids[-1])
         film = line_film(single, problem, pressure, level, response, grids[-1])
         if single.texture is None:
-            found = found & ~_torn(film.gap / problem.flow.height, problem)
-        return _withheld(film, found)
+            solved = solved & ~_torn(film.gap / problem.flow.height, problem)
+        return _withheld(film, solved)
 
     return one(even) if even.line_load.ndim == 0 else jax.lax.map(one, even)
 
@@ -186,8 +186,8 @@ def _followed(contact: LineContact, grids: tuple[Grid, ...]) -> tuple[Problem, A
     warm = turned(still, frozen, state, at)
     so_warm, pressure, level = settled(contact, problem, warm, at)
     off = defect(contact, so_warm, pressure, level, at)
-    found = (warm.state.residual < ENOUGH) & (off < WARM_ENOUGH)
-    return so_warm, pressure, level, found
+    converged = (warm.state.residual < ENOUGH) & (off < WARM_ENOUGH)
+    return so_warm, pressure, level, converged
 
 
 def solve_lines(
@@ -221,12 +221,12 @@ def solve_lines(
     begin = None if start is None else _begin(start, flat.line_load.shape[0], nodes)
     closes = np.asarray(flat.approach) != 0.0
     # Each on the grid that it would have alone, and back in the order in which they came.
-    groups = [np.flatnonzero(one) for one in (~closes, closes)]
+    groups = [np.flatnonzero(mask) for mask in (~closes, closes)]
     portions: list[tuple[LineFilm, Ended, NDArray[np.float64]]] = []
     done = 0
     for ends, which in zip(ENDS, groups, strict=True):
-        some, given = _taken(flat, which), _taken(begin, which)
-        for portion in _portions(some, contact.heights, given, nodes, ends, profiles):
+        some, begins = _taken(flat, which), _taken(begin, which)
+        for portion in _portions(some, contact.heights, begins, nodes, ends, profiles):
             portions.append(portion)
             done += portion[1].code.size
             if progress is not None:
@@ -234,19 +234,19 @@ def solve_lines(
     back = np.argsort(np.concatenate(groups))
     film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts)[back], *portions)
     grid_error = np.stack([ended.grid, ended.grid_minimum])
-    told = tuple(warnings(flat, film, ended.code, grid_error, nodes, size))
+    doubts = tuple(warnings(flat, film, ended.code, grid_error, nodes, size))
     film, ended = (
-        jax.tree.map(lambda leaf: leaf.reshape((*shape, *leaf.shape[1:])), one)
-        for one in (film, ended)
+        jax.tree.map(lambda leaf: leaf.reshape((*shape, *leaf.shape[1:])), tree)
+        for tree in (film, ended)
     )
     domain = np.moveaxis(domain.reshape((*shape, 2)), -1, 0)
-    return Films(film, ended, nodes, domain, told)
+    return Films(film, ended, nodes, domain, doubts)
 
 
 def _taken(tree: Tree, which: NDArray[np.int_]) -> Tree:
     """Some of the contacts that arrays have along their first axis."""
-    found: Tree = jax.tree.map(lambda leaf: leaf[which], tree)
-    return found
+    part: Tree = jax.tree.map(lambda leaf: leaf[which], tree)
+    return part
 
 
 def usual_nodes(load: float, light: int = NODES) -> int:
@@ -274,9 +274,9 @@ def _flat(contact: LineContact) -> tuple[tuple[int, ...], LineContact]:
     try:
         shape = np.broadcast_shapes(*shapes)
     except ValueError:
-        told = " and ".join(map(str, sorted(shapes, key=len)))
+        listed = " and ".join(map(str, sorted(shapes, key=len)))
         raise InputError(
-            f"the arrays of the contacts do not fit each other: shapes {told}"
+            f"the arrays of the contacts do not fit each other: shapes {listed}"
         ) from None
     if not np.prod(shape):
         raise InputError("there are no contacts to solve: an array is empty")
@@ -294,14 +294,14 @@ def _portions(
 ) -> Iterator[tuple[LineFilm, Ended, NDArray[np.float64]]]:
     every = flat.line_load.shape[0]
     solve = _soon if every <= FEW else _fast
-    for first in range(0, every, PORTION):
-        count = min(PORTION, every - first)
+    for start in range(0, every, PORTION):
+        count = min(PORTION, every - start)
         # A last portion that is short is filled up with contacts that nobody solves.
-        which = np.minimum(np.arange(first, first + PORTION), every - 1)
-        part, given = _taken((flat, begin), which)
+        which = np.minimum(np.arange(start, start + PORTION), every - 1)
+        part, begins = _taken((flat, begin), which)
         wanted = np.arange(PORTION) < count
         rough = replace(part, heights=heights)
-        film, ended, domain = solve(rough, wanted, given, _ladder(nodes, ends))
+        film, ended, domain = solve(rough, wanted, begins, _ladder(nodes, ends))
         film = film if profiles else _without_profiles(film)
         yield jax.tree.map(lambda leaf: np.asarray(leaf)[:count], (film, ended, domain))  # noqa: B023
 
@@ -314,19 +314,21 @@ def _portion(
 ) -> tuple[LineFilm, Ended, Float[Array, "b 2"]]:
     heights, even = contact.heights, replace(contact, heights=())
 
-    def one(given: Any) -> tuple[LineFilm, Ended, Array]:
-        alone, asked, begin = given
+    def one(lane: Any) -> tuple[LineFilm, Ended, Array]:
+        alone, is_wanted, begin = lane
         single = replace(alone, heights=heights)
         code = _before(single)
         # Traced once, for its shape and for its numbers.
         solve = jax.jit(partial(_solved, grids=grids))
         shape = jax.eval_shape(solve, single, begin)
         ways = lambda: solve(single, begin), lambda: _not_solved(shape, code)
-        ended: tuple[LineFilm, Ended, Array] = jax.lax.cond(asked & (code == Code.SOLVED), *ways)
+        ended: tuple[LineFilm, Ended, Array] = jax.lax.cond(
+            is_wanted & (code == Code.SOLVED), *ways
+        )
         return ended
 
-    found: tuple[LineFilm, Ended, Array] = jax.lax.map(one, (even, wanted, start))
-    return found
+    films: tuple[LineFilm, Ended, Array] = jax.lax.map(one, (even, wanted, start))
+    return films
 
 
 _soon, _fast = program(_portion), fast_program(_portion)
@@ -356,24 +358,24 @@ def _solved(
     pressure, level, answers = polished(problem, state, at, others)
     response = stiffness_and_damping(contact, problem, push, pressure, level, answers, at)
     film = line_film(contact, problem, pressure, level, response, at)
-    rest = residual(problem, pressure, level, at)
+    residuals = residual(problem, pressure, level, at)
     gap = problem.gap(pressure, level, at)
-    converged = (state.residual < ENOUGH) & (jnp.max(jnp.abs(rest)) < ENOUGH)
+    converged = (state.residual < ENOUGH) & (jnp.max(jnp.abs(residuals)) < ENOUGH)
     code = jnp.where(converged, Code.SOLVED, Code.NOT_CONVERGED)
     if contact.texture is None:
         code = jnp.where(converged & _torn(gap, problem), Code.UNRESOLVED, code)
     off_heat = None if turns is None else defect(contact, problem, pressure, level, at)
     if off_heat is not None:
         code = jnp.where(off_heat < WARM_ENOUGH, code, Code.NOT_CONVERGED)
-    found = code == Code.SOLVED
+    solved = code == Code.SOLVED
     rq = problem.flow.texture.rq / problem.flow.height
     films = problem.films(pressure, level, at)
     grid_error = _grid_errors(films, problem.opening(gap, at), state.coarse, rq)
     off = jnp.max(jnp.abs(film.gap / problem.flow.height - _as_turned(gap, contact)))
     ended = Ended(
         code,
-        jnp.max(jnp.abs(rest[:-1])),
-        jnp.abs(rest[-1]) / problem.load,
+        jnp.max(jnp.abs(residuals[:-1])),
+        jnp.abs(residuals[-1]) / problem.load,
         off / jnp.min(problem.flow.room(gap)),
         state.total,
         grid_error[0],
@@ -381,7 +383,7 @@ def _solved(
         off_heat,
         turns,
     )
-    return _withheld(film, found), ended, at.x[jnp.array([0, -1])] / problem.yielding
+    return _withheld(film, solved), ended, at.x[jnp.array([0, -1])] / problem.yielding
 
 
 def _iterated(
@@ -397,10 +399,12 @@ def _iterated(
     if contact.conduction is None:
         return problem, state, None
     warm = turned(contact, problem, state, at)
-    cold, hot = (problem.films(one.pressure, one.level, at) for one in (state, warm.state))
+    cold, hot = (
+        problem.films(solution.pressure, solution.level, at) for solution in (state, warm.state)
+    )
     # The grid changes the warm film by as much as the isothermal one.
-    found = warm.state._replace(total=warm.total, coarse=state.coarse + (hot - cold))
-    return warmed(problem, warm.rise), found, warm.turns
+    warm_state = warm.state._replace(total=warm.total, coarse=state.coarse + (hot - cold))
+    return warmed(problem, warm.rise), warm_state, warm.turns
 
 
 def _onward(problem: Problem, shape: Array, gap: Array, grids: tuple[Grid, ...]) -> State:
@@ -427,8 +431,8 @@ def _grid_errors(films: Array, opening: Array, coarse: Array, rq: Array) -> Arra
         coarse: the same on the two grids before, shape (2, 3).
         rq: composite roughness.
     """
-    last, earlier = jnp.abs(coarse - jnp.stack((films, coarse[0])))
-    change = jnp.fmax(jnp.maximum(last[:2], last[2]), LEAST_FALL * earlier[:2])
+    latest, earlier = jnp.abs(coarse - jnp.stack((films, coarse[0])))
+    change = jnp.fmax(jnp.maximum(latest[:2], latest[2]), LEAST_FALL * earlier[:2])
     errors = (jnp.asarray(OF_HALF) * change).at[1].max(OPENS * opening)
     return errors / jnp.maximum(jnp.abs(films[:2]), THINNEST * rq)
 
@@ -447,19 +451,19 @@ def _not_solved(shape: tuple[LineFilm, Ended, Any], code: Array) -> tuple[LineFi
         lambda leaf: jnp.full(leaf.shape, jnp.nan if leaf.dtype.kind == "f" else 0, leaf.dtype),
         shape,
     )
-    return film, eqx.tree_at(lambda one: one.code, ended, code.astype(ended.code.dtype)), domain
+    return film, eqx.tree_at(lambda tree: tree.code, ended, code.astype(ended.code.dtype)), domain
 
 
-def _withheld(film: LineFilm, found: Array) -> LineFilm:
+def _withheld(film: LineFilm, solved: Array) -> LineFilm:
     """The numbers of what was solved; nothing of what was not."""
-    kept: LineFilm = jax.tree.map(lambda leaf: jnp.where(found, leaf, jnp.nan), film)
-    return kept
+    shown: LineFilm = jax.tree.map(lambda leaf: jnp.where(solved, leaf, jnp.nan), film)
+    return shown
 
 
 def _without_profiles(film: LineFilm) -> LineFilm:
     along = film.x.ndim
-    found: LineFilm = jax.tree.map(lambda leaf: leaf[..., :0] if leaf.ndim == along else leaf, film)
-    return found
+    bare: LineFilm = jax.tree.map(lambda leaf: leaf[..., :0] if leaf.ndim == along else leaf, film)
+    return bare
 
 
 def _begin(start: object, count: int, nodes: int) -> tuple[Any, Any]:
@@ -469,14 +473,14 @@ def _begin(start: object, count: int, nodes: int) -> tuple[Any, Any]:
             f"a start of type {type(start).__name__} is no films; `films_of_dataset` makes some of a dataset "
             "of `film_dataset`"
         )
-    across, given = np.shape(start.film.pressure)[-1], start.ended.code.size
-    if not across or given != count:
+    across, number = np.shape(start.film.pressure)[-1], start.ended.code.size
+    if not across or number != count:
         raise InputError(
-            f"films of {given} contacts on {across} nodes are no start for {count} contacts on {nodes} nodes"
+            f"films of {number} contacts on {across} nodes are no start for {count} contacts on {nodes} nodes"
         )
     x, pressure, gap = (
-        np.asarray(one).reshape(count, across)
-        for one in (start.film.x, start.film.pressure, start.film.gap)
+        np.asarray(field).reshape(count, across)
+        for field in (start.film.x, start.film.pressure, start.film.gap)
     )
     middle = np.argmin(np.abs(x), axis=-1)
     # A grid follows the entrainment, and has its long side ahead.
@@ -487,7 +491,7 @@ def _begin(start: object, count: int, nodes: int) -> tuple[Any, Any]:
 
 def _on_nodes(values: NDArray[np.float64], nodes: int) -> NDArray[np.float64]:
     """Values at the nodes of a grid from those of a finer or coarser one, along the last axis."""
-    given = values.shape[-1]
-    if given >= nodes:
-        return values[:, :: (given - 1) // (nodes - 1)]
-    return np.maximum(values @ prolongation(given, nodes).T, 0.0)
+    size = values.shape[-1]
+    if size >= nodes:
+        return values[:, :: (size - 1) // (nodes - 1)]
+    return np.maximum(values @ prolongation(size, nodes).T, 0.0)

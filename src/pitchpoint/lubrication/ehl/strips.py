@@ -98,14 +98,14 @@ class Spread(NamedTuple):
         # Tb - Ta = (Sb - Sa) q/2 - (Sa + Sb) across (Tb - Ta)
         mixed = jnp.eye(self.across.shape[0]) + (self.strip_a + self.strip_b) * self.across
         apart = jnp.linalg.solve(mixed, 0.5 * (self.strip_b - self.strip_a) @ heat)
-        found: Array = 0.5 * heat + (self.across * apart.T).T
-        return found
+        flux: Array = 0.5 * heat + (self.across * apart.T).T
+        return flux
 
     def of_surfaces(self, heat: Array) -> Array:
         """Mean rise of both surfaces by some heat that is made, shape (node, ...) [K]."""
         into_a = self.into_a(heat)
-        found: Array = 0.5 * (self.strip_a @ into_a + self.strip_b @ (heat - into_a))
-        return found
+        rise: Array = 0.5 * (self.strip_a @ into_a + self.strip_b @ (heat - into_a))
+        return rise
 
 
 class Passing(NamedTuple):
@@ -180,8 +180,8 @@ class Strip(NamedTuple):
 
 def warmer(flow: Flow, rise: Array) -> Flow:
     """The flow of a film that is so much warmer than its inlet [K]."""
-    found: Flow = eqx.tree_at(lambda one: one.temperature_rise, flow, rise)
-    return found
+    warm: Flow = eqx.tree_at(lambda tree: tree.temperature_rise, flow, rise)
+    return warm
 
 
 def _made(flow: Flow, strip: Strip, moved: Array, at: Along) -> tuple[Array, Array]:
@@ -205,21 +205,21 @@ def balanced(flow: Flow, strip: Strip, at: Along) -> Array:
     """
     moved, _ = pressure_flow(flow, strip.oil, strip.gap, at)
     mean, none = strip.spread.mean, jnp.eye(strip.oil.shape[0])
-    whole = mean + jnp.diag(strip.spread.within)
+    total = mean + jnp.diag(strip.spread.within)
 
     def made(rise: Array) -> tuple[Array, tuple[Array, Array]]:
         film, rubbed = _made(warmer(flow, rise), strip, moved, at)
         return film, (film, rubbed)
 
-    def onward(given: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
-        rise, _, steps = given
+    def onward(iterate: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        rise, _, steps = iterate
         by_rise, (film, rubbed) = jax.jacfwd(made, has_aux=True)(rise)
-        off = rise - whole @ film - mean @ rubbed
-        better = jnp.maximum(rise - jnp.linalg.solve(none - whole @ by_rise, off), 0.0)
+        off = rise - total @ film - mean @ rubbed
+        better = jnp.maximum(rise - jnp.linalg.solve(none - total @ by_rise, off), 0.0)
         return better, change_of(rise, better), steps + 1
 
-    def unfinished(given: tuple[Array, Array, Array]) -> Array:
-        _, change, steps = given
+    def unfinished(iterate: tuple[Array, Array, Array]) -> Array:
+        _, change, steps = iterate
         return (change > 0.1 * STEADY) & (steps < MOST_STEPS)
 
     begin = flow.temperature_rise, jnp.asarray(jnp.inf), jnp.asarray(0)

@@ -101,8 +101,8 @@ def fitted_pressure(
 ) -> Array:
     """Greenwood and Tripp's pressure with the usual fit of its integral [Pa]."""
     stiff = greenwood_tripp_stiffness(modulus, eta_beta_sigma, sigma_over_beta)
-    found: Array = stiff * hu_1994(ratio=gap / roughness_rq)
-    return found
+    pressure: Array = stiff * hu_1994(ratio=gap / roughness_rq)
+    return pressure
 
 
 def one_rough_side(
@@ -110,14 +110,14 @@ def one_rough_side(
 ) -> Array:
     """Greenwood and Williamson's pressure with summits as high as the composite roughness [Pa]."""
     summit = roughness_rq / sigma_over_beta
-    found: Array = greenwood_williamson_1966(
+    pressure: Array = greenwood_williamson_1966(
         gap=gap,
         deviation=roughness_rq,
         radius=summit,
         density=eta_beta_sigma / (summit * roughness_rq),
         modulus=modulus,
     )
-    return found
+    return pressure
 
 
 class Rough(Texture):

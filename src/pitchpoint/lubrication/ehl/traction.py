@@ -119,8 +119,8 @@ class FilmTraction:
         return np.stack([friction, np.asarray(film.rolling) * np.sign(speed_a + speed_b)])
 
     def _turn(self, contacts: LineContact) -> Films:
-        told = lambda done, _: self._progress(self._done + done)  # noqa: E731
-        films = solve_lines(contacts, nodes=self.model.nodes, profiles=False, progress=told)
+        progress = lambda done, _: self._progress(self._done + done)  # noqa: E731
+        films = solve_lines(contacts, nodes=self.model.nodes, profiles=False, progress=progress)
         self._done += films.solved.size
         return films
 

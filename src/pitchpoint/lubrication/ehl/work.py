@@ -83,13 +83,13 @@ def _between(values: Array, at: float) -> Array:
     """From values at a node, at -1, to those at the next, at 1; one that holds everywhere as it is."""
     if values.ndim == 0:
         return values
-    one, other = values[:-1], values[1:]
-    return 0.5 * (one + other) + 0.5 * at * (other - one)
+    before, behind = values[:-1], values[1:]
+    return 0.5 * (before + behind) + 0.5 * at * (behind - before)
 
 
 def filled(flow: Flow, oil: Array, room: Array) -> Array:
     """Oil that passes the end of the film over what would fill the gap behind it, one in the film."""
     mass = flow.density(oil) * room
     place = jnp.arange(oil.shape[0])
-    last = jnp.max(jnp.where(oil > BROKEN, place, 0))
-    return jnp.where(place > last, jnp.minimum(mass[last] / mass, 1.0), 1.0)
+    last_full = jnp.max(jnp.where(oil > BROKEN, place, 0))
+    return jnp.where(place > last_full, jnp.minimum(mass[last_full] / mass, 1.0), 1.0)

@@ -78,8 +78,8 @@ def balance(problem: Problem, oil: Field, gap: Field, rate: Array) -> tuple[Inne
     beside = flows.sides * jnp.diff(_walled(oil), axis=0) - flows.carried
     rises = problem.flow.approach * problem.flow.density(oil) - _stored(problem, flows.mass, rate)
     gain = jnp.diff(along, axis=1) + (jnp.diff(beside, axis=0) + rises * width * spacing)[:, 1:-1]
-    own = flows.conducts[:, 1:] + flows.conducts[:, :-1]
-    return gain, own + (flows.sides[1:] + flows.sides[:-1])[:, 1:-1]
+    diagonal = flows.conducts[:, 1:] + flows.conducts[:, :-1]
+    return gain, diagonal + (flows.sides[1:] + flows.sides[:-1])[:, 1:-1]
 
 
 def _stored(problem: Problem, mass: Field, rate: Array) -> Array:
@@ -184,8 +184,8 @@ def heat_beside(problem: Problem, oil: Field, gap: Field) -> Array:
     Half of what a face makes belongs to each of the rows beside it, all that an end makes to its row.
     """
     rise = jnp.diff(_walled(oil), axis=0)
-    made = through(problem, oil, gap).sides * rise**2 * _volume_beside(problem, oil)
-    inner = made.at[0].multiply(2.0).at[-1].multiply(2.0)
+    heat = through(problem, oil, gap).sides * rise**2 * _volume_beside(problem, oil)
+    inner = heat.at[0].multiply(2.0).at[-1].multiply(2.0)
     return 0.5 * (inner[1:] + inner[:-1]) / jnp.asarray(problem.bodies.areas)[:, None]
 
 
@@ -244,13 +244,18 @@ def stencil(
 
     Cells that no balance knows together are moved together: sixteen directions find all.
     """
-    found, by, own = jax.linearize(
+    gain, by, diagonal = jax.linearize(
         lambda pressure, height: balance(problem, pressure, height, rate), oil, gap, has_aux=True
     )
     still = jnp.zeros_like(oil)
     moved = _colours(*oil.shape)
-    by_oil = _sorted(jax.lax.map(lambda one: by(one, still), moved))
-    return found, own, by_oil, _sorted(jax.lax.map(lambda one: by(still, one), moved))
+    by_oil = _sorted(jax.lax.map(lambda direction: by(direction, still), moved))
+    return (
+        gain,
+        diagonal,
+        by_oil,
+        _sorted(jax.lax.map(lambda direction: by(still, direction), moved)),
+    )
 
 
 def _colours(rows: int, nodes: int) -> Array:
@@ -262,10 +267,10 @@ def _colours(rows: int, nodes: int) -> Array:
     return (across[:, None, :, None] * along[None, :, None, :]).reshape(-1, rows, nodes)
 
 
-def _sorted(found: Array) -> Stencil:
+def _sorted(derivatives: Array) -> Stencil:
     """Derivatives by place, from those by direction."""
-    _, rows, inner = found.shape
-    by = found.reshape(ACROSS, ALONG, rows, inner)
+    _, rows, inner = derivatives.shape
+    by = derivatives.reshape(ACROSS, ALONG, rows, inner)
     row, node = jnp.arange(rows)[:, None], jnp.arange(1, inner + 1)[None]
 
     def at(up: int, on: int) -> Array:

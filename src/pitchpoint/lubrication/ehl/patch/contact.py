@@ -133,12 +133,12 @@ def finite_line(
         InputError: arrays without places, or of another shape.
     """
     at = as_array(jnp.zeros(1) if places is None else places)
-    given = {"radius": radius, "relief": relief, "speed_a": speed_a, "speed_b": speed_b}
+    along_line = {"radius": radius, "relief": relief, "speed_a": speed_a, "speed_b": speed_b}
     return PatchContact(
         load=as_array(load),
         modulus=as_array(modulus),
         places=at,
-        **{name: _at(at, name, value) for name, value in given.items()},
+        **{name: _at(at, name, value) for name, value in along_line.items()},
         bend=as_array(0.0),
         length=as_array(length),
         across_a=as_array(0.0),
@@ -188,15 +188,15 @@ def elliptic_contact(
         heights: map of what stands out of the surfaces, or one for each; with a texture, that is below them.
         conduction: of heat, for the temperature of film and surfaces; the film is isothermal unless given.
     """
-    one = jnp.ones(1)
+    unit = jnp.ones(1)
     return PatchContact(
         load=as_array(load),
         modulus=as_array(modulus),
         places=jnp.zeros(1),
-        radius=as_array(radius) * one,
-        relief=0.0 * one,
-        speed_a=as_array(speed_a) * one,
-        speed_b=as_array(speed_b) * one,
+        radius=as_array(radius) * unit,
+        relief=0.0 * unit,
+        speed_a=as_array(speed_a) * unit,
+        speed_b=as_array(speed_b) * unit,
         bend=1.0 / as_array(transverse_radius),
         length=None,
         across_a=as_array(across[0]),
@@ -213,19 +213,19 @@ def elliptic_contact(
 
 
 def _maps(heights: Heights) -> tuple[HeightMap, ...]:
-    found = (heights,) if isinstance(heights, HeightMap) else tuple(heights)
-    if not all(isinstance(one, HeightMap) for one in found):
+    maps = (heights,) if isinstance(heights, HeightMap) else tuple(heights)
+    if not all(isinstance(height_map, HeightMap) for height_map in maps):
         raise InputError("heights are a HeightMap, or several", key="heights")
-    return found
+    return maps
 
 
 def _at(places: Array, name: str, value: ArrayLike) -> Array:
     """A value at every place."""
-    found = as_array(value)
-    if found.ndim and found.shape != places.shape:
+    quantity = as_array(value)
+    if quantity.ndim and quantity.shape != places.shape:
         raise InputError(
-            f"{name.replace('_', ' ')} has the shape {found.shape}, and places along the line have "
+            f"{name.replace('_', ' ')} has the shape {quantity.shape}, and places along the line have "
             f"{places.shape}: they have to be equal",
             key=name,
         )
-    return jnp.broadcast_to(found, places.shape)
+    return jnp.broadcast_to(quantity, places.shape)

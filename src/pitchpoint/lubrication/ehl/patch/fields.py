@@ -205,8 +205,8 @@ def patch_film(
     still = jnp.where(fast == 0.0, 1.0, fast)
     stress = full * shear_stress(flow, oil, room, fast[:, None])
     rubbing = flow.texture.boundary_friction * asperities * flow.pressure
-    senses = [(one / still)[:, None] for one in sliding]
-    shear, rubs = ([one * sense for sense in senses] for one in (stress, rubbing))
+    senses = [(component / still)[:, None] for component in sliding]
+    shear, rubs = ([magnitude * sense for sense in senses] for magnitude in (stress, rubbing))
     done = work(problem, oil, gap)
     rolls = flow.pressure * flow.height * length
     apart = _apart(contact, problem, level, response)
@@ -214,9 +214,10 @@ def patch_film(
     rough = 0.0 if contact.texture is None else contact.texture.rq
     # Surfaces that do not slide against each other have no traction, whatever asperities carry there.
     slides = (fast > 0.0)[:, None]
-    dragged = [bodies.load(one * slides) * length**2 for one in (stress, rubbing)]
+    dragged = [bodies.load(magnitude * slides) * length**2 for magnitude in (stress, rubbing)]
     sheared, rubbed = (
-        jnp.stack([bodies.load(one) for one in field]) * length**2 for field in (shear, rubs)
+        jnp.stack([bodies.load(component) for component in field]) * length**2
+        for field in (shear, rubs)
     )
     return PatchFilm(
         x=x * length,
@@ -264,12 +265,12 @@ def _filled(flow: Flow, oil: Array, room: Array) -> Array:
     rise = flow.temperature_rise
 
     def of_row(row: tuple[Array, Array, Array]) -> Array:
-        one, other, warmth = row
-        return filled(warmer(flow, warmth), one, other)
+        oil_row, room_row, warmth = row
+        return filled(warmer(flow, warmth), oil_row, room_row)
 
-    given = oil, room, jnp.broadcast_to(rise, rise.shape or oil.shape[:1])
-    found: Array = jax.vmap(of_row)(given)
-    return found
+    rows = oil, room, jnp.broadcast_to(rise, rise.shape or oil.shape[:1])
+    filling: Array = jax.vmap(of_row)(rows)
+    return filling
 
 
 def _heat(
@@ -288,10 +289,10 @@ def _apart(
     height = problem.flow.height
     stiffness = -contact.load / ((response.by_load + response.dry_by_load) * height)
     yields = response.by_approach * problem.length / problem.speed
-    found: tuple[Array, Array, Array] = jax.lax.stop_gradient(
+    constants: tuple[Array, Array, Array] = jax.lax.stop_gradient(
         ((level + response.dry) * height, stiffness, stiffness * yields)
     )
-    return found
+    return constants
 
 
 def _sliding(contact: PatchContact, y: Array) -> tuple[Array, Array]:
@@ -317,4 +318,4 @@ def _near_ends(contact: PatchContact, layout: Layout, y: Array, pressure: Array)
         return jnp.full((2, END_DISTANCES.size), jnp.nan)
     ridge, away = jnp.max(pressure, axis=1), END_DISTANCES * layout.half_width
     ends = away - 0.5 * contact.length, 0.5 * contact.length - away
-    return jnp.stack([jnp.interp(one, y, ridge, left=jnp.nan, right=jnp.nan) for one in ends])
+    return jnp.stack([jnp.interp(place, y, ridge, left=jnp.nan, right=jnp.nan) for place in ends])

@@ -159,9 +159,9 @@ class PatchFilms:
             raise InputError("films that were not solved have no stresses", key="films")
         (rows, nodes), layout = self.pressure.shape, self.layout
         bodies = layout.bodies(nodes, rows, rows, "half_space")
-        own = below_row(bodies, self.pressure, np.asarray(depth) / layout.length, poisson)
-        found: Stresses = jax.tree.map(lambda one: one * layout.pressure, own)
-        return replace(found, depth=array(depth))
+        stresses = below_row(bodies, self.pressure, np.asarray(depth) / layout.length, poisson)
+        scaled: Stresses = jax.tree.map(lambda stress: stress * layout.pressure, stresses)
+        return replace(scaled, depth=array(depth))
 
 
 @dataclass(frozen=True)
@@ -206,18 +206,20 @@ def solve_patch(
     """
     check(contact)
     check_standing(contact)
-    lies, own = turned(contact)
-    check_heat(own)
-    films = _solved(own, lies, (nodes, cells), progress, start, bounded=False)
+    lies, laid = turned(contact)
+    check_heat(laid)
+    films = _solved(laid, lies, (nodes, cells), progress, start, bounded=False)
     if films.ended.code not in LOST:
         return films
-    other = _solved(own, lies, (nodes, cells), progress, start, bounded=True)
-    kept = other if other.solved else films
-    return replace(kept, ended=replace(kept.ended, steps=films.ended.steps + other.ended.steps))
+    with_bounds = _solved(laid, lies, (nodes, cells), progress, start, bounded=True)
+    chosen = with_bounds if with_bounds.solved else films
+    return replace(
+        chosen, ended=replace(chosen.ended, steps=films.ended.steps + with_bounds.ended.steps)
+    )
 
 
 def _solved(
-    own: PatchContact,
+    contact: PatchContact,
     lies: Turned,
     grid: tuple[int, int],
     progress: Progress | None,
@@ -226,10 +228,10 @@ def _solved(
     bounded: bool,
 ) -> PatchFilms:
     """Films of a contact as its grid lies; without bounds none starts from films that have them."""
-    code = before(own)
+    code = before(contact)
     alike = start if start is not None and start.layout.bounded <= bounded else None
     layout, problem, state, turns = solve(
-        own, *grid, progress, earlier=_earlier(alike), bounded=bounded
+        contact, *grid, progress, earlier=_earlier(alike), bounded=bounded
     )
     held, approach, by_load = dry_bodies(problem)
     end = _settled(problem, array(state.pressure), array(state.level))
@@ -237,16 +239,16 @@ def _solved(
     response = Response(array(approach), array(by_load), end.by_load, end.by_approach)
     ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)
     if code == Code.SOLVED and ended.reynolds < ENOUGH:
-        errors = grid_errors(own, layout, problem, pressure, end.level, held)
+        errors = grid_errors(contact, layout, problem, pressure, end.level, held)
         ended = replace(ended, grid=errors[0], grid_minimum=errors[1])
-    heats = heated(own)
+    heats = heated(contact)
     if heats is not None:
         off = float(_defect(heats, problem, end.pressure, end.level))
         ended = replace(ended, temperature=off, turns=turns)
-    told = told_film(own, layout, problem, pressure, float(end.level), held, response, ended)
-    found = back(told.film, lies), told.ended, layout, pressure, float(end.level)
+    judged = told_film(contact, layout, problem, pressure, float(end.level), held, response, ended)
+    fields = back(judged.film, lies), judged.ended, layout, pressure, float(end.level)
     rise = None if heats is None else np.asarray(problem.flow.temperature_rise)
-    return PatchFilms(*found, held, response, lies, told.warnings, rise)
+    return PatchFilms(*fields, held, response, lies, judged.warnings, rise)
 
 
 class Told(NamedTuple):
@@ -276,8 +278,8 @@ def told_film(
     # Plain numbers would be constants of the program, which would be made anew for each contact; maps are
     # in the problem, and would make it anew for each number of them.
     lies_at, plain = jax.tree.map(array, layout), replace(own, heights=())
-    given = plain, lies_at, problem, array(pressure), array(level), array(held), response
-    film = jax.tree.map(np.asarray, _film(*given))
+    solution = plain, lies_at, problem, array(pressure), array(level), array(held), response
+    film = jax.tree.map(np.asarray, _film(*solution))
     warm = ended.temperature is None or ended.temperature < WARM_ENOUGH
     balanced = ended.reynolds < ENOUGH and ended.load < ENOUGH and np.all(np.isfinite(held))
     code = ended.code
@@ -320,8 +322,8 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
     else:
         warm = warmed(problem, array(_rise_of(films)))
         problem, pressure, level = polished_warm(heats, warm, *solution)
-    given = swapped, films.layout, problem, pressure, level, array(films.held), films.response
-    return back(patch_film(*given), films.turned)
+    fields = swapped, films.layout, problem, pressure, level, array(films.held), films.response
+    return back(patch_film(*fields), films.turned)
 
 
 def _rise_of(films: PatchFilms) -> NDArray[np.float64]:
@@ -354,34 +356,37 @@ def turned(contact: PatchContact) -> tuple[Turned, PatchContact]:
     along = float(np.mean(np.asarray(contact.speed_a + contact.speed_b)))
     across = float(contact.across_a + contact.across_b)
     swapped = abs(across) > abs(along)
-    main, other = (across, along) if swapped else (along, across)
-    lies = Turned(swapped, main < 0.0, other < 0.0)
+    main, minor = (across, along) if swapped else (along, across)
+    lies = Turned(swapped, main < 0.0, minor < 0.0)
     return lies, oriented(contact, lies)
 
 
 def oriented(contact: PatchContact, lies: Turned) -> PatchContact:
     """The contact as its grid lies."""
-    found = _swapped(contact) if lies.swapped else contact
-    along, across = (-1.0 if one else 1.0 for one in (lies.along, lies.across))
+    swapped = _swapped(contact) if lies.swapped else contact
+    along, across = (-1.0 if backward else 1.0 for backward in (lies.along, lies.across))
     return replace(
-        found,
-        speed_a=along * found.speed_a,
-        speed_b=along * found.speed_b,
-        across_a=across * found.across_a,
-        across_b=across * found.across_b,
-        heights=tuple(one.turned(lies.swapped, lies.along, lies.across) for one in contact.heights),
+        swapped,
+        speed_a=along * swapped.speed_a,
+        speed_b=along * swapped.speed_b,
+        across_a=across * swapped.across_a,
+        across_b=across * swapped.across_b,
+        heights=tuple(
+            height_map.turned(lies.swapped, lies.along, lies.across)
+            for height_map in contact.heights
+        ),
     )
 
 
 def _swapped(contact: PatchContact) -> PatchContact:
     """An ellipse with x and y exchanged."""
-    one = jnp.ones(1)
+    unit = jnp.ones(1)
     return replace(
         contact,
-        radius=one / contact.bend,
+        radius=unit / contact.bend,
         bend=1.0 / contact.radius[0],
-        speed_a=contact.across_a * one,
-        speed_b=contact.across_b * one,
+        speed_a=contact.across_a * unit,
+        speed_b=contact.across_b * unit,
         across_a=contact.speed_a[0],
         across_b=contact.speed_b[0],
     )
@@ -389,8 +394,10 @@ def _swapped(contact: PatchContact) -> PatchContact:
 
 def back(film: PatchFilm, lies: Turned) -> PatchFilm:
     """The film as the contact was given."""
-    rows, nodes = (slice(None, None, -1 if one else None) for one in (lies.across, lies.along))
-    sign = np.array([-1.0 if one else 1.0 for one in (lies.along, lies.across)])
+    rows, nodes = (
+        slice(None, None, -1 if backward else None) for backward in (lies.across, lies.along)
+    )
+    sign = np.array([-1.0 if backward else 1.0 for backward in (lies.along, lies.across)])
     fields = {name: getattr(film, name)[rows, nodes] for name in FIELDS}
     fields |= {name: sign[k] * fields[name] for pair in STRESSES for k, name in enumerate(pair)}
     fields |= {name: sign * getattr(film, name) for name in VECTORS}
@@ -399,8 +406,8 @@ def back(film: PatchFilm, lies: Turned) -> PatchFilm:
         fields |= {name: fields[name].T for name in FIELDS}
         fields |= {name: fields[name][::-1] for name in VECTORS}
         fields |= {"x": fields["y"], "y": fields["x"]}
-        for one, other in STRESSES:
-            fields |= {one: fields[other], other: fields[one]}
+        for x_name, y_name in STRESSES:
+            fields |= {x_name: fields[y_name], y_name: fields[x_name]}
     if film.heat is not None:
         fields["heat"] = _heat_back(film.heat, lies)
     return replace(film, **fields)
@@ -408,9 +415,13 @@ def back(film: PatchFilm, lies: Turned) -> PatchFilm:
 
 def _heat_back(heat: PatchTemperatures, lies: Turned) -> PatchTemperatures:
     """Temperatures as the contact was given."""
-    rows, nodes = (slice(None, None, -1 if one else None) for one in (lies.across, lies.along))
+    rows, nodes = (
+        slice(None, None, -1 if backward else None) for backward in (lies.across, lies.along)
+    )
     fields = {name: getattr(heat, name)[rows, nodes] for name in TEMPERATURES}
-    return replace(heat, **{name: one.T if lies.swapped else one for name, one in fields.items()})
+    return replace(
+        heat, **{name: field.T if lies.swapped else field for name, field in fields.items()}
+    )
 
 
 # ---- what is wrong with an input, and what is doubtful about a result
@@ -469,7 +480,7 @@ def _check_shapes(contact: PatchContact) -> None:
     else:
         single["transverse_radius"] = contact.bend
     if contact.conduction is not None:
-        single |= {key: one[0] for key, one in of_conduction(contact.conduction).items()}
+        single |= {key: entry[0] for key, entry in of_conduction(contact.conduction).items()}
     for key, value in single.items():
         if np.ndim(value):
             raise InputError(
@@ -477,8 +488,8 @@ def _check_shapes(contact: PatchContact) -> None:
             )
     for key in ("radius", "speed_a", "speed_b"):
         if contact.length is None and np.shape(getattr(contact, key)) != (1,):
-            told = key.replace("_", " ")
-            raise InputError(f"an ellipse has one {told} along x, not an array", key=key)
+            word = key.replace("_", " ")
+            raise InputError(f"an ellipse has one {word} along x, not an array", key=key)
     places = np.asarray(contact.places)
     if places.ndim != 1 or not np.all(np.diff(places) > 0.0):
         raise InputError("places along the line have to rise", key="places")
@@ -506,7 +517,7 @@ def _check_senses(contact: PatchContact) -> None:
 
 def _of_room(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
     """Oil that begins nearer than it would take to flood the contact, and thick films that leak."""
-    begins, asked = -layout.inlet, float(contact.inlet)
+    begins, wanted = -layout.inlet, float(contact.inlet)
     if begins < layout.flooded * (1.0 - 1e-9):
         yield starved(begins / layout.half_width, layout.flooded / layout.half_width)
     longer = layout.length / layout.half_width
@@ -519,13 +530,13 @@ def _of_room(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
             moves=0.2,
             brief=f"the film lengthens the contact {longer:.3g} times: up to 20 % too thin",
         )
-    if asked < begins * (1.0 - 1e-9):
+    if wanted < begins * (1.0 - 1e-9):
         yield Doubt(
-            f"oil is to begin {1e3 * asked:.3g} mm before the middle of a contact, and a patch has it from "
+            f"oil is to begin {1e3 * wanted:.3g} mm before the middle of a contact, and a patch has it from "
             f"{1e3 * begins:.3g} mm on at the nearest: the film comes out too thick",
             "inlet of a patch",
-            begins / asked,
-            brief=f"oil begins at {1e3 * begins:.3g}, not {1e3 * asked:.3g} mm: film too thick",
+            begins / wanted,
+            brief=f"oil begins at {1e3 * begins:.3g}, not {1e3 * wanted:.3g} mm: film too thick",
         )
 
 
@@ -547,10 +558,10 @@ def _warnings(
         return
     yield from _of_room(contact, layout)
     yield from of_volume(contact.fluid)
-    told = contact.fluid.outside(film.hertz_pressure)
-    if told is not None:
+    warning = contact.fluid.outside(film.hertz_pressure)
+    if warning is not None:
         pressure = float(film.hertz_pressure)
-        sentence = f"{told}: films and traction there are extrapolated"
+        sentence = f"{warning}: films and traction there are extrapolated"
         brief = extrapolated_pressure(pressure)
         yield Doubt(sentence, "pressure", pressure, moves=GUESSED, brief=brief)
     if 0.0 < film.mean_film < least:
@@ -575,7 +586,7 @@ def _warnings(
         )
     if film.heat is not None:
         peclet = np.array([[film.heat.peclet_a], [film.heat.peclet_b]])
-        slowest = [[np.min(np.abs(one))] for one in (contact.speed_a, contact.speed_b)]
+        slowest = [[np.min(np.abs(speed))] for speed in (contact.speed_a, contact.speed_b)]
         yield from of_heat(contact.fluid, peclet, np.array(slowest), np.array([half_width]))
     yield from unseen(contact, layout, nodes, rows)
     if contact.length is not None and np.max(film.pressure[[0, -1]]) > film.hertz_pressure:

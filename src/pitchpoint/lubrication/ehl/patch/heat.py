@@ -109,8 +109,8 @@ class Heated(NamedTuple):
 
     def speeds(self, y: Array) -> tuple[Array, Array]:
         """Of both surfaces in every row, each of shape (y,) [m/s]."""
-        one, other = (jnp.interp(y, self.places, v) for v in (self.speed_a, self.speed_b))
-        return one, other
+        speed_a, speed_b = (jnp.interp(y, self.places, v) for v in (self.speed_a, self.speed_b))
+        return speed_a, speed_b
 
 
 def heated(contact: PatchContact) -> Heated | None:
@@ -139,8 +139,8 @@ def rests_somewhere(contact: PatchContact) -> bool:
 
 def warmed(problem: Problem, rise: Field) -> Problem:
     """The contact with a film that is so much warmer than its inlet, shape (y, x) [K]."""
-    found: Problem = eqx.tree_at(lambda one: one.flow, problem, warmer(problem.flow, rise))
-    return found
+    warm: Problem = eqx.tree_at(lambda tree: tree.flow, problem, warmer(problem.flow, rise))
+    return warm
 
 
 class _Rows(NamedTuple):
@@ -168,9 +168,9 @@ class _Rows(NamedTuple):
         spread = spread_of(
             self.conduction, row.speeds, self.length, row.room * flow.height, self.passes
         )
-        given = row.oil, row.gap, row.room, row.asperities, row.beside
+        fields = row.oil, row.gap, row.room, row.asperities, row.beside
         sliding = row.speeds[1] - row.speeds[0]
-        return flow, Strip(*given, sliding, self.length, self.power, spread)
+        return flow, Strip(*fields, sliding, self.length, self.power, spread)
 
 
 class _Row(NamedTuple):
@@ -197,10 +197,10 @@ def _rows(heats: Heated, problem: Problem, pressure: Array, level: Array) -> tup
     at = Row(jnp.full(nodes, spacing), jnp.full(nodes - 1, spacing), ahead)
     power = flow.pressure * flow.height * problem.speed
     beside = heat_beside(problem, oil, gap) * power / length
-    given = flow, heats.conduction, passing(x, edges), at, length, power
+    shared = flow, heats.conduction, passing(x, edges), at, length, power
     speeds = heats.speeds(jnp.asarray(bodies.y) * length)
-    own = flow.temperature_rise, oil, gap, flow.room(gap), asperities, beside, speeds
-    return _Rows(*given), _Row(*own)
+    per_row = flow.temperature_rise, oil, gap, flow.room(gap), asperities, beside, speeds
+    return _Rows(*shared), _Row(*per_row)
 
 
 class Turn(NamedTuple):
@@ -249,14 +249,14 @@ def next_turn(
 def risen(heats: Heated, problem: Problem, pressure: Array, level: Array) -> Array:
     """Rise of the film that its heat makes, shape (y, x) [K]."""
     shared, rows = _rows(heats, problem, pressure, level)
-    found: Array = jax.lax.map(lambda row: by_heat(*shared.strip(row), shared.at)[0], rows)
-    return found
+    rise: Array = jax.lax.map(lambda row: by_heat(*shared.strip(row), shared.at)[0], rows)
+    return rise
 
 
 def defect(heats: Heated, problem: Problem, pressure: Array, level: Array) -> Array:
     """Rise of the film against that by its heat, over the largest rise."""
-    found = risen(heats, problem, pressure, level)
-    return change_of(problem.flow.temperature_rise, found)
+    rise = risen(heats, problem, pressure, level)
+    return change_of(problem.flow.temperature_rise, rise)
 
 
 def temperatures(

@@ -61,8 +61,8 @@ class HeightMap(eqx.Module):
         """
         self.x, self.y, self.heights = as_array(x), as_array(y), as_array(heights)
         self.member, self.periodic = member, periodic
-        asked = tuple(one.shape[0] if one.ndim == 1 else 0 for one in (self.y, self.x))
-        if self.heights.shape != asked or min(asked) < FEWEST:
+        shape = tuple(places.shape[0] if places.ndim == 1 else 0 for places in (self.y, self.x))
+        if self.heights.shape != shape or min(shape) < FEWEST:
             raise InputError(
                 f"heights of the shape {self.heights.shape} on {self.y.size} places y and {self.x.size} "
                 "places x: a map has a row for each of at least two y and a column for each of two x",
@@ -77,8 +77,8 @@ class HeightMap(eqx.Module):
     def over(self, x: Float[Arrays, " edge_x"], y: Float[Arrays, " edge_y"]) -> Array:
         """Mean height over each cell between edges, shape (edges of y - 1, edges of x - 1) [m]."""
         along, across = _means(self.x, x, self.periodic), _means(self.y, y, self.periodic)
-        found: Array = across @ self.heights @ along.T
-        return found
+        means: Array = across @ self.heights @ along.T
+        return means
 
     def standing(self, along: ArrayLike = 0.0, across: ArrayLike = 0.0) -> HeightMap:
         """The map of no member, moved along and across [m]."""
@@ -111,7 +111,9 @@ def lowered(
     x = jnp.asarray(x)
     half = 0.5 * (x[-1] - x[0]) / (x.shape[0] - 1)
     beside = jnp.append(x - half, x[-1] + half)
-    return jnp.sum(jnp.stack([one.over(beside, jnp.asarray(edges)) for one in maps]), axis=0)
+    return jnp.sum(
+        jnp.stack([height_map.over(beside, jnp.asarray(edges)) for height_map in maps]), axis=0
+    )
 
 
 def _means(places: Array, edges: Array, periodic: bool) -> Array:
@@ -125,9 +127,9 @@ def _upto(places: Array, ends: Array) -> Array:
     steps = jnp.diff(places)
     part = jnp.clip((ends[:, None] - places[:-1]) / steps, 0.0, 1.0)
     rising = 0.5 * steps * part**2
-    found = jnp.pad(steps * part - rising, ((0, 0), (0, 1))) + jnp.pad(rising, ((0, 0), (1, 0)))
+    integral = jnp.pad(steps * part - rising, ((0, 0), (0, 1))) + jnp.pad(rising, ((0, 0), (1, 0)))
     before, behind = jnp.minimum(ends - places[0], 0.0), jnp.maximum(ends - places[-1], 0.0)
-    return found.at[:, 0].add(before).at[:, -1].add(behind)
+    return integral.at[:, 0].add(before).at[:, -1].add(behind)
 
 
 def _repeated(places: Array, ends: Array) -> Array:

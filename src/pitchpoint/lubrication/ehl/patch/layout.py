@@ -186,18 +186,18 @@ def laid_out(contact: PatchContact, cells: int, film: float | None = None) -> La
     return _of_line(contact, cells, film)
 
 
-def _of_ellipse(contact: PatchContact, known: float | None) -> Layout:
+def _of_ellipse(contact: PatchContact, known_film: float | None) -> Layout:
     radius, across = float(contact.radius[0]), 1.0 / float(contact.bend)
     ellipse = _ellipse(contact)
     half_width, side = float(ellipse.along), float(ellipse.across)
     pressure = float(ellipse.pressure)
-    film, borders = _film_and_borders(contact, radius, half_width, pressure, known)
+    film, borders = _film_and_borders(contact, radius, half_width, pressure, known_film)
     longer, wider = _longer(contact, radius, film, half_width), _longer(contact, across, film, side)
     length, reach = half_width * longer, side * wider
-    flooded = _reach(borders.inlet, _thick(longer, known)) * length
+    flooded = _reach(borders.inlet, _thick(longer, known_film)) * length
     ends = -min(flooded, _begins(contact, length)), borders.outlet * length
     # Oil that comes in obliquely needs an inlet beside the contact too.
-    beside = _reach(borders.beside, _thick(wider, known))
+    beside = _reach(borders.beside, _thick(wider, known_film))
     before = max(beside, borders.inlet * _oblique(contact)) * reach
     units = length, pressure / (longer * wider), film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
@@ -235,35 +235,35 @@ def extents(contact: PatchContact, layout: Layout) -> tuple[Ends, Ends]:
 
 def _oblique(contact: PatchContact) -> float:
     """Part of the entrainment that runs across."""
-    whole = float(np.max(entrainment_of(contact)))
+    entrainment = float(np.max(entrainment_of(contact)))
     across = 0.5 * float(contact.across_a + contact.across_b)
-    return abs(across) / whole if whole > 0.0 else 0.0
+    return abs(across) / entrainment if entrainment > 0.0 else 0.0
 
 
-def _of_line(contact: PatchContact, cells: int, known: float | None) -> Layout:
+def _of_line(contact: PatchContact, cells: int, known_film: float | None) -> Layout:
     half_width, pressure, (low, high) = _carrying(contact)
     radius, face = float(np.mean(contact.radius)), float(contact.length)  # type: ignore[arg-type]
-    film, borders = _film_and_borders(contact, radius, half_width, pressure, known)
+    film, borders = _film_and_borders(contact, radius, half_width, pressure, known_film)
     longer = _longer(contact, radius, film, half_width)
     length = half_width * longer
     # A line that is crowned, say, leaks to the sides as an ellipse does.
-    thick = _thick(longer, known) if high - low < WHOLE * face else 0.0
+    thick = _thick(longer, known_film) if high - low < WHOLE * face else 0.0
     if thick > 0.0:
         low, high = _wetted(contact, low, high, film * thick)
     flooded = _reach(borders.inlet, thick) * length
     ends = -min(flooded, _begins(contact, length)), borders.outlet * length
     beyond = (borders.beside - 1.0) * 0.5 * (high - low) + (longer - 1.0) * half_width
     if contact.ends == "half_space":
-        first, last = max(low - beyond, -0.5 * face), min(high + beyond, 0.5 * face)
+        low_end, high_end = max(low - beyond, -0.5 * face), min(high + beyond, 0.5 * face)
     else:  # free faces are where the bodies end, whatever touches
-        first, last = -0.5 * face, 0.5 * face
-    reaches = first == -0.5 * face or last == 0.5 * face
+        low_end, high_end = -0.5 * face, 0.5 * face
+    reaches = low_end == -0.5 * face or high_end == 0.5 * face
     end = END_CELL * length
-    fine = not reaches or end >= (last - first) / cells * (1.0 - 1e-6)
+    fine = not reaches or end >= (high_end - low_end) / cells * (1.0 - 1e-6)
     cell = None if fine else end
     units = length, pressure / longer, film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
-    return Layout(*ends, first, last, cell, *units, radius, unit, flooded)
+    return Layout(*ends, low_end, high_end, cell, *units, radius, unit, flooded)
 
 
 def _begins(contact: PatchContact, length: float) -> float:
@@ -285,12 +285,12 @@ def _roughness(contact: PatchContact) -> float:
     return 0.0 if contact.texture is None else float(contact.texture.rq)
 
 
-def _thick(longer: float, known: float | None) -> float:
+def _thick(longer: float, known_film: float | None) -> float:
     """From zero, for films that hardly lengthen a contact, to one, for those that make all of its length.
 
     Zero for films that are guessed: laws of long lines do not tell how thick those are that leak.
     """
-    return 0.0 if known is None else float((1.0 - longer**-2) ** 8)
+    return 0.0 if known_film is None else float((1.0 - longer**-2) ** 8)
 
 
 def _reach(border: float, thick: float) -> float:
@@ -313,7 +313,11 @@ def _beside(contact: PatchContact) -> tuple[NDArray[np.float64], NDArray[np.floa
 
 
 def _film_and_borders(
-    contact: PatchContact, radius: float, half_width: float, pressure: float, known: float | None
+    contact: PatchContact,
+    radius: float,
+    half_width: float,
+    pressure: float,
+    known_film: float | None,
 ) -> tuple[float, Borders]:
     """Film in the middle, guessed unless known [m], and a grid whose inlet floods it."""
     line_load = 0.5 * np.pi * pressure * half_width
@@ -327,7 +331,7 @@ def _film_and_borders(
         radius=array(radius),
         modulus=contact.modulus,
     )
-    film = float(guess) if known is None else known
+    film = float(guess) if known_film is None else known_film
     speeds = 2.0 * float(oil.viscosity) * speed / (modulus * radius)
     load = line_load / (modulus * radius) / np.sqrt(speeds)
     if (film + _roughness(contact)) * radius < THIN * half_width**2:
@@ -348,16 +352,16 @@ def _carrying(contact: PatchContact) -> tuple[float, float, tuple[float, float]]
     length, radius = float(contact.length), float(np.mean(contact.radius))  # type: ignore[arg-type]
     half_width, _ = _of_line_load(contact, float(contact.load) / length, radius)
     nodes, cells = TRIAL
-    reach, first, last = ROOM * half_width, -0.5 * length, 0.5 * length
+    reach, low, high = ROOM * half_width, -0.5 * length, 0.5 * length
     for _ in range(MOST_TRIALS):
-        x, edges = np.linspace(-reach, reach, nodes), np.linspace(first, last, cells + 1)
+        x, edges = np.linspace(-reach, reach, nodes), np.linspace(low, high, cells + 1)
         bodies = half_space(x, edges)
         dry = _trial(contact, bodies)
         held = np.flatnonzero(np.any(dry > 0.0, axis=1))
         if np.any(dry[:, [0, -1]] > 0.0):
             reach *= 2.0
         elif held.size < FEWEST_ROWS and (held[0] > 0 or held[-1] < cells - 1):
-            first, last = edges[max(held[0] - 2, 0)], edges[min(held[-1] + 3, cells)]
+            low, high = edges[max(held[0] - 2, 0)], edges[min(held[-1] + 3, cells)]
         else:
             return _of_dry(contact, bodies, dry, radius)
     raise InputError(
@@ -398,8 +402,8 @@ def _of_dry(
 
 def _of_line_load(contact: PatchContact, line_load: float, radius: float) -> tuple[float, float]:
     """Half-width [m] and largest pressure [Pa] of an infinite line."""
-    given = {"line_load": array(line_load), "radius": array(radius), "modulus": contact.modulus}
-    return float(line_half_width(**given)), float(line_pressure(**given))
+    line = {"line_load": array(line_load), "radius": array(radius), "modulus": contact.modulus}
+    return float(line_half_width(**line)), float(line_pressure(**line))
 
 
 without_oil = fast_program(pressed)
@@ -431,7 +435,7 @@ _lowered = program(lowered)
 
 def lowered_on(maps: tuple[HeightMap, ...], layout: Layout, bodies: HalfSpace) -> Array:
     """By how much less maps make the gap in each cell of a grid, shape (y, x) [m]."""
-    x, edges = (layout.length * np.asarray(one) for one in (bodies.x, bodies.edges))
+    x, edges = (layout.length * np.asarray(places) for places in (bodies.x, bodies.edges))
     return _lowered(maps, array(x), array(edges))
 
 
@@ -495,10 +499,10 @@ class Problem(eqx.Module):
     def thicker(self, factor: float) -> Problem:
         """The same contact at a speed at which its film is so many times as thick."""
         changed = self.flow.resistance * factor ** (1.0 / BY_SPEED), self.film * factor
-        found: Problem = eqx.tree_at(
-            lambda one: (one.flow.resistance, one.film), self, tuple(map(array, changed))
+        thick: Problem = eqx.tree_at(
+            lambda tree: (tree.flow.resistance, tree.film), self, tuple(map(array, changed))
         )
-        return found
+        return thick
 
     def mean(self, field: Field, where: Field) -> Array:
         """Mean of a field over some cells."""
@@ -511,7 +515,7 @@ def problem_on(
     """A contact on one grid of a ladder; what the layout gives counts as constant for derivatives."""
     length, pressure = layout.length, layout.pressure
     bodies = layout.bodies(nodes, cells, finest, contact.ends)
-    x, y = (length * np.asarray(one) for one in (bodies.x, bodies.y))
+    x, y = (length * np.asarray(places) for places in (bodies.x, bodies.y))
     radius, unit = layout.radius, layout.speed
     height, film = length**2 / radius, layout.film
     apart = contact.gap(array(x), array(y))
@@ -530,7 +534,7 @@ def problem_on(
         contact.approach * radius / (length * unit),
         array(np.zeros(() if contact.conduction is None else (cells, nodes))),
     )
-    found: Any = (
+    fields: Any = (
         flow,
         jax.tree.map(array, bodies),
         apart / height,
@@ -546,4 +550,4 @@ def problem_on(
         array(layout.steep),
         bool(layout.bounded),
     )
-    return Problem(*found)
+    return Problem(*fields)

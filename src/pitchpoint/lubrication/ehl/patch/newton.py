@@ -186,21 +186,21 @@ def linear(problem: Problem, pressure: Array, level: Array, rate: Array) -> Line
     gap = problem.gap(pressure, level)
     carried, softer = jax.jvp(problem.flow.asperity_pressure, (gap,), (jnp.ones_like(gap),))
     oil = pressure - carried
-    gain, own, by_oil, by_gap = stencil(problem, oil, gap, rate)
-    scale = own + jnp.asarray(problem.bodies.areas)[:, None]
+    gain, diagonal, by_oil, by_gap = stencil(problem, oil, gap, rate)
+    scale = diagonal + jnp.asarray(problem.bodies.areas)[:, None]
     defect = -gain / scale
     full = oil[:, 1:-1] > defect
-    rest = jnp.where(full, defect, oil[:, 1:-1])
+    residuals = jnp.where(full, defect, oil[:, 1:-1])
     own_row = jnp.where(full, -by_oil.along / scale, 0.0).at[2].add(~full * 1.0)
     by_pressure = Stencil(own_row, jnp.where(full, -by_oil.across / scale, 0.0))
     by_height = Stencil(
-        *(jnp.where(full, -one / scale, 0.0) for one in (by_gap.along, by_gap.across))
+        *(jnp.where(full, -derivative / scale, 0.0) for derivative in (by_gap.along, by_gap.across))
     )
     softened = _softened(by_pressure, softer)
-    to_gap = jax.tree.map(lambda one, other: one - other, by_height, softened)
+    to_gap = jax.tree.map(lambda direct, softening: direct - softening, by_height, softened)
     areas = jnp.asarray(problem.bodies.areas) / problem.load
     return Linear(
-        rest,
+        residuals,
         areas @ jnp.sum(pressure, axis=1) - 1.0,
         by_pressure,
         to_gap,
@@ -230,9 +230,9 @@ def _around(field: Array) -> tuple[Array, Array]:
     )
 
 
-def _times(found: Stencil, field: Array) -> Array:
+def _times(derivatives: Stencil, field: Array) -> Array:
     along, across = _around(field)
-    return jnp.sum(found.along * along, axis=0) + jnp.sum(found.across * across, axis=0)
+    return jnp.sum(derivatives.along * along, axis=0) + jnp.sum(derivatives.across * across, axis=0)
 
 
 def product(at: Linear, change: Array) -> Array:
@@ -240,8 +240,10 @@ def product(at: Linear, change: Array) -> Array:
     inner = change[:-1].reshape(at.rest.shape)
     pressure = jnp.pad(inner, ((0, 0), (1, 1)))
     sinks = at.problem.bodies.deflection(pressure, 1.0 / at.problem.yielding)
-    rest = _times(at.by_pressure, pressure) + _times(at.by_gap, sinks) + at.by_level * change[-1]
-    return jnp.append(rest, at.share @ jnp.sum(inner, axis=1))
+    residuals = (
+        _times(at.by_pressure, pressure) + _times(at.by_gap, sinks) + at.by_level * change[-1]
+    )
+    return jnp.append(residuals, at.share @ jnp.sum(inner, axis=1))
 
 
 def rows(at: Linear, even: bool = False) -> Rows:
@@ -258,15 +260,15 @@ def rows(at: Linear, even: bool = False) -> Rows:
     by_gap, by_pressure = at.by_gap.along[:, some], at.by_pressure.along[:, some]
     matrix = sum(by_gap[k][:, :, None] * reached[:, k : k + inner] for k in range(ALONG))
     row, column, which = _bands(inner)
-    found = jnp.asarray(matrix).at[:, row, column].add(by_pressure[which, :, row].T)
-    inverse = jnp.linalg.inv(found)
+    system = jnp.asarray(matrix).at[:, row, column].add(by_pressure[which, :, row].T)
+    inverse = jnp.linalg.inv(system)
     lifted = jnp.einsum("yij,yj->yi", inverse, at.by_level[some])
     return Rows(inverse, lifted, at.share @ jnp.sum(_with_images(lifted, at.share), axis=1))
 
 
-def _with_images(found: Array, share: Array) -> Array:
+def _with_images(by_row: Array, share: Array) -> Array:
     """Values of all rows, from those of all or of those up to the middle."""
-    every: Array = found if len(found) == len(share) else jnp.concatenate((found, found[::-1]))
+    every: Array = by_row if len(by_row) == len(share) else jnp.concatenate((by_row, by_row[::-1]))
     return every
 
 
@@ -275,7 +277,9 @@ def _even(problem: Problem) -> bool:
     warm = np.atleast_1d(problem.flow.temperature_rise)
     across = [np.diff(problem.bodies.edges), problem.along, problem.apart, problem.before, warm]
     sizes = map(np.asarray, across)
-    alike = all(np.max(np.abs(one - one[::-1])) <= EVEN * np.max(np.abs(one)) for one in sizes)
+    alike = all(
+        np.max(np.abs(field - field[::-1])) <= EVEN * np.max(np.abs(field)) for field in sizes
+    )
     return alike and float(problem.across) == 0.0
 
 
@@ -283,20 +287,20 @@ def _bands(inner: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.i
     """Rows and columns of the band of a matrix, and which diagonal each entry is on."""
     row = np.tile(np.arange(inner), (ALONG, 1))
     column = row + np.arange(ALONG)[:, None] - 2
-    kept = (column >= 0) & (column < inner)
-    return row[kept], column[kept], np.nonzero(kept)[0]
+    inside = (column >= 0) & (column < inner)
+    return row[inside], column[inside], np.nonzero(inside)[0]
 
 
 def by_rows(alone: Rows, share: Array, rest: Array) -> Array:
     """Change that would mend what is left, if rows felt each other by the load alone."""
-    each = rest[:-1].reshape(share.size, -1)
+    by_row = rest[:-1].reshape(share.size, -1)
     count = len(alone.inverse)
     if count == share.size:
-        change = jnp.einsum("yij,yj->yi", alone.inverse, each)
+        change = jnp.einsum("yij,yj->yi", alone.inverse, by_row)
     else:
         # A row and its image at once: so every inverse is read once.
         both = jnp.einsum(
-            "yij,yjc->yic", alone.inverse, jnp.stack((each[:count], each[: count - 1 : -1]), -1)
+            "yij,yjc->yic", alone.inverse, jnp.stack((by_row[:count], by_row[: count - 1 : -1]), -1)
         )
         change = jnp.concatenate((both[..., 0], both[::-1, :, 1]))
     level = (share @ jnp.sum(change, axis=1) - rest[-1]) / alone.carried
@@ -312,13 +316,13 @@ def mended(at: Linear, alone: Rows, rest: Array) -> Array:
         rest: of all inner cells, the load at last.
     """
     size = rest.shape[0]
-    many = jnp.zeros((DIRECTIONS, size))
-    begin = _Search(jnp.zeros(size), rest, many, many, jnp.zeros((), int))
+    directions = jnp.zeros((DIRECTIONS, size))
+    begin = _Search(jnp.zeros(size), rest, directions, directions, jnp.zeros((), int))
     enough = INEXACT * jnp.linalg.norm(rest)
 
     def unfinished(search: _Search) -> Array:
-        more: Array = (search.number < DIRECTIONS) & (jnp.linalg.norm(search.left) > enough)
-        return more
+        going: Array = (search.number < DIRECTIONS) & (jnp.linalg.norm(search.left) > enough)
+        return going
 
     def onward(search: _Search) -> _Search:
         return _searched(at, alone, search)
@@ -332,8 +336,8 @@ def _searched(at: Linear, alone: Rows, search: _Search) -> _Search:
     move = by_rows(alone, at.share, search.left)
     effect = product(at, move)
     for _ in range(2):  # twice is enough for rounding
-        known = search.effects @ effect
-        effect, move = effect - known @ search.effects, move - known @ search.moves
+        projections = search.effects @ effect
+        effect, move = effect - projections @ search.effects, move - projections @ search.moves
     size = jnp.linalg.norm(effect)
     effect, move = effect / size, move / size
     length = effect @ search.left
@@ -392,8 +396,8 @@ def moved(
 
     def tried(part: Array) -> tuple[Array, Array, Array]:
         there = gap + part * grows
-        rest = _rest_in_time(at, pressure + part * step, there, mass, rate)
-        left = jnp.linalg.norm(rest) / begin
+        residuals = _rest_in_time(at, pressure + part * step, there, mass, rate)
+        left = jnp.linalg.norm(residuals) / begin
         roomy = jnp.all(problem.flow.room(there) > least)
         fits = jnp.where(manner.careful, left <= 1.0 - MENDED * part, roomy)
         return part, left, fits
@@ -401,10 +405,10 @@ def moved(
     def unfit(search: tuple[Array, Array, Array]) -> Array:
         return (search[0] > SHORTEST) & ~search[2]
 
-    found = jax.lax.while_loop(unfit, lambda search: tried(0.5 * search[0]), tried(jnp.ones(())))
-    part, left, _ = found
-    whole = jnp.all(jnp.abs(change[:-1]) <= longest)
-    cut = jnp.where(whole, part, NEARLY * part)
+    fitting = jax.lax.while_loop(unfit, lambda search: tried(0.5 * search[0]), tried(jnp.ones(())))
+    part, left, _ = fitting
+    unclipped = jnp.all(jnp.abs(change[:-1]) <= longest)
+    cut = jnp.where(unclipped, part, NEARLY * part)
     return Moved(pressure + part * step, level + part * rise, cut, left)
 
 
@@ -426,8 +430,8 @@ def _rest_in_time(at: Linear, pressure: Array, gap: Array, mass: Array, rate: Ar
     oil = pressure - problem.flow.asperity_pressure(gap)
     gain, _ = balance(problem, oil, gap, jnp.zeros(()))
     stored = (_mass(problem, pressure, gap) - mass) * jnp.asarray(problem.bodies.areas)[:, None]
-    rest: Array = jnp.minimum((rate * stored[:, 1:-1] - gain) / at.scale, oil[:, 1:-1])
-    return rest
+    residuals: Array = jnp.minimum((rate * stored[:, 1:-1] - gain) / at.scale, oil[:, 1:-1])
+    return residuals
 
 
 _linear, _rows = fast_program(linear), fast_program(rows)
@@ -476,13 +480,13 @@ def iterated(
         if alone is None or residual > NEAR or age >= AGE:
             alone, age = _rows(at, even), 0
         age += 1
-        rest = np.append(np.ravel(at.rest), float(at.load))
-        change = _mended(at, alone, array(-rest))
-        given = at, state.pressure, state.level, change, array(rate), held
-        found = _moved(*given)
-        state = state._replace(pressure=found.pressure, level=found.level)
-        stuck = stuck + 1 if float(found.part) <= SHORTEST else 0
-        rate = _rate(rate, float(found.part), float(found.left), residual)
+        residuals = np.append(np.ravel(at.rest), float(at.load))
+        change = _mended(at, alone, array(-residuals))
+        arguments = at, state.pressure, state.level, change, array(rate), held
+        after = _moved(*arguments)
+        state = state._replace(pressure=after.pressure, level=after.level)
+        stuck = stuck + 1 if float(after.part) <= SHORTEST else 0
+        rate = _rate(rate, float(after.part), float(after.left), residual)
     return state
 
 

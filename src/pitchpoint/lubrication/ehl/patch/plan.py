@@ -30,20 +30,20 @@ def check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) ->
         )
     if not np.all(np.isfinite(times)) or not np.all(np.diff(times) > 0.0):
         raise InputError("the times of a march have to rise", key="times")
-    for one in contacts:
-        check(one)
-    if any(_kind(one) != _kind(contacts[0]) for one in contacts):
+    for contact in contacts:
+        check(contact)
+    if any(_kind(contact) != _kind(contacts[0]) for contact in contacts):
         raise InputError(
             "the contacts of a march are of one kind: the same ends, oil laws, textures and height maps, "
             "with arrays of the same shapes",
             key="contacts",
         )
-    if any(one.conduction is not None for one in contacts):
+    if any(contact.conduction is not None for contact in contacts):
         raise InputError(
             "films over time are isothermal, temperatures those of steady films: leave `conduction` out",
             key="conduction",
         )
-    if any(float(one.approach) for one in contacts[1:]):
+    if any(float(contact.approach) for contact in contacts[1:]):
         raise InputError(
             "the bodies of a march approach each other as the load asks: only the first film takes a speed "
             "of approach",
@@ -53,14 +53,14 @@ def check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) ->
 
 def _kind(contact: PatchContact) -> tuple[Any, ...]:
     leaves, structure = jax.tree.flatten(contact)
-    return structure, [np.shape(one) for one in leaves]
+    return structure, [np.shape(leaf) for leaf in leaves]
 
 
 def all_lie(contacts: Sequence[PatchContact]) -> Turned:
     """How the grid of all contacts lies."""
-    found = [turned(one)[0] for one in contacts if _moves(one)]
-    lies = found[0] if found else Turned()
-    if any(one != lies for one in found):
+    orientations = [turned(contact)[0] for contact in contacts if _moves(contact)]
+    lies = orientations[0] if orientations else Turned()
+    if any(orientation != lies for orientation in orientations):
         raise InputError(
             "the entrainment turns round or to another axis during the march; march each part alone",
             key="speed_a",
@@ -70,7 +70,7 @@ def all_lie(contacts: Sequence[PatchContact]) -> Turned:
 
 def _moves(contact: PatchContact) -> bool:
     speeds = contact.speed_a + contact.speed_b, contact.across_a + contact.across_b
-    return any(bool(np.any(np.asarray(one))) for one in speeds)
+    return any(bool(np.any(np.asarray(speed))) for speed in speeds)
 
 
 class Plan:
@@ -96,9 +96,9 @@ class Plan:
         layout: Layout | None = None,
     ) -> None:
         self.times, self.lies, self.grid = times, lies, (nodes, cells)
-        self.contacts = [oriented(one, lies) for one in contacts]
+        self.contacts = [oriented(contact, lies) for contact in contacts]
         self.passed = passed(self.contacts, times)
-        self.own = [laid_out(one, cells) for one in self.contacts]
+        self.own = [laid_out(contact, cells) for contact in self.contacts]
         self.layout = layout or _common(self.own)
 
     def check(self) -> None:
@@ -109,9 +109,9 @@ class Plan:
 
     def layout_of(self, number: int) -> Layout:
         """The common grid and its units, with the film and the dry contact of one time."""
-        own = self.own[number]
-        told = {"film": own.film, "half_width": own.half_width}
-        return self.layout._replace(**told, hertz_pressure=own.hertz_pressure)
+        layout = self.own[number]
+        changes = {"film": layout.film, "half_width": layout.half_width}
+        return self.layout._replace(**changes, hertz_pressure=layout.hertz_pressure)
 
     def contact(self, time: float) -> PatchContact:
         """The contact at a time, with its maps where they are, and no approach but that of the film."""
@@ -120,14 +120,14 @@ class Plan:
             return self._placed(self.contacts[0], np.zeros((2, 2)))
         step = self.times[number + 1] - self.times[number]
         part = (time - self.times[number]) / step
-        one, other = self.contacts[number : number + 2]
-        between: PatchContact = jax.tree.map(lambda a, b: _between(a, b, part), one, other)
-        speeds = _speeds(one), _speeds(other)
-        way = part * speeds[0] + 0.5 * part**2 * (speeds[1] - speeds[0])
-        return self._placed(between, self.passed[number] + step * way)
+        before, after = self.contacts[number : number + 2]
+        between: PatchContact = jax.tree.map(lambda a, b: _between(a, b, part), before, after)
+        speeds = _speeds(before), _speeds(after)
+        distances = part * speeds[0] + 0.5 * part**2 * (speeds[1] - speeds[0])
+        return self._placed(between, self.passed[number] + step * distances)
 
-    def _placed(self, contact: PatchContact, way: NDArray[np.float64]) -> PatchContact:
-        return replace(_moved(contact, way), approach=array(0.0))
+    def _placed(self, contact: PatchContact, distances: NDArray[np.float64]) -> PatchContact:
+        return replace(_moved(contact, distances), approach=array(0.0))
 
     def problem(self, time: float) -> Problem:
         """The contact at a time, in units of the common grid."""
@@ -140,41 +140,46 @@ def placed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> list
     if not contacts[0].heights:
         return list(contacts)
     ways = passed(contacts, times)
-    return [_moved(one, way) for one, way in zip(contacts, ways, strict=True)]
+    return [_moved(contact, distances) for contact, distances in zip(contacts, ways, strict=True)]
 
 
-def _moved(contact: PatchContact, way: NDArray[np.float64]) -> PatchContact:
+def _moved(contact: PatchContact, distances: NDArray[np.float64]) -> PatchContact:
     """A contact whose surfaces have passed by some ways along and across, shape (2, 2) [m]."""
     maps = tuple(
-        one.standing() if one.member is None else one.standing(*way[one.member])
-        for one in contact.heights
+        height_map.standing()
+        if height_map.member is None
+        else height_map.standing(*distances[height_map.member])
+        for height_map in contact.heights
     )
     return replace(contact, heights=maps)
 
 
-def _between(one: Float[Arrays, "..."], other: Float[Arrays, "..."], part: float) -> Array:
-    return array((1.0 - part) * np.asarray(one) + part * np.asarray(other))
+def _between(before: Float[Arrays, "..."], after: Float[Arrays, "..."], part: float) -> Array:
+    return array((1.0 - part) * np.asarray(before) + part * np.asarray(after))
 
 
 def _speeds(contact: PatchContact) -> NDArray[np.float64]:
     """Surface speeds of both members along and across, shape (2, 2) [m/s]."""
-    along = [float(np.mean(one)) for one in (contact.speed_a, contact.speed_b)]
+    along = [float(np.mean(speed)) for speed in (contact.speed_a, contact.speed_b)]
     return np.array([along, [float(contact.across_a), float(contact.across_b)]]).T
 
 
 def passed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> NDArray[np.float64]:
     """Ways of both surfaces along and across at every time, shape (time, 2, 2) [m]."""
-    speeds = np.stack([_speeds(one) for one in contacts])
+    speeds = np.stack([_speeds(contact) for contact in contacts])
     ways = 0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)[:, None, None]
     return np.concatenate((np.zeros((1, 2, 2)), np.cumsum(ways, axis=0)))
 
 
 def _common(layouts: Sequence[Layout]) -> Layout:
     """A grid that holds all contacts, in units of the largest."""
-    largest = max(layouts, key=lambda one: one.length)
-    lows = {name: min(getattr(one, name) for one in layouts) for name in ("inlet", "first", "film")}
+    largest = max(layouts, key=lambda layout: layout.length)
+    lows = {
+        name: min(getattr(layout, name) for layout in layouts)
+        for name in ("inlet", "first", "film")
+    }
     highs = {
-        name: max(getattr(one, name) for one in layouts)
+        name: max(getattr(layout, name) for layout in layouts)
         for name in ("outlet", "last", "speed", "flooded")
     }
     return largest._replace(**lows, **highs)

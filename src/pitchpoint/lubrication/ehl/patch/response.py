@@ -81,8 +81,8 @@ def polished_warm(
     none = jnp.zeros(size + rise.size)
     _, times = jax.linearize(lambda change: rest(still, frozen, change), none)
 
-    def nearly(one: Array) -> Array:
-        return jnp.append(by_rows(alone, at.share, one[:size]), one[size:])
+    def nearly(right_side: Array) -> Array:
+        return jnp.append(by_rows(alone, at.share, right_side[:size]), right_side[size:])
 
     pressure, level, rise = parts(inverted(times, nearly, -rest(heats, problem, none)))
     return warmed(problem, rise), pressure, level
@@ -93,14 +93,16 @@ def _rest(problem: Problem, at: Linear, pressure: Array, level: Array) -> Array:
     gap = problem.gap(pressure, level)
     oil = pressure - problem.flow.asperity_pressure(gap)
     gain, _ = balance(problem, oil, gap, jnp.zeros(()))
-    rest = jnp.where(at.full, -gain / at.scale, oil[:, 1:-1])
-    return jnp.append(rest, problem.bodies.load(pressure) / problem.load - 1.0)
+    residuals = jnp.where(at.full, -gain / at.scale, oil[:, 1:-1])
+    return jnp.append(residuals, problem.bodies.load(pressure) / problem.load - 1.0)
 
 
 def answered(at: Linear, alone: Rows, rest: Array) -> Array:
     """Change of inner pressures, the level at last, for changes of all balances; can be differentiated."""
     return inverted(
-        lambda change: product(at, change), lambda one: by_rows(alone, at.share, one), rest
+        lambda change: product(at, change),
+        lambda right_side: by_rows(alone, at.share, right_side),
+        rest,
     )
 
 
@@ -114,18 +116,20 @@ def inverted(times: Map, nearly: Map, rest: Array) -> Array:
     """
     times_back = jax.linear_transpose(times, rest)
     nearly_back = jax.linear_transpose(nearly, rest)
-    found: Array = jax.lax.custom_linear_solve(
+    solution: Array = jax.lax.custom_linear_solve(
         times,
         rest,
-        lambda _, one: _solved(times, nearly, one),
-        lambda _, one: _solved(lambda v: times_back(v)[0], lambda v: nearly_back(v)[0], one),
+        lambda _, right_side: _solved(times, nearly, right_side),
+        lambda _, right_side: _solved(
+            lambda v: times_back(v)[0], lambda v: nearly_back(v)[0], right_side
+        ),
     )
-    return found
+    return solution
 
 
 def _solved(times: Map, nearly: Map, rest: Array) -> Array:
-    found: Array
-    found, _ = gmres(
+    solution: Array
+    solution, _ = gmres(
         times,
         rest,
         M=nearly,
@@ -134,7 +138,7 @@ def _solved(times: Map, nearly: Map, rest: Array) -> Array:
         maxiter=RESTARTS,
         solve_method="batched",
     )
-    return found
+    return solution
 
 
 class Settled(NamedTuple):
@@ -168,9 +172,9 @@ def settled(problem: Problem, pressure: Array, level: Array) -> Settled:
     pressure, level = polished(problem, pressure, level)
     end = linear(problem, pressure, level, jnp.zeros(()))
     alone = rows(end)
-    more = jnp.zeros(end.rest.size + 1).at[-1].set(1.0)
+    load_step = jnp.zeros(end.rest.size + 1).at[-1].set(1.0)
     closing = _closing(problem, end, pressure, level)
-    by_load, by_approach = (answered(end, alone, one)[-1] for one in (more, closing))
+    by_load, by_approach = (answered(end, alone, push)[-1] for push in (load_step, closing))
     largest = jnp.max(jnp.abs(end.rest))
     return Settled(pressure, level, largest, end.load, by_load, by_approach)
 

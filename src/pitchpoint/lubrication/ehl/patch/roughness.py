@@ -44,9 +44,9 @@ SHOWN: Final = 0.85
 
 def check_maps(contact: PatchContact) -> None:
     """InputError for heights that no surface has, and for maps that cannot move as a whole."""
-    for one in contact.heights:
-        check_map(one)
-        if one.member is not None and _uneven(_speed(contact, one.member)):
+    for height_map in contact.heights:
+        check_map(height_map)
+        if height_map.member is not None and _uneven(_speed(contact, height_map.member)):
             raise InputError(
                 "a height map moves as a whole: the surface that takes it along needs one speed along the "
                 "contact line",
@@ -74,11 +74,11 @@ def _uneven(speed: NDArray[np.float64]) -> bool:
     return bool(np.ptp(speed) > SAME * np.max(np.abs(speed)))
 
 
-def _check_period(one: HeightMap) -> None:
-    heights = np.asarray(one.heights)
+def _check_period(height_map: HeightMap) -> None:
+    heights = np.asarray(height_map.heights)
     begins, ends = (heights[:, 0], heights[0]), (heights[:, -1], heights[-1])
     off = max(float(np.max(np.abs(a - b))) for a, b in zip(begins, ends, strict=True))
-    if one.periodic and off > 1e-6 * np.ptp(heights):
+    if height_map.periodic and off > 1e-6 * np.ptp(heights):
         raise InputError(
             f"a periodic height map ends {1e9 * off:.3g} nm from the heights with which it begins: its last "
             "row and column are the first ones of the next period",
@@ -88,14 +88,14 @@ def _check_period(one: HeightMap) -> None:
 
 def check_standing(contact: PatchContact) -> None:
     """InputError for maps on surfaces that move, which have no steady film."""
-    for one in contact.heights:
-        if one.member is None:
+    for height_map in contact.heights:
+        if height_map.member is None:
             continue
-        across = (contact.across_a, contact.across_b)[one.member]
-        if np.any(np.asarray(_speed(contact, one.member))) or float(across):
+        across = (contact.across_a, contact.across_b)[height_map.member]
+        if np.any(np.asarray(_speed(contact, height_map.member))) or float(across):
             raise InputError(
-                f"heights that move with member {one.member} have no steady film: `march_patches` moves "
-                "them, and a map of no member stays where it is",
+                f"heights that move with member {height_map.member} have no steady film: `march_patches` "
+                "moves them, and a map of no member stays where it is",
                 key="heights",
             )
 
@@ -114,9 +114,11 @@ def check_maps_on(contact: PatchContact, layout: Layout, cells: int) -> None:
     """
     if not contact.heights:
         return
-    for one in contact.heights:
-        for axis, places, ends in zip("xy", (one.x, one.y), extents(contact, layout), strict=True):
-            check_cover(one, axis, np.asarray(places), ends)
+    for height_map in contact.heights:
+        for axis, places, ends in zip(
+            "xy", (height_map.x, height_map.y), extents(contact, layout), strict=True
+        ):
+            check_cover(height_map, axis, np.asarray(places), ends)
     _check_reach(contact, layout, cells)
 
 
@@ -175,17 +177,17 @@ def _range(contact: PatchContact, layout: Layout, cells: int) -> float:
 def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Iterator[Doubt]:
     """Sentences on what the grid does not show of maps, and on contacts that are summits alone."""
     patch = extents(contact, layout)
-    for one in contact.heights:
-        seen = _seen(one, layout, patch, (nodes, cells), contact.ends)
-        whole = _rq(one, patch)
-        if seen < SHOWN * whole:
+    for height_map in contact.heights:
+        seen = _seen(height_map, layout, patch, (nodes, cells), contact.ends)
+        rq = _rq(height_map, patch)
+        if seen < SHOWN * rq:
             yield Doubt(
-                f"the grid shows Rq = {1e9 * seen:.3g} nm of a height map with {1e9 * whole:.3g} nm: waves "
+                f"the grid shows Rq = {1e9 * seen:.3g} nm of a height map with {1e9 * rq:.3g} nm: waves "
                 "shorter than about four cells are lost; take more nodes, or take them as asperities",
                 "unseen",
-                1.0 - seen / whole,
-                moves=1.0 - seen / whole,
-                brief=f"the grid shows Rq {1e9 * seen:.3g} nm of {1e9 * whole:.3g} nm: take more nodes",
+                1.0 - seen / rq,
+                moves=1.0 - seen / rq,
+                brief=f"the grid shows Rq {1e9 * seen:.3g} nm of {1e9 * rq:.3g} nm: take more nodes",
             )
     if contact.heights:
         high, flat = _range(contact, layout, cells), layout.half_width**2 / (2.0 * layout.radius)
@@ -199,11 +201,11 @@ def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Ite
             )
 
 
-def _rq(one: HeightMap, patch: tuple[Ends, Ends]) -> float:
+def _rq(height_map: HeightMap, patch: tuple[Ends, Ends]) -> float:
     """Rq of a map at its own places on the contact, or of a whole period [m]."""
-    heights = np.asarray(one.heights)
-    x, y = (np.asarray(places) for places in (one.x, one.y))
-    if not one.periodic:
+    heights = np.asarray(height_map.heights)
+    x, y = (np.asarray(places) for places in (height_map.x, height_map.y))
+    if not height_map.periodic:
         along, across = (_on(places, ends) for places, ends in zip((x, y), patch, strict=True))
         heights = heights[np.ix_(across, along)]
     return float(np.std(heights))
@@ -213,17 +215,23 @@ def _on(places: NDArray[np.float64], ends: Ends) -> NDArray[np.bool_]:
     """Places on the contact, with those just beyond it."""
     low = places[places <= ends[0]][-1:]
     high = places[places >= ends[1]][:1]
-    found: NDArray[np.bool_] = (places >= low) & (places <= high)
-    return found
+    inside: NDArray[np.bool_] = (places >= low) & (places <= high)
+    return inside
 
 
 def _seen(
-    one: HeightMap, layout: Layout, patch: tuple[Ends, Ends], grid: tuple[int, int], ends: str
+    height_map: HeightMap,
+    layout: Layout,
+    patch: tuple[Ends, Ends],
+    grid: tuple[int, int],
+    ends: str,
 ) -> float:
     """Rq of what the cells of the contact see of a map [m]."""
     bodies = layout.bodies(*grid, grid[1], ends)
-    places = (layout.length * np.asarray(one) for one in (bodies.x, bodies.y))
+    places = (layout.length * np.asarray(positions) for positions in (bodies.x, bodies.y))
     along, across = (
         (at >= low) & (at <= high) for at, (low, high) in zip(places, patch, strict=True)
     )
-    return float(np.std(np.asarray(lowered_on((one,), layout, bodies))[np.ix_(across, along)]))
+    return float(
+        np.std(np.asarray(lowered_on((height_map,), layout, bodies))[np.ix_(across, along)])
+    )

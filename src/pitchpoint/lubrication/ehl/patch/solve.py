@@ -171,8 +171,8 @@ def dry_under(problem: Problem, part: float = 1.0) -> DryContact:
 
 def dry_bodies(problem: Problem) -> tuple[NDArray[np.float64], float, float]:
     """Pressure without oil, shape (y, x), approach of the bodies, and its change with ln of the load."""
-    dry, less, more = (dry_under(problem, part) for part in (1.0, 1.0 - MORE, 1.0 + MORE))
-    slope = float(more.approach - less.approach) / (2.0 * MORE)
+    dry, lighter, heavier = (dry_under(problem, part) for part in (1.0, 1.0 - MORE, 1.0 + MORE))
+    slope = float(heavier.approach - lighter.approach) / (2.0 * MORE)
     return np.asarray(dry.pressure), float(dry.approach), slope
 
 
@@ -186,8 +186,10 @@ def _bedded(problem: Problem, bed: float) -> HalfSpace:
     spectrum = spectrum + soft / len(spectrum) * np.eye(spectrum.shape[-1])
     rows[:, 0] += soft
     changed = tuple(map(array, (spectrum, np.asarray(bodies.own) + soft, rows)))
-    found: HalfSpace = eqx.tree_at(lambda one: (one.spectrum, one.own, one.rows), bodies, changed)
-    return found
+    bedded: HalfSpace = eqx.tree_at(
+        lambda tree: (tree.spectrum, tree.own, tree.rows), bodies, changed
+    )
+    return bedded
 
 
 def _mean_gap(problem: Problem, dry: NDArray[np.float64], pressure: Any, level: Any) -> float:
@@ -262,8 +264,8 @@ def _as_laid(
     """A field of an earlier solution on the grid of a contact."""
     rows, nodes = np.shape(problem.apart)
     (x, y), (fine_x, fine_y) = (
-        one.places(*shape[::-1])
-        for one, shape in ((earlier.layout, field.shape), (layout, (rows, nodes)))
+        grid_layout.places(*shape[::-1])
+        for grid_layout, shape in ((earlier.layout, field.shape), (layout, (rows, nodes)))
     )
     return _between(y, fine_y) @ field @ _between(x, fine_x).T
 
@@ -280,8 +282,8 @@ def as_warm_as(coarse: Problem, fine: Problem) -> Problem:
 
 def _between(coarse: NDArray[np.float64], fine: NDArray[np.float64]) -> NDArray[np.float64]:
     """Matrix that takes values at coarse places to fine ones, linearly."""
-    one = np.eye(len(coarse))
-    return np.stack([np.interp(fine, coarse, row) for row in one], axis=1)
+    identity = np.eye(len(coarse))
+    return np.stack([np.interp(fine, coarse, row) for row in identity], axis=1)
 
 
 def shown_film(problem: Problem) -> float:
@@ -337,39 +339,39 @@ class _Solver:
         """
         self.left = MOST_ON_GRID
         shown = max(1.0, shown_film(problem) / float(problem.film))
-        asked = 1.0 if last else shown
-        found = None if before is None else self.onward(problem.thicker(asked), before)
-        if found is None:
-            found = self.from_dry(problem.thicker(shown))
-            if found is not None and asked < shown:
-                found = self.thinner(problem, asked, found)
-        if found is None and before is not None:
-            found = self.thinner(problem, asked, before)
-        return found
+        times = 1.0 if last else shown
+        solution = None if before is None else self.onward(problem.thicker(times), before)
+        if solution is None:
+            solution = self.from_dry(problem.thicker(shown))
+            if solution is not None and times < shown:
+                solution = self.thinner(problem, times, solution)
+        if solution is None and before is not None:
+            solution = self.thinner(problem, times, before)
+        return solution
 
-    def onward(self, problem: Problem, found: Found) -> Found | None:
+    def onward(self, problem: Problem, solution: Found) -> Found | None:
         """Solution from that on a coarser grid."""
         dry, _ = dry_start(problem)
-        state = self.iterated(problem, finer(found, problem, dry), FINER_TIME, CAREFUL)
+        state = self.iterated(problem, finer(solution, problem, dry), FINER_TIME, CAREFUL)
         return Found(problem, dry, state) if state.residual < ENOUGH else None
 
-    def thinner(self, problem: Problem, asked: float, found: Found) -> Found | None:
+    def thinner(self, problem: Problem, times: float, solution: Found) -> Found | None:
         """Solution with a film so many times as thick as it is, by films that become thinner and thinner."""
-        now, stride = float(found.problem.film / problem.film), STRIDE
+        now, stride = float(solution.problem.film / problem.film), STRIDE
         for _ in range(MOST_STRIDES):
-            factor = max(asked, now / stride)
+            factor = max(times, now / stride)
             trial = problem.thicker(factor)
             dry, _ = dry_start(trial)
-            last = now / factor < LEAST_STRIDE
-            state = self.near(trial, finer(found, trial, dry), boldly=last)
+            shortest = now / factor < LEAST_STRIDE
+            state = self.near(trial, finer(solution, trial, dry), boldly=shortest)
             if state.residual < ENOUGH:
-                found, now = Found(trial, dry, state), factor
-            elif last:
+                solution, now = Found(trial, dry, state), factor
+            elif shortest:
                 return None
             else:
                 stride = float(np.sqrt(now / factor))
-            if now == asked:
-                return found
+            if now == times:
+                return solution
         return None
 
     def from_dry(self, problem: Problem) -> Found | None:
@@ -381,16 +383,16 @@ class _Solver:
                 return Found(problem, dry, state)
         return None
 
-    def warm(self, heats: Heated, found: Found, steady: float = STEADY) -> Found | None:
+    def warm(self, heats: Heated, solution: Found, steady: float = STEADY) -> Found | None:
         """A solution as warm as its heat makes it, by turns between pressure and temperature."""
-        problem, state = found.problem, found.state
+        problem, state = solution.problem, solution.state
         past = cold_past(problem.flow.temperature_rise.size)
         change = array(np.inf)
         for _ in range(MOST_TURNS):
             turn = _next_turn(heats, problem, state.pressure, state.level, past, change)
             past, change, self.turns = turn.past, turn.change, self.turns + 1
             if float(change) < steady:
-                return found._replace(problem=warmed(problem, turn.rise), state=state)
+                return solution._replace(problem=warmed(problem, turn.rise), state=state)
             problem = warmed(problem, turn.begin)
             enough = max(FINEST, EXACT * min(float(change), 1.0))
             state = self.after_turn(problem, state, float(change), enough)
@@ -399,12 +401,12 @@ class _Solver:
         return None
 
     def settled(
-        self, heats: Heated | None, found: Found | None, steady: float = STEADY
+        self, heats: Heated | None, solution: Found | None, steady: float = STEADY
     ) -> Found | None:
         """A solution as warm as it becomes, itself where it is isothermal; None where none is found."""
-        if heats is None or found is None:
-            return found
-        return self.warm(heats, found, steady)
+        if heats is None or solution is None:
+            return solution
+        return self.warm(heats, solution, steady)
 
     def onto(
         self, problem: Problem, heats: Heated | None, before: Found | None, *, last: bool
@@ -413,23 +415,23 @@ class _Solver:
         warm = self.settled(heats, before, NEARLY_WARM)
         if warm is None or heats is None:
             return self.on_grid(problem, before, last=last)
-        found = self.on_grid(as_warm_as(warm.problem, problem), warm, last=last)
-        return self.on_grid(problem, before, last=last) if found is None else found
+        solution = self.on_grid(as_warm_as(warm.problem, problem), warm, last=last)
+        return self.on_grid(problem, before, last=last) if solution is None else solution
 
-    def with_tips(self, layout: Layout, found: Found | None) -> tuple[Layout, Found | None]:
+    def with_tips(self, layout: Layout, solution: Found | None) -> tuple[Layout, Found | None]:
         """Layout and solution, with limited conductances across where tips would be emptied."""
-        held = None if found is None else self.held(found)
-        return (layout, found) if held is None else (layout._replace(steep=1.0), held)
+        held = None if solution is None else self.held(solution)
+        return (layout, solution) if held is None else (layout._replace(steep=1.0), held)
 
-    def held(self, found: Found) -> Found | None:
+    def held(self, solution: Found) -> Found | None:
         """Solution whose tips hold their film, where smooth surfaces touch in that which was found."""
-        problem, state = found.problem, found.state
+        problem, state = solution.problem, solution.state
         if not touches(problem, state):
             return None
-        limited: Problem = eqx.tree_at(lambda one: one.steep, problem, array(1.0))
+        limited: Problem = eqx.tree_at(lambda tree: tree.steep, problem, array(1.0))
         self.left, start = MOST_ON_GRID, (state.pressure, state.level)
         after = self.near(limited, start, boldly=True)
-        return found._replace(problem=limited, state=after) if after.residual < ENOUGH else None
+        return solution._replace(problem=limited, state=after) if after.residual < ENOUGH else None
 
     def from_earlier(self, problem: Problem, earlier: Earlier, layout: Layout) -> Found | None:
         """Solution from one of a contact that is alike."""
@@ -438,23 +440,25 @@ class _Solver:
         state = self.iterated(problem, start, WARM_TIME, CAREFUL)
         return Found(problem, dry, state) if state.residual < ENOUGH else None
 
-    def ended(self, layout: Layout, found: Found | None, last: Problem | None = None) -> Solved:
+    def ended(
+        self, layout: Layout, solution: Found | None, last_problem: Problem | None = None
+    ) -> Solved:
         """Where the solve ended, without a solution as well."""
         assert self.last is not None
-        if found is not None:
-            state = found.state._replace(steps=self.steps)
-            return Solved(layout, found.problem, state, self.turns)
-        assert last is not None
-        return Solved(layout, last, self.last._replace(residual=np.inf), self.turns)
+        if solution is not None:
+            state = solution.state._replace(steps=self.steps)
+            return Solved(layout, solution.problem, state, self.turns)
+        assert last_problem is not None
+        return Solved(layout, last_problem, self.last._replace(residual=np.inf), self.turns)
 
     def after_turn(self, problem: Problem, state: State, change: float, enough: float) -> State:
         """Pressure of a film that became warmer or colder, from the one before."""
         self.left, start = MOST_ON_GRID, (state.pressure, state.level)
         time = WARM_TIME if change > LEAPS else np.inf
-        found = self.iterated(problem, start, time, CAREFUL, enough)
-        if not found.residual < ENOUGH:
-            found = self.iterated(problem, start, FINER_TIME, BOLD, enough)
-        return found
+        after = self.iterated(problem, start, time, CAREFUL, enough)
+        if not after.residual < ENOUGH:
+            after = self.iterated(problem, start, FINER_TIME, BOLD, enough)
+        return after
 
     def near(self, problem: Problem, start: tuple[Any, Any], *, boldly: bool) -> State:
         """Where iterations from another film end, in one manner, and the other where that is asked for."""
@@ -482,18 +486,21 @@ class _Solver:
 
 def _film_of(problem: Problem, dry: NDArray[np.float64], state: State) -> float:
     """Mean film of a solution [m]."""
-    own = _mean_gap(problem, dry, state.pressure, state.level)
-    return own * float(problem.flow.height)
+    gap = _mean_gap(problem, dry, state.pressure, state.level)
+    return gap * float(problem.flow.height)
 
 
 def _roomier(contact: PatchContact, layout: Layout, cells: int, film: float) -> Layout | None:
     """A grid for a film that is thicker than it was taken for; None where that is no larger."""
     if not (film > layout.film and leaks(contact, layout)):
         return None
-    other = laid_out(contact, cells, film)
-    sizes = ((one.length, one.last - one.first) for one in (other, layout))
+    roomier = laid_out(contact, cells, film)
+    sizes = (
+        (grid_layout.length, grid_layout.last - grid_layout.first)
+        for grid_layout in (roomier, layout)
+    )
     larger = any(new > ROOMIER * old for new, old in zip(*sizes, strict=True))
-    return other if larger else None
+    return roomier if larger else None
 
 
 def solve(
@@ -517,27 +524,27 @@ def solve(
     solver, heats = _Solver(told), heated(contact)
     if earlier is not None:
         problem = problem_on(contact, layout, nodes, cells, cells)
-        found = solver.from_earlier(as_warm(earlier, layout, problem), earlier, layout)
-        if found is not None and _roomier(contact, layout, cells, _film_of(*found)) is None:
-            own, found = solver.with_tips(layout, found)
-            found = solver.settled(heats, found)
-            if found is not None:
-                return solver.ended(own, found)
+        solution = solver.from_earlier(as_warm(earlier, layout, problem), earlier, layout)
+        if solution is not None and _roomier(contact, layout, cells, _film_of(*solution)) is None:
+            tipped, solution = solver.with_tips(layout, solution)
+            solution = solver.settled(heats, solution)
+            if solution is not None:
+                return solver.ended(tipped, solution)
     for layouts in count():
         problem = problem_on(contact, layout, *grids[0], cells)
-        found = solver.on_grid(problem, None, last=len(grids) == 1)
-        if fixed or layouts == MOST_LAYOUTS or found is None or found.faster(problem):
+        solution = solver.on_grid(problem, None, last=len(grids) == 1)
+        if fixed or layouts == MOST_LAYOUTS or solution is None or solution.faster(problem):
             break
-        more = _roomier(contact, layout, cells, _film_of(*found))
-        if more is None:
+        roomier = _roomier(contact, layout, cells, _film_of(*solution))
+        if roomier is None:
             break
-        layout = more._replace(bounded=bounded)
+        layout = roomier._replace(bounded=bounded)
     for grid in grids[1:]:
         problem = problem_on(contact, layout, *grid, cells)
-        found = solver.onto(problem, heats, found, last=grid == grids[-1])
+        solution = solver.onto(problem, heats, solution, last=grid == grids[-1])
     if not fixed:
-        layout, found = solver.with_tips(layout, found)
-    warm = solver.settled(heats, found)
+        layout, solution = solver.with_tips(layout, solution)
+    warm = solver.settled(heats, solution)
     if heats is not None and warm is None and len(grids) > 1:
         # From a film that is as warm as its inlet, should temperatures of coarse grids have led astray.
         warm = solver.settled(heats, solver.on_grid(problem, None, last=True))

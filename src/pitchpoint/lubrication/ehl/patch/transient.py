@@ -200,11 +200,11 @@ def steady_beside(
         The film, at the time zero of a march of its own.
     """
     plan = _plan_on(course, [contact], np.zeros(1))
-    own, problem = plan.contact(0.0), plan.problem(0.0)
-    given = array(course.pressure), array(course.level)
-    state = iterated(problem, *given, TIED, progress, most=FEW)
+    laid, problem = plan.contact(0.0), plan.problem(0.0)
+    guess = array(course.pressure), array(course.level)
+    state = iterated(problem, *guess, TIED, progress, most=FEW)
     if not state.residual < ENOUGH:
-        _, problem, state, _ = solve(own, *plan.grid, progress, plan.layout_of(0))
+        _, problem, state, _ = solve(laid, *plan.grid, progress, plan.layout_of(0))
     return _moment(plan, 0, problem, course, state, (0, state.steps))
 
 
@@ -240,9 +240,9 @@ class _Stepper:
     def begun(self) -> tuple[Course, Problem, State]:
         """The steady film of the first contact."""
         plan = self.plan
-        first = plan.contact(plan.times[0])
-        first = replace(first, approach=plan.contacts[0].approach)
-        _, problem, state, _ = solve(first, *plan.grid, self.told, plan.layout_of(0))
+        contact = plan.contact(plan.times[0])
+        contact = replace(contact, approach=plan.contacts[0].approach)
+        _, problem, state, _ = solve(contact, *plan.grid, self.told, plan.layout_of(0))
         state = state._replace(pressure=np.asarray(state.pressure), level=float(state.level))
         mass = np.asarray(_mass(problem, array(state.pressure), array(state.level)))
         stands = state.pressure, state.level, (float(plan.times[0]),), (mass,), None
@@ -250,13 +250,13 @@ class _Stepper:
 
     def to(self, course: Course, time: float) -> tuple[Course, _Step, int, int]:
         """Course at a time, the last step to it, and how many steps of time and of Newton's method."""
-        made, newton = 0, 0
+        steps, newton = 0, 0
         while True:
             step = self._length(course, time)
-            course, found = self._accepted(course, time, step)
-            made, newton = made + 1, newton + found.state.steps
-            if course.times[0] == time or not found.state.residual < ENOUGH:
-                return course, found, made, newton
+            course, last_step = self._accepted(course, time, step)
+            steps, newton = steps + 1, newton + last_step.state.steps
+            if course.times[0] == time or not last_step.state.residual < ENOUGH:
+                return course, last_step, steps, newton
 
     def _length(self, course: Course, time: float) -> float:
         """Length of the next step: parts of the way to the time that are all alike [s]."""
@@ -271,30 +271,30 @@ class _Stepper:
         for _ in range(MOST_CUTS):
             near = abs(course.times[0] + step - time) < 1e-6 * step
             at = time if near else course.times[0] + step
-            found = self._found(course, at)
-            factor = self._factor(course, found, at)
+            trial = self._found(course, at)
+            factor = self._factor(course, trial, at)
             if factor >= SAFETY:
-                return _onward(course, found, at)._replace(step=factor * step), found
+                return _onward(course, trial, at)._replace(step=factor * step), trial
             step *= factor
-        lost = found._replace(state=found.state._replace(residual=np.inf))
-        return _onward(course, found, at), lost
+        lost = trial._replace(state=trial.state._replace(residual=np.inf))
+        return _onward(course, trial, at), lost
 
-    def _factor(self, course: Course, found: _Step, time: float) -> float:
+    def _factor(self, course: Course, taken: _Step, time: float) -> float:
         """By how much longer the next step may be, or has to be shorter where it is below `SAFETY`."""
-        if not found.state.residual < ENOUGH:
+        if not taken.state.residual < ENOUGH:
             return HALF
         if self.tolerance is None:
             return 1.0
-        off = max(_error(course, found, time), 1e-12)
+        off = max(_error(course, taken, time), 1e-12)
         return float(np.clip(SAFETY * (self.tolerance / off) ** (1.0 / 3.0), SHRINKING, GROWING))
 
     def _found(self, course: Course, time: float) -> _Step:
         """The film at a time, from the one before."""
         problem = _since(self.plan.problem(time), course, time)
-        given = array(course.pressure), array(course.level)
-        state = iterated(problem, *given, np.inf, self.told, most=FEW)
+        guess = array(course.pressure), array(course.level)
+        state = iterated(problem, *guess, np.inf, self.told, most=FEW)
         if not state.residual < ENOUGH:
-            state = iterated(problem, *given, TIED, self.told)
+            state = iterated(problem, *guess, TIED, self.told)
         mass = np.asarray(_mass(problem, state.pressure, state.level))
         return _Step(problem, state, mass)
 
@@ -320,10 +320,10 @@ def _since(problem: Problem, course: Course, time: float) -> Problem:
     if ratio:
         mass = mass - ratio**2 / (1.0 + ratio) * course.masses[1]
     pace = weight * course.layout.length / (course.layout.speed * step)
-    found: Problem = eqx.tree_at(
-        lambda one: (one.pace, one.before), problem, (array(pace), array(mass / weight))
+    following: Problem = eqx.tree_at(
+        lambda tree: (tree.pace, tree.before), problem, (array(pace), array(mass / weight))
     )
-    return found
+    return following
 
 
 def _ratio(course: Course, time: float) -> tuple[float, float]:
@@ -334,17 +334,17 @@ def _ratio(course: Course, time: float) -> tuple[float, float]:
     return step, step / (course.times[0] - course.times[1])
 
 
-def _onward(course: Course, found: _Step, time: float) -> Course:
-    state = found.state
+def _onward(course: Course, taken: _Step, time: float) -> Course:
+    state = taken.state
     return course._replace(
         pressure=np.asarray(state.pressure),
         level=float(state.level),
         times=(time, *course.times)[:REMEMBERED],
-        masses=(found.mass, *course.masses)[:REMEMBERED],
+        masses=(taken.mass, *course.masses)[:REMEMBERED],
     )
 
 
-def _error(course: Course, found: _Step, time: float) -> float:
+def _error(course: Course, taken: _Step, time: float) -> float:
     """Error of a step: mean over the contact, weighed by pressure, over the mean mass.
 
     The parabola through the three films before differs from the film by its own error and that of the step,
@@ -356,21 +356,23 @@ def _error(course: Course, found: _Step, time: float) -> float:
         times.append(times[-1] - step)
         masses.append(masses[-1])
     ahead = _parabola(times, masses, time)
-    own = step * (1.0 + ratio) / (1.0 + 2.0 * ratio)
-    part = own / (own + time - times[2])
-    pressure = np.asarray(found.state.pressure)
-    weight = np.maximum(pressure, 0.0) * np.asarray(found.problem.bodies.areas)[:, None]
-    off = part * np.abs(found.mass - ahead)
-    return float(np.sum(weight * off) / np.sum(weight * found.mass))
+    of_scheme = step * (1.0 + ratio) / (1.0 + 2.0 * ratio)
+    part = of_scheme / (of_scheme + time - times[2])
+    pressure = np.asarray(taken.state.pressure)
+    weight = np.maximum(pressure, 0.0) * np.asarray(taken.problem.bodies.areas)[:, None]
+    off = part * np.abs(taken.mass - ahead)
+    return float(np.sum(weight * off) / np.sum(weight * taken.mass))
 
 
 def _parabola(times: Sequence[float], masses: Sequence[Field], time: float) -> Field:
     """Masses at a time by the parabola through three films."""
-    found = np.zeros_like(masses[0])
+    parabola = np.zeros_like(masses[0])
     for k, mass in enumerate(masses):
-        others = [one for number, one in enumerate(times) if number != k]
-        found = found + mass * np.prod([(time - one) / (times[k] - one) for one in others])
-    return found
+        others = [instant for number, instant in enumerate(times) if number != k]
+        parabola = parabola + mass * np.prod(
+            [(time - instant) / (times[k] - instant) for instant in others]
+        )
+    return parabola
 
 
 def _march(plan: Plan, stepper: _Stepper, after: Course | None) -> Iterator[PatchMoment]:
@@ -383,8 +385,8 @@ def _march(plan: Plan, stepper: _Stepper, after: Course | None) -> Iterator[Patc
     for number, time in enumerate(plan.times):
         if time <= course.times[0] or not solved:
             continue
-        course, step, made, newton = stepper.to(course, float(time))
-        moment = _moment(plan, number, step.problem, course, step.state, (made, newton))
+        course, step, steps, newton = stepper.to(course, float(time))
+        moment = _moment(plan, number, step.problem, course, step.state, (steps, newton))
         solved = moment.solved
         yield moment
 
@@ -404,11 +406,11 @@ def _moment(
     dry, unknown = dry_under(problem), array(np.nan)
     solution = np.asarray(state.pressure), float(state.level), np.asarray(dry.pressure)
     response = Response(array(dry.approach), unknown, unknown, unknown)
-    told = told_film(contact, layout, problem, *solution, response, ended)
-    film: Any = jax.tree.map(np.asarray, back(told.film, plan.lies))
-    warnings = (*told.warnings, *_few(layout, plan.grid[0]))
+    judged = told_film(contact, layout, problem, *solution, response, ended)
+    film: Any = jax.tree.map(np.asarray, back(judged.film, plan.lies))
+    warnings = (*judged.warnings, *_few(layout, plan.grid[0]))
     time = float(plan.times[number])
-    return PatchMoment(time, film, told.ended, steps[0], course, warnings)
+    return PatchMoment(time, film, judged.ended, steps[0], course, warnings)
 
 
 def _few(layout: Layout, nodes: int) -> Iterator[Doubt]:
