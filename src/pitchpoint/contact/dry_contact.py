@@ -282,8 +282,8 @@ def dry_contact(
         >>> from pitchpoint.contact.half_space import half_space
         >>> bodies = half_space(np.linspace(-2e-4, 2e-4, 65), np.linspace(-2e-4, 2e-4, 65))
         >>> gap = elliptic_gap(bodies, 0.01, 0.01)
-        >>> found = dry_contact(bodies, gap, 226.4e9, load=30.0)
-        >>> round(float(found.pressure.max()) / 1e6), round(float(found.approach) * 1e6, 2)
+        >>> contact = dry_contact(bodies, gap, 226.4e9, load=30.0)
+        >>> round(float(contact.pressure.max()) / 1e6), round(float(contact.approach) * 1e6, 2)
         (906, 1.58)
     """
     _check(bodies, gap, modulus, load, approach)

@@ -81,8 +81,8 @@ def hamrock_brewe_1983(
 
     Example: a steel ball of 19 mm on a disc.
 
-        >>> given = {"load": 30.0, "radius": 9.5e-3, "modulus": 226.4e9}
-        >>> round(float(hamrock_brewe_1983(transverse_radius=9.5e-3, **given).pressure) / 1e6)
+        >>> ball = {"load": 30.0, "radius": 9.5e-3, "modulus": 226.4e9}
+        >>> round(float(hamrock_brewe_1983(transverse_radius=9.5e-3, **ball).pressure) / 1e6)
         938
     """
     slender = jnp.maximum(transverse_radius / radius, radius / transverse_radius)

@@ -37,8 +37,8 @@ def crowned(*, width: float, radius: float) -> tuple[Surface, ...]:
 
         >>> import numpy as np
         >>> from pitchpoint.contact.gaps import missing_along
-        >>> found = missing_along(crowned(width=0.02, radius=10.0), np.array([0.0, 0.01]))
-        >>> (found * 1e6).round(6).tolist()
+        >>> missing = missing_along(crowned(width=0.02, radius=10.0), np.array([0.0, 0.01]))
+        >>> (missing * 1e6).round(6).tolist()
         [0.0, 5.0]
     """
     _positive(width=width, radius=radius)
@@ -89,8 +89,8 @@ def log_relieved(
     Example: steel with 3 GPa on a diameter of 20 mm.
 
         >>> from math import pi
-        >>> (found,) = log_relieved(width=0.02, line_load=2 * pi * 3e9**2 * 0.01 / 226.4e9, modulus=226.4e9)
-        >>> round(float(found.amount) / 0.02, 5)
+        >>> (relief,) = log_relieved(width=0.02, line_load=2 * pi * 3e9**2 * 0.01 / 226.4e9, modulus=226.4e9)
+        >>> round(float(relief.amount) / 0.02, 5)
         0.00035
     """
     _positive(width=width, line_load=line_load, modulus=modulus, drop=drop)

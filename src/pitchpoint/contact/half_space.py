@@ -132,8 +132,8 @@ def half_space(
         >>> bodies = half_space(x, np.linspace(-5.5e-3, 5.5e-3, 12))
         >>> pressure = np.zeros((11, 11))
         >>> pressure[5, 5] = 1e6
-        >>> found = bodies.deflection(pressure, 226.4e9)
-        >>> round(float(found[5, 5]) * 1e9, 3), round(float(found[5, 10]) * 1e9, 3)
+        >>> deflection = bodies.deflection(pressure, 226.4e9)
+        >>> round(float(deflection[5, 5]) * 1e9, 3), round(float(deflection[5, 10]) * 1e9, 3)
         (9.913, 0.563)
     """
     _check(x, edges, ends)

@@ -87,8 +87,8 @@ def below_row(
         >>> bodies = half_space(np.linspace(-1.5, 1.5, 65), np.linspace(-1.5, 1.5, 66))
         >>> far = bodies.x**2 + bodies.y[:, None] ** 2
         >>> depth = np.linspace(0.3, 0.7, 41)
-        >>> found = below_row(bodies, np.sqrt(np.maximum(1.0 - far, 0.0)), depth, 0.3)
-        >>> shear = np.asarray(found.largest_shear())[:, 32]
+        >>> stresses = below_row(bodies, np.sqrt(np.maximum(1.0 - far, 0.0)), depth, 0.3)
+        >>> shear = np.asarray(stresses.largest_shear())[:, 32]
         >>> round(float(shear.max()), 2), round(float(depth[shear.argmax()]), 2)
         (0.31, 0.48)
     """

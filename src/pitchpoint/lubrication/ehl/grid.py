@@ -106,8 +106,8 @@ def grid(nodes: int, ends: Ends = "entrained") -> Grid:
         InputError: another number of nodes.
 
     Example:
-        >>> one = grid(129)
-        >>> float(one.x[0]), float(one.x[one.middle]), float(one.x[-1])
+        >>> at = grid(129)
+        >>> float(at.x[0]), float(at.x[at.middle]), float(at.x[-1])
         (-16.0, 0.0, 1.5)
     """
     fewer(nodes)

@@ -127,11 +127,11 @@ def inverted(times: Map, nearly: Map, rest: Array) -> Array:
     return solution
 
 
-def _solved(times: Map, nearly: Map, rest: Array) -> Array:
+def _solved(times: Map, nearly: Map, right_side: Array) -> Array:
     solution: Array
     solution, _ = gmres(
         times,
-        rest,
+        right_side,
         M=nearly,
         tol=LEFT,
         restart=DIRECTIONS,
