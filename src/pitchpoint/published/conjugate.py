@@ -34,12 +34,13 @@ def readings(point: Point) -> dict[str, float]:
     """
     mesh = point.design.mesh
     assert isinstance(mesh, StrainWave)
-    found = of_sharp_flank(mesh)
-    own = jax.device_get(_branches(mesh))["clearance"]  # where its rounded tip reaches its mate
+    points = of_sharp_flank(mesh)
+    # Where its rounded tip reaches its mate.
+    clearance = jax.device_get(_branches(mesh))["clearance"]
     wave, flexspline, _ = np.asarray(point.design.motion)
     rate = abs(float(flexspline - wave))
-    (deep, outer), (r_deep, r_outer) = found["angle"], found["radius"]
-    entrainment = found["rolling"][0] + found["sliding"][0] / 2.0
+    (deep, outer), (r_deep, r_outer) = points["angle"], points["radius"]
+    entrainment = points["rolling"][0] + points["sliding"][0] / 2.0
     speed = np.abs(entrainment) * rate * float(point.operation.speed)
     return {
         "phase_rate": rate,
@@ -53,16 +54,16 @@ def readings(point: Point) -> dict[str, float]:
         "outer_angle_last": float(np.nanmax(outer)),
         "outer_radius_least": float(np.nanmin(r_outer)),
         "outer_radius_largest": float(np.nanmax(r_outer)),
-        "outer_clearance_least": float(np.nanmin(own[1])),
+        "outer_clearance_least": float(np.nanmin(clearance[1])),
         "clearance_between": _clearance_between(mesh),
     }
 
 
 def _clearance_between(mesh: StrainWave) -> float:
     """Largest clearance between the first and the last angle at which rigid teeth touch [m]."""
-    found = np.asarray(mesh.surveyed.clearance)
-    (touching,) = np.nonzero(found < _TOUCHING * float(mesh.module))
-    return float(found[touching[0] : touching[-1] + 1].max())
+    clearance = np.asarray(mesh.surveyed.clearance)
+    (touching,) = np.nonzero(clearance < _TOUCHING * float(mesh.module))
+    return float(clearance[touching[0] : touching[-1] + 1].max())
 
 
 def of_sharp_flank(mesh: StrainWave) -> dict[str, np.ndarray]:
@@ -77,8 +78,8 @@ def of_sharp_flank(mesh: StrainWave) -> dict[str, np.ndarray]:
         along it, `rolling` and `sliding` [m/rad]; NaN where a branch leaves a point out.
     """
     sharp = replace(mesh, flank=replace(mesh.flank.unrelieved, tip_rounding=1e-6 * mesh.module))
-    found: dict[str, np.ndarray] = jax.device_get(_branches(sharp))
-    return found
+    points: dict[str, np.ndarray] = jax.device_get(_branches(sharp))
+    return points
 
 
 @program

@@ -147,7 +147,11 @@ class Publication:
     stiffness: str = ""
 
     def __post_init__(self) -> None:
-        if taken := [key for key, one in self.variables.items() if VARIABLES.get(key, one) != one]:
+        if taken := [
+            key
+            for key, variable in self.variables.items()
+            if VARIABLES.get(key, variable) != variable
+        ]:
             raise ValueError(
                 f"{self.name} calls others by names that are taken: {', '.join(taken)}"
             )
@@ -155,6 +159,8 @@ class Publication:
 
     def read(self, point: Point) -> Read:
         """Values of all readings at a point."""
-        each = (code_at(one) if isinstance(one, str) else one for one in self.readings)
-        found = [reading(point) for reading in each]
-        return {name: value for one in found for name, value in one.items()}
+        functions = (
+            code_at(source) if isinstance(source, str) else source for source in self.readings
+        )
+        parts = [reading(point) for reading in functions]
+        return {name: value for part in parts for name, value in part.items()}

@@ -31,5 +31,5 @@ LAWS_OF_CASES = {
 
 def publication_of(source: str) -> "Publication | None":
     """What the publication with this key brings, its variables known from now on; None for others."""
-    known = source in PUBLICATIONS
-    return PUBLICATIONS[source] if known else None
+    listed = source in PUBLICATIONS
+    return PUBLICATIONS[source] if listed else None

@@ -53,20 +53,24 @@ def readings(point: Point) -> dict[str, float | Course]:
     Raises:
         InputError: without [dynamics], or a pair too slow to be resolved.
     """
-    given = point.formulas
-    assert isinstance(given, PairInMotion)
-    parts = _parts(point, given)
+    formulas = point.formulas
+    assert isinstance(formulas, PairInMotion)
+    parts = _parts(point, formulas)
     grid = _grid(parts)
     stacked = jax.tree.map(lambda *leaves: jnp.stack(leaves), *parts)
-    found = jax.device_get(_moved(stacked, grid))
+    vibrations = jax.device_get(_moved(stacked, grid))
     drawn = 2 * int(point.models[0].compliance.middle)
-    courses = {name: values[drawn] for name, values in found.items()}
-    read = _courses(courses | {"other_error": found["error"][drawn + 1]})
+    courses = {name: values[drawn] for name, values in vibrations.items()}
+    read = _courses(courses | {"other_error": vibrations["error"][drawn + 1]})
     for number, name in enumerate(PROCEDURES):
-        first, second = ({k: v[2 * number + k2] for k, v in found.items()} for k2 in (0, 1))
-        read |= {f"{one}_{name}": float(first[key]) for one, key in _NUMBERS.items()}
-        read[f"other_error_range_{name}"] = float(second["transmission_error_range"])
-        read[f"pair_status_{name}"] = float(max(one["vibration_status"] for one in (first, second)))
+        at_first, at_second = (
+            {k: v[2 * number + k2] for k, v in vibrations.items()} for k2 in (0, 1)
+        )
+        read |= {f"{label}_{name}": float(at_first[key]) for label, key in _NUMBERS.items()}
+        read[f"other_error_range_{name}"] = float(at_second["transmission_error_range"])
+        read[f"pair_status_{name}"] = float(
+            max(figures["vibration_status"] for figures in (at_first, at_second))
+        )
     return read | {
         f"line_stiffness_difference_{name}": _difference(point, common=name == "common")
         for name in ("common", "separate")
@@ -76,10 +80,12 @@ def readings(point: Point) -> dict[str, float | Course]:
 def _difference(point: Point, *, common: bool) -> float:
     """Largest difference of the stiffness by both procedures, over the mean."""
     terms = replace(point.models[0].compliance, common=array(common))
-    given = point.design.mesh, point.design.loaded, point.design.solids
+    pair = point.design.mesh, point.design.loaded, point.design.solids
     line, middle = (
-        jax.device_get(_stiffness(*given, replace(terms, middle=array(way)), point.operation.load))
-        for way in (False, True)
+        jax.device_get(
+            _stiffness(*pair, replace(terms, middle=array(of_middle)), point.operation.load)
+        )
+        for of_middle in (False, True)
     )
     return float(np.max(np.abs(middle.total - line.total)) / line.mean)
 
@@ -98,14 +104,14 @@ def _parts(point: Point, given: PairInMotion) -> list[Excited]:
     mesh = point.design.mesh
     assert isinstance(mesh, CylindricalPair)
     if point.vibrating is None:
-        told = "a pair in motion vibrates; give its damping ratio in [dynamics]"
-        raise InputError(told, key="dynamics")
+        sentence = "a pair in motion vibrates; give its damping ratio in [dynamics]"
+        raise InputError(sentence, key="dynamics")
     vibrating, terms = point.vibrating(), point.models[0].compliance
-    first, second = np.abs(np.asarray(mesh.teeth))
+    input_teeth, output_teeth = np.abs(np.asarray(mesh.teeth))
     return [
         _excited(
             point.design,
-            replace(point.operation, load=array(torque * second / first)),
+            replace(point.operation, load=array(torque * output_teeth / input_teeth)),
             replace(terms, middle=array(name == "middle")),
             vibrating,
         )
@@ -122,42 +128,42 @@ _ratio = program(frequency_ratio)
 def _grid(parts: list[Excited]) -> Grid:
     ratio = max(float(_ratio(stiffness, moved)) for stiffness, moved, _ in parts)
     if not ratio <= _MOST_RATIO:
-        told = (
+        sentence = (
             f"the natural frequency is {ratio:.3g} times the mesh frequency; courses of a pair in motion "
             f"are resolved up to {_MOST_RATIO:g} times"
         )
-        raise InputError(told, key="operation.speed")
+        raise InputError(sentence, key="operation.speed")
     return Grid.resolving(ratio)
 
 
 @program
 def _moved(parts: Excited, grid: Grid) -> dict[str, Float[Array, "..."]]:
     """Steady vibration of each part: figures, and courses at kept nodes of one period."""
-    kept = np.append(np.arange(0, grid.nodes - 1, _EVERY), grid.nodes - 1)
+    nodes = np.append(np.arange(0, grid.nodes - 1, _EVERY), grid.nodes - 1)
 
     def one(stiffness: MeshStiffness, moved: System, driven: Excitation) -> dict[str, Array]:
-        found = steady(moved, driven, grid)
+        response = steady(moved, driven, grid)
         nominal = nominal_force(stiffness, moved)
         # Along the line of action a spring counts with the square of its arm.
-        springs = found.course.stiffness * found.course.arm[0] ** 2
+        springs = response.course.stiffness * response.course.arm[0] ** 2
 
         def of(values: Float[Array, "*b element node"]) -> Float[Array, "*b kept"]:
-            return values[..., kept].reshape(*values.shape[:-2], -1)
+            return values[..., nodes].reshape(*values.shape[:-2], -1)
 
-        factor = of(found.dynamic_factor(nominal))
+        factor = of(response.dynamic_factor(nominal))
         count = jnp.arange(factor.shape[0])[:, None]
         return {
-            **transmission_figures(stiffness, moved, found),
-            "entered": of(found.course.phase) + count,
+            **transmission_figures(stiffness, moved, response),
+            "entered": of(response.course.phase) + count,
             "stiffness": of(springs),
             "total_stiffness": of(jnp.sum(springs, axis=0)),
             "factor": factor,
             "load": factor * nominal,
-            "error": of(found.transmission_error),
+            "error": of(response.transmission_error),
         }
 
-    found: dict[str, Array] = eqx.filter_vmap(one)(*parts)
-    return found
+    figures: dict[str, Array] = eqx.filter_vmap(one)(*parts)
+    return figures
 
 
 def _courses(found: dict[str, np.ndarray]) -> dict[str, float | Course]:
@@ -172,11 +178,11 @@ def _courses(found: dict[str, np.ndarray]) -> dict[str, float | Course]:
     }
     period = entered.shape[1]
     for name in ("stiffness", "factor", "load"):
-        whole = found[name].ravel()
+        course = found[name].ravel()
         for number in range(TOGETHER):
-            later = np.full_like(whole, np.nan)
+            later = np.full_like(course, np.nan)
             late = number * period
-            later[late:] = whole[: max(len(whole) - late, 0)]
+            later[late:] = course[: max(len(course) - late, 0)]
             every[f"pair_{name}_{number + 1}"] = later
     return {name: _cut(values, found["stiffness"]) for name, values in every.items()}
 

@@ -49,8 +49,8 @@ def equivalent_mass(*, inertia: Sequence[float], base_radius: Sequence[float]) -
         inertia: J1, J2 [kg m2].
         base_radius: r_b1, r_b2 [m].
     """
-    (first, second), (r_1, r_2) = inertia, base_radius
-    return first * second / (first * r_1**2 + second * r_2**2)
+    (j_1, j_2), (r_1, r_2) = inertia, base_radius
+    return j_1 * j_2 / (j_1 * r_1**2 + j_2 * r_2**2)
 
 
 def readings(point: Point) -> dict[str, float]:

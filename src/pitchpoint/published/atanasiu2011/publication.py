@@ -50,9 +50,11 @@ _TEETH = ("I", "II", "III")
 
 _COURSES = {
     **{
-        f"pair_{name}_{number}": replace(one, long_name=f"{one.long_name}, pair {told}")
-        for name, one in _IN_TURN.items()
-        for number, told in enumerate(_TEETH, 1)
+        f"pair_{name}_{number}": replace(
+            variable, long_name=f"{variable.long_name}, pair {numeral}"
+        )
+        for name, variable in _IN_TURN.items()
+        for number, numeral in enumerate(_TEETH, 1)
     },
     "pair_total_stiffness": stiffness("stiffness of the mesh", "k_t"),
     "pair_error": deviation("dynamic transmission error at the first torque", "δ_a"),
@@ -64,13 +66,13 @@ def _teeth(name: str) -> tuple[str, ...]:
     return tuple(f"pair_{name}_{number}" for number in range(1, len(_TEETH) + 1))
 
 
-_PAIRS = tuple(f"pair {told}" for told in _TEETH)
+_PAIRS = tuple(f"pair {numeral}" for numeral in _TEETH)
 
 _MOTION = Beside(
     columns=tuple(_PROCEDURES.values()),
     rows={
-        one.long_name: _of_procedures(name)
-        for name, one in _NUMBERS.items()
+        variable.long_name: _of_procedures(name)
+        for name, variable in _NUMBERS.items()
         if name != "pair_status"
     },
     note=(
@@ -147,8 +149,8 @@ PUBLICATION = Publication(
             for name, words in {"common": "one modulus", "separate": "separate moduli"}.items()
         },
         **{
-            f"{name}_{procedure}": replace(one, long_name=f"{one.long_name}, {words}")
-            for name, one in _NUMBERS.items()
+            f"{name}_{procedure}": replace(variable, long_name=f"{variable.long_name}, {words}")
+            for name, variable in _NUMBERS.items()
             for procedure, words in _PROCEDURES.items()
         },
         **_COURSES,

@@ -105,14 +105,14 @@ def _efficiency(drive: Drive, moved: Course, oil: Oil) -> Float[Array, " time"]:
 
 def _cycle_courses(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, " place"]]:
     """What both pairs carry over the last whole mesh cycle, by the names of `CYCLE_COURSES`."""
-    last = _last_cycle(drive, moved, oil)
-    found, touches = last.pairs, last.pairs.active
-    film = jnp.where(_presses(last), _films(drive, last, oil), jnp.nan)
-    courses = {"efficiency_course": _efficiency(drive, last, oil)}
-    each = {"stiffness": found.stiffness, "force": last.force, "friction": last.friction}
-    for name, values in each.items():
+    cycle = _last_cycle(drive, moved, oil)
+    contacts, touches = cycle.pairs, cycle.pairs.active
+    film = jnp.where(_presses(cycle), _films(drive, cycle, oil), jnp.nan)
+    courses = {"efficiency_course": _efficiency(drive, cycle, oil)}
+    carried = {"stiffness": contacts.stiffness, "force": cycle.force, "friction": cycle.friction}
+    for name, values in carried.items():
         courses[f"{name}_both"] = jnp.sum(values, axis=1)
-    shown = {name: jnp.where(touches, values, jnp.nan) for name, values in each.items()}
+    shown = {name: jnp.where(touches, values, jnp.nan) for name, values in carried.items()}
     for name, values in {**shown, "film_course": film}.items():
         courses |= {f"{name}_{pair}": values[:, pair] for pair in (0, 1)}
     return courses
@@ -130,24 +130,24 @@ def _last_cycle(drive: Drive, moved: Course, oil: Oil) -> Course:
         return jax.vmap(read, 1, 1)(values)
 
     older = read(1.0 * moved.pairs.active[:, 0]) > 0.5
-    found = jax.vmap(pairs, (None, 0, 0))(drive, part, older)
-    force = jnp.where(found.active, columns(moved.force), 0.0)
+    contacts = jax.vmap(pairs, (None, 0, 0))(drive, part, older)
+    force = jnp.where(contacts.active, columns(moved.force), 0.0)
     return Course(
         time=time,
         weight=jnp.full(CYCLE, 1.0 / CYCLE),
         error=read(moved.error),
         rate=columns(moved.rate),
         force=force,
-        friction=jax.vmap(friction_forces, (None, 0, 0))(drive, force, found),
-        pairs=found,
+        friction=jax.vmap(friction_forces, (None, 0, 0))(drive, force, contacts),
+        pairs=contacts,
     )
 
 
 def _courses(drive: Drive, moved: Course) -> dict[str, Float[Array, " instant"]]:
     """Transmission error and speed of the gear from the start on [m, rad/s]."""
     times = jnp.arange(INSTANTS) / (INSTANTS - 1.0) * moved.time[-1]
-    kept = {"error": moved.error, "gear_speed": _gear_speed(drive, moved)}
-    return {name: jnp.interp(times, moved.time, values) for name, values in kept.items()}
+    motion = {"error": moved.error, "gear_speed": _gear_speed(drive, moved)}
+    return {name: jnp.interp(times, moved.time, values) for name, values in motion.items()}
 
 
 def _gear_speed(drive: Drive, moved: Course) -> Float[Array, " time"]:
@@ -166,16 +166,16 @@ def _rolling(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "time 2"]:
     length, over the face or the ellipse. The radius is that of the profile on both pairs.
     """
     load, radius = jnp.where(_presses(moved), moved.force, 0.0), _profile(drive, moved)
-    given = {**_oil(drive, moved, oil), "radius": radius}
+    conditions = {**_oil(drive, moved, oil), "radius": radius}
     if drive.radii == "printed":
-        force = wu_cheng_1991(line_load=load / radius, **given)
+        force = wu_cheng_1991(line_load=load / radius, **conditions)
         return 2.0 * force * moved.pairs.entrainment
     ellipse = hamrock_brewe_1983(
         load=load, radius=radius, transverse_radius=drive.transverse_radius, modulus=drive.modulus
     )
-    points = wu_cheng_1991_strips(load=load, semi_axis_across=ellipse.across, **given)
+    points = wu_cheng_1991_strips(load=load, semi_axis_across=ellipse.across, **conditions)
     width = drive.face_width
-    lines = width * wu_cheng_1991(line_load=load / width, **given)
+    lines = width * wu_cheng_1991(line_load=load / width, **conditions)
     force = jnp.where(drive.pointed > 0.0, points, lines)
     return 2.0 * force * moved.pairs.entrainment
 
@@ -202,11 +202,11 @@ def _films(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "time 2"]:
     profile; by Hertz's radii R_x and R_y are those of the flanks, and the line has the load over the face.
     """
     load, radius = jnp.where(_presses(moved), moved.force, 0.0), moved.pairs.radius
-    given = {**_oil(drive, moved, oil), "radius": radius}
+    conditions = {**_oil(drive, moved, oil), "radius": radius}
     slender = radius * drive.transverse_radius / _profile(drive, moved)
     width = radius if drive.radii == "printed" else drive.face_width
-    points = hamrock_dowson_1977(load=load, transverse_radius=slender, **given)
-    lines = dowson_higginson_1959(line_load=load / width, **given)
+    points = hamrock_dowson_1977(load=load, transverse_radius=slender, **conditions)
+    lines = dowson_higginson_1959(line_load=load / width, **conditions)
     return jnp.where(drive.pointed > 0.0, points, lines)
 
 
@@ -232,13 +232,13 @@ def _friction_power(drive: Drive, moved: Course) -> Float[Array, " time"]:
 
 def _force(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..."]]:
     """Mean of the whole normal force over whole mesh cycles, its spectrum, and its highest line [N, Hz]."""
-    force, last = jnp.sum(moved.force, axis=1), oil.whole * drive.period
-    even = jnp.interp(jnp.arange(BINS) / BINS * last, moved.time, force)
+    force, end = jnp.sum(moved.force, axis=1), oil.whole * drive.period
+    even = jnp.interp(jnp.arange(BINS) / BINS * end, moved.time, force)
     height = 2.0 / BINS * jnp.abs(jnp.fft.rfft(even)[1 : BINS // 2])
     rate = jnp.arange(1, BINS // 2) / oil.whole
-    found = {
+    numbers = {
         "mean_force": jnp.mean(even),
         "force_peak": rate[jnp.argmax(height)] / drive.period,
         "highest_line": jnp.max(height),
     }
-    return {**found, "spectrum": height[:LINES]}
+    return {**numbers, "spectrum": height[:LINES]}

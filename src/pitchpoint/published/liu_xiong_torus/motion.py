@@ -96,9 +96,9 @@ class Drive(eqx.Module):
     @property
     def joint_mass(self) -> Float[Array, ""]:
         """I_e of eq. 9 [kg]."""
-        first, second = self.inertia
-        both = first * self.base_radii[1] ** 2 + second * self.base_radii[0] ** 2
-        return jnp.asarray(first * second / both)
+        pinion, gear = self.inertia
+        both = pinion * self.base_radii[1] ** 2 + gear * self.base_radii[0] ** 2
+        return jnp.asarray(pinion * gear / both)
 
 
 class Pairs(eqx.Module):
@@ -133,19 +133,19 @@ def pairs(drive: Drive, cycle: Float[Array, ""], older: Bool[Array, ""]) -> Pair
     """
     entered = cycle + jnp.array([1.0, 0.0])
     place = drive.entry + entered * drive.base_pitch
-    other = drive.tangent - place
+    gear_radius = drive.tangent - place
     powers = (entered * drive.base_pitch / drive.base_radii[0])[:, None] ** jnp.arange(1, 5)
     active = jnp.stack([older, jnp.ones_like(older)])
-    first = drive.speed * place
-    second = drive.speed * drive.base_radii[0] / drive.base_radii[1] * other
-    profile = place * other / drive.tangent
+    pinion_speed = drive.speed * place
+    gear_speed = drive.speed * drive.base_radii[0] / drive.base_radii[1] * gear_radius
+    profile = place * gear_radius / drive.tangent
     longer = drive.pointed if drive.radii == "printed" else jnp.zeros(())
     return Pairs(
         place=place,
         stiffness=jnp.where(active, powers @ drive.coefficients, 0.0),
         active=active,
-        sliding=first - second,
-        entrainment=(first + second) / 2.0,
+        sliding=pinion_speed - gear_speed,
+        entrainment=(pinion_speed + gear_speed) / 2.0,
         radius=jnp.where(longer > 0.0, drive.radius_factor * place, profile),
     )
 
@@ -245,8 +245,8 @@ def course(drive: Drive, pieces: Piece) -> Course:
     Source: Liu and Xiong, eqs. 15 to 20, the sign of the contact forces in eq. 16 such that action equals
     reaction; Prince and Dormand (1981), their method of order eight, as diffrax has it.
     """
-    _, found = jax.lax.scan(partial(_travel, drive), jnp.zeros(12), pieces)
-    flat: Course = jax.tree.map(lambda value: value.reshape(-1, *value.shape[2:]), found)
+    _, motion = jax.lax.scan(partial(_travel, drive), jnp.zeros(12), pieces)
+    flat: Course = jax.tree.map(lambda value: value.reshape(-1, *value.shape[2:]), motion)
     return flat
 
 
@@ -267,18 +267,18 @@ def _travel(drive: Drive, start: State, piece: Piece) -> tuple[State, Course]:
         throw=False,
     )
     assert solution.ys is not None
-    kept = jax.vmap(partial(_kept, drive, piece))(parts, solution.ys)
-    return solution.ys[-1], kept
+    motion = jax.vmap(partial(_kept, drive, piece))(parts, solution.ys)
+    return solution.ys[-1], motion
 
 
 def _rate(drive: Drive, piece: Piece, part: Array, state: State, _: None) -> State:
     """Derivative of the state by the part of the piece."""
     cycle = piece.at(part)
-    found = pairs(drive, cycle, piece.older)
+    contacts = pairs(drive, cycle, piece.older)
     time = (piece.gone + cycle) * drive.period
-    force = normal_forces(drive, time, state, found)
-    friction = friction_forces(drive, force, found)
-    faster = _acceleration(drive, UNIT * state, force, friction, found) / UNIT
+    force = normal_forces(drive, time, state, contacts)
+    friction = friction_forces(drive, force, contacts)
+    faster = _acceleration(drive, UNIT * state, force, friction, contacts) / UNIT
     duration = (piece.stop - piece.start) * drive.period
     return duration * jnp.concatenate([state[6:], faster])
 
@@ -306,9 +306,9 @@ def _acceleration(
 def _kept(drive: Drive, piece: Piece, part: Array, state: State) -> Course:
     """What is kept of an instant; it weighs as in the trapezoidal rule."""
     cycle = piece.at(part)
-    found = pairs(drive, cycle, piece.older)
+    contacts = pairs(drive, cycle, piece.older)
     time = (piece.gone + cycle) * drive.period
-    force = normal_forces(drive, time, state, found)
+    force = normal_forces(drive, time, state, contacts)
     inside = jnp.where((part > 0.0) & (part < 1.0), 1.0, 0.5)
     return Course(
         time=time,
@@ -316,6 +316,6 @@ def _kept(drive: Drive, piece: Piece, part: Array, state: State) -> Course:
         error=UNIT * _error(state[:6]),
         rate=UNIT * state[6:],
         force=force,
-        friction=friction_forces(drive, force, found),
-        pairs=found,
+        friction=friction_forces(drive, force, contacts),
+        pairs=contacts,
     )

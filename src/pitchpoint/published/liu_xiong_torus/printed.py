@@ -76,8 +76,8 @@ def pair_stiffness(*, roll: Numbers, stiffness: Numbers) -> Values:
         np.float64(1000000000.0)
     """
     powers = np.asarray(roll)[:, None] ** np.arange(1, _DEGREE + 1)
-    found = np.linalg.lstsq(powers, np.asarray(stiffness), rcond=None)[0]
-    return np.asarray(found)
+    coefficients = np.linalg.lstsq(powers, np.asarray(stiffness), rcond=None)[0]
+    return np.asarray(coefficients)
 
 
 def pieces(*, single: float, pitch: float, cycles: float) -> Piece:
@@ -118,17 +118,17 @@ def readings(point: Point) -> Read:
 
 def _durations(mesh: TorusPair, speed: float) -> dict[str, float]:
     """Key durations, eqs. 1 to 3, and what they rest on."""
-    known: Known = jax.device_get(_line(mesh))
-    (first, second), pitch = known["base_radii"].tolist(), float(known["base_pitch"])
+    line: Known = jax.device_get(_line(mesh))
+    (pinion_radius, gear_radius), pitch = line["base_radii"].tolist(), float(line["base_pitch"])
     return {
-        "base_radius_pinion": first,
-        "base_radius_gear": second,
-        "line_of_action": float(known["tangent"]),
-        "single_contact_start": float(known["single"]),
-        "pitch_point_passed": float(known["pitch"]),
-        "contact_roll": float(known["ratio"]) * pitch / first,
-        "mesh_rate": speed * first / pitch,
-        **{name: float(known[name]) for name in ("transverse_radius", *_MISALIGNED)},
+        "base_radius_pinion": pinion_radius,
+        "base_radius_gear": gear_radius,
+        "line_of_action": float(line["tangent"]),
+        "single_contact_start": float(line["single"]),
+        "pitch_point_passed": float(line["pitch"]),
+        "contact_roll": float(line["ratio"]) * pitch / pinion_radius,
+        "mesh_rate": speed * pinion_radius / pitch,
+        **{name: float(line[name]) for name in ("transverse_radius", *_MISALIGNED)},
     }
 
 
@@ -196,8 +196,8 @@ def _contact(design: Design, operation: Operation) -> Known:
 
 def _quadratic(gears: TorusGears) -> dict[str, float]:
     """Where the contact goes if the inclination meets a parabola between the flanks, and what it costs."""
-    first, second = gears.torus_radius
-    radius = 1.0 / (sin(gears.pressure_angle) * (1.0 / first - 1.0 / second))
+    pinion_radius, gear_radius = gears.torus_radius
+    radius = 1.0 / (sin(gears.pressure_angle) * (1.0 / pinion_radius - 1.0 / gear_radius))
     return {
         "quadratic_place": -gears.inclination * radius,
         "quadratic_approach": gears.inclination**2 * radius / 2.0,
@@ -207,49 +207,51 @@ def _quadratic(gears: TorusGears) -> dict[str, float]:
 
 def _literal(point: Point, mesh: TorusPair) -> Read:
     """The motion of both pairs by the equations as printed; nothing without their inputs."""
-    given = point.formulas
-    if not isinstance(given, TorusFormulas):
+    formulas = point.formulas
+    if not isinstance(formulas, TorusFormulas):
         return {}
-    known: Known = jax.device_get({**_conditions(point.design, point.operation), **_line(mesh)})
-    turn = _pieces(known, given)
-    whole = float(floor(given.mesh_cycles))
-    oil = Oil(array(known["pressure_viscosity"]), array(whole))
-    found: dict[str, float | Values] = {
-        "start_cycles": np.linspace(0.0, given.mesh_cycles, INSTANTS),
-        "start_orders": np.arange(1.0, LINES + 1.0) / whole,
+    conditions: Known = jax.device_get(
+        {**_conditions(point.design, point.operation), **_line(mesh)}
+    )
+    turn = _pieces(conditions, formulas)
+    cycles = float(floor(formulas.mesh_cycles))
+    oil = Oil(array(conditions["pressure_viscosity"]), array(cycles))
+    reading: dict[str, float | Values] = {
+        "start_cycles": np.linspace(0.0, formulas.mesh_cycles, INSTANTS),
+        "start_orders": np.arange(1.0, LINES + 1.0) / cycles,
         "cycle_part": np.asarray(cycle_places()),
     }
-    drives = {name: _drive(name, point, known) for name in PAIRS}
+    drives = {name: _drive(name, point, conditions) for name in PAIRS}
     for name, drive in drives.items():
-        told = jax.device_get(figures(drive, course(drive, turn), oil))
-        _check_found(name, told)
-        found |= _named(name, told)
+        pair_figures = jax.device_get(figures(drive, course(drive, turn), oil))
+        _check_found(name, pair_figures)
+        reading |= _named(name, pair_figures)
     power = float(point.operation.speed) * float(drives["torus"].input_torque)
-    return {**found, **_beside(found, power), **_stiffness(point, known, drives)}
+    return {**reading, **_beside(reading, power), **_stiffness(point, conditions, drives)}
 
 
 def _stiffness(point: Point, known: Known, drives: Mapping[str, Drive]) -> Read:
     """Stiffness of a pair of teeth over its path: of the library, as given, and as the motion has it."""
-    given = point.formulas
-    assert isinstance(given, TorusFormulas)
+    formulas = point.formulas
+    assert isinstance(formulas, TorusFormulas)
     path = np.linspace(_INSIDE, 1.0 - _INSIDE, _ROLLS) * float(known["ratio"])
     roll = path * _roll_of(known)
-    found: dict[str, Values] = {"stiffness_roll": roll}
+    curves: dict[str, Values] = {"stiffness_roll": roll}
     for name in PAIRS:
         rolls, springs = (
-            np.asarray(getattr(given, f"{name}_{of}")) for of in ("roll", "stiffness")
+            np.asarray(getattr(formulas, f"{name}_{of}")) for of in ("roll", "stiffness")
         )
         if name != "torus":
-            springs = given.standard_scale * springs
+            springs = formulas.standard_scale * springs
         library = library_stiffness(*_teeth(name, point), float(point.operation.load), path)
         curve = [0.0, *np.asarray(drives[name].coefficients)]
-        each = {
+        by_source = {
             "given": straight(roll, rolls, springs),
             "motion": np.polynomial.polynomial.polyval(roll, curve),
             **library,
         }
-        found |= {f"{name}_{told}_stiffness": values for told, values in each.items()}
-    return found
+        curves |= {f"{name}_{source}_stiffness": values for source, values in by_source.items()}
+    return curves
 
 
 def _roll_of(known: Known) -> float:
@@ -295,8 +297,8 @@ def _beside(found: Read, power: float) -> Read:
         "printed_film_ratio": torus / standard,
         "torus_less_standard_sliding_efficiency": float(sliding),
         **{
-            f"torus_less_standard_{told}": found[f"torus_{name}"] - found[f"standard_{name}"]
-            for told, name in _LESS.items()
+            f"torus_less_standard_{figure}": found[f"torus_{name}"] - found[f"standard_{name}"]
+            for figure, name in _LESS.items()
         },
     }
 
@@ -307,20 +309,22 @@ _LESS = {"friction": "sliding_friction", "efficiency": "printed_efficiency"}
 
 def _steady(point: Point, mesh: TorusPair) -> Read:
     """The motion of both pairs in steady state by the corrected equations, where it is asked for."""
-    given = point.formulas
-    if not isinstance(given, TorusFormulas) or given.steady_pinion is None:
+    formulas = point.formulas
+    if not isinstance(formulas, TorusFormulas) or formulas.steady_pinion is None:
         return {}
-    known: Known = jax.device_get({**_conditions(point.design, point.operation), **_line(mesh)})
-    found: dict[str, float | Values] = {
+    conditions: Known = jax.device_get(
+        {**_conditions(point.design, point.operation), **_line(mesh)}
+    )
+    reading: dict[str, float | Values] = {
         "steady_cycles": np.linspace(0.0, 1.0, steady.INSTANTS),
         "steady_orders": np.arange(1.0, steady.ORDERS + 1.0),
     }
     for name in PAIRS:
-        springs = _springs(_drive(name, point, known), known, given)
-        own = replace(point.design, mesh=_mesh(name, point))
-        found |= _named(name, steady.steady_figures(own, point.operation, springs))
-    over = {name: found[f"torus_{name}"] / found[f"standard_{name}"] for name in _OVER}
-    return {**found, **{f"{name}_ratio": value for name, value in over.items()}}
+        springs = _springs(_drive(name, point, conditions), conditions, formulas)
+        design = replace(point.design, mesh=_mesh(name, point))
+        reading |= _named(name, steady.steady_figures(design, point.operation, springs))
+    over = {name: reading[f"torus_{name}"] / reading[f"standard_{name}"] for name in _OVER}
+    return {**reading, **{f"{name}_ratio": value for name, value in over.items()}}
 
 
 _OVER = ("steady_friction", "steady_film")
@@ -329,8 +333,8 @@ _OVER = ("steady_friction", "steady_film")
 def _springs(drive: Drive, known: Known, given: TorusFormulas) -> Springs:
     """Bodies and springs of the corrected equations; a place on the path is counted in base pitches."""
     roll = _roll_of(known)
-    first, powers = np.asarray(drive.coefficients), np.arange(1, _DEGREE + 1)
-    coefficients, ratio = first * roll**powers, float(known["ratio"])
+    by_roll, powers = np.asarray(drive.coefficients), np.arange(1, _DEGREE + 1)
+    coefficients, ratio = by_roll * roll**powers, float(known["ratio"])
     return Springs(
         mass=drive.mass,
         inertia=drive.inertia,
@@ -379,23 +383,23 @@ _OF_CONDITIONS = ("inertia", "mass", "teeth", "modulus", "viscosity", "face_widt
 
 
 def _drive(name: str, point: Point, known: Known) -> Drive:
-    given, operation = point.formulas, point.operation
-    assert isinstance(given, TorusFormulas)
+    formulas, operation = point.formulas, point.operation
+    assert isinstance(formulas, TorusFormulas)
     numbers: dict[str, ArrayLike] = {
         "coefficients": _coefficients(name, point, known),
         "pointed": float(name == "torus"),
-        "radius_factor": given.radius_factor,
-        "bearing": given.bearing_stiffness,
-        "bearing_damping": given.bearing_damping,
-        "mesh_damping": given.mesh_damping,
-        "error": given.error,
-        "roughness": given.roughness,
+        "radius_factor": formulas.radius_factor,
+        "bearing": formulas.bearing_stiffness,
+        "bearing_damping": formulas.bearing_damping,
+        "mesh_damping": formulas.mesh_damping,
+        "error": formulas.error,
+        "roughness": formulas.roughness,
         "speed": operation.speed,
         "torque": operation.load,
     }
-    own = {key: known[key] for key in (*_OF_LINE, *_OF_CONDITIONS)}
-    values = {key: jnp.asarray(value, float) for key, value in {**own, **numbers}.items()}
-    return Drive(**values, radii=given.radius)
+    conditions = {key: known[key] for key in (*_OF_LINE, *_OF_CONDITIONS)}
+    values = {key: jnp.asarray(value, float) for key, value in {**conditions, **numbers}.items()}
+    return Drive(**values, radii=formulas.radius)
 
 
 def _coefficients(name: str, point: Point, known: Known) -> Values:
@@ -403,20 +407,20 @@ def _coefficients(name: str, point: Point, known: Known) -> Values:
 
     The library's stiffness is taken at the roll angles of Table 1 that lie on the path, as the table has it.
     """
-    given = point.formulas
-    assert isinstance(given, TorusFormulas)
-    rolls, springs = (np.asarray(getattr(given, f"{name}_{of}")) for of in ("roll", "stiffness"))
-    if given.stiffness == "library":
-        rolls = np.asarray(given.torus_roll)
+    formulas = point.formulas
+    assert isinstance(formulas, TorusFormulas)
+    rolls, springs = (np.asarray(getattr(formulas, f"{name}_{of}")) for of in ("roll", "stiffness"))
+    if formulas.stiffness == "library":
+        rolls = np.asarray(formulas.torus_roll)
         path = rolls / _roll_of(known)
         there = path < float(known["ratio"])
         _check_places(int(there.sum()), known)
         rolls, load = rolls[there], float(point.operation.load)
         springs = library_stiffness(*_teeth(name, point), load, path[there])["secant"]
     elif name != "torus":
-        rolls, springs = _filled(given, rolls, springs)
+        rolls, springs = _filled(formulas, rolls, springs)
     coefficients = pair_stiffness(roll=rolls, stiffness=springs)
-    key = "stiffness" if given.stiffness == "library" else f"{name}_stiffness"
+    key = "stiffness" if formulas.stiffness == "library" else f"{name}_stiffness"
     _check_stiffness(key, coefficients, known)
     return coefficients
 

@@ -255,15 +255,19 @@ def _of_the_path() -> Iterator[Curves]:
 
 def _dimensions() -> dict[str, str]:
     """Dimension of every course, and of the places that it runs over."""
-    drawn = {name: f"{one.along}_place" for one in _curves() for name in (one.along, *one.names)}
+    drawn = {
+        name: f"{curves.along}_place"
+        for curves in _curves()
+        for name in (curves.along, *curves.names)
+    }
     beside = {f"standard_{name}": "cycle_part_place" for name in _PRINTED_COURSES}
     return {**drawn, **beside}
 
 
 def _of(pair: str, numbers: dict[str, Variable], which: str) -> dict[str, Variable]:
     return {
-        f"{pair}_{name}": replace(one, long_name=f"{one.long_name}, {pair} pair, {which}")
-        for name, one in numbers.items()
+        f"{pair}_{name}": replace(variable, long_name=f"{variable.long_name}, {pair} pair, {which}")
+        for name, variable in numbers.items()
     }
 
 
@@ -275,13 +279,13 @@ _SIDE_BY_SIDE = Beside(
     columns=("torus pair", "standard pair"),
     rows={
         **{
-            f"{one.long_name}, from rest": (f"torus_{name}", f"standard_{name}")
-            for name, one in _OF_MOTION.items()
+            f"{variable.long_name}, from rest": (f"torus_{name}", f"standard_{name}")
+            for name, variable in _OF_MOTION.items()
             if name not in _HIDDEN
         },
         **{
-            f"{one.long_name}, steady state": (f"torus_{name}", f"standard_{name}")
-            for name, one in _STEADY.items()
+            f"{variable.long_name}, steady state": (f"torus_{name}", f"standard_{name}")
+            for name, variable in _STEADY.items()
         },
         "film at the pitch point, with the radii of Hertz": (
             "torus_pitch_film",
@@ -322,7 +326,9 @@ PUBLICATION = Publication(
         **_every({**_STEADY, **_STATUS}, "steady state"),
         **_every({**_COURSES, **_PRINTED_COURSES}, "from rest"),
         **_every(_STIFFNESS, "of the case"),
-        **_every({f"steady_{name}": one for name, one in _COURSES.items()}, "steady state"),
+        **_every(
+            {f"steady_{name}": variable for name, variable in _COURSES.items()}, "steady state"
+        ),
         **_PLACES,
         **_STEADY_RATIOS,
     },

@@ -88,7 +88,7 @@ def corrected(design: Design, operation: Operation, springs: Springs) -> Moving:
     a mesh cycle.
     """
     models, design = _models(design), replace(design, elliptic=ELLIPTIC_CONTACT[_ELLIPSE])
-    way = polynomial([0.0, *np.asarray(springs.coefficients)])
+    path_stiffness = polynomial([0.0, *np.asarray(springs.coefficients)])
     relaxed = relaxation_time(springs.mesh_damping, springs.joint_mass, springs.mean)
     return Moving(
         design,
@@ -99,7 +99,7 @@ def corrected(design: Design, operation: Operation, springs: Springs) -> Moving:
         phase=array(0.0),
         creep=array(CREEP),
         relaxation=relaxed,
-        passage=passage(design, operation, models.compliance, way),
+        passage=passage(design, operation, models.compliance, path_stiffness),
         law=CONTACT_LAWS["linear"],
         error=Waves(springs.error[None], array([1.0]), array([0.0])),
     )
@@ -114,13 +114,13 @@ def _models(design: Design) -> Models:
 def _bodies(operation: Operation, springs: Springs) -> tuple[Body, Body]:
     stiffness = float(springs.bearing)
     damping = 2.0 * springs.bearing_damping * np.sqrt(springs.bearing * springs.mass)
-    first, second = (
+    pinion_support, gear_support = (
         across(mass, stiffness, brake)
         for mass, brake in zip(springs.mass.tolist(), damping.tolist(), strict=True)
     )
     pinion, gear = springs.inertia
-    driver = Body(array(np.inf) if springs.held else pinion, support=first)
-    return driver, Body(gear, operation.load[None], support=second)
+    driver = Body(array(np.inf) if springs.held else pinion, support=pinion_support)
+    return driver, Body(gear, operation.load[None], support=gear_support)
 
 
 def steady_figures(design: Design, operation: Operation, springs: Springs) -> dict[str, Values]:
@@ -138,11 +138,13 @@ def steady_figures(design: Design, operation: Operation, springs: Springs) -> di
     speed = float(operation.speed)
     moved = steady_motion(moving, speed, _grid(moving, speed))
     law = FILM_THICKNESS[_FILM[design.mesh.shape]]
-    told = jax.device_get(_told(moving, moved, law))
+    figures = jax.device_get(_told(moving, moved, law))
     code = Code(int(moved.status.code))
     counts = code in (Code.SOLVED, Code.SEPARATES)
-    known = {name: value if counts else np.full_like(value, np.nan) for name, value in told.items()}
-    return {**known, "steady_status": np.asarray(float(code))}
+    shown = {
+        name: value if counts else np.full_like(value, np.nan) for name, value in figures.items()
+    }
+    return {**shown, "steady_status": np.asarray(float(code))}
 
 
 def _grid(moving: Moving, speed: float) -> Grid:
@@ -159,13 +161,13 @@ def _highest(moving: Moving) -> Each:
 
 @program
 def _told(moving: Moving, moved: Motion, law: FilmThickness) -> dict[str, Array]:
-    found = moved.found
-    error = found.stretch[0, 0] + _parted(moving, found.phase)
-    friction = jnp.abs(total(found.drawn))
-    heat = found.drawn * found.slip
+    forces = moved.found
+    error = forces.stretch[0, 0] + _parted(moving, forces.phase)
+    friction = jnp.abs(total(forces.drawn))
+    heat = forces.drawn * forces.slip
     put_in, now = moved.power_in, moved.instantaneous_efficiency
     films = jnp.nanmin(film(moving, moved, law), axis=1)
-    pushed = found.on_coordinates[2:].reshape(2, 2, *friction.shape)
+    pushed = forces.on_coordinates[2:].reshape(2, 2, *friction.shape)
     return {
         "steady_largest_error": jnp.max(error),
         "steady_least_error": jnp.min(error),
@@ -175,8 +177,8 @@ def _told(moving: Moving, moved: Motion, law: FilmThickness) -> dict[str, Array]
         "steady_highest_efficiency": jnp.max(now),
         "steady_friction_created": moved.mean(total(jnp.maximum(-heat, 0.0))) / put_in,
         "steady_energy_left": moved.energy.closure,
-        "steady_reaction_left": jnp.max(jnp.abs(pushed[0] + pushed[1])) / jnp.max(found.force),
-        "steady_pulled": moved.mean(jnp.where(total(found.force) < 0.0, 1.0, 0.0)),
+        "steady_reaction_left": jnp.max(jnp.abs(pushed[0] + pushed[1])) / jnp.max(forces.force),
+        "steady_pulled": moved.mean(jnp.where(total(forces.force) < 0.0, 1.0, 0.0)),
         "steady_film": _film(moved, films),
         **_courses(moved, error, films),
     }
@@ -186,25 +188,28 @@ def _courses(
     moved: Motion, error: Float[Array, "element node"], films: Float[Array, "pair element node"]
 ) -> dict[str, Array]:
     """What goes over a mesh cycle, and orders of the mesh force; pair 0 is the older one."""
-    found = moved.found
-    kept = {
+    forces = moved.found
+    over_cycle = {
         "error": error,
         "gear_speed": jnp.abs(moved.rate[1]),
-        "force_both": total(found.force),
+        "force_both": total(forces.force),
         "efficiency_course": moved.instantaneous_efficiency,
     }
-    touches = jnp.any(found.contacts.active, axis=1)
-    carried = {"force": jnp.sum(found.force, axis=1), "friction": jnp.sum(found.drawn, axis=1)}
+    touches = jnp.any(forces.contacts.active, axis=1)
+    carried = {"force": jnp.sum(forces.force, axis=1), "friction": jnp.sum(forces.drawn, axis=1)}
     shown = {name: jnp.where(touches, values, jnp.nan) for name, values in carried.items()}
     for name, values in {**shown, "film_course": films}.items():
-        kept |= {f"{name}_{told}": values[lane] for told, lane in _LANES.items()}
+        over_cycle |= {f"{name}_{pair}": values[lane] for pair, lane in _LANES.items()}
     places = jnp.arange(INSTANTS) / (INSTANTS - 1.0) * moved.bounds[-1]
     turned = moved.turned.ravel()
     courses = {
         f"steady_{name}": jnp.interp(places, turned, values.ravel())
-        for name, values in kept.items()
+        for name, values in over_cycle.items()
     }
-    return {**courses, "steady_spectrum": moved.spectrum(kept["force_both"], range(1, ORDERS + 1))}
+    return {
+        **courses,
+        "steady_spectrum": moved.spectrum(over_cycle["force_both"], range(1, ORDERS + 1)),
+    }
 
 
 _LANES = {"0": 1, "1": 0}

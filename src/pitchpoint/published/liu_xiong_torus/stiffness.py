@@ -63,8 +63,8 @@ def _of_pairs(
     contacts = mesh.contacts(phase)
 
     def whole(load: Float[Array, ""]) -> Float[Array, "pair place"]:
-        each = slice_stiffness(mesh, loaded, contacts, solids, terms, load) * contacts.weight
-        return jnp.sum(jnp.where(contacts.active, each, 0.0), axis=1)
+        stiffness = slice_stiffness(mesh, loaded, contacts, solids, terms, load) * contacts.weight
+        return jnp.sum(jnp.where(contacts.active, stiffness, 0.0), axis=1)
 
     # delta = F/k(F), with F in proportion to the load: d delta/dF = (1 - F k'/k)/k.
     secant, change = jax.jvp(whole, (load,), (load,))

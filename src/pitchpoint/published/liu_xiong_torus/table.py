@@ -68,7 +68,9 @@ class TorusFormulas(Table):
     def _paired(self) -> "TorusFormulas":
         for name in ("torus", "standard"):
             rolls, springs = getattr(self, f"{name}_roll"), getattr(self, f"{name}_stiffness")
-            if len(rolls) != len(springs) or any(later <= one for one, later in pairwise(rolls)):
+            if len(rolls) != len(springs) or any(
+                later <= earlier for earlier, later in pairwise(rolls)
+            ):
                 raise InputError(
                     f"{len(springs)} stiffnesses were given for {len(rolls)} roll angles; give one for "
                     "each angle, in growing order",

@@ -46,13 +46,13 @@ def readings(point: Point) -> dict[str, float | Course]:
     laws = {models.law.name: models for models in point.models}
     methods = {method: _law_of(method, laws) for method in METHODS}
     places = _places(mesh, int(point.formulas.places))
-    given = point.design, point.operation, array(places)
-    found = {name: jax.device_get(_along(*given, models)) for name, models in laws.items()}
-    courses = {"pair_path": places, "pair_share": found[methods["average"]]["share"]}
+    conditions = point.design, point.operation, array(places)
+    by_law = {name: jax.device_get(_along(*conditions, models)) for name, models in laws.items()}
+    courses = {"pair_path": places, "pair_share": by_law[methods["average"]]["share"]}
     for method, law in methods.items():
-        courses |= {f"pair_{name}_{method}": found[law][name] for name in _OF_METHODS}
+        courses |= {f"pair_{name}_{method}": by_law[law][name] for name in _OF_METHODS}
     numbers = _at_ends(courses) | _statements(courses)
-    table = _table_3(point, {law: course["efficiency"] for law, course in found.items()})
+    table = _table_3(point, {law: course["efficiency"] for law, course in by_law.items()})
     return {**courses, **numbers, **table}
 
 
@@ -99,15 +99,15 @@ def _of_methods(name: str) -> tuple[str, ...]:
 
 def _places(mesh: InvolutePair, count: int) -> Course:
     """Places from A [base pitches], the ends of single contact from both sides."""
-    found = jax.device_get(_zones(mesh))
-    if not 1.0 < found[-1] < 2.0:
-        told = f"{found[-1]:.4g} is the contact ratio; these courses are those of ratios between 1 and 2"
-        raise InputError(told, key="gears")
-    if not found[1] < found[2] < found[3]:
-        told = "the pitch point lies in double contact; these courses have it in single contact"
-        raise InputError(f"{told}, change the profile shifts", key="gears.profile_shift")
+    zones = jax.device_get(_zones(mesh))
+    if not 1.0 < zones[-1] < 2.0:
+        sentence = f"{zones[-1]:.4g} is the contact ratio; these courses are those of ratios between 1 and 2"
+        raise InputError(sentence, key="gears")
+    if not zones[1] < zones[2] < zones[3]:
+        sentence = "the pitch point lies in double contact; these courses have it in single contact"
+        raise InputError(f"{sentence}, change the profile shifts", key="gears.profile_shift")
     return np.concatenate(
-        [np.linspace(low + _BESIDE, high - _BESIDE, count) for low, high in pairwise(found)]
+        [np.linspace(low + _BESIDE, high - _BESIDE, count) for low, high in pairwise(zones)]
     )
 
 
@@ -122,14 +122,14 @@ def _zones(mesh: InvolutePair) -> Float[Array, "5"]:
 
 def _at_ends(courses: dict[str, Course]) -> dict[str, float]:
     """Shares and forces where mesh and single contact begin and end."""
-    last, count = len(courses["pair_path"]) - 1, len(courses["pair_path"]) // 4
-    places = {"entry": 0, "double": count - 1, "single": count, "exit": last}
+    final, count = len(courses["pair_path"]) - 1, len(courses["pair_path"]) // 4
+    places = {"entry": 0, "double": count - 1, "single": count, "exit": final}
     names = {"load_share_{}": "pair_share"}
     names |= {f"force_{{}}_{method}": f"pair_force_{method}" for method in METHODS}
     return {
-        told.format(end): float(courses[name][place])
+        pattern.format(end): float(courses[name][place])
         for end, place in places.items()
-        for told, name in names.items()
+        for pattern, name in names.items()
     }
 
 
@@ -141,24 +141,24 @@ def _along(
 
     Source: Tian et al. (2024), eqs. 1 to 3, 11, 16 and 18, the last over the force at the base circle.
     """
-    found = state(design, operation, place, models)
+    mesh_state = state(design, operation, place, models)
     number = jnp.floor(place).astype(int)
-    active, load = found.contacts.active[:, 0], found.balance.load[:, 0]
+    active, load = mesh_state.contacts.active[:, 0], mesh_state.balance.load[:, 0]
     lane = jnp.arange(load.shape[0])[:, None]
 
     def of_pair(values: Float[Array, "pair 1 place"]) -> Float[Array, " place"]:
         return jnp.take_along_axis(values[:, 0], number[None], axis=0)[0]
 
     others = active & (lane != number)
-    friction = found.balance.friction
-    other = jnp.sum(jnp.where(others, friction[:, 0], 0.0), axis=0)
+    friction = mesh_state.balance.friction
+    other_friction = jnp.sum(jnp.where(others, friction[:, 0], 0.0), axis=0)
     return {
-        "share": of_pair(found.balance.load) / total(found.balance.load),
-        "force": of_pair(found.balance.load) / found.balance.frictionless,
+        "share": of_pair(mesh_state.balance.load) / total(mesh_state.balance.load),
+        "force": of_pair(mesh_state.balance.load) / mesh_state.balance.frictionless,
         "friction": of_pair(friction),
-        "other_friction": jnp.where(jnp.any(others, axis=0), other, jnp.nan),
-        "efficiency": found.efficiency,
-        "input_torque": found.input_torque,
+        "other_friction": jnp.where(jnp.any(others, axis=0), other_friction, jnp.nan),
+        "efficiency": mesh_state.efficiency,
+        "input_torque": mesh_state.input_torque,
     }
 
 

@@ -46,10 +46,10 @@ def _of_methods(name: str) -> tuple[str, ...]:
 
 
 _NUMBERS = {
-    f"load_share_{end}": _plain(f"share of the load {told}", "λ") for end, told in _ENDS.items()
+    f"load_share_{end}": _plain(f"share of the load {words}", "λ") for end, words in _ENDS.items()
 } | {
-    f"force_{end}_{method}": _plain(f"{_COURSES['force'].long_name} {told}, {words}", "β")
-    for end, told in _ENDS.items()
+    f"force_{end}_{method}": _plain(f"{_COURSES['force'].long_name} {place}, {words}", "β")
+    for end, place in _ENDS.items()
     for method, words in _METHODS.items()
 }
 
@@ -74,8 +74,8 @@ _STATEMENTS = {
 _ALONG = {
     "pair_share": _plain("force of the pair over the whole one, without friction", "β"),
     **{
-        f"pair_{name}_{method}": replace(one, long_name=f"{one.long_name}, {words}")
-        for name, one in _COURSES.items()
+        f"pair_{name}_{method}": replace(variable, long_name=f"{variable.long_name}, {words}")
+        for name, variable in _COURSES.items()
         for method, words in _METHODS.items()
     },
 }
@@ -88,11 +88,11 @@ _COMPARED = {
 _ON_PATH = Beside(
     columns=("without friction", *_METHODS.values()),
     rows={
-        f"force {told} over that without friction": (
+        f"force {place} over that without friction": (
             f"load_share_{end}",
             *_of_methods(f"force_{end}"),
         )
-        for end, told in _ENDS.items()
+        for end, place in _ENDS.items()
     },
     note=(
         "One pair of teeth from its entry into mesh to its exit, over the base pitches since it entered. "
@@ -106,8 +106,8 @@ _ON_PATH = Beside(
             "pair_path",
             (*_of_methods("pair_friction"), *_of_methods("pair_other_friction")),
             (
-                *(f"{one}, this pair" for one in _METHODS.values()),
-                *(f"{one}, other pair" for one in _METHODS.values()),
+                *(f"{method}, this pair" for method in _METHODS.values()),
+                *(f"{method}, other pair" for method in _METHODS.values()),
             ),
             shows="Figure 4",
         ),

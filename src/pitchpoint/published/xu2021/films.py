@@ -77,11 +77,11 @@ class ToothFilms:
     @classmethod
     def of(cls, point: Point) -> "ToothFilms":
         """Those of a case with its table."""
-        given, gears, design = point.formulas, point.gears, point.design
-        assert isinstance(given, ZoneFilms)
+        table, gears, design = point.formulas, point.gears, point.design
+        assert isinstance(table, ZoneFilms)
         assert isinstance(gears, StrainWaveGears)
         return cls(
-            given,
+            table,
             zone_of(point),
             oil_of(design.lubricant),
             float(design.roughness.composite_rq),
@@ -191,9 +191,9 @@ class ToothFilms:
     ) -> tuple[Films, Course]:
         """Films of `lines`, with their stiffness by eqs. 15 and 16 [N/m]."""
         films = self.lines(angle, speed, temperature)
-        more = self.lines(angle, speed, temperature, more=self.given.load_step)
+        heavier = self.lines(angle, speed, temperature, more=self.given.load_step)
         step = self.given.load_step * self.zone.load(angle)
-        return films, load_over_film_step(films, more, step)
+        return films, load_over_film_step(films, heavier, step)
 
     def _rolling(self, angle: Course, speed: float | Course) -> Course:
         return np.asarray(self.entrainment(angle) * speed / self.zone.wave_speed)
@@ -221,18 +221,18 @@ def load_over_film_step(films: Films, more: Films, step: Course) -> Course:
         more: of the same lines under more load.
         step: of the load [N].
     """
-    found = []
+    stiffness = []
     for k in range(len(step)):
         x, pressure = films.film.x[k], films.film.pressure[k]
         (under,) = np.nonzero(pressure > _UNDER * np.max(pressure))
         if not under.size:  # not solved
-            found.append(np.nan)
+            stiffness.append(np.nan)
             continue
         nodes = np.linspace(x[under[0]], x[under[-1]], x.size)
         before = np.mean(np.interp(nodes, x, films.film.gap[k]))
         after = np.mean(np.interp(nodes, more.film.x[k], more.film.gap[k]))
-        found.append(step[k] / (before - after))
-    return np.array(found)
+        stiffness.append(step[k] / (before - after))
+    return np.array(stiffness)
 
 
 def films_at(point: Point) -> Read:
@@ -241,7 +241,7 @@ def films_at(point: Point) -> Read:
     speed, temperature = float(point.operation.speed), float(point.operation.temperature)
     if teeth.given.solves == "zone":
         return _of_teeth(teeth, speed, temperature)
-    found: dict[str, Any] = {
+    reading: dict[str, Any] = {
         "film_speed": np.asarray(teeth.given.speeds),
         "film_temperature": np.asarray(teeth.given.temperatures),
         "film_place": _PLACES,
@@ -250,9 +250,9 @@ def films_at(point: Point) -> Read:
         "film_map_y": _MAP[1],
     }
     for angle, name in zip(teeth.given.angles, POINTS, strict=True):
-        own = _of_point(teeth, angle, speed, temperature)
-        found |= {f"{key}_{name}": value for key, value in own.items()}
-    return found
+        point_films = _of_point(teeth, angle, speed, temperature)
+        reading |= {f"{key}_{name}": value for key, value in point_films.items()}
+    return reading
 
 
 # ---- points A and B
@@ -260,10 +260,10 @@ def films_at(point: Point) -> Read:
 
 def _of_point(teeth: ToothFilms, angle: float, speed: float, temperature: float) -> Read:
     speeds, temperatures = (
-        np.asarray(one) for one in (teeth.given.speeds, teeth.given.temperatures)
+        np.asarray(values) for values in (teeth.given.speeds, teeth.given.temperatures)
     )
     cold = _Chain(teeth, angle)
-    by_speed = [cold.film(one, temperature) for one in speeds]
+    by_speed = [cold.film(wave_speed, temperature) for wave_speed in speeds]
     coarse = cold.film(speed, temperature)
     rated = teeth.patch(angle, speed, temperature, teeth.given.nodes, coarse)
     # From the oil that is nearest to that of the rated film on, either way.
@@ -271,7 +271,7 @@ def _of_point(teeth: ToothFilms, angle: float, speed: float, temperature: float)
     warm = _Chain(teeth, angle, cold.last)
     by_oil = {k: warm.film(speed, temperatures[k]) for k in order}
     by_temperature = [by_oil[k] for k in range(temperatures.size)]
-    codes = [one.ended.code for one in (*by_speed, coarse, rated, *by_temperature)]
+    codes = [film.ended.code for film in (*by_speed, coarse, rated, *by_temperature)]
     at_speeds, at_temperatures = _course(teeth, by_speed), _course(teeth, by_temperature)
     lines = {
         "": (speeds, np.full(speeds.shape, temperature)),
@@ -279,13 +279,13 @@ def _of_point(teeth: ToothFilms, angle: float, speed: float, temperature: float)
     }
     printed = {}
     for key, (fast, hot) in lines.items():
-        films, found = teeth.lines_and_stiffness(np.full(fast.shape, angle), fast, hot)
-        printed[f"{key}printed_film_stiffness"] = found
-        codes += [Code(int(one)) for one in films.ended.code]
+        films, stiffness = teeth.lines_and_stiffness(np.full(fast.shape, angle), fast, hot)
+        printed[f"{key}printed_film_stiffness"] = stiffness
+        codes += [Code(int(code)) for code in films.ended.code]
     ratio, warm_ratio = at_speeds["film_ratio"], at_temperatures["film_ratio"]
     of_one = float(np.exp(_place_of_one(np.log(speeds), ratio)))
     return {
-        "films_status": float(next((one for one in codes if not one.ok), Code.SOLVED)),
+        "films_status": float(next((code for code in codes if not code.ok), Code.SOLVED)),
         "point_radius": float(teeth.zone.radius(np.array([angle]))[0]),
         "point_load": float(teeth.zone.load(np.array([angle]))[0]),
         "point_entrainment": float(teeth.entrainment(np.array([angle]))[0]),
@@ -299,7 +299,7 @@ def _of_point(teeth: ToothFilms, angle: float, speed: float, temperature: float)
         "late_film_gain": _late_gain(speeds, ratio),
         "late_share_gain": _late_gain(speeds, at_speeds["asperity_share"]),
         "slow_share": float(np.interp(_SLOW, speeds, at_speeds["asperity_share"])),
-        **{f"rated_{key}": float(one[0]) for key, one in _course(teeth, [rated]).items()},
+        **{f"rated_{key}": float(course[0]) for key, course in _course(teeth, [rated]).items()},
         "coarse_film_ratio": float(_course(teeth, [coarse])["film_ratio"][0]),
         **_fields(rated, teeth.face_width),
     }
@@ -324,9 +324,9 @@ class _Chain:
 
 def _course(teeth: ToothFilms, films: list[PatchFilms]) -> dict[str, Course]:
     return {
-        "film_ratio": np.array([float(one.film.mean_film) for one in films]) / teeth.rq,
-        "asperity_share": np.array([float(one.film.asperity_share) for one in films]),
-        "film_stiffness": np.array([float(one.film.stiffness) for one in films]),
+        "film_ratio": np.array([float(film.film.mean_film) for film in films]) / teeth.rq,
+        "asperity_share": np.array([float(film.film.asperity_share) for film in films]),
+        "film_stiffness": np.array([float(film.film.stiffness) for film in films]),
     }
 
 
@@ -427,16 +427,16 @@ def _of_teeth(teeth: ToothFilms, speed: float, temperature: float) -> Read:
     angle = zone.tooth_angles
     there = zone.touches(angle)
     if there.sum() < 2:
-        told = f"eq. 2 gives contact to {there.sum()} teeth of the zone, and their films take two at least"
-        raise InputError(f"{told}; change the map of the mesh point", key="formulas.map_distance")
-    fast, hot = (np.full(int(there.sum()), one) for one in (speed, temperature))
+        reason = f"eq. 2 gives contact to {there.sum()} teeth of the zone, and their films take two at least"
+        raise InputError(f"{reason}; change the map of the mesh point", key="formulas.map_distance")
+    fast, hot = (np.full(int(there.sum()), value) for value in (speed, temperature))
     films, printed = teeth.lines_and_stiffness(angle[there], fast, hot)
-    codes = [Code(int(one)) for one in films.ended.code]
+    codes = [Code(int(code)) for code in films.ended.code]
 
     def every(values: Any) -> Course:
-        found = np.full(angle.shape, np.nan)
-        found[there] = values
-        return found
+        by_tooth = np.full(angle.shape, np.nan)
+        by_tooth[there] = values
+        return by_tooth
 
     line = films.film
     mean = float(np.mean(printed))
@@ -451,7 +451,7 @@ def _of_teeth(teeth: ToothFilms, speed: float, temperature: float) -> Read:
     }
     return {
         **courses,
-        "teeth_status": float(next((one for one in codes if not one.ok), Code.SOLVED)),
+        "teeth_status": float(next((code for code in codes if not code.ok), Code.SOLVED)),
         "teeth_of_zone": 2.0 * angle.size - 1.0,
         "teeth_with_films": float(there.sum()),
         "mean_tooth_film_ratio": float(np.mean(courses["tooth_film_ratio"][there])),

@@ -28,16 +28,16 @@ def readings(point: Point) -> dict[str, float]:
     Films are those of Moes' law under the load that closes the torque, fully flooded and isothermal: an upper
     bound. At such radii the contact is as wide as the flank, and no half space holds.
     """
-    found, mesh = of_envelope(point), point.design.mesh
+    reading, mesh = of_envelope(point), point.design.mesh
     assert isinstance(mesh, StrainWave)
     if not isinstance(mesh.flank, InvoluteFlank):
-        return found
+        return reading
     zone, axis = zone_of(point), np.zeros(1)
     for end in ("root", "tip"):
-        ratio = _ratio(point, found[f"deep_radius_{end}"], found[f"deep_entrainment_{end}"])
-        found[f"conjugate_film_ratio_{end}"] = ratio(1.0)
-        found[f"conjugate_speed_of_one_{end}"] = zone.wave_speed * _part_of_one(ratio)
-    return found | {
+        ratio = _ratio(point, reading[f"deep_radius_{end}"], reading[f"deep_entrainment_{end}"])
+        reading[f"conjugate_film_ratio_{end}"] = ratio(1.0)
+        reading[f"conjugate_speed_of_one_{end}"] = zone.wave_speed * _part_of_one(ratio)
+    return reading | {
         "axis_speed": float(zone.speed(axis)[0]),
         "zone_end_speed": float(zone.speed(np.full(1, ZONE_END))[0]),
     }
@@ -49,14 +49,14 @@ def _ratio(point: Point, radius: float, speed: float) -> Callable[[float], float
     assert isinstance(gears, StrainWaveGears)
     oil, load = oil_of(design.lubricant), zone_of(point).closed_load
     rough = float(design.roughness.composite_rq)
-    given = {
+    conditions = {
         "line_load": load / gears.face_width,
         "viscosity": viscosity(temperature=at, **oil),
         "pressure_viscosity": pressure_viscosity(temperature=at, **oil),
         "radius": radius,
         "modulus": modulus_of(design),
     }
-    held = {name: jnp.asarray(one) for name, one in given.items()}
+    held = {name: jnp.asarray(value) for name, value in conditions.items()}
 
     def ratio(part: float) -> float:
         return float(moes_1992(entrainment=jnp.asarray(speed * part), **held)) / rough
@@ -66,7 +66,7 @@ def _ratio(point: Point, radius: float, speed: float) -> Callable[[float], float
 
 def _part_of_one(ratio: Callable[[float], float]) -> float:
     """Part of the operating speed at which the film is as thick as the roughness; NaN where none is."""
-    low, high = (float(np.log(one)) for one in _PARTS)
+    low, high = (float(np.log(limit)) for limit in _PARTS)
 
     def beyond(part: float) -> float:
         return float(np.log(ratio(float(np.exp(part)))))

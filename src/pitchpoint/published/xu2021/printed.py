@@ -114,9 +114,9 @@ def curvature_radii(
     Returns:
         R_k1 and R_k2; NaN where the mesh point lies within a base circle.
     """
-    first, second = base_radius
+    flexspline_base, circular_base = base_radius
     polar = np.asarray(distance) + np.asarray(radial)
-    radii = np.square(distance) - first**2, polar**2 - second**2
+    radii = np.square(distance) - flexspline_base**2, polar**2 - circular_base**2
     with np.errstate(invalid="ignore"):
         return np.asarray(np.sqrt(radii[0])), np.asarray(np.sqrt(radii[1]))
 
@@ -128,8 +128,8 @@ def relative_radius(*, first: ArrayLike, second: ArrayLike) -> Array:
         first, second: radii of curvature of flexspline and circular spline, shape (...) [m]. The
             result is infinite where they agree and negative where the flexspline's is the larger.
     """
-    one, two = np.asarray(first), np.asarray(second)
-    return np.asarray(one * two / (two - one))
+    on_flexspline, on_circular = np.asarray(first), np.asarray(second)
+    return np.asarray(on_flexspline * on_circular / (on_circular - on_flexspline))
 
 
 def mesh_point_speed(

@@ -99,7 +99,7 @@ _LOADS = {
 
 _COURSES = {
     "film_speed": _OF_FILM,
-    "film_temperature": {f"warm_{name}": one for name, one in _OF_FILM.items()},
+    "film_temperature": {f"warm_{name}": variable for name, variable in _OF_FILM.items()},
     "film_place": {
         "ridge_pressure": pressure("pressure along the face, highest across", "p"),
         "ridge_film": deviation("film along the face, on the contact line", "h"),
@@ -207,16 +207,23 @@ def _pair(name: str) -> tuple[str, ...]:
 
 def _of_points(numbers: dict[str, Variable]) -> dict[str, Variable]:
     return {
-        f"{name}_{point}": replace(one, long_name=f"{one.long_name}, point {point.upper()}")
-        for name, one in numbers.items()
+        f"{name}_{point}": replace(
+            variable, long_name=f"{variable.long_name}, point {point.upper()}"
+        )
+        for name, variable in numbers.items()
         for point in _NAMES
     }
 
 
 def _curves(along: str, shows: str) -> tuple[Curves, ...]:
     return tuple(
-        Curves(one.long_name, along, _pair(name), shows="" if one.kind == "stiffness" else shows)
-        for name, one in _COURSES[along].items()
+        Curves(
+            variable.long_name,
+            along,
+            _pair(name),
+            shows="" if variable.kind == "stiffness" else shows,
+        )
+        for name, variable in _COURSES[along].items()
     )
 
 
@@ -291,7 +298,7 @@ _ENVELOPE = Beside(
 
 _FILMS = Beside(
     columns=("point A", "point B"),
-    rows={one.long_name: _pair(name) for name, one in _OF_POINT.items()},
+    rows={variable.long_name: _pair(name) for name, variable in _OF_POINT.items()},
     note=(
         "Films of one tooth at the root (A) and at the tip (B) of the zone, solved on the whole contact "
         "line, with load and radius by eqs. 1 to 6 and the oil of the case. Stiffness stands by two "
@@ -313,20 +320,20 @@ _FILMS = Beside(
     ),
     maps=tuple(
         Maps(
-            f"{one.long_name.removesuffix(', row by row')}, point {point.upper()}",
+            f"{variable.long_name.removesuffix(', row by row')}, point {point.upper()}",
             ("film_map_x", "film_map_y"),
             f"{name}_{point}",
             shows="Figure 8",
         )
         for point in _NAMES
-        for name, one in _COURSES["film_map"].items()
+        for name, variable in _COURSES["film_map"].items()
     ),
     solves={"films": _pair("films_status")},
 )
 
 _TEETH_BESIDE = Beside(
     columns=("",),
-    rows={one.long_name: (name,) for name, one in _OF_TEETH.items()},
+    rows={variable.long_name: (name,) for name, variable in _OF_TEETH.items()},
     note=(
         "Every tooth from the long axis on, those on its other side being alike: films on lines without "
         "ends. The factor on eq. 3 lies between those of A and B. Teeth beyond the angle at which eq. 2 "
@@ -334,8 +341,8 @@ _TEETH_BESIDE = Beside(
         "alone."
     ),
     families=tuple(
-        Curves(one.long_name, "tooth_angle", (name,), shows=shows)
-        for (name, one), shows in zip(
+        Curves(variable.long_name, "tooth_angle", (name,), shows=shows)
+        for (name, variable), shows in zip(
             _TEETH.items(),
             ("", "", "", "Figure 11", "Figure 11"),
             strict=True,

@@ -86,7 +86,7 @@ def _loads(zone: MeshingZone) -> Read:
 def _courses(zone: MeshingZone) -> Read:
     """Figure 5, and what is read off it."""
     angle = np.linspace(0.0, ZONE_END, _PLACES)
-    first, second = zone.curvature_radii(angle)
+    on_flexspline, on_circular = zone.curvature_radii(angle)
     radius = zone.radius(angle)
     opposed, added = zone.speed(angle, -1), zone.speed(angle, 1)
     return {
@@ -97,7 +97,7 @@ def _courses(zone: MeshingZone) -> Read:
         "printed_radius_root": float(radius[0]),
         "printed_radius_10": float(np.interp(np.deg2rad(10.0), angle, radius)),
         "printed_radius_end": float(radius[-1]),
-        "conformal_angle": _crossing(angle, first - second),
+        "conformal_angle": _crossing(angle, on_flexspline - on_circular),
         "least_opposed_speed": float(np.abs(opposed).min()),
         "largest_opposed_speed": float(opposed.max()),
         "least_added_speed": float(added.min()),

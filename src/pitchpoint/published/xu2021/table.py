@@ -63,9 +63,9 @@ class ZoneFilms(Table):
 
     @model_validator(mode="after")
     def _rising(self) -> "ZoneFilms":
-        told = {"map_angle": "angles", "speeds": "speeds", "temperatures": "temperatures"}
-        for key, what in told.items():
-            if any(later <= one for one, later in pairwise(getattr(self, key))):
+        words = {"map_angle": "angles", "speeds": "speeds", "temperatures": "temperatures"}
+        for key, what in words.items():
+            if any(later <= earlier for earlier, later in pairwise(getattr(self, key))):
                 raise InputError(f"the {what} have to rise", key=key)
         return self
 

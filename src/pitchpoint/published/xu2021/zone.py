@@ -114,8 +114,8 @@ class MeshingZone:
 
     def radius(self, angle: Places) -> Places:
         """Relative radius, eq. 2; negative where the flexspline's is the larger one [m]."""
-        first, second = self.curvature_radii(angle)
-        return relative_radius(first=first, second=second)
+        on_flexspline, on_circular = self.curvature_radii(angle)
+        return relative_radius(first=on_flexspline, second=on_circular)
 
     def speed(self, angle: Places, sense: int | None = None) -> Places:
         """Velocity along the flank that is taken for entrainment, eq. 3 [m/s].
@@ -137,8 +137,8 @@ class MeshingZone:
     def touches(self, angle: Places) -> Bool[np.ndarray, " place"]:
         """Whether eqs. 1 to 5 give a contact: relative radius, entrainment and load are positive."""
         with np.errstate(invalid="ignore"):
-            found = (self.radius(angle) > 0.0) & (self.speed(angle) > 0.0)
-        return np.asarray(found & (self.load(angle) > 0.0))
+            rolling = (self.radius(angle) > 0.0) & (self.speed(angle) > 0.0)
+        return np.asarray(rolling & (self.load(angle) > 0.0))
 
 
 def zone_of(point: Point) -> MeshingZone:
@@ -147,7 +147,7 @@ def zone_of(point: Point) -> MeshingZone:
     Raises:
         InputError: teeth without base circles.
     """
-    gears, mesh, given = point.gears, point.design.mesh, point.formulas
+    gears, mesh, formulas = point.gears, point.design.mesh, point.formulas
     assert isinstance(gears, StrainWaveGears)
     assert isinstance(mesh, StrainWave)
     if not isinstance(mesh.flank, InvoluteFlank):
@@ -155,13 +155,13 @@ def zone_of(point: Point) -> MeshingZone:
             "eqs. 1 to 3 take teeth with base circles, which are involute ones",
             key="gears.tooth.form",
         )
-    first = float(mesh.flank.base_radius)
-    table = given if isinstance(given, ZoneFilms) else None
+    flexspline_base = float(mesh.flank.base_radius)
+    table = formulas if isinstance(formulas, ZoneFilms) else None
     map_angle, map_distance = (table.map_angle, table.map_distance) if table else _USUAL_MAP
     return MeshingZone(
         teeth=gears.teeth,
         module=gears.module,
-        base_radius=(first, first * gears.teeth[1] / gears.teeth[0]),
+        base_radius=(flexspline_base, flexspline_base * gears.teeth[1] / gears.teeth[0]),
         deflection=float(mesh.line.deflection),
         wave_speed=float(point.operation.speed),
         torque=float(point.operation.load),

@@ -52,12 +52,12 @@ def mixed_lubrication(point: Point, *, tip_angle: float, tip_force: float) -> Mi
         tip_angle: flank angle at the first point [rad].
         tip_force: tangential force of a tooth there [N].
     """
-    given, gears, mesh = point.formulas, point.gears, point.design.mesh
-    assert isinstance(given, FlankWear)
+    table, gears, mesh = point.formulas, point.gears, point.design.mesh
+    assert isinstance(table, FlankWear)
     assert isinstance(gears, StrainWaveGears)
     assert isinstance(mesh, StrainWave)
     oil, temperature = point.design.lubricant, point.operation.temperature
-    held, reference = given.coefficient_load == "reference", given.reference
+    held, reference = table.coefficient_load == "reference", table.reference
     case = {
         "line_load": reference.line_load if held else tip_force / gears.face_width,
         "speed": float(point.operation.speed),
@@ -66,44 +66,44 @@ def mixed_lubrication(point: Point, *, tip_angle: float, tip_force: float) -> Mi
         "modulus": float(point.design.modulus),
         "viscosity": float(oil.viscosity(temperature)),
         "pressure_viscosity": float(oil.pressure_viscosity(temperature)),
-        "hardness": given.hardness,
+        "hardness": table.hardness,
     }
     both = {
-        each: array(np.array([getattr(reference, each), case[each]]))
-        for each in Reference.model_fields
+        field: array(np.array([getattr(reference, field), case[field]]))
+        for field in Reference.model_fields
     }
     # A strip of one pitch, whatever the number of points: the step that the paper takes.
-    length = given.flank_length * gears.module
+    length = table.flank_length * gears.module
     strip = length * 2.0 * np.pi / gears.teeth[0] / HALF_ZONE
     wave, flexspline, _ = np.asarray(point.design.motion)
     passing = abs(float(flexspline - wave)) * length / HALF_ZONE
-    capacity = float(point.design.solids[0].density) * given.specific_heat
+    capacity = float(point.design.solids[0].density) * table.specific_heat
     values = _laws(
         both,
         {
-            "radius": array(given.equivalent_radius),
+            "radius": array(table.equivalent_radius),
             "passing": array(passing),
             "strip": array(strip),
-            "friction_per_area": array(given.friction / strip / cos(tip_angle)),
-            "adsorption_heat": array(given.adsorption_heat),
-            "molecule_diameter": array(given.molecule),
-            "vibration_period": array(given.vibration_period),
+            "friction_per_area": array(table.friction / strip / cos(tip_angle)),
+            "adsorption_heat": array(table.adsorption_heat),
+            "molecule_diameter": array(table.molecule),
+            "vibration_period": array(table.vibration_period),
         },
-        Conductor(conductivity=given.conductivity, heat_capacity=capacity),
+        Conductor(conductivity=table.conductivity, heat_capacity=capacity),
     )
     laws = {name: np.asarray(value) for name, value in values.items()}
     share = np.minimum(laws["asperity_regression"], 1.0)
     ratios = {
-        name: float(each[1] / each[0])
-        for name, each in (*laws.items(), ("share", share))
+        name: float(pair[1] / pair[0])
+        for name, pair in (*laws.items(), ("share", share))
         if name != "flash"
     }
     moved = ratios["regression"] * ratios["defect"] * ratios["share"]
-    dry = given.coefficient / float(laws["defect"][0] * share[0])
+    dry = table.coefficient / float(laws["defect"][0] * share[0])
     beyond = laws["asperity_regression"][1] > 1.0
     return MixedLubrication(
-        coefficient=given.coefficient * moved,
-        reference=given.coefficient,
+        coefficient=table.coefficient * moved,
+        reference=table.coefficient,
         dry=dry,
         readings={
             "dry_coefficient": dry,

@@ -31,18 +31,20 @@ def readings(point: Point) -> Read:
 
     Points count where the relative radius is positive and the zone of 36 degrees reaches.
     """
-    given, mesh = point.formulas, point.design.mesh
-    if not isinstance(given, ConjugateWear):
+    table, mesh = point.formulas, point.design.mesh
+    if not isinstance(table, ConjugateWear):
         return {}
     assert isinstance(mesh, StrainWave)
-    found = of_sharp_flank(mesh)
-    angle, along = found["angle"], found["along"][0]
-    touches = (found["radius"] > 0.0) & (np.abs(angle) < HALF_ZONE)
-    slides = np.abs(found["sliding"] / found["rolling"])
-    worn = given.rate * given.cycles * _line_load(point, angle) / np.cos(found["lean"]) * slides
-    depth, way = np.where(touches, worn, np.nan), along[-1] - along
-    each = [_of_branch(*one, way) for one in zip(BRANCHES, depth, angle, strict=True)]
-    return {"conjugate_way": way} | each[0] | each[1]
+    points = of_sharp_flank(mesh)
+    angle, along = points["angle"], points["along"][0]
+    touches = (points["radius"] > 0.0) & (np.abs(angle) < HALF_ZONE)
+    slides = np.abs(points["sliding"] / points["rolling"])
+    worn = table.rate * table.cycles * _line_load(point, angle) / np.cos(points["lean"]) * slides
+    depth, from_tip = np.where(touches, worn, np.nan), along[-1] - along
+    branches = [
+        _of_branch(*branch, from_tip) for branch in zip(BRANCHES, depth, angle, strict=True)
+    ]
+    return {"conjugate_way": from_tip} | branches[0] | branches[1]
 
 
 def _line_load(point: Point, angle: Array) -> Array:
@@ -60,16 +62,18 @@ def _line_load(point: Point, angle: Array) -> Array:
     return np.asarray(diameter / 2.0 * load * pitch * np.cos(pi * angle / (2.0 * HALF_ZONE)))
 
 
-def _of_branch(name: str, depth: Array, angle: Array, way: Array) -> dict[str, "float | Array"]:
+def _of_branch(
+    name: str, depth: Array, angle: Array, from_tip: Array
+) -> dict[str, "float | Array"]:
     """Course and largest depth of a branch, and where; NaN where nothing of it touches."""
-    known = np.isfinite(depth)
-    most = int(np.nanargmax(depth)) if known.any() else 0
+    touching = np.isfinite(depth)
+    most = int(np.nanargmax(depth)) if touching.any() else 0
     there = {
         "depth": depth,
-        "angle": np.where(known, angle, np.nan),
-        "way": np.where(known, way, np.nan),
+        "angle": np.where(touching, angle, np.nan),
+        "way": np.where(touching, from_tip, np.nan),
     }
     return {
         f"conjugate_course_{name}": depth,
-        **{f"conjugate_{one}_{name}": float(values[most]) for one, values in there.items()},
+        **{f"conjugate_{key}_{name}": float(values[most]) for key, values in there.items()},
     }

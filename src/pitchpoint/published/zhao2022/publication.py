@@ -163,8 +163,8 @@ _DIMENSIONS = {
     **{name: "flank_point" for name in ("flank_way", "flexspline_radius", *_LOADS, _DRY)},
     **{
         f"{name}_{state}": "flank_point"
-        for one in _ALONG.values()
-        for name in one
+        for courses in _ALONG.values()
+        for name in courses
         for state in _STATES
     },
     **{name: "wear_time" for name in ("wear_cycles", *_OVER_CYCLES)},
@@ -190,9 +190,9 @@ def _states(name: str) -> tuple[str, ...]:
 
 def _of_states(numbers: dict[str, Variable]) -> dict[str, Variable]:
     return {
-        f"{name}_{state}": replace(one, long_name=f"{one.long_name}, {told}")
-        for name, one in numbers.items()
-        for state, told in _STATES.items()
+        f"{name}_{state}": replace(variable, long_name=f"{variable.long_name}, {words}")
+        for name, variable in numbers.items()
+        for state, words in _STATES.items()
     }
 
 
@@ -285,7 +285,7 @@ _FAMILIES = (
 
 _STRIPS = Beside(
     columns=tuple(_STATES.values()),
-    rows={one.long_name: _states(name) for name, one in _AT_TIP.items()},
+    rows={variable.long_name: _states(name) for name, variable in _AT_TIP.items()},
     note=(
         "Wear by the discrete model of the paper: prescribed load with its largest force at the tip, strips "
         "one pitch step long, a coefficient that stays as it is while the load changes. Double-arc and "
@@ -336,8 +336,8 @@ _ON_BRANCHES = {
 }
 
 _CONJUGATE = {
-    f"{name}_{branch}": replace(one, long_name=f"{one.long_name}, {branch} branch")
-    for name, one in {
+    f"{name}_{branch}": replace(variable, long_name=f"{variable.long_name}, {branch} branch")
+    for name, variable in {
         **_ON_BRANCHES,
         "conjugate_course": length("wear depth along the flank by the conjugate kinematics", "h"),
     }.items()
@@ -347,8 +347,8 @@ _CONJUGATE = {
 _TOUCHING = Beside(
     columns=tuple(f"{branch} branch" for branch in BRANCHES),
     rows={
-        one.long_name: tuple(f"{name}_{branch}" for branch in BRANCHES)
-        for name, one in _ON_BRANCHES.items()
+        variable.long_name: tuple(f"{name}_{branch}" for branch in BRANCHES)
+        for name, variable in _ON_BRANCHES.items()
     },
     note=(
         "Wear where the flank touches its envelope: line load times sliding over rolling of the conjugate "
@@ -390,7 +390,9 @@ PUBLICATION = Publication(
         **_UNTIL_SEVERE,
         **_BESIDE_INVOLUTE,
         **_of_states(_AT_TIP),
-        **_of_states({name: one for courses in _ALONG.values() for name, one in courses.items()}),
+        **_of_states(
+            {name: variable for courses in _ALONG.values() for name, variable in courses.items()}
+        ),
     },
     beside=(_STRIPS, _MIXED, _TOUCHING),
     courses=_DIMENSIONS,

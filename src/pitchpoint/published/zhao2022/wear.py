@@ -118,9 +118,11 @@ class March:
 
     def at(self, cycles: float, name: str) -> Array:
         """One of the fields at so many cycles, shape (point); NaN beyond the end."""
-        values, last = getattr(self, name), float(self.cycles[-1])
-        place = min(cycles, last) if cycles <= last * (1.0 + 1e-12) else np.inf
-        return np.array([np.interp(place, self.cycles, each, right=np.nan) for each in values.T])
+        values, end = getattr(self, name), float(self.cycles[-1])
+        place = min(cycles, end) if cycles <= end * (1.0 + 1e-12) else np.inf
+        return np.array(
+            [np.interp(place, self.cycles, course, right=np.nan) for course in values.T]
+        )
 
 
 def march(
@@ -137,16 +139,16 @@ def march(
         blocks: their number.
         limit: of the depth [m].
     """
-    depth, kept = np.zeros_like(strips.angle), []
+    depth, history = np.zeros_like(strips.angle), []
     for done in range(blocks + 1):
         angle, pressure, step = strips.worn(depth)
         if not np.all(np.abs(angle) < pi / 2.0):
             break
-        kept.append((done * block, depth, pressure, step))
+        history.append((done * block, depth, pressure, step))
         if np.max(depth) > limit:
             break
         depth = depth + rate * pressure * step * block
-    cycles, *fields = (np.array(each) for each in zip(*kept, strict=True))
+    cycles, *fields = (np.array(column) for column in zip(*history, strict=True))
     return March(cycles, *fields)
 
 
@@ -212,7 +214,7 @@ def counterpart(flank: DoubleArcFlank, gears: StrainWaveGears) -> InvoluteFlank:
     module, teeth = gears.module, gears.teeth[0]
     shift, addendum, dedendum = 3.32, 1.0, 1.35
     half_rim = float(flank.pitch_height - flank.dedendum)
-    made = {
+    dimensions = {
         "teeth": teeth,
         "module": module,
         "pressure_angle": pi / 9.0,
@@ -222,7 +224,9 @@ def counterpart(flank: DoubleArcFlank, gears: StrainWaveGears) -> InvoluteFlank:
         "neutral_radius": module * (teeth / 2.0 + shift - dedendum) - half_rim,
     }
     edges = {name: getattr(flank, name) for name in ("tip_rounding", "tip_relief", "relief_length")}
-    return InvoluteFlank(**{name: jnp.asarray(value) for name, value in made.items()}, **edges)
+    return InvoluteFlank(
+        **{name: jnp.asarray(value) for name, value in dimensions.items()}, **edges
+    )
 
 
 def strips_of(point: Point, flank: Flank, neutral: float, *, finer: int = 1) -> Strips:
@@ -230,14 +234,14 @@ def strips_of(point: Point, flank: Flank, neutral: float, *, finer: int = 1) -> 
 
     With `finer` there are so many times the points; each carries the force of a pitch all the same.
     """
-    gears, given, mesh = point.gears, point.formulas, point.design.mesh
+    gears, table, mesh = point.gears, point.formulas, point.design.mesh
     assert isinstance(gears, StrainWaveGears)
-    assert isinstance(given, FlankWear)
+    assert isinstance(table, FlankWear)
     assert isinstance(mesh, StrainWave)
-    count, module = finer * int(given.points), gears.module
+    count, module = finer * int(table.points), gears.module
     assert isinstance(flank, DoubleArcFlank | InvoluteFlank)
     curve = _double_arc(flank) if isinstance(flank, DoubleArcFlank) else _involute(flank)
-    step, middle = given.flank_length * module / count, np.arange(count, dtype=np.float64) + 0.5
+    step, middle = table.flank_length * module / count, np.arange(count, dtype=np.float64) + 0.5
     angle, place = curve(step * middle)
     diameter = module * (gears.teeth[0] - ENGAGED_HEIGHT)
     largest = largest_tangential_load(
@@ -248,7 +252,7 @@ def strips_of(point: Point, flank: Flank, neutral: float, *, finer: int = 1) -> 
     )
     load = largest * np.cos(pi / 2.0 * middle / count)
     pitch = 2.0 * pi / gears.teeth[0]
-    made = Strips(
+    strips = Strips(
         angle=angle,
         place=np.stack([place.imag, place.real]),
         force=gears.face_width * diameter / 2.0 * load * pitch,
@@ -261,9 +265,9 @@ def strips_of(point: Point, flank: Flank, neutral: float, *, finer: int = 1) -> 
         step=step,
         face_width=gears.face_width,
         tip_land=float(flank.tip_land),
-        area=given.area,
+        area=table.area,
     )
-    return made if given.offset == "mean" else made.without_offset()
+    return strips if table.offset == "mean" else strips.without_offset()
 
 
 # ------------------------------------------------------------------ readings
@@ -271,8 +275,8 @@ def strips_of(point: Point, flank: Flank, neutral: float, *, finer: int = 1) -> 
 
 def readings(point: Point) -> Read:
     """Wear of the flank with all that the paper tells and draws of it, for a case with its table."""
-    given, gears, mesh = point.formulas, point.gears, point.design.mesh
-    if not isinstance(given, FlankWear):
+    table, gears, mesh = point.formulas, point.gears, point.design.mesh
+    if not isinstance(table, FlankWear):
         return {}
     assert isinstance(gears, StrainWaveGears)
     assert isinstance(mesh, StrainWave)
@@ -281,22 +285,22 @@ def readings(point: Point) -> Read:
     mixed = mixed_lubrication(
         point, tip_angle=float(strips.angle[0]), tip_force=float(strips.force[0])
     )
-    rate = mixed.coefficient / given.hardness
-    found: dict[str, Any] = {"wear_rate": rate}
-    whole = marched(strips, rate=rate, cycles=given.cycles)
-    found |= _depths(whole, strips, rate, given)
+    rate = mixed.coefficient / table.hardness
+    reading: dict[str, Any] = {"wear_rate": rate}
+    wear = marched(strips, rate=rate, cycles=table.cycles)
+    reading |= _depths(wear, strips, rate, table)
     finer = strips_of(point, mesh.flank, neutral, finer=2)
-    twice = marched(finer, rate=rate, cycles=given.cycles).at(given.cycles, "depth")
-    found["wear_depth_change"] = float(np.max(twice)) - found["wear_depth"]
-    found |= _stages(strips, rate, _limit(strips, given, gears.module))
-    found |= _flank_courses(strips, rate, neutral)
-    found |= _dry(strips, found, mixed, given)
-    found |= mixed.readings
-    found["contact_temperature"] = float(point.operation.temperature) + found["tip_flash"]
-    found["depth_growth"] = found["tip_depth_late"] / found["tip_depth_early"]
+    twice = marched(finer, rate=rate, cycles=table.cycles).at(table.cycles, "depth")
+    reading["wear_depth_change"] = float(np.max(twice)) - reading["wear_depth"]
+    reading |= _stages(strips, rate, _limit(strips, table, gears.module))
+    reading |= _flank_courses(strips, rate, neutral)
+    reading |= _dry(strips, reading, mixed, table)
+    reading |= mixed.readings
+    reading["contact_temperature"] = float(point.operation.temperature) + reading["tip_flash"]
+    reading["depth_growth"] = reading["tip_depth_late"] / reading["tip_depth_early"]
     if isinstance(mesh.flank, DoubleArcFlank):
-        found |= _beside_involute(found, whole, point, rate)
-    return found
+        reading |= _beside_involute(reading, wear, point, rate)
+    return reading
 
 
 def _limit(strips: Strips, given: FlankWear, module: float) -> float:
@@ -304,11 +308,11 @@ def _limit(strips: Strips, given: FlankWear, module: float) -> float:
     return min(strips.tip_land, given.severe_depth * module)
 
 
-def _depths(whole: March, strips: Strips, rate: float, given: FlankWear) -> dict[str, Any]:
+def _depths(with_offset: March, strips: Strips, rate: float, given: FlankWear) -> dict[str, Any]:
     """Depth with and without the offset over the cycles."""
     cycles = np.linspace(0.0, given.cycles, BLOCKS + 1)
-    both = whole, marched(strips.without_offset(), rate=rate, cycles=given.cycles)
-    course = [_over(cycles, one.cycles, one.depth.max(axis=1)) for one in both]
+    both = with_offset, marched(strips.without_offset(), rate=rate, cycles=given.cycles)
+    course = [_over(cycles, wear.cycles, wear.depth.max(axis=1)) for wear in both]
     return {
         "wear_depth": float(course[0][-1]),
         "wear_depth_without_offset": float(course[1][-1]),
@@ -324,25 +328,25 @@ def _depths(whole: March, strips: Strips, rate: float, given: FlankWear) -> dict
 
 def _over(places: Array, known: Array, values: Array) -> Array:
     """Values at places; NaN beyond those that are known."""
-    last = known[-1] * (1.0 + 1e-12)
-    return np.where(places <= last, np.interp(places, known, values), np.nan)
+    end = known[-1] * (1.0 + 1e-12)
+    return np.where(places <= end, np.interp(places, known, values), np.nan)
 
 
 def _stages(strips: Strips, rate: float, limit: float) -> dict[str, Any]:
     """Tip of the flank until wear is severe."""
-    whole = severe(strips, rate=rate, limit=limit)
-    end = whole.cycles_to(limit)
-    cycles = np.linspace(0.0, whole.cycles[-1] if np.isnan(end) else end, BLOCKS + 1)
+    wear = severe(strips, rate=rate, limit=limit)
+    end = wear.cycles_to(limit)
+    cycles = np.linspace(0.0, wear.cycles[-1] if np.isnan(end) else end, BLOCKS + 1)
     return {
         "severe_depth": limit,
         "severe_wear_cycles": end,
-        "severe_pressure": (last := float(whole.at(end, "pressure")[0])),
-        "severe_pressure_ratio": last / float(whole.pressure[0, 0]),
-        "wear_long_step": float(whole.at(LONG, "step")[0]),
+        "severe_pressure": (pressure := float(wear.at(end, "pressure")[0])),
+        "severe_pressure_ratio": pressure / float(wear.pressure[0, 0]),
+        "wear_long_step": float(wear.at(LONG, "step")[0]),
         "severe_course": cycles,
-        "severe_tip_pressure": _over(cycles, whole.cycles, whole.pressure[:, 0]),
-        "severe_tip_step": _over(cycles, whole.cycles, whole.step[:, 0]),
-        "severe_tip_depth": _over(cycles, whole.cycles, whole.depth[:, 0]),
+        "severe_tip_pressure": _over(cycles, wear.cycles, wear.pressure[:, 0]),
+        "severe_tip_step": _over(cycles, wear.cycles, wear.step[:, 0]),
+        "severe_tip_depth": _over(cycles, wear.cycles, wear.depth[:, 0]),
     }
 
 
@@ -355,8 +359,8 @@ def _dry(
     """
     deeper, rate = mixed.dry / mixed.reference, mixed.reference / given.hardness
     late, all_cycles = (
-        deeper * marched(strips, rate=rate, cycles=one).at(one, "depth")
-        for one in (LATER["late"], given.cycles)
+        deeper * marched(strips, rate=rate, cycles=cycles).at(cycles, "depth")
+        for cycles in (LATER["late"], given.cycles)
     )
     depth = float(np.max(all_cycles))
     over_dry = found["wear_depth"] / depth
@@ -371,24 +375,24 @@ def _dry(
 def _flank_courses(strips: Strips, rate: float, neutral: float) -> dict[str, Any]:
     """Fields of the flank when it is new and after the cycles of section 4.4."""
     count = strips.angle.size
-    way, radius = (
+    from_tip, radius = (
         strips.step * (np.arange(count, dtype=np.float64) + 0.5),
         neutral + strips.place[1],
     )
-    found: dict[str, Any] = {
-        "flank_way": _spread(way),
+    reading: dict[str, Any] = {
+        "flank_way": _spread(from_tip),
         "flexspline_radius": _spread(radius),
         "tangential_load": _spread(strips.load),
         "radial_load": _spread(strips.load * np.tan(strips.angle)),
     }
     for name, cycles in {"new": 0.0, **LATER}.items():
-        last = marched(strips, rate=rate, cycles=cycles)
-        held = last.cycles[-1] >= cycles * (1.0 - 1e-12)
+        wear = marched(strips, rate=rate, cycles=cycles)
+        held = wear.cycles[-1] >= cycles * (1.0 - 1e-12)
         depth, pressure, step = (
-            each[-1] if held else np.full(count, np.nan)
-            for each in (last.depth, last.pressure, last.step)
+            field[-1] if held else np.full(count, np.nan)
+            for field in (wear.depth, wear.pressure, wear.step)
         )
-        found |= {
+        reading |= {
             f"flank_pressure_{name}": _spread(pressure),
             f"flank_step_{name}": _spread(step),
             f"flank_depth_{name}": _spread(depth),
@@ -397,7 +401,7 @@ def _flank_courses(strips: Strips, rate: float, neutral: float) -> dict[str, Any
             f"tip_step_{name}": float(step[0]),
             f"tip_depth_{name}": float(depth[0]),
         }
-    return found
+    return reading
 
 
 def _spread(values: Array) -> Array:
@@ -416,28 +420,28 @@ def _beside_involute(
     found: dict[str, Any], ours: March, point: Point, rate: float
 ) -> dict[str, Any]:
     """Double arc beside the involute flank of Table 1 with the same coefficient, eqs. 11 to 33."""
-    mesh, gears, given = point.design.mesh, point.gears, point.formulas
+    mesh, gears, table = point.design.mesh, point.gears, point.formulas
     assert isinstance(mesh, StrainWave)
     assert isinstance(mesh.flank, DoubleArcFlank)
     assert isinstance(gears, StrainWaveGears)
-    assert isinstance(given, FlankWear)
+    assert isinstance(table, FlankWear)
     flank = counterpart(mesh.flank, gears)
     involute = strips_of(point, flank, float(flank.neutral_radius))
-    limit = _limit(involute, given, gears.module)
-    whole = severe(involute, rate=rate, limit=limit)
-    theirs = marched(involute, rate=rate, cycles=given.cycles)
+    limit = _limit(involute, table, gears.module)
+    until_severe = severe(involute, rate=rate, limit=limit)
+    theirs = marched(involute, rate=rate, cycles=table.cycles)
     ratios = {
-        name: float(np.max(ours.at(given.cycles, name) / theirs.at(given.cycles, name)))
+        name: float(np.max(ours.at(table.cycles, name) / theirs.at(table.cycles, name)))
         for name in ("pressure", "step", "depth")
     }
     late = marched(involute, rate=rate, cycles=LATER["late"]).at(LATER["late"], "depth")
     return {
-        "onset_over_involute": found["severe_wear_cycles"] / whole.cycles_to(limit),
-        **{f"{name}_over_involute": one for name, one in ratios.items()},
+        "onset_over_involute": found["severe_wear_cycles"] / until_severe.cycles_to(limit),
+        **{f"{name}_over_involute": ratio for name, ratio in ratios.items()},
         "involute_flank_depth": _spread(late),
         **{
             f"involute_tip_{name}": _over(
-                found["severe_course"], whole.cycles, getattr(whole, name)[:, 0]
+                found["severe_course"], until_severe.cycles, getattr(until_severe, name)[:, 0]
             )
             for name in ("pressure", "step", "depth")
         },
