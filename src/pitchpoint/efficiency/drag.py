@@ -115,17 +115,19 @@ class Drag(eqx.Module):
             mean_diameter=self.mean_diameter,
             **self.factors,
         )
-        other = self._held(kinematic_viscosity) if self.resting else self._churning(speed)
+        load_free = self._held(kinematic_viscosity) if self.resting else self._churning(speed)
         every = map(jnp.shape, (speed, load, kinematic_viscosity))
-        return jnp.broadcast_to(bearing + self.seal_torque + other, jnp.broadcast_shapes(*every))
+        return jnp.broadcast_to(
+            bearing + self.seal_torque + load_free, jnp.broadcast_shapes(*every)
+        )
 
     def _held(self, viscosity: Each) -> Each:
-        more = self.breakaway.function(
+        of_law = self.breakaway.function(
             mean_diameter=self.mean_diameter,
             kinematic_viscosity=viscosity,
             **self.breakaway_factors,
         )
-        return self.breakaway_torque + more
+        return self.breakaway_torque + of_law
 
     def _churning(self, speed: Each) -> Each:
         moves = speed > 0.0
@@ -171,7 +173,7 @@ def resistance(
             _on_bodies(drag, motion, speed, held, kinematic_viscosity)
             for drag, held in zip(drags, pressed, strict=True)
         ]
-        return jnp.stack([sum(one[k] for one in every) for k in range(motion.shape[0])])
+        return jnp.stack([sum(torque[k] for torque in every) for k in range(motion.shape[0])])
 
     return torques
 

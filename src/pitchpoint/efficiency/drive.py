@@ -217,13 +217,13 @@ def _check_senses(links: Sequence[DriveLink]) -> None:
     """InputError if a mesh turns its first shaft the other way; a train may turn either way."""
     sense = 0.0
     for number, link in enumerate(links, 1):
-        first, last = link.senses(sense)
-        if sense * first < 0.0:
+        sense_in, sense_out = link.senses(sense)
+        if sense * sense_in < 0.0:
             raise InputError(
                 f"stage {number} turns its first shaft against the stage before it; the other flanks of its "
                 'gears do not, gears.flank = "right"'
             )
-        sense = last
+        sense = sense_out
 
 
 def _braked_shafts(drag: Drag) -> tuple[int, ...]:
@@ -265,7 +265,7 @@ def felt(drive: Drive, number: int, place: int | None = None) -> bool:
         place: a bearing of the drive; by default any that the link overcomes.
     """
     if place is None:
-        return any(felt(drive, number, one) for one in overcome(drive, number))
+        return any(felt(drive, number, loss_place) for loss_place in overcome(drive, number))
     seat = drive.drag[place].seat
     return (
         isinstance(seat, Bearing)
@@ -360,7 +360,7 @@ class DriveCycle(eqx.Module):
     @property
     def mean_losses(self) -> Float[Array, "link *#b"]:
         """Mean power lost in each link and beside its teeth [W]."""
-        return jnp.stack([self.mean(one.loss, k) for k, one in enumerate(self.states)])
+        return jnp.stack([self.mean(state.loss, k) for k, state in enumerate(self.states)])
 
     @property
     def meeting_error(self) -> Each:
@@ -369,8 +369,8 @@ class DriveCycle(eqx.Module):
         From the mean losses with every second of the few loads alone, where less than all of them are taken.
         """
         off: list[Each] = []
-        for k, (one, met) in enumerate(zip(self.states, self.meetings, strict=True)):
-            apart = self._under_loads(one.loss, k) * (met.weight - met.coarse)
+        for k, (state, met) in enumerate(zip(self.states, self.meetings, strict=True)):
+            apart = self._under_loads(state.loss, k) * (met.weight - met.coarse)
             off.append(jnp.abs(jnp.sum(apart, (-2, -1))))
         lost = jnp.sum(self.mean_losses, axis=0)
         return jnp.where(lost > 0.0, sum(off) / jnp.where(lost > 0.0, lost, 1.0), 0.0)
@@ -378,8 +378,8 @@ class DriveCycle(eqx.Module):
     @property
     def mean_output_power(self) -> Each:
         """Mean power taken at the output [W]."""
-        last = len(self.states) - 1
-        return self.mean(self.states[last].output_power, last)
+        output = len(self.states) - 1
+        return self.mean(self.states[output].output_power, output)
 
     @property
     def mean_efficiency(self) -> Each:
@@ -397,27 +397,27 @@ class DriveCycle(eqx.Module):
         """
         return jnp.stack(
             [
-                power_ratio(self.mean(one.output_power, k), self.mean(one.input_power, k))
-                for k, one in enumerate(self.states)
+                power_ratio(self.mean(state.output_power, k), self.mean(state.input_power, k))
+                for k, state in enumerate(self.states)
             ]
         )
 
     @property
     def status(self) -> Status:
         """What became of the balances: the worst code, the largest residual and the most iterations."""
-        every = [one.status for one in self.states]
-        worst = [jnp.max(one.code) for one in every]
+        every = [state.status for state in self.states]
+        worst = [jnp.max(status.code) for status in every]
         return Status(
             code=jnp.max(jnp.stack(worst)),
-            residual=jnp.max(jnp.stack([jnp.max(one.residual) for one in every])),
-            iterations=jnp.max(jnp.stack([jnp.max(one.iterations) for one in every])),
+            residual=jnp.max(jnp.stack([jnp.max(status.residual) for status in every])),
+            iterations=jnp.max(jnp.stack([jnp.max(status.iterations) for status in every])),
         )
 
     @property
     def locked(self) -> Bool[Array, "*#b"]:
         """True where friction locks a mesh at some meeting of phases."""
-        each = [jnp.any(one.locked, axis=MET) for one in self.states]
-        return jnp.any(jnp.stack(each), axis=0)
+        locks = [jnp.any(state.locked, axis=MET) for state in self.states]
+        return jnp.any(jnp.stack(locks), axis=0)
 
 
 def _extremes(
@@ -425,9 +425,9 @@ def _extremes(
 ) -> tuple[Values, Values]:
     """Smallest and largest value over so many last axes, of which the last ones are phases."""
     low = high = values
-    for count, one in zip(nodes, smooth, strict=True):
-        low = extremes(low, count, smooth=one)[0]
-        high = extremes(high, count, smooth=one)[1]
+    for count, is_smooth in zip(nodes, smooth, strict=True):
+        low = extremes(low, count, smooth=is_smooth)[0]
+        high = extremes(high, count, smooth=is_smooth)[1]
     others = tuple(range(len(smooth) - axes, 0))
     return jnp.min(low, axis=others), jnp.max(high, axis=others)
 
@@ -467,7 +467,7 @@ def drive_cycle(
     every = [unmet(operation.load)]
     ratios, smooth = drive.ratios, tuple(link.touching for link in drive.links)
     for number in reversed(range(len(drive.links))):
-        known, engaged = engaged, None
+        engagement, engaged = engaged, None
         point = Operation(
             load=every[0].load[..., None],
             speed=(operation.speed * ratios[number])[..., None, None, None],
@@ -475,22 +475,22 @@ def drive_cycle(
         )
         behind = (states[0], every[0]) if every[0].kept else ()
         place = LinkPlace(drive, number, *behind)
-        found = drive.links[number].under_load(place, point, models[number], nodes, known)
-        states.insert(0, found.state)
-        pressed.insert(0, found.pressed)
-        weights.insert(0, found.weight)
-        counts.insert(0, found.nodes)
-        load = found.state.input_torque
+        loaded = drive.links[number].under_load(place, point, models[number], nodes, engagement)
+        states.insert(0, loaded.state)
+        pressed.insert(0, loaded.pressed)
+        weights.insert(0, loaded.weight)
+        counts.insert(0, loaded.nodes)
+        load = loaded.state.input_torque
         if number > 0:
-            often = every[0].weight[..., None] * found.weight
-            kept, felt_too = felt(drive, number - 1), 1 + every[0].kept
+            often = every[0].weight[..., None] * loaded.weight
+            feels_behind, felt_too = felt(drive, number - 1), 1 + every[0].kept
             of_phases = counts[:felt_too], smooth[number : number + felt_too]
-            if kept:
+            if feels_behind:
                 of_phases = of_phases[0][1:], of_phases[1][1:]
                 ends = _extremes(jnp.moveaxis(load, -1, -3), *of_phases, axes=2)
             else:
                 ends = _extremes(load[..., None, :, :, :], *of_phases)
-            every.insert(0, meetings(load, often, ends, kept=kept, few=few))
+            every.insert(0, meetings(load, often, ends, kept=feels_behind, few=few))
     return DriveCycle(
         tuple(states),
         tuple(pressed),

@@ -74,8 +74,8 @@ def _memory(drive: Drive, models: Sequence[LinkModels], nodes: int) -> float:
     """Memory for the states of a drive at one operating point [B], from that of compiled programs."""
     loads, needed = 1, 0.0
     for number in reversed(range(len(drive.links))):
-        each, phases = drive.links[number].memory(models[number], nodes)
-        needed += loads * each
+        per_load, phases = drive.links[number].memory(models[number], nodes)
+        needed += loads * per_load
         loads = phases * min(loads, FEW) if felt(drive, number - 1) else FEW
     return needed
 
@@ -120,9 +120,9 @@ def _of_one_drive(
         number += not (before and all(map(np.array_equal, before, fixed)))
         before = fixed
         group.append((number, drive, operation))
-    for _, same in groupby(group, key=lambda one: one[0]):
-        each = list(same)
-        yield each[0][1], [operation for _, _, operation in each]
+    for _, neighbours in groupby(group, key=lambda numbered: numbered[0]):
+        alike = list(neighbours)
+        yield alike[0][1], [operation for _, _, operation in alike]
 
 
 def _chunk(
@@ -131,13 +131,15 @@ def _chunk(
     """Figures of a few operating points of one drive, filled up by repetition."""
     filled = [*operations, *([operations[-1]] * (size - len(operations)))]
     stacked: Operation = jax.tree.map(lambda *v: array(np.stack(v)), *filled)
-    last, nodes = drive.links[-1], drive_nodes(len(drive.links))
+    output_link, nodes = drive.links[-1], drive_nodes(len(drive.links))
     laws: Any = models[-1]
-    known = None if last.touching else engaged(last.design, operations[0], laws, nodes)
-    found, trains = jax.device_get(_figures(drive, stacked, tuple(models), nodes, known))
+    engagement = (
+        None if output_link.touching else engaged(output_link.design, operations[0], laws, nodes)
+    )
+    figures, trains = jax.device_get(_figures(drive, stacked, tuple(models), nodes, engagement))
     for train in trains:
-        found |= _with_train(found, *train)
-    return {name: np.asarray(values)[: len(operations)] for name, values in found.items()}
+        figures |= _with_train(figures, *train)
+    return {name: np.asarray(values)[: len(operations)] for name, values in figures.items()}
 
 
 def _with_train(
@@ -168,48 +170,50 @@ def _figures(
     nodes: int,
     known: Engagement | None,
 ) -> tuple[dict[str, Array], list[Locking]]:
-    found = drive_cycle.function(drive, operation, models, nodes, known)
+    cycle = drive_cycle.function(drive, operation, models, nodes, known)
     points = operation.load.shape
     every = {
-        **_of_drive(found),
-        **_of_links(drive, found),
-        **_of_sets(found),
-        **_of_places(drive, found),
+        **_of_drive(cycle),
+        **_of_links(drive, cycle),
+        **_of_sets(cycle),
+        **_of_places(drive, cycle),
     }
     figures = {
         name: jnp.broadcast_to(values, (*points, *values.shape[len(points) :]))
         for name, values in every.items()
     }
-    each = [link.locking(one) for link, one in zip(drive.links, found.states, strict=True)]
-    return figures, [train for train in each if train is not None]
+    lockings = [link.locking(state) for link, state in zip(drive.links, cycle.states, strict=True)]
+    return figures, [train for train in lockings if train is not None]
 
 
-def _of_drive(found: DriveCycle) -> dict[str, Array]:
+def _of_drive(cycle: DriveCycle) -> dict[str, Array]:
     """Figures of the whole drive [point]."""
-    low, high = found.extremes(found.efficiency)
+    low, high = cycle.extremes(cycle.efficiency)
     # Between the nodes the interpolation may overshoot; no state is better than free of loss.
-    most = jnp.max(found.efficiency, axis=MET)
-    torque_low, torque_high = found.extremes(found.input_torque)
-    acting, limit = _nearest_to_jamming(found)
-    drag = [found.mean(one.drag_loss, k) for k, one in enumerate(found.states)]
+    most = jnp.max(cycle.efficiency, axis=MET)
+    torque_low, torque_high = cycle.extremes(cycle.input_torque)
+    acting, limit = _nearest_to_jamming(cycle)
+    drag = [cycle.mean(state.drag_loss, k) for k, state in enumerate(cycle.states)]
     return {
-        "mean_loss": jnp.sum(found.mean_losses, axis=0),
+        "mean_loss": jnp.sum(cycle.mean_losses, axis=0),
         "mean_drag_loss": sum(drag, jnp.zeros(())),
-        "mean_efficiency": found.mean_efficiency,
+        "mean_efficiency": cycle.mean_efficiency,
         "min_efficiency": low,
         "max_efficiency": jnp.minimum(high, jnp.maximum(1.0, most)),
-        "mean_input_torque": found.mean_input_torque,
+        "mean_input_torque": cycle.mean_input_torque,
         "min_input_torque": torque_low,
         "max_input_torque": torque_high,
-        "mean_friction": mean_friction_of_drive(found),
-        "residual": _worst(found, jnp.max, lambda one: one.status.residual),
-        "iterations": jnp.max(jnp.stack([jnp.max(s.status.iterations) for s in found.states])),
-        "locked": found.locked,
-        "jamming_coefficient": _worst(found, jnp.min, lambda one: one.jamming),
+        "mean_friction": mean_friction_of_drive(cycle),
+        "residual": _worst(cycle, jnp.max, lambda state: state.status.residual),
+        "iterations": jnp.max(jnp.stack([jnp.max(s.status.iterations) for s in cycle.states])),
+        "locked": cycle.locked,
+        "jamming_coefficient": _worst(cycle, jnp.min, lambda state: state.jamming),
         "nearest_friction": acting,
         "nearest_jamming_coefficient": limit,
-        "largest_contact_force_ratio": _worst(found, jnp.max, lambda one: one.contact_force_ratio),
-        "meeting_error": found.meeting_error,
+        "largest_contact_force_ratio": _worst(
+            cycle, jnp.max, lambda state: state.contact_force_ratio
+        ),
+        "meeting_error": cycle.meeting_error,
     }
 
 
@@ -221,11 +225,13 @@ def mean_friction_of_drive(found: DriveCycle) -> Array:
     """
     forces = _Forces.none(found.states[-1])
     every = [*zip(found.states, found.weights, strict=True)]
-    for (one, weight), met in zip(every[:0:-1], found.meetings[-2::-1], strict=True):
-        forces = forces.with_link(one, weight).met(met)
-    whole = forces.with_link(*every[0])
-    loaded = whole.normal > 0.0
-    mean = jnp.where(loaded, whole.rubbing / jnp.where(loaded, whole.normal, 1.0), 0.0)
+    for (state, weight), met in zip(every[:0:-1], found.meetings[-2::-1], strict=True):
+        forces = forces.with_link(state, weight).met(met)
+    drive_forces = forces.with_link(*every[0])
+    loaded = drive_forces.normal > 0.0
+    mean = jnp.where(
+        loaded, drive_forces.rubbing / jnp.where(loaded, drive_forces.normal, 1.0), 0.0
+    )
     return jnp.sum(mean, axis=(0, *MET))
 
 
@@ -267,11 +273,11 @@ class _Forces(NamedTuple):
 
 
 def _worst(
-    found: DriveCycle, reduce: Callable[..., Array], values: Callable[[Any], Array]
+    cycle: DriveCycle, reduce: Callable[..., Array], values: Callable[[Any], Array]
 ) -> Array:
     """Worst value of all links and meetings [point]."""
-    each = [reduce(_met(one, values(one)), axis=MET) for one in found.states]
-    return reduce(jnp.stack(each), axis=0)
+    worst = [reduce(_met(state, values(state)), axis=MET) for state in cycle.states]
+    return reduce(jnp.stack(worst), axis=0)
 
 
 def _met(state: "State | TrainState", values: Array) -> Array:
@@ -279,34 +285,34 @@ def _met(state: "State | TrainState", values: Array) -> Array:
     return jnp.broadcast_to(values, state.input_torque.shape)
 
 
-def _nearest_to_jamming(found: DriveCycle) -> tuple[Array, Array]:
+def _nearest_to_jamming(cycle: DriveCycle) -> tuple[Array, Array]:
     """Friction coefficient where a link is nearest to locking, and the one at which it locks there."""
     ends: list[tuple[Array, Array]] = []
-    for one in found.states:
+    for state in cycle.states:
         acting, limit = (
-            _met(one, values).reshape(*one.input_torque.shape[: -len(MET)], -1)
-            for values in (one.largest_friction, one.jamming)
+            _met(state, values).reshape(*state.input_torque.shape[: -len(MET)], -1)
+            for values in (state.largest_friction, state.jamming)
         )
         ends.append((acting, limit))
-    acting, limit = (jnp.concatenate(each, axis=-1) for each in zip(*ends, strict=True))
+    acting, limit = (jnp.concatenate(parts, axis=-1) for parts in zip(*ends, strict=True))
     nearest = jnp.argmax(acting / limit, axis=-1)[..., None]
-    first, second = (jnp.take_along_axis(v, nearest, axis=-1)[..., 0] for v in (acting, limit))
-    return first, second
+    friction, jamming = (jnp.take_along_axis(v, nearest, axis=-1)[..., 0] for v in (acting, limit))
+    return friction, jamming
 
 
-def _of_links(drive: Drive, found: DriveCycle) -> dict[str, Array]:
+def _of_links(drive: Drive, cycle: DriveCycle) -> dict[str, Array]:
     """Figures of each link [point, stage]."""
-    every = list(enumerate(found.states))
-    torque = [found.mean(one.input_torque, k) for k, one in every]
-    speed = [found.speed * ratio for ratio in drive.ratios[:-1]]
-    friction = [found.mean(mean_friction(one), k) for k, one in every]
-    drag = [found.mean(one.drag_loss, k) for k, one in every]
+    every = list(enumerate(cycle.states))
+    torque = [cycle.mean(state.input_torque, k) for k, state in every]
+    speed = [cycle.speed * ratio for ratio in drive.ratios[:-1]]
+    friction = [cycle.mean(mean_friction(state), k) for k, state in every]
+    drag = [cycle.mean(state.drag_loss, k) for k, state in every]
     return {
         name: jnp.stack(jnp.broadcast_arrays(*values), axis=-1)
         for name, values in {
-            "stage_loss": [*found.mean_losses],
+            "stage_loss": [*cycle.mean_losses],
             "stage_drag_loss": drag,
-            "stage_efficiency": [*found.link_efficiencies],
+            "stage_efficiency": [*cycle.link_efficiencies],
             "stage_friction": friction,
             "stage_input_torque": torque,
             "stage_speed": speed,
@@ -314,29 +320,29 @@ def _of_links(drive: Drive, found: DriveCycle) -> dict[str, Array]:
     }
 
 
-def _of_sets(found: DriveCycle) -> dict[str, Array]:
+def _of_sets(cycle: DriveCycle) -> dict[str, Array]:
     """Power that rolls through the meshes of each set [point, stage], NaN of other links, and in sum."""
-    sets = {k: one for k, one in enumerate(found.states) if not isinstance(one, State)}
+    sets = {k: state for k, state in enumerate(cycle.states) if not isinstance(state, State)}
     if not sets:
         return {}
-    each = [
-        found.mean(sets[k].latent_power, k) if k in sets else jnp.full((), jnp.nan)
-        for k in range(len(found.states))
+    powers = [
+        cycle.mean(sets[k].latent_power, k) if k in sets else jnp.full((), jnp.nan)
+        for k in range(len(cycle.states))
     ]
-    stages = jnp.stack(jnp.broadcast_arrays(*each), axis=-1)
+    stages = jnp.stack(jnp.broadcast_arrays(*powers), axis=-1)
     return {"stage_latent_power": stages, "latent_power": jnp.nansum(stages, axis=-1)}
 
 
-def _of_places(drive: Drive, found: DriveCycle) -> dict[str, Array]:
+def _of_places(drive: Drive, cycle: DriveCycle) -> dict[str, Array]:
     """Mean load on the bearing of each place [point, place]: those of the drive, then of its links."""
     of_drive: dict[int, Array] = {}
-    own: list[Array] = []
-    for k, loads in enumerate(found.pressed):
-        means = [found.mean(jnp.asarray(load), k) for load in loads]
+    of_links: list[Array] = []
+    for k, loads in enumerate(cycle.pressed):
+        means = [cycle.mean(jnp.asarray(load), k) for load in loads]
         mine = [place for place, owner in enumerate(drive.owners) if owner == k]
         of_drive |= dict(zip(mine, means, strict=False))
-        own += means[len(mine) :]
-    every = [*(of_drive[place] for place in sorted(of_drive)), *own]
+        of_links += means[len(mine) :]
+    every = [*(of_drive[place] for place in sorted(of_drive)), *of_links]
     if not every:
         return {}
     return {"bearing_load": jnp.stack(jnp.broadcast_arrays(*every), axis=-1)}

@@ -52,20 +52,22 @@ class FilmMap:
             Coefficients, and rolling resistances [N/m] where they are known.
         """
         every = self.friction, self.rolling
-        return tuple(self._between(one, load, speeds, degrees) for one in every if one is not None)
+        return tuple(
+            self._between(field, load, speeds, degrees) for field in every if field is not None
+        )
 
     def _between(self, values: Values, load: float, speeds: Values, degrees: Values) -> Values:
         places = _log(np.array([load])), _log(speeds), degrees
         weights = map(_weights, self.axes, places)
-        found = reduce(lambda some, one: np.tensordot(some, one, (0, 0)), weights, values)
+        blended = reduce(lambda some, weight: np.tensordot(some, weight, (0, 0)), weights, values)
         # Each product has moved an axis to the end: pair, slice, node, load, speed, temperature.
-        held: Values = np.maximum(np.moveaxis(found[:, :, :, 0], 2, -1), 0.0)
+        held: Values = np.maximum(np.moveaxis(blended[:, :, :, 0], 2, -1), 0.0)
         return held
 
     @property
     def between(self) -> list[tuple[float, float, float]]:
         """Load, speed and temperature of points half way between those at the ends and their neighbours."""
-        load, speed, degrees = (0.5 * (one[1:] + one[:-1]) for one in self._two_or_more)
+        load, speed, degrees = (0.5 * (levels[1:] + levels[:-1]) for levels in self._two_or_more)
         ends = product(load[[0, -1]], speed[[0, -1]], degrees[[len(degrees) // 2]])
         return list(
             dict.fromkeys((float(np.exp(w)), float(np.exp(v)), float(t)) for w, v, t in ends)
@@ -73,7 +75,7 @@ class FilmMap:
 
     @property
     def _two_or_more(self) -> tuple[Values, ...]:
-        return tuple(one if one.size > 1 else np.repeat(one, 2) for one in self.axes)
+        return tuple(levels if levels.size > 1 else np.repeat(levels, 2) for levels in self.axes)
 
 
 def film_map(
@@ -100,16 +102,16 @@ def film_map(
         ConvergenceError: a film was not solved.
     """
     ends = _log(loads[loads > 0.0]), _log(speeds[speeds > 0.0]), degrees
-    axes = tuple(_levels(one, most) for one, most in zip(ends, LEVELS, strict=True))
-    found = []
+    axes = tuple(_levels(values, most) for values, most in zip(ends, LEVELS, strict=True))
+    frictions = []
     for load, speed, degree in product(*axes):
         point = Operation(array(np.exp(load)), array(np.exp(speed)), array(degree))
-        found.append(first_turn(design, point, models, known(float(np.exp(load)))))
-    shape = tuple(one.size for one in axes)
-    first, second, third = axes
-    each = np.stack(found, axis=1)
-    whole = each.reshape(each.shape[0], *shape, *each.shape[2:])
-    return FilmMap((first, second, third), *whole)
+        frictions.append(first_turn(design, point, models, known(float(np.exp(load)))))
+    shape = tuple(levels.size for levels in axes)
+    load_axis, speed_axis, degree_axis = axes
+    by_point = np.stack(frictions, axis=1)
+    on_axes = by_point.reshape(by_point.shape[0], *shape, *by_point.shape[2:])
+    return FilmMap((load_axis, speed_axis, degree_axis), *on_axes)
 
 
 def _log(values: Values) -> Values:
@@ -133,5 +135,5 @@ def _weights(levels: Values, places: Values) -> Values:
     middle, half = 0.5 * (levels[-1] + levels[0]), 0.5 * (levels[-1] - levels[0]) or 1.0
     degree = levels.size - 1
     there = chebvander(np.clip((places - middle) / half, -1.0, 1.0), degree)
-    found: Values = np.linalg.solve(chebvander((levels - middle) / half, degree).T, there.T)
-    return found
+    weights: Values = np.linalg.solve(chebvander((levels - middle) / half, degree).T, there.T)
+    return weights

@@ -67,8 +67,8 @@ class FrictionFit:
             [1.1, 1.2]
         """
         values = self.constant, self.driving_share, self.driven_share, self.viscous, self.stribeck
-        found: np.ndarray = _columns(torque, np.abs(speed), self.stribeck_speed) @ np.array(values)
-        return found
+        loss: np.ndarray = _columns(torque, np.abs(speed), self.stribeck_speed) @ np.array(values)
+        return loss
 
 
 class LawError(NamedTuple):
@@ -144,8 +144,8 @@ def fit_friction(
         >>> round(fit.constant, 9), round(fit.driving_share, 9), round(fit.driven_share, 9)
         (0.3, 0.02, 0.05)
     """
-    known = np.isfinite(lost)
-    torque, speed, lost = (np.asarray(one, float)[known] for one in (torque, speed, lost))
+    finite = np.isfinite(lost)
+    torque, speed, lost = (np.asarray(values, float)[finite] for values in (torque, speed, lost))
     if lost.size < (6 if stribeck else 4):
         raise InputError(f"{lost.size} points with a known loss are too few for a fit of friction")
     return _fitted(torque, speed, lost, *_constants(torque, speed, lost, stribeck))
@@ -159,13 +159,13 @@ def _constants(
     if not stribeck:
         return np.append(plain, 0.0), 1.0
     tried = np.geomspace(speed.min(), speed.max(), SPEEDS)
-    each = [_bounded(_columns(torque, speed, one), lost) for one in tried]
+    fits = [_bounded(_columns(torque, speed, falls), lost) for falls in tried]
     off = [
         np.sum((_columns(torque, speed, v) @ f - lost) ** 2)
-        for v, f in zip(tried, each, strict=True)
+        for v, f in zip(tried, fits, strict=True)
     ]
     best = int(np.argmin(off))
-    start, scale = np.append(each[best], tried[best]), np.abs(lost).max() or 1.0
+    start, scale = np.append(fits[best], tried[best]), np.abs(lost).max() or 1.0
 
     def errors(values: np.ndarray) -> np.ndarray:
         return np.asarray(_columns(torque, speed, values[5]) @ values[:5] - lost) / scale
@@ -184,8 +184,8 @@ def _fitted(
 ) -> FrictionFit:
     off = np.abs(_columns(torque, speed, falls) @ factors - lost)
     constant, driving, driven, viscous, stribeck = map(float, factors)
-    known = falls, float(off.max()), float(off.mean())
-    return FrictionFit(constant, driving, driven, viscous, stribeck, *known)
+    speed_and_errors = falls, float(off.max()), float(off.mean())
+    return FrictionFit(constant, driving, driven, viscous, stribeck, *speed_and_errors)
 
 
 def _columns(torque: np.ndarray, speed: np.ndarray, falls: float) -> np.ndarray:
@@ -199,11 +199,11 @@ def _bounded(columns: np.ndarray, lost: np.ndarray) -> np.ndarray:
     """Factors of columns by least squares, none below zero; zero for a column of nothing."""
     size = np.abs(columns).max(axis=0)
     there = size > 0.0
-    found = lsq_linear(
+    solution = lsq_linear(
         columns[:, there] / size[there], lost, (0.0, np.inf), method="bvls", tol=1e-15
     )
     factors = np.zeros(size.size)
-    factors[there] = np.maximum(found.x, 0.0) / size[there]
+    factors[there] = np.maximum(solution.x, 0.0) / size[there]
     return factors
 
 
@@ -231,7 +231,7 @@ def loss_nodes(
     if temperature is not None:
         degrees = [float(degrees_celsius(np.asarray(temperature)))]
     torque, speed, degree = (
-        one.ravel() for one in np.meshgrid(torques, speeds, degrees, indexing="ij")
+        coordinate.ravel() for coordinate in np.meshgrid(torques, speeds, degrees, indexing="ij")
     )
     loss = np.asarray(table.at_many(torque, speed, degree, law).loss)
     return MapNodes(torque, speed, degree, loss / speed)
@@ -248,15 +248,17 @@ def law_errors(table: LossTable, nodes: MapNodes, law: LossLaw) -> list[LawError
     off = np.abs(law(*nodes[:3]) - nodes.lost) * table.speed_ratio
     driving = np.abs(nodes.torque + nodes.lost) * table.speed_ratio
     off = np.where(off > ROUNDING * table.torques[-1] * table.speed_ratio, off, 0.0 * off)
-    found = []
+    errors = []
     for quadrants, there in zip(WAYS, (nodes.torque >= 0.0, nodes.torque < 0.0), strict=True):
-        known = there & np.isfinite(off)
+        finite = there & np.isfinite(off)
         largest, mean = (
-            (float(off[known].max()), float(off[known].mean())) if known.any() else (0.0, 0.0)
+            (float(off[finite].max()), float(off[finite].mean())) if finite.any() else (0.0, 0.0)
         )
-        most = float(driving[known].max(initial=0.0))
+        most = float(driving[finite].max(initial=0.0))
         share = largest / most if most > 0.0 else 0.0
-        found.append(
-            LawError(quadrants, largest, mean, share, int(known.sum()), int((there & ~known).sum()))
+        errors.append(
+            LawError(
+                quadrants, largest, mean, share, int(finite.sum()), int((there & ~finite).sum())
+            )
         )
-    return found
+    return errors

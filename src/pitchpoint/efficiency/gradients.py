@@ -110,8 +110,8 @@ def _gradient(inputs: Inputs, figure: str, models: Models) -> tuple[Array, Input
         result: Array = getattr(cycle(*_completed(inputs), models), figure)
         return result
 
-    found: tuple[Array, Inputs] = eqx.filter_value_and_grad(value)(inputs)
-    return found
+    gradient: tuple[Array, Inputs] = eqx.filter_value_and_grad(value)(inputs)
+    return gradient
 
 
 @program
@@ -119,5 +119,5 @@ def _at_phase(inputs: Inputs, models: Models, phase: Float[Array, ""]) -> tuple[
     def torque(inputs: Inputs) -> Array:
         return state(*_completed(inputs), phase, models).input_torque
 
-    found: tuple[Array, Inputs] = eqx.filter_value_and_grad(torque)(inputs)
-    return found
+    gradient: tuple[Array, Inputs] = eqx.filter_value_and_grad(torque)(inputs)
+    return gradient

@@ -68,17 +68,17 @@ def state_grid(
     count, places = int(operation.load.shape[0]), int(phase.shape[0])
     rows = min(_most_rows(), 1 << (count - 1).bit_length())
     columns = min(COLUMNS, places)
-    for first in range(0, count, rows):
-        taken = np.minimum(np.arange(first, first + rows), count - 1)
+    for row in range(0, count, rows):
+        taken = np.minimum(np.arange(row, row + rows), count - 1)
         part = _taken((design, operation), taken, count)
         for start in range(0, places, columns):
             at = np.minimum(np.arange(start, start + columns), places - 1)
-            found = _solved(part, array(np.asarray(phase)[at]), models)
-            tall, wide = min(rows, count - first), min(columns, places - start)
-            force, torque, efficiency = (_cut(values, tall, wide) for values in found.states)
-            locked = int(jnp.sum(~jnp.isfinite(force))) if bool(found.locks) else 0
-            largest = float(found.residual)
-            yield Block((first, start), force, torque, efficiency, largest, locked)
+            solved = _solved(part, array(np.asarray(phase)[at]), models)
+            tall, wide = min(rows, count - row), min(columns, places - start)
+            force, torque, efficiency = (_cut(values, tall, wide) for values in solved.states)
+            locked = int(jnp.sum(~jnp.isfinite(force))) if bool(solved.locks) else 0
+            largest = float(solved.residual)
+            yield Block((row, start), force, torque, efficiency, largest, locked)
 
 
 Inputs = tuple[Design, Operation]
@@ -102,8 +102,8 @@ class _Solved(NamedTuple):
 
 
 def _solved(inputs: Inputs, phase: Array, models: Models) -> _Solved:
-    found = _block(inputs, phase, models, quick=True)
-    return found if bool(found.near) else _block(inputs, phase, models, quick=False)
+    attempt = _block(inputs, phase, models, quick=True)
+    return attempt if bool(attempt.near) else _block(inputs, phase, models, quick=False)
 
 
 def _cut(values: Array, rows: int, columns: int) -> Array:
@@ -139,28 +139,28 @@ def _block(inputs: Inputs, phase: Array, models: Models, quick: bool) -> _Solved
     def per_row(leaf: Any) -> bool:
         return eqx.is_array(leaf) and jnp.ndim(leaf) == 2 and leaf.shape[0] == count
 
-    rowwise, whole = eqx.partition(inputs, per_row)
+    rowwise, common = eqx.partition(inputs, per_row)
     stacked = jax.tree.map(lambda leaf: leaf.reshape(-1, rows, *leaf.shape[1:]), rowwise)
 
     def strip(number: Array, before: _Solved) -> _Solved:
         at = strips[number]
-        known = _engaged(inputs[0], at, models)
+        engagement = _engaged(inputs[0], at, models)
 
         def tile(place: Array, before: _Solved) -> _Solved:
             part = jax.tree.map(lambda leaf: leaf[place], stacked)
-            design, operation = eqx.combine(part, whole)
-            found = state(design, operation, at, models, quick=quick, engaged=known)
-            balance = found.balance
-            each = balance.force, found.input_torque, found.efficiency
-            return _joined(before, each, balance.residual, (place * rows, number * columns))
+            design, operation = eqx.combine(part, common)
+            mesh_state = state(design, operation, at, models, quick=quick, engaged=engagement)
+            balance = mesh_state.balance
+            states = balance.force, mesh_state.input_torque, mesh_state.efficiency
+            return _joined(before, states, balance.residual, (place * rows, number * columns))
 
         done: _Solved = jax.lax.fori_loop(0, count // rows, tile, before)
         return done
 
     blank = jnp.zeros((count, strips.size))
     none = _Solved((blank, blank, blank), jnp.zeros(()), jnp.asarray(True), jnp.asarray(False))
-    found: _Solved = jax.lax.fori_loop(0, strips.shape[0], strip, none)
-    return found._replace(states=tuple(one[:, :places] for one in found.states))
+    solved: _Solved = jax.lax.fori_loop(0, strips.shape[0], strip, none)
+    return solved._replace(states=tuple(values[:, :places] for values in solved.states))
 
 
 def _most_rows() -> int:

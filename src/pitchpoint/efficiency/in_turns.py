@@ -58,13 +58,13 @@ def in_turns(
         known: contacts and shares with their nodes.
         progress: told the number of films that are solved, of all turns.
     """
-    asked = design, operation, models, known.nodes
-    for before, found in _LAST:
-        if all(one is other for one, other in zip(asked, before, strict=True)):
-            return found
-    found = _solved(design, operation, models, known, progress)
-    _LAST.append((asked, found))
-    return found
+    inputs = design, operation, models, known.nodes
+    for before, solution in _LAST:
+        if all(value is earlier for value, earlier in zip(inputs, before, strict=True)):
+            return solution
+    solution = _solved(design, operation, models, known, progress)
+    _LAST.append((inputs, solution))
+    return solution
 
 
 def balance_under(
@@ -83,10 +83,10 @@ def balance_under(
     """
     if models.law.films is None:
         return balance_in_rows(design, operation, known, models), ()
-    found = in_turns(design, operation, models, known, progress)
-    if found.lost:
-        raise ConvergenceError(f"{models.law.title}: {found.lost}")
-    return found.balance, found.warnings
+    solution = in_turns(design, operation, models, known, progress)
+    if solution.lost:
+        raise ConvergenceError(f"{models.law.title}: {solution.lost}")
+    return solution.balance, solution.warnings
 
 
 _LAST: deque[tuple[tuple[object, ...], InTurns]] = deque(maxlen=KEPT)
@@ -106,19 +106,21 @@ def first_turn(
     Raises:
         ConvergenceError: a film was not solved.
     """
-    begin, known, solver = _begin(design, operation, models, known)
-    cycle, _ = solved_cycle(design, operation, begin, solver, engaged=known, most=1)
+    begin, engagement, solver = _begin(design, operation, models, known)
+    cycle, _ = solved_cycle(design, operation, begin, solver, engaged=engagement, most=1)
     friction = np.asarray(cycle.state.balance.friction)
     return friction[None] if begin.held_rolling is None else np.stack([friction, _rolling(cycle)])
 
 
 def _rolling(cycle: Cycle) -> NDArray[np.float64]:
     """Rolling resistance of each slice on each surface per length [N/m]."""
-    whole, weight = (
+    rolling, weight = (
         np.asarray(v) for v in (cycle.state.balance.rolling, cycle.state.contacts.weight)
     )
-    found: NDArray[np.float64] = np.divide(whole, weight, np.zeros_like(whole), where=whole != 0.0)
-    return found
+    per_length: NDArray[np.float64] = np.divide(
+        rolling, weight, np.zeros_like(rolling), where=rolling != 0.0
+    )
+    return per_length
 
 
 def _begin(
@@ -132,11 +134,11 @@ def _begin(
 
     films = models.law.films
     assert films is not None
-    own = models.rolling.name != "none"
-    given = films, design.lubricant, operation.temperature
-    solver = FilmTraction(*given, rolling=not own, progress=progress)
-    first, none = (array(np.full(known.share.shape, one)) for one in (FIRST, 0.0))
-    begin = models.holding(first, None if own else none)
+    has_rolling = models.rolling.name != "none"
+    conditions = films, design.lubricant, operation.temperature
+    solver = FilmTraction(*conditions, rolling=not has_rolling, progress=progress)
+    friction, none = (array(np.full(known.share.shape, value)) for value in (FIRST, 0.0))
+    begin = models.holding(friction, None if has_rolling else none)
     return begin, replace(known, body=None), solver
 
 
@@ -147,11 +149,11 @@ def _solved(
     known: Engagement,
     progress: Callable[[int], None] | None,
 ) -> InTurns:
-    begin, known, solver = _begin(design, operation, models, known, progress)
+    begin, engagement, solver = _begin(design, operation, models, known, progress)
     try:
-        cycle, status = solved_cycle(design, operation, begin, solver, engaged=known)
+        cycle, status = solved_cycle(design, operation, begin, solver, engaged=engagement)
     except ConvergenceError as error:
-        cycle, _ = solved_cycle(design, operation, begin, solver, engaged=known, most=0)
+        cycle, _ = solved_cycle(design, operation, begin, solver, engaged=engagement, most=0)
         return InTurns(_withheld(cycle.state.balance), _lost(Code.FILM_LOST), str(error), ())
     code = Code(int(status.code))
     balance: Balance = jax.device_get(cycle.state.balance)
@@ -173,8 +175,8 @@ def _why(status: Status) -> str:
 
 def _withheld(balance: Balance) -> Balance:
     """The same without its numbers."""
-    found: Balance = jax.tree.map(
+    blank: Balance = jax.tree.map(
         lambda leaf: np.full(leaf.shape, np.nan) if leaf.dtype.kind == "f" else np.asarray(leaf),
         jax.device_get(balance),
     )
-    return found
+    return blank

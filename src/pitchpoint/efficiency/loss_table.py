@@ -166,9 +166,9 @@ class LossTable(NamedTuple):
         values = _named(self.loss_torques, law)
         usual = [column[0] for column in values]
         bounds = (usual, usual) if self.rest_bounds is None else _named(self.rest_bounds, law)
-        outside = any(self._outside(one, 0.0, temperature) for one in (torque, -torque))
+        outside = any(self._outside(load, 0.0, temperature) for load in (torque, -torque))
         lowest, highest, locked = self._held(usual, torque, temperature)
-        least, most = (self._held(one, torque, temperature) for one in bounds)
+        least, most = (self._held(bound, torque, temperature) for bound in bounds)
         return Rest(lowest, highest, locked, outside, most[0], least[0], least[1], most[1])
 
     def _held(
@@ -176,14 +176,14 @@ class LossTable(NamedTuple):
     ) -> "tuple[float, float, bool]":
         """Band that holds a load, by losses over torque and temperature, and whether friction locks."""
         cold, warm, warmer = _cell(self.temperatures, temperature)
-        cells = (_cell(self.torques, one) for one in (torque, -torque))
+        cells = (_cell(self.torques, load) for load in (torque, -torque))
         forwards, back = (
             _mixed(
-                _mixed(lost[few][cold], lost[few][warm], warmer),
-                _mixed(lost[many][cold], lost[many][warm], warmer),
-                more,
+                _mixed(lost[light][cold], lost[light][warm], warmer),
+                _mixed(lost[heavy][cold], lost[heavy][warm], warmer),
+                heavier,
             )
-            for few, many, more in cells
+            for light, heavy, heavier in cells
         )
         highest = math.nan if forwards < 0.0 else (torque + forwards) * self.speed_ratio
         lowest = math.nan if back < 0.0 else (torque - back) * self.speed_ratio
@@ -200,15 +200,15 @@ class LossTable(NamedTuple):
         """
         values = _named(self.loss_torques, law)
 
-        few, many, more = _cell(self.torques, torque)
+        light, heavy, heavier = _cell(self.torques, torque)
         cold, warm, warmer = _cell(self.temperatures, temperature)
 
         def at(column: int) -> float:
-            first, second = values[few][column], values[many][column]
+            at_light, at_heavy = values[light][column], values[heavy][column]
             return _mixed(
-                _mixed(first[cold], first[warm], warmer),
-                _mixed(second[cold], second[warm], warmer),
-                more,
+                _mixed(at_light[cold], at_light[warm], warmer),
+                _mixed(at_heavy[cold], at_heavy[warm], warmer),
+                heavier,
             )
 
         if speed == 0.0 or len(self.speeds) == 2:
@@ -244,15 +244,15 @@ def main(table: LossTable, about: str = "", arguments: "Sequence[str] | None" = 
     parser.add_argument(
         "--law", choices=[*table.loss_torques], default=next(iter(table.loss_torques))
     )
-    asked = parser.parse_args(arguments)
-    found = table.at(asked.torque, asked.speed, asked.temperature, asked.law)
-    for name, value, unit in zip(Point._fields, found, ("W", "", driver, "", ""), strict=False):
+    options = parser.parse_args(arguments)
+    point = table.at(options.torque, options.speed, options.temperature, options.law)
+    for name, value, unit in zip(Point._fields, point, ("W", "", driver, "", ""), strict=False):
         print((name + ": " + repr(value) + " " + unit).rstrip())
-    if asked.speed == 0.0:
-        rest = table.at_rest(asked.torque, asked.temperature, asked.law)
-        print("holds from: " + repr(rest.lowest) + " to " + repr(rest.highest) + " " + driver)
+    if options.speed == 0.0:
+        band = table.at_rest(options.torque, options.temperature, options.law)
+        print("holds from: " + repr(band.lowest) + " to " + repr(band.highest) + " " + driver)
         if table.rest_bounds is not None:
-            surely, most = rest.lowest_high, rest.highest_low
+            surely, most = band.lowest_high, band.highest_low
             print("surely from: " + repr(surely) + " to " + repr(most) + " " + driver)
     return 0
 
@@ -271,45 +271,47 @@ def _at_many(table: LossTable, torque: Any, speed: Any, temperature: Any, law: s
     import numpy as np
 
     corners, terms, axes = _prepared(table, _named(table.loss_torques, law))
-    places = np.broadcast_arrays(*(np.asarray(one, float) for one in (torque, speed, temperature)))
-    every = [np.ascontiguousarray(one).reshape(-1) for one in places]
+    places = np.broadcast_arrays(
+        *(np.asarray(values, float) for values in (torque, speed, temperature))
+    )
+    every = [np.ascontiguousarray(place).reshape(-1) for place in places]
     kinds = float, float, float, bool, bool
-    found = [np.empty(every[0].size, kind) for kind in kinds]
+    results = [np.empty(every[0].size, kind) for kind in kinds]
     # What a chunk needs besides is kept for the next: memory that is taken anew costs more than the sums.
     space = np.empty((17, min(CHUNK, every[0].size)))
-    whole = np.empty((4, space.shape[1]), np.intp)
+    cell_space = np.empty((4, space.shape[1]), np.intp)
 
     def fill(part: slice) -> None:
-        torque, speed, degree = (one[part] for one in every)
-        loss, efficiency, turning, locked, outside = (one[part] for one in found)
-        work, cells = space[:, : torque.size], whole[:, : torque.size]
+        torque, speed, degree = (values[part] for values in every)
+        loss, efficiency, turning, locked, outside = (values[part] for values in results)
+        work, cells = space[:, : torque.size], cell_space[:, : torque.size]
         sign, pace, along, logarithm = work[8:12]
         np.copysign(1.0, speed + 0.0, out=sign)
         np.abs(speed, out=pace)
         np.multiply(torque, sign, out=along)
         np.log(pace, out=logarithm)
-        ways = work[12:15]
+        weights = work[12:15]
         outside[:] = ~(pace <= table.speeds[-1])  # of what is not a number too
-        for place, axis, way, low in zip(
-            (along, logarithm, degree), axes, ways, cells, strict=False
+        for place, axis, weight, low in zip(
+            (along, logarithm, degree), axes, weights, cells, strict=False
         ):
-            near = axis(place, way, low, work[15:], cells[3])
+            near = axis(place, weight, low, work[15:], cells[3])
             if place is not logarithm:
                 outside |= place != near
-        rest = pace == 0.0
-        resting = rest.any()
+        still = pace == 0.0
+        resting = still.any()
         cells[1] += 1
         if resting:
-            cells[1][rest] = 0
+            cells[1][still] = 0
         cell = cells[0]
         for low, count in zip(cells[1:3], corners.shape[2:], strict=True):
             cell *= count
             cell += low
-        lost = _sum(terms, cell, ways, work[:8])
+        lost = _sum(terms, cell, weights, work[:8])
         locked[:] = False
         if (missing := np.isnan(lost)).any():
-            few = [one[missing] for one in ways]
-            lost[missing], locked[missing] = _beside(corners, cell[missing], few)
+            beside = [axis_weights[missing] for axis_weights in weights]
+            lost[missing], locked[missing] = _beside(corners, cell[missing], beside)
         np.multiply(lost, pace, out=loss)
         driving = np.add(along, lost, out=lost)
         share = np.divide(along, driving, out=along)
@@ -318,12 +320,12 @@ def _at_many(table: LossTable, torque: Any, speed: Any, temperature: Any, law: s
         np.multiply(driving, sign, out=turning)
         turning *= table.speed_ratio
         if resting:
-            efficiency[rest] = turning[rest] = math.nan
+            efficiency[still] = turning[still] = math.nan
 
     with np.errstate(all="ignore"):
         for start in range(0, every[0].size, CHUNK):
             fill(slice(start, start + CHUNK))
-    return Point._make(one.reshape(places[0].shape) for one in found)
+    return Point._make(values.reshape(places[0].shape) for values in results)
 
 
 _KEPT: "dict[int, tuple[Any, ...]]" = {}
@@ -335,8 +337,8 @@ def _prepared(table: LossTable, values: "Sequence") -> "tuple[Any, Any, Any]":  
 
     if id(values) not in _KEPT:
         corners = _corners(np.array(values, float))
-        moving = [math.log(one) for one in table.speeds[1:]]
-        axes = [_finder(one) for one in (table.torques, moving, table.temperatures)]
+        moving = [math.log(speed) for speed in table.speeds[1:]]
+        axes = [_finder(nodes) for nodes in (table.torques, moving, table.temperatures)]
         if len(_KEPT) > 8:
             _KEPT.clear()
         _KEPT[id(values)] = values, corners, _terms(corners), axes
@@ -351,11 +353,11 @@ def _corners(values: Any) -> Any:
 
     def ends(count: int) -> "tuple[list[int], list[int]]":
         lower = [*range(max(count - 1, 1))]
-        return lower, [min(one + 1, count - 1) for one in lower]
+        return lower, [min(node + 1, count - 1) for node in lower]
 
-    slow, fast = ([0, *(one + 1 for one in side)] for side in ends(speeds - 1))
+    slow, fast = ([0, *(node + 1 for node in side)] for side in ends(speeds - 1))
     sides = ends(torques), (slow, fast), ends(degrees)
-    return np.stack([values[np.ix_(*one)] for one in product(*sides)])
+    return np.stack([values[np.ix_(*corner)] for corner in product(*sides)])
 
 
 def _terms(corners: Any) -> Any:
@@ -364,20 +366,20 @@ def _terms(corners: Any) -> Any:
 
     cube = np.where(corners < 0.0, math.nan, corners).reshape(2, 2, 2, -1)
     for axis in range(3):
-        first, second = np.split(cube, 2, axis)
-        cube = np.concatenate([first, second - first], axis)
+        low, high = np.split(cube, 2, axis)
+        cube = np.concatenate([low, high - low], axis)
     return cube.reshape(8, -1)
 
 
 def _sum(terms: Any, cell: Any, weights: Any, space: Any) -> Any:
     """Sum of the terms of its cell at every point, in the first row of a space with one for each term."""
-    for one, value in zip(terms, space, strict=True):
-        one.take(cell, mode="clip", out=value)
+    for term, value in zip(terms, space, strict=True):
+        term.take(cell, mode="clip", out=value)
     values = [*space]
     for weight in weights[::-1]:
-        for first, second in zip(values[::2], values[1::2], strict=True):
-            second *= weight
-            first += second
+        for base, slope in zip(values[::2], values[1::2], strict=True):
+            slope *= weight
+            base += slope
         values = values[::2]
     return values[0]
 
@@ -395,28 +397,28 @@ def _finder(nodes: Sequence[float]) -> Any:
     count = math.ceil((ends[-1] - ends[0]) * steps.max())
     finer = count / (ends[-1] - ends[0])
     lowest = ends[0] + (np.arange(count + 1 if count < BINS else 0) - 1e-9) / finer
-    first = np.searchsorted(ends[1:-1], lowest, "right")
+    cell_of_bin = np.searchsorted(ends[1:-1], lowest, "right")
     even = np.ptp(steps) < EVEN * steps.max()
 
-    def find(place: Any, way: Any, low: Any, free: Any, bins: Any) -> Any:
-        near, other = free
+    def find(place: Any, weight: Any, low: Any, free: Any, bins: Any) -> Any:
+        near, scratch = free
         np.minimum(np.maximum(place, nodes[0], out=near), nodes[-1], out=near)
-        np.subtract(near, ends[0], out=way)
+        np.subtract(near, ends[0], out=weight)
         if even:
-            way *= steps[0]
-            low[:] = np.fmin(way, steps.size - 0.5, out=other)
-            way -= low
+            weight *= steps[0]
+            low[:] = np.fmin(weight, steps.size - 0.5, out=scratch)
+            weight -= low
             return near
-        if first.size:
-            way *= finer
-            bins[:] = way
-            first.take(bins, mode="clip", out=low)
-            low += near >= upper.take(low, out=other)
+        if cell_of_bin.size:
+            weight *= finer
+            bins[:] = weight
+            cell_of_bin.take(bins, mode="clip", out=low)
+            low += near >= upper.take(low, out=scratch)
         else:
             low[:] = np.searchsorted(ends[1:-1], near, "right")
             low[np.isnan(near)] = 0
-        np.subtract(near, ends.take(low, out=other), out=way)
-        way *= steps.take(low, out=other)
+        np.subtract(near, ends.take(low, out=scratch), out=weight)
+        weight *= steps.take(low, out=scratch)
         return near
 
     return find
@@ -428,8 +430,8 @@ def _beside(corners: Any, cell: Any, weights: Any) -> "tuple[Any, Any]":
 
     def ends(weight: Any) -> "tuple[Any, Any]":
         near = np.rint(weight)
-        kept = np.where(abs(weight - near) < 1e-9, near, weight)
-        return 1.0 - kept, kept
+        snapped = np.where(abs(weight - near) < 1e-9, near, weight)
+        return 1.0 - snapped, snapped
 
     parts = np.stack([u * v * w for u, v, w in product(*map(ends, weights))])
     values = corners.reshape(8, -1)[:, cell]

@@ -55,8 +55,8 @@ class Meetings(eqx.Module):
         Args:
             values: of the states of the link behind, with their weights in them.
         """
-        found = _summed(self.part, values)
-        return found if self.kept else jnp.sum(found, axis=-1, keepdims=True)
+        sums = _summed(self.part, values)
+        return sums if self.kept else jnp.sum(sums, axis=-1, keepdims=True)
 
     def following(self, values: Float[Array, "... its_load its_behind its_node"]) -> Array:
         """Values of the link behind under the loads of this one, where its phase is kept."""
@@ -105,10 +105,10 @@ def meetings(
     low, high = (end[..., None, None, :] for end in ends)
     fine = among_few(torque, low, high, few)
     coarse = jnp.zeros_like(fine).at[::2].set(among_few(torque, low, high, few // 2 + 1))
-    part, second = (jnp.moveaxis(one, 0, -4) for one in (fine, coarse))
-    weight, rough = (_summed(one, often) for one in (part, second))
+    part, coarse_part = (jnp.moveaxis(shares, 0, -4) for shares in (fine, coarse))
+    weight, rough = (_summed(shares, often) for shares in (part, coarse_part))
     if not kept:
-        weight, rough = (jnp.sum(one, axis=-1, keepdims=True) for one in (weight, rough))
+        weight, rough = (jnp.sum(weights, axis=-1, keepdims=True) for weights in (weight, rough))
     load = jnp.swapaxes(few_between(*ends, few), -1, -2)
     return Meetings(load, weight, rough, part, _through_three(torque, load) if kept else None)
 

@@ -60,8 +60,8 @@ class MeshLink(DriveLink):
     def ends(self) -> tuple[int, int]:
         """See `DriveLink`."""
         ends = self.design.driver, self.design.loaded
-        first, last = (self.shafts[int(np.argmax(on))] for on in ends)
-        return first, last
+        driver, loaded = (self.shafts[int(np.argmax(on))] for on in ends)
+        return driver, loaded
 
     @property
     def step(self) -> Float[Array, ""]:
@@ -76,8 +76,8 @@ class MeshLink(DriveLink):
     def senses(self, before: float) -> tuple[float, float]:
         """See `DriveLink`."""
         ends, motion = (self.design.driver, self.design.loaded), self.design.motion
-        first, last = (float(jnp.sign(motion @ end)) for end in ends)
-        return first, last
+        sense_in, sense_out = (float(jnp.sign(motion @ end)) for end in ends)
+        return sense_in, sense_out
 
     def driven_backwards(self) -> "MeshLink":
         """See `DriveLink`."""
@@ -98,9 +98,9 @@ class MeshLink(DriveLink):
         else:
             phase, weight = known.phase, known.weight
         drag = self._braked(place)
-        found = state(replace(self.design, drag=drag), point, phase, models, engaged=known)
-        loads = bearing_loads(drag, mesh, found.contacts, found.balance.load)
-        return UnderLoad(found, tuple(loads), weight, nodes)
+        mesh_state = state(replace(self.design, drag=drag), point, phase, models, engaged=known)
+        loads = bearing_loads(drag, mesh, mesh_state.contacts, mesh_state.balance.load)
+        return UnderLoad(mesh_state, tuple(loads), weight, nodes)
 
     def at_rest(self, place: LinkPlace, point: Operation, models: Models) -> tuple[Array, Array]:
         """See `DriveLink`."""
@@ -109,8 +109,8 @@ class MeshLink(DriveLink):
     def memory(self, models: Models, nodes: int) -> tuple[float, int]:
         """See `DriveLink`."""
         lanes, phases = eqx.filter_eval_shape(_sizes, self.design.mesh, models.sharing, nodes)
-        each = max(OF_A_MEETING, OF_A_LANE[self.touching] * lanes.size)
-        return phases.size * each, phases.size
+        per_phase = max(OF_A_MEETING, OF_A_LANE[self.touching] * lanes.size)
+        return phases.size * per_phase, phases.size
 
     def locking(self, state: State) -> None:
         """See `DriveLink`."""
@@ -118,7 +118,7 @@ class MeshLink(DriveLink):
 
     def _braked(self, place: LinkPlace) -> tuple[Drag, ...]:
         """Losses of the drive that it overcomes, in its coordinates, then its own."""
-        found = []
+        drags = []
         for number in overcome(place.drive, place.number):
             drag = place.drive.drag[number]
             seat = drag.seat
@@ -126,14 +126,14 @@ class MeshLink(DriveLink):
                 beside = self._beside(seat, place) if felt(*place[:2], number) else None
                 seat = replace(self._seated(seat), beside=beside)
             between = jnp.stack([drag.between[shaft] for shaft in self.shafts])
-            found.append(replace(drag, between=between, seat=seat))
-        return (*found, *self.design.drag)
+            drags.append(replace(drag, between=between, seat=seat))
+        return (*drags, *self.design.drag)
 
     def _seated(self, seat: Bearing) -> Bearing:
         """A bearing of the drive as the mesh sees it."""
-        other = None if seat.other is None else seat.other - self.place
+        partner = None if seat.other is None else seat.other - self.place
         coordinate = self.shafts.index(seat.coordinate)
-        return replace(seat, coordinate=coordinate, place=seat.place - self.place, other=other)
+        return replace(seat, coordinate=coordinate, place=seat.place - self.place, other=partner)
 
     def _beside(self, seat: Bearing, place: LinkPlace) -> Float[Array, "3 *#b"] | None:
         """Load on a bearing by the link behind, in the frame of this one [N]."""

@@ -64,18 +64,20 @@ def profile(
         ConvergenceError: a film was not solved, or films and forces do not agree.
     """
     chosen: list[Limited] = [models.law, film, *([asperities] if asperities else [])]
-    known = engaged or one_engagement(design, operation.load, models.without_friction, nodes)
-    found, warnings = balance_under(design, operation, known, models, progress)
+    engagement = engaged or one_engagement(design, operation.load, models.without_friction, nodes)
+    balance, warnings = balance_under(design, operation, engagement, models, progress)
     limited = _limiting(chosen, film)
-    told, ranged = jax.device_get(
-        _profile(design, operation, replace(known, body=None), found, film, asperities, limited)
+    courses, ranged = jax.device_get(
+        _profile(
+            design, operation, replace(engagement, body=None), balance, film, asperities, limited
+        )
     )
     outside = {
-        f"outside {one.name} {name}": _outside(ranged[name], limits, told["active"])
-        for one in chosen
-        for name, limits in one.ranges.items()
+        f"outside {law.name} {name}": _outside(ranged[name], limits, courses["active"])
+        for law in chosen
+        for name, limits in law.ranges.items()
     }
-    return {**told, **outside, "outside films": np.array(warnings)}
+    return {**courses, **outside, "outside films": np.array(warnings)}
 
 
 @program
@@ -108,7 +110,7 @@ def _profile(
         "largest_friction": state.balance.largest_friction,
         "contact_line_length": total(jnp.where(contacts.active, contacts.weight, 0.0)),
     }
-    each = {
+    by_slice = {
         "load": state.balance.load,
         "load_share": state.balance.load / _positive(state.balance.force),
         "friction": state.balance.friction,
@@ -125,17 +127,17 @@ def _profile(
         "radius": contacts.radius,
     }
     if asperities is not None:
-        each["asperity_load_ratio"] = jnp.where(carries, evaluate(asperities, at), 0.0)
+        by_slice["asperity_load_ratio"] = jnp.where(carries, evaluate(asperities, at), 0.0)
     if contacts.shape == "ellipse":
         ellipse = at.ellipse
-        each |= {"semi_axis_along": ellipse.along, "semi_axis_across": ellipse.across}
+        by_slice |= {"semi_axis_along": ellipse.along, "semi_axis_across": ellipse.across}
         longest = jnp.max(jnp.where(contacts.active, ellipse.across, 0.0), axis=(0, 1))
         mesh["contact_room"] = main_dimensions(design.mesh).get("contact_room", array(np.inf))
         mesh["largest_inclination"] = largest_inclination(design.mesh, longest)
     if design.drag:
         mesh["drag_loss"] = state.drag_loss
     mesh = {name: jnp.broadcast_to(v, result.phase.shape) for name, v in mesh.items()}
-    masked = {name: jnp.where(contacts.active, values, 0.0) for name, values in each.items()}
+    masked = {name: jnp.where(contacts.active, values, 0.0) for name, values in by_slice.items()}
     lanes = {**masked, "active": contacts.active, "path": contacts.path}
     ranged = {name: jnp.broadcast_to(getattr(at, name), contacts.path.shape) for name in limited}
     in_order: dict[str, Array] = {
@@ -146,15 +148,15 @@ def _profile(
 
 def _limiting(chosen: Sequence[Limited], film: FilmThickness) -> tuple[str, ...]:
     """Conditions by which laws are limited, rivals among them: they share one program."""
-    films = (one for one in FILM_THICKNESS.values() if one.shape == film.shape)
-    return tuple(sorted({name for one in (*chosen, *LAWS, *films) for name in one.ranges}))
+    films = (rival for rival in FILM_THICKNESS.values() if rival.shape == film.shape)
+    return tuple(sorted({name for law in (*chosen, *LAWS, *films) for name in law.ranges}))
 
 
 def _outside(value: np.ndarray, limits: tuple[float, float], active: np.ndarray) -> np.ndarray:
     """True at nodes where a condition [pair, slice, node] of a pair in contact leaves a range."""
     beyond = (value < limits[0]) | (value > limits[1])
-    found: np.ndarray = np.any(beyond & np.moveaxis(active, 0, -1), axis=(0, 1))
-    return found
+    outside: np.ndarray = np.any(beyond & np.moveaxis(active, 0, -1), axis=(0, 1))
+    return outside
 
 
 def _positive(value: Array) -> Array:

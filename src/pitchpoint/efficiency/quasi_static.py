@@ -157,8 +157,8 @@ class Design(eqx.Module):
             InputError: there is no such body, it is fixed, or bodies have motors of their own.
         """
         if loaded is not None:
-            first, last = mesh_ends(self.mesh, driver, loaded)
-            return replace(self, driver=first, loaded=last)
+            input_end, output_end = mesh_ends(self.mesh, driver, loaded)
+            return replace(self, driver=input_end, loaded=output_end)
         names = tuple(place.body for place in coordinates_of(self.mesh))
         drives = number_of(driver, names)
         if np.asarray(self.driver)[drives]:
@@ -336,8 +336,8 @@ class Models(eqx.Module):
         """
         mesh, yields = design.mesh, None
         if self.sharing.by_stiffness:
-            given = mesh, design.loaded, contacts, design.solids, self.compliance
-            yields = compliance(*given, load, body, teeth)
+            elastic = mesh, design.loaded, contacts, design.solids, self.compliance
+            yields = compliance(*elastic, load, body, teeth)
         return self.sharing.function(contacts, mesh, yields)
 
 
@@ -384,8 +384,8 @@ class Engagement(eqx.Module):
         def widened(leaf: Array) -> Array:
             return leaf.reshape(*leaf.shape[:-1], *(1 for _ in range(rank - 1)), leaf.shape[-1])
 
-        found: tuple[Contacts, Lanes] = jax.tree.map(widened, (self.contacts, self.share))
-        return found
+        engaged: tuple[Contacts, Lanes] = jax.tree.map(widened, (self.contacts, self.share))
+        return engaged
 
 
 def engagement(
@@ -435,14 +435,14 @@ def shares_at(
         body: compliance of what is under the teeth, where it couples them.
     """
     if models.sharing.function is from_stiffness:
-        given = (
+        elastic = (
             design.mesh,
             design.loaded,
             design.solids,
             models.compliance,
             jnp.asarray(load, float),
         )
-        return wound_up(*given, contacts, body).share
+        return wound_up(*elastic, contacts, body).share
     return _shares(design, contacts, load, models.without_friction, body)
 
 
@@ -595,8 +595,8 @@ def state(
     if share is None:
         share = models.share(design, contacts, operation.load)
     unloaded = _unloaded(design, operation, contacts, share)
-    found = _balance(design, operation, share, unloaded, models, quick=quick)
-    return _state(design, operation, unloaded, found)
+    forces = _balance(design, operation, share, unloaded, models, quick=quick)
+    return _state(design, operation, unloaded, forces)
 
 
 def _unloaded(design: Design, operation: Operation, contacts: Contacts, share: Lanes) -> Conditions:
@@ -620,12 +620,12 @@ def _balance(
     quick: bool = False,
 ) -> Balance:
     """Forces under the friction law: all that a state asks of it."""
-    given = design, operation, unloaded.contacts, share, unloaded, design.motion, design.loaded
+    problem = design, operation, unloaded.contacts, share, unloaded, design.motion, design.loaded
     guess = None
     if quick:
-        single = jax.tree.map(_single, given)
+        single = jax.tree.map(_single, problem)
         guess = jnp.asarray(first_guess(**_in_balance(single, models)), jnp.float64)
-    return balance(**_in_balance(given, models), guess=guess)
+    return balance(**_in_balance(problem, models), guess=guess)
 
 
 def _state(design: Design, operation: Operation, unloaded: Conditions, found: Balance) -> State:
@@ -794,10 +794,10 @@ class Cycle(eqx.Module):
     @property
     def nearest_to_jamming(self) -> tuple[Each, Each]:
         """Friction coefficient where the mesh is nearest to locking, and the one at which it locks there."""
-        found = self.state.balance
-        each = jnp.broadcast_arrays(found.largest_friction, found.jamming)
-        nearest = jnp.argmax(each[0] / each[1], axis=-1)[..., None]
-        acting, limit = (jnp.take_along_axis(v, nearest, axis=-1)[..., 0] for v in each)
+        forces = self.state.balance
+        coefficients = jnp.broadcast_arrays(forces.largest_friction, forces.jamming)
+        nearest = jnp.argmax(coefficients[0] / coefficients[1], axis=-1)[..., None]
+        acting, limit = (jnp.take_along_axis(v, nearest, axis=-1)[..., 0] for v in coefficients)
         return acting, limit
 
 
@@ -822,9 +822,9 @@ def extremes(values: Float[Array, "*b node"], nodes: int, *, smooth: bool) -> tu
 
     From Taylor's series to the third order about the point beside the vertex.
     """
-    known = ~jnp.any(jnp.isnan(values), axis=-1)
+    finite = ~jnp.any(jnp.isnan(values), axis=-1)
     low, high = _ends(values, nodes, smooth)
-    return jnp.where(known, low, jnp.nan), jnp.where(known, high, jnp.nan)
+    return jnp.where(finite, low, jnp.nan), jnp.where(finite, high, jnp.nan)
 
 
 def _ends(values: Float[Array, "*b node"], nodes: int, smooth: bool) -> tuple[Each, Each]:
@@ -837,8 +837,8 @@ def _ends(values: Float[Array, "*b node"], nodes: int, smooth: bool) -> tuple[Ea
     level = jnp.abs(slope) < jnp.abs(curve) * spacing
     step = -slope / jnp.where(level, curve, 1.0)
     vertex = dense + slope * step / 2.0 + third * step**3 / 6.0
-    found = jnp.stack([dense, jnp.where(level, vertex, dense)])
-    return jnp.min(found, axis=(0, -2, -1)), jnp.max(found, axis=(0, -2, -1))
+    candidates = jnp.stack([dense, jnp.where(level, vertex, dense)])
+    return jnp.min(candidates, axis=(0, -2, -1)), jnp.max(candidates, axis=(0, -2, -1))
 
 
 def cycle(
@@ -862,8 +862,8 @@ def cycle(
         phase, weight = cycle_nodes(design.mesh, models.sharing, nodes)
     else:
         phase, weight, nodes = engaged.phase, engaged.weight, engaged.nodes
-    found = state(design, _at_nodes(operation), phase, models, engaged=engaged)
-    return Cycle(phase, weight, found, nodes, smooth=touching(design.mesh))
+    mesh_states = state(design, _at_nodes(operation), phase, models, engaged=engaged)
+    return Cycle(phase, weight, mesh_states, nodes, smooth=touching(design.mesh))
 
 
 def balanced(design: Design, operation: Operation, known: Engagement, models: Models) -> Balance:
@@ -890,8 +890,8 @@ def cycle_of(design: Design, operation: Operation, known: Engagement, found: Bal
 
 def _at_nodes(operation: Operation) -> Operation:
     """Operating points with an axis for the nodes of a cycle."""
-    found: Operation = jax.tree.map(lambda values: values[..., None], operation)
-    return found
+    at_nodes: Operation = jax.tree.map(lambda values: values[..., None], operation)
+    return at_nodes
 
 
 def cycle_nodes(

@@ -48,16 +48,16 @@ Row = tuple[Design, Operation, Engagement]
 @program
 def engagements(designs: Design, load: Float[Array, " row"], models: Models) -> Engagement:
     """Contacts and shares of every row, for meshes with few contacts; see `engagement_alone`."""
-    found: Engagement = eqx.filter_vmap(
-        lambda design, one: engagement_alone(design, one, models, NODES)
+    engagement: Engagement = eqx.filter_vmap(
+        lambda design, torque: engagement_alone(design, torque, models, NODES)
     )(designs, load)
-    return found
+    return engagement
 
 
 def known_engagements(designs: Design, load: Float[Arrays, " row"], models: Models) -> Engagement:
     """The same as `engagements`, found once for rows that are asked for again, as under other laws."""
-    asked = designs, models, load if models.sharing.by_stiffness else None
-    leaves, structure = jax.tree.flatten(asked)
+    inputs = designs, models, load if models.sharing.by_stiffness else None
+    leaves, structure = jax.tree.flatten(inputs)
     key = structure, *((np.shape(leaf), np.asarray(leaf).tobytes()) for leaf in leaves)
     if key not in _KNOWN:
         while len(_KNOWN) >= MOST_KNOWN:
@@ -79,10 +79,10 @@ one_engagement = program(engagement_alone)
 @program
 def balances(rows: Row, models: Models) -> Balance:
     """Balance of every row."""
-    found: Balance = eqx.filter_vmap(
+    forces: Balance = eqx.filter_vmap(
         lambda design, operation, known: balanced(design, operation, known, models)
     )(*rows)
-    return found
+    return forces
 
 
 def balances_of(rows: Row, models: Models) -> Balance:
@@ -102,7 +102,7 @@ def stacked(rows: list[Any]) -> Any:
 
 
 def _stack(first: Any, *others: Any) -> np.ndarray:
-    if all(one is first for one in others):
+    if all(leaf is first for leaf in others):
         return np.asarray(first)[None].repeat(1 + len(others), axis=0)
     return np.stack((first, *others))
 
@@ -114,19 +114,19 @@ def balance_in_rows(
     count = known.nodes // NODES if known.nodes % NODES == 0 else 1
     parts = [_part(known, number, count) for number in range(count)]
     rows = [(design, operation, part) for part in parts]
-    found = jax.device_get(balances_of(stacked(rows + rows[-1:] * (CHUNK - count)), models))
+    in_rows = jax.device_get(balances_of(stacked(rows + rows[-1:] * (CHUNK - count)), models))
 
     def joined(leaf: np.ndarray) -> np.ndarray:
         return np.concatenate(leaf[:count], axis=-1) if leaf.ndim > 1 else np.asarray(leaf.max())
 
-    whole: Balance = jax.tree.map(joined, found)
-    return whole
+    balance: Balance = jax.tree.map(joined, in_rows)
+    return balance
 
 
 def _part(known: Engagement, number: int, count: int) -> Engagement:
     """One of so many equal parts of the nodes."""
     alone = replace(known, body=None, nodes=known.nodes // count)
-    found: Engagement = jax.tree.map(
+    part: Engagement = jax.tree.map(
         lambda leaf: np.split(np.asarray(leaf), count, axis=-1)[number], alone
     )
-    return found
+    return part

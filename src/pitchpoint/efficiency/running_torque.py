@@ -67,8 +67,8 @@ def torques_at_rest(
     From the same balance with the bodies about to move; Palmgren (1959) for the bearings.
     """
     resting = replace(design, drag=at_rest(design.drag))
-    found = cycle(resting, operation, models, engaged=engaged)
-    return found.mean_input_torque, found.extremes(found.state.input_torque)[1]
+    mesh_cycle = cycle(resting, operation, models, engaged=engaged)
+    return mesh_cycle.mean_input_torque, mesh_cycle.extremes(mesh_cycle.state.input_torque)[1]
 
 
 def torques_at_rest_of_drive(

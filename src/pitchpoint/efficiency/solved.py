@@ -68,17 +68,17 @@ def solved_cycle(
     """
     wanted, _ = arguments(solver)
     demand_shape(solver, design.mesh.shape)
-    found, at = _turn(design, operation, models, engaged, tuple(wanted))
-    held, change, turns = _first(found, models), np.inf, 0
+    mesh_cycle, at = _turn(design, operation, models, engaged, tuple(wanted))
+    held, change, turns = _first(mesh_cycle, models), np.inf, 0
     balanced = int(at.pop("code"))
     while balanced == Code.SOLVED and tolerance < change and turns < most:
         held, before = _asked(solver, at, held), held
-        given = models.holding(*map(array, held))
-        found, at = _turn(design, operation, given, engaged, tuple(wanted))
+        models_held = models.holding(*map(array, held))
+        mesh_cycle, at = _turn(design, operation, models_held, engaged, tuple(wanted))
         balanced, change, turns = int(at.pop("code")), _change(held, before), turns + 1
     if balanced == Code.SOLVED and change > tolerance:
         balanced = int(Code.NOT_CONVERGED)
-    return found, Status(array(balanced), array(change), array(turns))
+    return mesh_cycle, Status(array(balanced), array(change), array(turns))
 
 
 def _first(found: Cycle, models: Models) -> np.ndarray:
@@ -92,7 +92,7 @@ def _first(found: Cycle, models: Models) -> np.ndarray:
 def _change(held: np.ndarray, before: np.ndarray) -> float:
     """Largest change of coefficients or of rolling over the largest of each; zero where none is left."""
     largest, changed = (
-        np.max(np.abs(one).reshape(len(held), -1), axis=-1) for one in (held, held - before)
+        np.max(np.abs(values).reshape(len(held), -1), axis=-1) for values in (held, held - before)
     )
     return float(np.max(changed / np.where(largest > 0.0, largest, 1.0)))
 
@@ -130,9 +130,9 @@ def _turn(
     wanted: tuple[str, ...],
 ) -> tuple[Cycle, dict[str, np.ndarray]]:
     """Cycle and the conditions in it that a solver asks for."""
-    found, at = _cycle(design, operation, models, engaged, wanted)
-    told: Any = jax.device_get(at)
-    return found, told
+    mesh_cycle, at = _cycle(design, operation, models, engaged, wanted)
+    conditions: Any = jax.device_get(at)
+    return mesh_cycle, conditions
 
 
 @program
@@ -143,9 +143,9 @@ def _cycle(
     engaged: Engagement | None,
     wanted: tuple[str, ...],
 ) -> tuple[Cycle, dict[str, Array]]:
-    found = cycle(design, operation, models, engaged=engaged)
-    at: Conditions = found.state.conditions
-    carries = found.state.contacts.active & (found.state.balance.load > 0.0)
-    told = {name: as_array(getattr(at, name)) for name in wanted}
-    code = jnp.max(found.state.balance.status.code)
-    return found, {"carries": carries, "code": code, **told}
+    mesh_cycle = cycle(design, operation, models, engaged=engaged)
+    at: Conditions = mesh_cycle.state.conditions
+    carries = mesh_cycle.state.contacts.active & (mesh_cycle.state.balance.load > 0.0)
+    conditions = {name: as_array(getattr(at, name)) for name in wanted}
+    code = jnp.max(mesh_cycle.state.balance.status.code)
+    return mesh_cycle, {"carries": carries, "code": code, **conditions}

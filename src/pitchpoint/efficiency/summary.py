@@ -199,21 +199,21 @@ def _bearing_loads(design: Design, result: Cycle) -> dict[str, Array]:
 
 def _by_gear(values: Mapping[str, Array]) -> dict[str, Array]:
     """Values for the mesh as they are, values for each member under a name with its number."""
-    each = {
+    by_member = {
         f"{name}_{number}": value
         for name, pair in values.items()
         if jnp.ndim(pair) == 1
         for number, value in enumerate(pair, 1)
     }
-    return {name: value for name, value in values.items() if jnp.ndim(value) == 0} | each
+    return {name: value for name, value in values.items() if jnp.ndim(value) == 0} | by_member
 
 
 @program
 def heat(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
     """Mean friction coefficient and loss factor at one operating point: what heats the teeth."""
-    found = cycle(design, operation, models, nodes=6)
+    mesh_cycle = cycle(design, operation, models, nodes=6)
     return {
-        "mean_friction": found.mean(mean_friction(found.state)),
+        "mean_friction": mesh_cycle.mean(mean_friction(mesh_cycle.state)),
         "loss_factor": loss_factor(design, models),
     }
 
@@ -239,7 +239,7 @@ def summarise(
     if models.law.films is not None:
         return _by_films(prepared, models, progress)
     return of_stacks(
-        (_figures(one, models), used) for one, used in stacks(prepared, CHUNK, progress)
+        (_figures(chunk, models), used) for chunk, used in stacks(prepared, CHUNK, progress)
     )
 
 
@@ -254,27 +254,27 @@ def at_points(design: Design, operation: Operation, models: Models) -> dict[str,
         models: laws.
     """
     alone, designs = models.without_friction, stacked([design] * CHUNK)
-    known = known_engagements(designs, array(np.resize(operation.load, CHUNK)), alone)
+    meshing = known_engagements(designs, array(np.resize(operation.load, CHUNK)), alone)
     count = operation.load.shape[0]
 
     def some(start: int) -> dict[str, np.ndarray]:
         taken = np.minimum(np.arange(start, start + CHUNK), count - 1)
-        rows = designs, jax.tree.map(lambda values: np.asarray(values)[taken], operation), known
-        found: dict[str, np.ndarray] = jax.device_get(
+        rows = designs, jax.tree.map(lambda values: np.asarray(values)[taken], operation), meshing
+        figures: dict[str, np.ndarray] = jax.device_get(
             _summaries(rows, balances_of(rows, models), alone, models.film)
         )
-        return found
+        return figures
 
     return of_stacks((some(start), count - start) for start in range(0, count, CHUNK))
 
 
 def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
     """Summaries of stacked points: programs without a law before and after that of their balances."""
-    design, operation, known = chunk
+    design, operation, meshing = chunk
     alone = models.without_friction
-    if known is None:
-        known = known_engagements(design, operation.load, alone)
-    rows = design, operation, known
+    if meshing is None:
+        meshing = known_engagements(design, operation.load, alone)
+    rows = design, operation, meshing
     return _summaries(rows, balances_of(rows, models), alone, models.film)
 
 
@@ -284,37 +284,41 @@ def _by_films(
     """Summaries of points whose films are solved, one after the other."""
     alone, rows, ends, doubts = models.without_friction, [], [], []
     for done, (design, operation, engaged) in enumerate(prepared, 1):
-        known = engaged or one_engagement(design, operation.load, alone, NODES)
-        found = in_turns(design, operation, models, known)
-        rows.append(((design, operation, replace(known, body=None)), found.balance))
-        ends.append(found.status)
-        doubts.append("; ".join(getattr(one, "brief", "") or one for one in found.warnings))
+        meshing = engaged or one_engagement(design, operation.load, alone, NODES)
+        solution = in_turns(design, operation, models, meshing)
+        rows.append(((design, operation, replace(meshing, body=None)), solution.balance))
+        ends.append(solution.status)
+        doubts.append(
+            "; ".join(getattr(warning, "brief", "") or warning for warning in solution.warnings)
+        )
         if progress is not None:
             progress(done)
-    told = of_stacks(
-        (_summaries(one[0], one[1], alone, models.film), used) for one, used in stacks(rows)
+    figures = of_stacks(
+        (_summaries(chunk[0], chunk[1], alone, models.film), used) for chunk, used in stacks(rows)
     )
-    each = {
-        "turns_code": [one.code for one in ends],
-        "turns_change": [one.residual for one in ends],
-        "turns": [one.iterations for one in ends],
+    of_turns = {
+        "turns_code": [status.code for status in ends],
+        "turns_change": [status.residual for status in ends],
+        "turns": [status.iterations for status in ends],
         "outside_films": doubts,
     }
-    return {**told, **{name: np.array(values) for name, values in each.items()}}
+    return {**figures, **{name: np.array(values) for name, values in of_turns.items()}}
 
 
 def _prepared(points: Sequence[Point], models: Models) -> Iterator[Prepared]:
     """Points with their contacts and shares; neighbours of one drive have its contacts in common."""
     before: Design | None = None
-    known: Engagement | None = None
+    meshing: Engagement | None = None
     for design, operation in points:
         like = (
-            known if known is not None and before is not None and _alike(before, design) else None
+            meshing
+            if meshing is not None and before is not None and _alike(before, design)
+            else None
         )
-        known = engaged(design, operation, models, like=like)
+        meshing = engaged(design, operation, models, like=like)
         before = design
         # The compliance of the bodies has done its work, and of many points it would be large.
-        yield design, operation, known and replace(known, body=None)
+        yield design, operation, meshing and replace(meshing, body=None)
 
 
 def _alike(one: Design, other: Design) -> bool:
@@ -324,8 +328,8 @@ def _alike(one: Design, other: Design) -> bool:
 
 def _equal(one: Any, other: Any) -> bool:
     """True if trees of the same kind hold equal numbers."""
-    first, second = jax.tree.leaves(one), jax.tree.leaves(other)
-    return len(first) == len(second) and all(map(np.array_equal, first, second))
+    leaves, other_leaves = jax.tree.leaves(one), jax.tree.leaves(other)
+    return len(leaves) == len(other_leaves) and all(map(np.array_equal, leaves, other_leaves))
 
 
 def engaged(
@@ -344,14 +348,14 @@ def engaged(
     """
     if touching(design.mesh):
         return None
-    for known in _LAST:
-        if like is None and known.serves(design, models, nodes):
-            if float(known.load) == float(operation.load):
-                return known.engagement
-            like = known.engagement
-    found = engagement(design, operation.load, models, nodes, like)
-    _LAST.append(_Known(design, operation.load, models, found))
-    return found
+    for earlier in _LAST:
+        if like is None and earlier.serves(design, models, nodes):
+            if float(earlier.load) == float(operation.load):
+                return earlier.engagement
+            like = earlier.engagement
+    meshing = engagement(design, operation.load, models, nodes, like)
+    _LAST.append(_Known(design, operation.load, models, meshing))
+    return meshing
 
 
 class _Known(NamedTuple):
@@ -364,8 +368,8 @@ class _Known(NamedTuple):
 
     def serves(self, design: Design, models: Models, nodes: int) -> bool:
         """True if another load of a drive has its contacts and the compliance of its bodies."""
-        same = self.engagement.nodes == nodes and self.models.sharing is models.sharing
-        alike = same and _alike(self.design, design)
+        same_shares = self.engagement.nodes == nodes and self.models.sharing is models.sharing
+        alike = same_shares and _alike(self.design, design)
         return alike and _equal(self.models.compliance, models.compliance)
 
 
@@ -396,8 +400,8 @@ def of_stacks(results: Iterable[tuple[Mapping[str, Any], int]]) -> dict[str, np.
     """Results of stacks, each quantity [point ...] and how many points count, as those of all points."""
     return whole_of(
         [
-            {name: np.asarray(values)[:used] for name, values in found.items()}
-            for found, used in results
+            {name: np.asarray(values)[:used] for name, values in figures.items()}
+            for figures, used in results
         ]
     )
 

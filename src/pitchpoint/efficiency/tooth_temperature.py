@@ -182,7 +182,7 @@ def _softer(record: SolidRecord, temperature: float) -> str:
     """Consequence of a modulus that was found well below the temperature."""
     if fails := heat_failure(record, temperature):
         return f"; {fails}"
-    known = record.young_temperature
-    if known is None or temperature < known.value + _NEAR:
+    measured = record.young_temperature
+    if measured is None or temperature < measured.value + _NEAR:
         return ""
     return ", where the true one is lower: stiffness comes out too high, transmission error too low"

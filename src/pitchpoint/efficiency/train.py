@@ -80,9 +80,12 @@ class TrainMesh(eqx.Module):
 
         Turning all bodies of a mesh with their carrier neither closes flanks nor slides them.
         """
-        each = {body: values[number] for number, body in enumerate(self.bodies)}
+        by_body = {body: values[number] for number, body in enumerate(self.bodies)}
         borne = -jnp.sum(values, axis=0)
-        return {**each, self.carrier: borne + each[self.carrier] if self.carrier in each else borne}
+        return {
+            **by_body,
+            self.carrier: borne + by_body[self.carrier] if self.carrier in by_body else borne,
+        }
 
 
 class Roles(eqx.Module):
@@ -159,8 +162,8 @@ class Train(eqx.Module):
     @property
     def period(self) -> Float[Array, ""]:
         """Turn of the driving body in which all meshes come together again [rad]."""
-        first = self.meshes[0]
-        return first.periods * nominal_period(first.design.mesh, self.motion(first))
+        mesh = self.meshes[0]
+        return mesh.periods * nominal_period(mesh.design.mesh, self.motion(mesh))
 
     @property
     def bodies(self) -> tuple[str, ...]:
@@ -183,20 +186,20 @@ class Train(eqx.Module):
         Args:
             designs: of the meshes, driven backwards; by default as they are.
         """
-        designs = designs or [one.design for one in self.meshes]
+        designs = designs or [mesh.design for mesh in self.meshes]
         links = [
-            replace(one, design=design).link
-            for design, one in zip(designs, self.meshes, strict=True)
+            replace(mesh, design=design).link
+            for design, mesh in zip(designs, self.meshes, strict=True)
         ]
         backwards = Ends({self.loaded: -float(self.rates[self.loaded])}, self.held, self.turned)
-        phases = [np.asarray(one.phases)[: one.copies] for one in self.meshes]
+        phases = [np.asarray(mesh.phases)[: mesh.copies] for mesh in self.meshes]
         return gear_train(
             links,
             designs,
             backwards,
             planets=self.planets,
             phases=phases,
-            angles=np.asarray(self.angles)[: max(one.copies for one in self.meshes)],
+            angles=np.asarray(self.angles)[: max(mesh.copies for mesh in self.meshes)],
             drag=self.drag,
             braked=self.braked,
             pull=float(self.pull),
@@ -275,7 +278,7 @@ def gear_train(
     turns, onwards = exchange or (1, 0)
     return Train(
         tuple(meshes),
-        {body: array(one) for body, one in ideal.rates.items()},
+        {body: array(body_rate) for body, body_rate in ideal.rates.items()},
         tuple(drag),
         array(_padded(around, 0.0)),
         array(float(turns)),
@@ -295,7 +298,7 @@ def _rows(
     bodies: Sequence[str], meshes: Sequence[TrainMesh], planets: Sequence[str]
 ) -> list[tuple[str, int]]:
     """See `Train.rows`."""
-    counts = {body: one.places for one in meshes for body in one.bodies}
+    counts = {body: mesh.places for mesh in meshes for body in mesh.bodies}
     return [
         (body, number)
         for body in bodies
@@ -352,9 +355,9 @@ def _exchange(
     Each planet is the first one at another time, by as much as the planet before it is. Meshes of one copy
     are then as they were.
     """
-    count = max(one.copies for one in meshes)
+    count = max(mesh.copies for mesh in meshes)
     every = np.arange(float(count))
-    if any(one.copies not in (1, count) for one in meshes):
+    if any(mesh.copies not in (1, count) for mesh in meshes):
         return None
     if angles is not None and not _together(angles * count / (2.0 * pi), every):
         return None
@@ -363,10 +366,10 @@ def _exchange(
         ahead = every * step / count
         return all(
             _together(
-                np.broadcast_to(np.asarray(one.phases)[: one.copies], (count,)),
-                float(one.phases[0]) + float(_onward(one, rates) * one.periods) * ahead,
+                np.broadcast_to(np.asarray(mesh.phases)[: mesh.copies], (count,)),
+                float(mesh.phases[0]) + float(_onward(mesh, rates) * mesh.periods) * ahead,
             )
-            for one in meshes
+            for mesh in meshes
         )
 
     step = next((step for step in range(count) if fits(step)), None)
@@ -425,19 +428,21 @@ def _check_mesh(link: Link, design: Design, torque: Float[np.ndarray, " dof"]) -
 
 def _periods(links: Sequence[Link], rates: Mapping[str, float]) -> list[int]:
     """Periods of each mesh in which all come together again."""
-    each = []
+    mesh_rates = []
     for link in links:
         mesh = link.mesh
         against = [rates[body] - rates[link.carrier] for body in link.bodies]
-        each.append(1.0 / float(nominal_period(mesh, jnp.array(against))))
-    fastest = max(each)
-    parts = [Fraction(one / fastest).limit_denominator(MOST_PERIODS) for one in each]
-    whole = lcm(*(part.denominator for part in parts))
-    if whole > MOST_PERIODS or not np.allclose(
-        [*map(float, parts)], np.array(each) / fastest, 1e-9
+        mesh_rates.append(1.0 / float(nominal_period(mesh, jnp.array(against))))
+    fastest = max(mesh_rates)
+    parts = [
+        Fraction(mesh_rate / fastest).limit_denominator(MOST_PERIODS) for mesh_rate in mesh_rates
+    ]
+    periods = lcm(*(part.denominator for part in parts))
+    if periods > MOST_PERIODS or not np.allclose(
+        [*map(float, parts)], np.array(mesh_rates) / fastest, 1e-9
     ):
         raise InputError(
             f"the meshes of this train come together again after more than {MOST_PERIODS} periods; "
             "its state over all of them is not computed"
         )
-    return [int(part * whole) for part in parts]
+    return [int(part * periods) for part in parts]

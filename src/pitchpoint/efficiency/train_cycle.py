@@ -149,18 +149,18 @@ class TrainCycle(eqx.Module):
     @property
     def loss(self) -> Nodes:
         """Power lost in all meshes and beside their teeth [W]."""
-        return sum((one.loss for one in self.meshes), self.drag_loss)
+        return sum((mesh.loss for mesh in self.meshes), self.drag_loss)
 
     @property
     def contact_force_ratio(self) -> Nodes:
         """Largest one of all meshes, see `MeshState`."""
-        return jnp.max(jnp.stack([one.contact_force_ratio for one in self.meshes]), axis=0)
+        return jnp.max(jnp.stack([mesh.contact_force_ratio for mesh in self.meshes]), axis=0)
 
     @property
     def largest_friction(self) -> Nodes:
         """Largest friction coefficient of all contacts."""
-        each = [jnp.max(one.friction, axis=(0, 1, 2)) for one in self.meshes]
-        return jnp.max(jnp.stack(each), axis=0)
+        largest = [jnp.max(mesh.friction, axis=(0, 1, 2)) for mesh in self.meshes]
+        return jnp.max(jnp.stack(largest), axis=0)
 
     @property
     def mean_efficiency(self) -> Float[Array, ""]:
@@ -212,8 +212,8 @@ def train_cycle(
     phase, weight = period_nodes(jnp.concatenate([*_events(train, models)]), nodes)
     phase, weight = apart(phase, weight).ravel() / train.turns, weight.ravel()
     every = [
-        _Meshing(train, one, operation, laws, phase)
-        for one, laws in zip(train.meshes, models, strict=True)
+        _Meshing(train, mesh, operation, laws, phase)
+        for mesh, laws in zip(train.meshes, models, strict=True)
     ]
     if train.drag:
         _press(train, every, operation)
@@ -221,7 +221,7 @@ def train_cycle(
     solved = _solve(train, every, operation)
     lost = solved.code != int(Code.SOLVED)
     forces = _by_mesh(every, jnp.where(lost, jnp.nan, solved.forces))
-    states = tuple(one.state(force) for one, force in zip(every, forces, strict=True))
+    states = tuple(meshing.state(force) for meshing, force in zip(every, forces, strict=True))
     places = _places(train, every, forces, operation)
     torques = _torques(train, every, forces, places)
     rates, roles = jnp.stack([train.rates[body] for body in train.bodies]), train.roles
@@ -249,13 +249,13 @@ def _events(train: Train, models: Sequence[Models]) -> Iterator[Float[Array, " e
 
     What happens to one planet then happens to every other one at the same time in another part.
     """
-    for one, laws in zip(train.meshes, models, strict=True):
-        events = events_of(one.design.mesh, laws.sharing)
-        turns = jnp.arange(one.most_periods)[:, None, None]
-        turns = jnp.where(turns < one.periods, turns, 0)  # again those of the first one
-        phases = one.phases[:1] if train.alike else one.phases
-        ahead = (events[:, None] - phases) * train.onward(one)
-        yield jnp.mod(train.turns * (ahead + turns) / one.periods, 1.0).ravel()
+    for mesh, laws in zip(train.meshes, models, strict=True):
+        events = events_of(mesh.design.mesh, laws.sharing)
+        turns = jnp.arange(mesh.most_periods)[:, None, None]
+        turns = jnp.where(turns < mesh.periods, turns, 0)  # again those of the first one
+        phases = mesh.phases[:1] if train.alike else mesh.phases
+        ahead = (events[:, None] - phases) * train.onward(mesh)
+        yield jnp.mod(train.turns * (ahead + turns) / mesh.periods, 1.0).ravel()
 
 
 class _Meshing:
@@ -344,7 +344,9 @@ class _Meshing:
         and apart as on the loaded ones.
         """
         number = self.mesh.bodies.index(body)
-        places = jnp.stack([one.place[0] for one in self.mesh.design.mesh.coordinates])
+        places = jnp.stack(
+            [coordinate.place[0] for coordinate in self.mesh.design.mesh.coordinates]
+        )
         planet = next((k for k, name in enumerate(self.mesh.bodies) if name in self.planets), 1)
         outward = jnp.sign(places[planet] - places[1 - planet])
         toward = outward * self.pressing(force)
@@ -394,27 +396,27 @@ class _Balanced(eqx.Module):
 
 def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Balanced:
     """Forces of all copies in equilibrium; friction is that under the forces of the step before."""
-    asked = _asked(train, operation)
+    external = _asked(train, operation)
 
     def step(held: tuple[Forces, Nodes, Array]) -> tuple[Forces, Nodes, Array]:
         forces, _, steps = held
-        each = _by_mesh(every, forces)
-        laws = [one.laws(force) for one, force in zip(every, each, strict=True)]
+        by_mesh = _by_mesh(every, forces)
+        laws = [meshing.laws(force) for meshing, force in zip(every, by_mesh, strict=True)]
         taken = [
-            one.of_rolling(rolling)
-            for one, (_, rolling) in zip(every, laws, strict=True)
-            if one.rolls
+            meshing.of_rolling(rolling)
+            for meshing, (_, rolling) in zip(every, laws, strict=True)
+            if meshing.rolls
         ]
         arms = _arms(
             train,
             [
-                one.of_force(mu, force)
-                for one, (mu, _), force in zip(every, laws, each, strict=True)
+                meshing.of_force(mu, force)
+                for meshing, (mu, _), force in zip(every, laws, by_mesh, strict=True)
             ],
         )
-        wanted = asked - jnp.sum(_arms(train, taken), axis=1) if taken else asked
+        wanted = external - jnp.sum(_arms(train, taken), axis=1) if taken else external
         if train.drag:
-            wanted = wanted - _on_rows(train, _places(train, every, each, operation))
+            wanted = wanted - _on_rows(train, _places(train, every, by_mesh, operation))
         each_torque = arms * forces
         left = jnp.sum(each_torque, axis=1) - wanted
         size = jnp.max(jnp.abs(each_torque), axis=1)
@@ -427,17 +429,17 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
         _, residual, steps = held
         return (steps < MOST_STEPS) & jnp.any(residual > NEAR)
 
-    nominal = jnp.concatenate([one.nominal for one in every])
+    nominal = jnp.concatenate([meshing.nominal for meshing in every])
     largest = jnp.max(nominal, axis=0)
     idle = nominal <= IDLE * largest
     nominal = jnp.maximum(nominal, jnp.where(largest > 0.0, IDLE * largest, 1.0))
     # Forces of a mesh that idles without losses are free to become what these ask for.
     usual = jnp.where(idle & (largest > 0.0), largest, nominal)
-    first = nominal, jnp.full(nominal.shape[1], jnp.inf), jnp.asarray(0)
-    forces, residual, steps = jax.lax.while_loop(goes_on, step, first)
+    begin = nominal, jnp.full(nominal.shape[1], jnp.inf), jnp.asarray(0)
+    forces, residual, steps = jax.lax.while_loop(goes_on, step, begin)
     pulled = forces < -IDLE * jnp.max(jnp.abs(forces), axis=0)
     # Where other flanks may be pressed, no forces hold a train that is locked.
-    either = [jnp.broadcast_to(one.either, one.nominal.shape) for one in every]
+    either = [jnp.broadcast_to(meshing.either, meshing.nominal.shape) for meshing in every]
     pulled = jnp.any(pulled & ~jnp.concatenate(either), axis=0)
     code = jnp.where(pulled, int(Code.LOCKED), int(Code.SOLVED))
     code = jnp.where(residual <= UNSOLVED, code, int(Code.NOT_CONVERGED))
@@ -454,29 +456,29 @@ def _asked(train: Train, operation: Operation) -> Float[Array, "row 1"]:
 def _levers(train: Train, every: Sequence[_Meshing]) -> Float[Array, "2 node body mesh"]:
     """See `TrainCycle.levers`."""
 
-    def on_bodies(one: _Meshing, coefficient: float) -> Float[Array, "body node"]:
-        arms = one.of_force(jnp.where(one.carrying, coefficient, 0.0), one.nominal)
-        nothing = jnp.zeros(one.nominal.shape)
-        each = (arms.get(body, nothing) for body in train.bodies)
-        on_each = jnp.stack([jnp.sum(arm, axis=0) / one.mesh.count for arm in each])
+    def on_bodies(meshing: _Meshing, coefficient: float) -> Float[Array, "body node"]:
+        arms = meshing.of_force(jnp.where(meshing.carrying, coefficient, 0.0), meshing.nominal)
+        nothing = jnp.zeros(meshing.nominal.shape)
+        by_body = (arms.get(body, nothing) for body in train.bodies)
+        on_each = jnp.stack([jnp.sum(arm, axis=0) / meshing.mesh.count for arm in by_body])
         return on_each[train.roles.balanced]
 
-    normal, whole = (
-        jnp.stack([on_bodies(one, coefficient) for one in every], axis=-1)
+    normal, with_friction = (
+        jnp.stack([on_bodies(meshing, coefficient) for meshing in every], axis=-1)
         for coefficient in (0.0, 1.0)
     )
-    return jnp.moveaxis(jnp.stack([normal, whole - normal]), 2, 1)
+    return jnp.moveaxis(jnp.stack([normal, with_friction - normal]), 2, 1)
 
 
 def _arms(train: Train, every: Sequence[Mapping[str, Copies]]) -> Arms:
     """Torques on the bodies in equilibrium by mesh and copy, those of planets on the planet of the copy."""
     rows = {place: row for row, place in enumerate(train.rows())}
     columns = []
-    for one in every:
-        copies, nodes = next(iter(one.values())).shape
+    for by_body in every:
+        copies, nodes = next(iter(by_body.values())).shape
         for copy in range(copies):
             column = [jnp.zeros(nodes)] * len(rows)
-            for body, values in one.items():
+            for body, values in by_body.items():
                 row = rows.get((body, copy if body in train.planets else 0))
                 if row is not None:
                     column[row] = column[row] + values[copy]
@@ -513,15 +515,15 @@ def _inverse(system: Float[Array, "row row node"]) -> Float[Array, "row row node
     for row in range(system.shape[0]):
         pivot = 1.0 / system[row, row]
         taken = system[row] * pivot
-        rest = system - system[:, row, None] * taken[None]
-        rest = rest.at[:, row].set(-system[:, row] * pivot)
-        system = rest.at[row].set(taken.at[row].set(pivot))
+        reduced = system - system[:, row, None] * taken[None]
+        reduced = reduced.at[:, row].set(-system[:, row] * pivot)
+        system = reduced.at[row].set(taken.at[row].set(pivot))
     return system
 
 
 def _by_mesh(every: Sequence[_Meshing], forces: Forces) -> list[Copies]:
     """Forces of the copies of each mesh."""
-    ends = np.cumsum([one.mesh.places for one in every])[:-1]
+    ends = np.cumsum([meshing.mesh.places for meshing in every])[:-1]
     split: list[Copies] = jnp.split(forces, ends)
     return split
 
@@ -533,17 +535,17 @@ def _torques(
     places: "Sequence[_Place]",
 ) -> dict[str, Nodes]:
     """Torques from outside on each body; those on free ones are rounding."""
-    found: dict[str, Nodes] = {}
+    torques: dict[str, Nodes] = {}
     for place in places:
         for body, torque in place.torques.items():
-            found[body] = found.get(body, 0.0) + jnp.sum(torque, axis=0)
-    for one, force in zip(every, forces, strict=True):
-        coefficient, resistance = one.laws(force)
-        rolling = one.of_rolling(resistance)
-        for body, arm in one.of_force(coefficient, force).items():
+            torques[body] = torques.get(body, 0.0) + jnp.sum(torque, axis=0)
+    for meshing, force in zip(every, forces, strict=True):
+        coefficient, resistance = meshing.laws(force)
+        rolling = meshing.of_rolling(resistance)
+        for body, arm in meshing.of_force(coefficient, force).items():
             taken = jnp.sum(arm * force + rolling[body], axis=0)
-            found[body] = found.get(body, jnp.zeros_like(taken)) + taken
-    return found
+            torques[body] = torques.get(body, jnp.zeros_like(taken)) + taken
+    return torques
 
 
 class _Place(NamedTuple):
@@ -589,7 +591,7 @@ def _places(
 def _there(train: Train, every: Sequence[_Meshing], bodies: tuple[str, str]) -> Float[Array, "_ 1"]:
     """One for each planet that a place beside the teeth is at, zero where none stands; or one."""
     braked = {*bodies} & {*train.planets}
-    of_planet = [one.there for one in every if braked & {*one.mesh.bodies}]
+    of_planet = [meshing.there for meshing in every if braked & {*meshing.mesh.bodies}]
     return jnp.where(of_planet[0], 1.0, 0.0) if of_planet else jnp.ones((1, 1))
 
 
@@ -608,22 +610,24 @@ def _borne(
     nothing = jnp.zeros((1, forces[0].shape[-1]))
     pairs = list(zip(every, forces, strict=True))
     on_planets = [
-        one.pressed(body, force)
-        for one, force in pairs
-        for body in one.mesh.bodies
+        meshing.pressed(body, force)
+        for meshing, force in pairs
+        for body in meshing.mesh.bodies
         if body in train.planets
     ]
     if any(body in train.planets for body in bodies):
-        carrier = next(one.mesh.carrier for one in every if one.mesh.carrier != HOUSING)
+        carrier = next(meshing.mesh.carrier for meshing in every if meshing.mesh.carrier != HOUSING)
         outward = train.pull * (train.rates[carrier] * speed) ** 2
         return _size(sum(on_planets[1:], on_planets[0]).at[0].add(outward))
     if HOUSING not in bodies:
         return nothing
     (body,) = (name for name in bodies if name != HOUSING)
-    around = [one.pressed(body, force) for one, force in pairs if body in one.mesh.bodies]
-    if any(one.mesh.carrier == body for one in every):
+    around = [
+        meshing.pressed(body, force) for meshing, force in pairs if body in meshing.mesh.bodies
+    ]
+    if any(meshing.mesh.carrier == body for meshing in every):
         around.append(sum(on_planets[1:], on_planets[0]))
-    return sum((_size(_around(one, train.angles)) for one in around), nothing)
+    return sum((_size(_around(force, train.angles)) for force in around), nothing)
 
 
 def _around(vectors: Vectors, angles: Float[Array, " copy"]) -> Float[Array, "3 1 node"]:
@@ -659,23 +663,23 @@ def _leave_open(every: Sequence[_Meshing]) -> None:
 
     As that of the sun of a 3K set between two rings: what rounding leaves has no side.
     """
-    nominal = jnp.concatenate([one.nominal for one in every])
+    nominal = jnp.concatenate([meshing.nominal for meshing in every])
     idle = IDLE * jnp.max(nominal, axis=0)
-    for one in every:
-        one.either = one.either | (one.nominal <= idle)
+    for meshing in every:
+        meshing.either = meshing.either | (meshing.nominal <= idle)
 
 
 def _press(train: Train, every: Sequence[_Meshing], operation: Operation) -> None:
     """Give meshes the normal forces that losses beside the teeth leave them without friction."""
-    still = [jnp.zeros_like(one.nominal) for one in every]
+    still = [jnp.zeros_like(meshing.nominal) for meshing in every]
     arms = _arms(
         train,
         [
-            one.of_force(jnp.zeros_like(one.share), force)
-            for one, force in zip(every, still, strict=True)
+            meshing.of_force(jnp.zeros_like(meshing.share), force)
+            for meshing, force in zip(every, still, strict=True)
         ],
     )
     taken = _on_rows(train, _places(train, every, still, operation))
     forces = _least(arms, _asked(train, operation) - taken)
-    for one, force in zip(every, _by_mesh(every, forces), strict=True):
-        one.carry(jnp.abs(force))
+    for meshing, force in zip(every, _by_mesh(every, forces), strict=True):
+        meshing.carry(jnp.abs(force))

@@ -83,32 +83,32 @@ def train_state(
     shape = points[0].shape
 
     def at_point(*values: Float[Array, ""]) -> tuple[TrainState, Float[Array, " node"]]:
-        found = train_cycle.function(train, Operation(*values), models, nodes)
-        return _state(found), found.weight
+        cycle = train_cycle.function(train, Operation(*values), models, nodes)
+        return _state(cycle), cycle.weight
 
-    found, weight = jax.vmap(at_point)(*(values.ravel() for values in points))
-    return jax.tree.map(lambda leaf: leaf.reshape(*shape, *leaf.shape[1:]), found), weight[0]
+    states, weight = jax.vmap(at_point)(*(values.ravel() for values in points))
+    return jax.tree.map(lambda leaf: leaf.reshape(*shape, *leaf.shape[1:]), states), weight[0]
 
 
-def _state(found: TrainCycle) -> TrainState:
+def _state(cycle: TrainCycle) -> TrainState:
     normal, friction = (
-        sum(getattr(one, name) for one in found.meshes)
+        sum(getattr(mesh, name) for mesh in cycle.meshes)
         for name in ("normal_force", "friction_force")
     )
     return TrainState(
-        found.input_torque,
-        found.input_power,
-        found.output_power,
-        found.loss,
-        found.drag_loss,
-        sum((one.latent_power for one in found.meshes), jnp.zeros_like(found.drag_loss)),
+        cycle.input_torque,
+        cycle.input_power,
+        cycle.output_power,
+        cycle.loss,
+        cycle.drag_loss,
+        sum((mesh.latent_power for mesh in cycle.meshes), jnp.zeros_like(cycle.drag_loss)),
         normal,
         friction,
-        found.contact_force_ratio,
-        found.largest_friction,
-        found.pressed,
-        jnp.moveaxis(found.levers, 0, 1),
-        found.status,
+        cycle.contact_force_ratio,
+        cycle.largest_friction,
+        cycle.pressed,
+        jnp.moveaxis(cycle.levers, 0, 1),
+        cycle.status,
     )
 
 
@@ -133,8 +133,8 @@ class TrainLink(DriveLink):
     @property
     def ends(self) -> tuple[int, int]:
         """See `DriveLink`."""
-        first, last = self.shafts
-        return first, last
+        turned, loaded = self.shafts
+        return turned, loaded
 
     @property
     def step(self) -> Float[Array, ""]:
@@ -164,8 +164,8 @@ class TrainLink(DriveLink):
     ) -> UnderLoad:
         """See `DriveLink`; a train has nodes of its own."""
         at_loads = jax.tree.map(lambda leaf: leaf[..., 0], point)
-        found, weight = train_state(self._braked(place), at_loads, models, NODES_OF_TRAINS)
-        return UnderLoad(found, found.pressed, weight, NODES_OF_TRAINS)
+        states, weight = train_state(self._braked(place), at_loads, models, NODES_OF_TRAINS)
+        return UnderLoad(states, states.pressed, weight, NODES_OF_TRAINS)
 
     def at_rest(
         self, place: LinkPlace, point: Operation, models: tuple[Models, ...]
@@ -195,8 +195,8 @@ class TrainLink(DriveLink):
         drags, pairs = [], []
         for number in overcome(drive, place.number):
             drag, shafts = drive.drag[number], drive.braked[number]
-            first, second = *(names[shaft] for shaft in shafts), *[HOUSING] * (2 - len(shafts))
+            body, against = *(names[shaft] for shaft in shafts), *[HOUSING] * (2 - len(shafts))
             sides = drag.between[shafts[0]] * jnp.array([1.0, -1.0])
             drags.append(replace(drag, between=sides, seat=None))
-            pairs.append((first, second))
+            pairs.append((body, against))
         return replace(train, drag=(*drags, *train.drag), braked=(*pairs, *train.braked))

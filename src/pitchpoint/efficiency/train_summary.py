@@ -59,13 +59,15 @@ def train_figures(
             f"{MOST_BYTES / 1e9:g} GB of memory; take fewer slices of their contact lines with models.slices",
             key="models.slices",
         )
-    found = of_stacks(
-        (_figures(one[0], one[1], laws), used) for one, used in stacks(points, size, progress)
+    figures = of_stacks(
+        (_figures(chunk[0], chunk[1], laws), used) for chunk, used in stacks(points, size, progress)
     )
-    near = nearest_to_jamming(*(found.pop(name) for name in ("levers", "largest_friction", "lost")))
+    near = nearest_to_jamming(
+        *(figures.pop(name) for name in ("levers", "largest_friction", "lost"))
+    )
     return {
-        **found,
-        "locked": found["locked"] | near.held,
+        **figures,
+        "locked": figures["locked"] | near.held,
         "jamming_coefficient": near.limit,
         "nearest_jamming_coefficient": near.limit,
         "nearest_friction": near.friction,
@@ -100,7 +102,7 @@ def nearest_to_jamming(
     """
     limit = jamming_coefficients(levers)
     at = np.argmin(limit, axis=-1)[:, None]
-    acting, nearest = (np.take_along_axis(one, at, -1)[:, 0] for one in (friction, limit))
+    acting, nearest = (np.take_along_axis(values, at, -1)[:, 0] for values in (friction, limit))
     return NearestToJamming(acting, nearest, np.any(lost & (friction >= limit), axis=-1))
 
 
@@ -122,18 +124,18 @@ def torques_at_rest_of_train(
     resting = replace(train, drag=at_rest(train.drag))
     every = zip(*jax.tree.map(np.asarray, jax.tree.leaves(operation)), strict=True)
     points = [(resting, Operation(*map(array, values))) for values in every]
-    found = train_figures(points, models)
-    return found["mean_input_torque"], found["max_input_torque"]
+    figures = train_figures(points, models)
+    return figures["mean_input_torque"], figures["max_input_torque"]
 
 
 def train_memory(train: Train, models: Sequence[Models]) -> float:
     """Memory for the states of a train at one operating point [B], from that of compiled programs."""
     nodes, lanes = 0, 0
-    for one, laws in zip(train.meshes, models, strict=True):
-        contacts, phases = eqx.filter_eval_shape(_sizes, one.design.mesh, laws.sharing)
-        own = 1 if train.alike else one.places
-        nodes += one.most_periods * own * NODES_OF_TRAINS * phases.size
-        lanes += one.places * contacts.size
+    for mesh, laws in zip(train.meshes, models, strict=True):
+        contacts, phases = eqx.filter_eval_shape(_sizes, mesh.design.mesh, laws.sharing)
+        copies = 1 if train.alike else mesh.places
+        nodes += mesh.most_periods * copies * NODES_OF_TRAINS * phases.size
+        lanes += mesh.places * contacts.size
     return nodes * lanes * OF_A_LANE
 
 
@@ -165,8 +167,8 @@ def jamming_coefficients(
 @program
 def _figures(trains: Train, operations: Operation, models: tuple[Models, ...]) -> dict[str, Array]:
     def figures(train: Train, operation: Operation) -> dict[str, Array]:
-        found = train_cycle.function(train, operation, models, NODES_OF_TRAINS)
-        return {**_of_train(found), **_of_meshes(found), **_of_places(found)}
+        cycle = train_cycle.function(train, operation, models, NODES_OF_TRAINS)
+        return {**_of_train(cycle), **_of_meshes(cycle), **_of_places(cycle)}
 
     result: dict[str, Array] = eqx.filter_vmap(figures)(trains, operations)
     return result
@@ -200,32 +202,32 @@ def _of_train(found: TrainCycle) -> dict[str, Array]:
 
 def _latent_power(meshes: Sequence[MeshState]) -> Float[Array, " node"]:
     """Power that rolls through all meshes [W]."""
-    each = [one.latent_power for one in meshes]
-    return sum(each[1:], each[0])
+    powers = [mesh.latent_power for mesh in meshes]
+    return sum(powers[1:], powers[0])
 
 
 def _mean_friction(meshes: Sequence[MeshState]) -> Float[Array, " node"]:
     """Coefficient weighted with the load of all contacts."""
-    loads = [one.normal_force for one in meshes]
-    rubbing = [one.friction_force for one in meshes]
-    whole = sum(loads[1:], loads[0])
-    return sum(rubbing[1:], rubbing[0]) / jnp.where(whole > 0.0, whole, 1.0)
+    loads = [mesh.normal_force for mesh in meshes]
+    rubbing = [mesh.friction_force for mesh in meshes]
+    load = sum(loads[1:], loads[0])
+    return sum(rubbing[1:], rubbing[0]) / jnp.where(load > 0.0, load, 1.0)
 
 
-def _of_meshes(found: TrainCycle) -> dict[str, Array]:
+def _of_meshes(cycle: TrainCycle) -> dict[str, Array]:
     """Figures of each mesh, of all its copies, with speeds against its carrier [stage]."""
-    losses = [found.mean(one.loss) for one in found.meshes]
-    driving = [found.mean(one.input_torque) for one in found.meshes]
-    speeds = [one.speed for one in found.meshes]
+    losses = [cycle.mean(mesh.loss) for mesh in cycle.meshes]
+    driving = [cycle.mean(mesh.input_torque) for mesh in cycle.meshes]
+    speeds = [mesh.speed for mesh in cycle.meshes]
     powers = [torque * speed for torque, speed in zip(driving, speeds, strict=True)]
     return {
         "stage_loss": jnp.stack(losses),
         "stage_drag_loss": jnp.zeros(len(losses)),
         "stage_efficiency": _of_powers(jnp.stack(powers), jnp.stack(losses)),
-        "stage_friction": jnp.stack([found.mean(_mean_friction([one])) for one in found.meshes]),
+        "stage_friction": jnp.stack([cycle.mean(_mean_friction([mesh])) for mesh in cycle.meshes]),
         "stage_input_torque": jnp.stack(driving),
         "stage_speed": jnp.stack(speeds),
-        "stage_latent_power": jnp.stack([found.mean(one.latent_power) for one in found.meshes]),
+        "stage_latent_power": jnp.stack([cycle.mean(mesh.latent_power) for mesh in cycle.meshes]),
     }
 
 

@@ -96,15 +96,15 @@ def warm_teeth(design: Design, operation: Operation, models: Models, heated: Hea
     Source: VDI 2736 Part 2 (2014) for the temperatures, iterated as its modulus asks for.
     """
     loss, change, passes = _settled((design, operation, models, heated))
-    found = _temperatures(loss, design, operation, heated)
+    temperatures = _temperatures(loss, design, operation, heated)
     locked = ~jnp.all(jnp.isfinite(loss))
     code = jnp.where(change <= TOLERANCE, int(Code.SOLVED), int(Code.NOT_CONVERGED))
     return WarmTeeth(
         mean_friction=loss[0],
         loss_factor=loss[1],
-        flank=found.flank,
-        root=found.root,
-        young=_moduli(found.root, heated),
+        flank=temperatures.flank,
+        root=temperatures.root,
+        young=_moduli(temperatures.root, heated),
         status=Status(jnp.where(locked, int(Code.LOCKED), code), change, passes),
     )
 
@@ -116,9 +116,9 @@ def _loss(at: Float[Array, "2"], given: Given) -> Float[Array, "2"]:
     """Friction and loss factor of teeth that those of `at` have warmed."""
     design, operation, models, heated = given
     young = _moduli(_temperatures(at, design, operation, heated).root, heated)
-    first, second = (replace(solid, young=young[k]) for k, solid in enumerate(design.solids))
-    found = heat(replace(design, solids=(first, second)), operation, models)
-    return jnp.stack([found["mean_friction"], found["loss_factor"]])
+    pinion, gear = (replace(solid, young=young[k]) for k, solid in enumerate(design.solids))
+    losses = heat(replace(design, solids=(pinion, gear)), operation, models)
+    return jnp.stack([losses["mean_friction"], losses["loss_factor"]])
 
 
 @eqx.filter_custom_jvp
@@ -136,16 +136,16 @@ def _settled(given: Given) -> tuple[Array, Array, Array]:
         return after, change, passes + 1
 
     begin = jnp.zeros(2), jnp.asarray(jnp.inf), jnp.asarray(0)
-    found: tuple[Array, Array, Array] = jax.lax.while_loop(unsettled, step, begin)
-    return found
+    settled: tuple[Array, Array, Array] = jax.lax.while_loop(unsettled, step, begin)
+    return settled
 
 
 def _by_balance(primals: tuple[Given], tangents: tuple[Any]) -> Any:
     """Derivatives of the balance x = f(x, a): (1 - df/dx) dx = df/da."""
-    (given,) = primals
-    at, change, passes = _settled(given)
-    _, along = eqx.filter_jvp(lambda one: _loss(at, one), primals, tangents)
-    (a, b), (c, d) = jnp.eye(2) - jax.jacfwd(lambda loss: _loss(loss, given))(at)
+    (primal,) = primals
+    at, change, passes = _settled(primal)
+    _, along = eqx.filter_jvp(lambda inputs: _loss(at, inputs), primals, tangents)
+    (a, b), (c, d) = jnp.eye(2) - jax.jacfwd(lambda loss: _loss(loss, primal))(at)
     moved = jnp.stack([d * along[0] - b * along[1], a * along[1] - c * along[0]]) / (a * d - b * c)
     return (at, change, passes), (moved, jnp.zeros_like(change), None)
 
@@ -159,7 +159,7 @@ def _temperatures(
     """Temperatures of flanks and roots of both gears for a loss [K]."""
     around = operation.temperature
     reference = pitch_point(design.mesh, design.driver)
-    each = [
+    by_gear = [
         heated.function(
             ambient=around,
             power=operation.load * jnp.abs(design.loaded @ design.motion) * operation.speed,
@@ -176,7 +176,7 @@ def _temperatures(
         )
         for gear, mate in enumerate(heated.mates)
     ]
-    flank, root = (jnp.stack(parts) for parts in zip(*each, strict=True))
+    flank, root = (jnp.stack(parts) for parts in zip(*by_gear, strict=True))
     return ToothTemperature(
         jnp.where(heated.plastic, flank, around), jnp.where(heated.plastic, root, around)
     )
