@@ -177,9 +177,9 @@ def _arms(
     )
     if member is None:
         return 0.0 * closing, jnp.stack([0.0 * sliding, 0.0 * sliding])
-    own = jnp.arange(2) == member
+    on_member = jnp.arange(2) == member
     outwards = 1.0 if member == 0 else -1.0
-    return outwards * closing, jnp.where(own.reshape(2, *[1] * sliding.ndim), sliding, 0.0)
+    return outwards * closing, jnp.where(on_member.reshape(2, *[1] * sliding.ndim), sliding, 0.0)
 
 
 def _supports(bodies: Sequence[Body]) -> Iterator[tuple[int, Support]]:
@@ -191,5 +191,5 @@ def _supports(bodies: Sequence[Body]) -> Iterator[tuple[int, Support]]:
 
 def _assembled(bodies: Sequence[Body], blocks: Sequence[Array]) -> Matrix:
     turning = jnp.zeros((len(bodies), len(bodies)))
-    whole: Matrix = jax.scipy.linalg.block_diag(turning, *blocks)
-    return whole
+    matrix: Matrix = jax.scipy.linalg.block_diag(turning, *blocks)
+    return matrix

@@ -39,8 +39,8 @@ class Excitation(eqx.Module):
         bounds = grid.bounds(self.edges)
         start, length = self.edges[:-1], jnp.diff(self.edges)
         middle = (bounds[1:] + bounds[:-1]) / 2.0
-        last = jnp.max(jnp.where(length > 0.0, jnp.arange(length.shape[0]), 0))
-        segment = jnp.clip(jnp.searchsorted(self.edges, middle, side="right") - 1, 0, last)
+        last_segment = jnp.max(jnp.where(length > 0.0, jnp.arange(length.shape[0]), 0))
+        segment = jnp.clip(jnp.searchsorted(self.edges, middle, side="right") - 1, 0, last_segment)
         phase = bounds[:-1, None] + jnp.diff(bounds)[:, None] * grid.place
         span = length[segment][:, None]
         place = (phase - start[segment][:, None]) / jnp.where(span > 0.0, span, 1.0)
@@ -75,8 +75,8 @@ class Waves(eqx.Module):
 
     def slope(self, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """Its derivative by the phase [m or rad]."""
-        each = -2.0 * jnp.pi * self.order * self.amplitude * jnp.sin(self._angles(phase))
-        return jnp.sum(each, axis=-1)
+        slopes = -2.0 * jnp.pi * self.order * self.amplitude * jnp.sin(self._angles(phase))
+        return jnp.sum(slopes, axis=-1)
 
     def _angles(self, phase: Float[Array, "*b"]) -> Float[Array, "*b order"]:
         return 2.0 * jnp.pi * self.order * phase[..., None] + self.angle
@@ -122,9 +122,9 @@ def _legendre(place: Float[Array, "*b"], count: int) -> Float[Array, "*b mode"]:
     def further(
         pair: tuple[Array, Array], degree: Float[Array, ""]
     ) -> tuple[tuple[Array, Array], Array]:
-        before, last = pair
-        following = ((2.0 * degree + 1.0) * x * last - degree * before) / (degree + 1.0)
-        return (last, following), last
+        before, current = pair
+        following = ((2.0 * degree + 1.0) * x * current - degree * before) / (degree + 1.0)
+        return (current, following), current
 
     _, rows = jax.lax.scan(further, (jnp.ones_like(x), x), jnp.arange(1.0, count))
     return jnp.moveaxis(jnp.concatenate([jnp.ones_like(x)[None], rows]), 0, -1)

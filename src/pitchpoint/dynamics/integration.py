@@ -58,8 +58,8 @@ def by_steps(
         return half * speed, half * jnp.concatenate([-force[:, :-1], driven[:, None]], axis=1)
 
     start = identity(size, half.shape)
-    found, done = _solve(rate, (start[:size], start[size:]), 1.0, TOLERANCE, through, _largest)
-    return jnp.concatenate(found), done
+    maps, done = _solve(rate, (start[:size], start[size:]), 1.0, TOLERANCE, through, _largest)
+    return jnp.concatenate(maps), done
 
 
 class Pieces(eqx.Module):
@@ -119,7 +119,7 @@ def travel(
 
     def interval(carry: tuple[Array, Array], piece: Pieces) -> tuple[tuple[Array, Array], Array]:
         state, fine = carry
-        found, done = _solve(
+        maps, done = _solve(
             _rate(equations, piece, law, backlash),
             (state[:size], state[size:]),
             2.0,
@@ -127,7 +127,7 @@ def travel(
             diffrax.RecursiveCheckpointAdjoint(),
             _largest_of_last,
         )
-        after = jnp.concatenate(found)
+        after = jnp.concatenate(maps)
         return (after, fine & done), after[:, -1]
 
     begin = identity(size, ()).at[:, -1].set(start)

@@ -44,9 +44,9 @@ class Sliding(eqx.Module):
         """
 
         def of_part(total: Array, part: tuple[Array, Array]) -> tuple[Array, None]:
-            held, own = part
-            back = jnp.abs(own) * driver < rate
-            share = jnp.where(back, own * driver / jnp.where(back, rate, 1.0), 0.0)
+            held, part_rate = part
+            back = jnp.abs(part_rate) * driver < rate
+            share = jnp.where(back, part_rate * driver / jnp.where(back, rate, 1.0), 0.0)
             return total + jnp.where(back, held * jnp.sqrt(1.0 - share**2), 0.0), None
 
         start = jnp.zeros(jnp.broadcast_shapes(jnp.shape(rate), jnp.shape(driver)))
@@ -91,13 +91,13 @@ class Joint(eqx.Module):
     def wind_up(self) -> Float[Array, ""]:
         """Wind-up under the constant torque, from the middle of the play [rad]."""
         curve, loaded = self.curve, self.torque > 0.0
-        asked = jnp.where(loaded, self.torque, curve.torque[-1])
-        inside = jnp.interp(asked, curve.torque, curve.wind_up)
-        beyond = jnp.maximum(asked - curve.torque[-1], 0.0) / curve.stiffness[-1]
+        torque = jnp.where(loaded, self.torque, curve.torque[-1])
+        inside = jnp.interp(torque, curve.torque, curve.wind_up)
+        beyond = jnp.maximum(torque - curve.torque[-1], 0.0) / curve.stiffness[-1]
         touch = jnp.maximum(jnp.asarray(curve.play), 0.0) / 2.0
         guess = touch + inside + beyond
-        found, _ = root(lambda at: curve.torque_at(at) / asked - 1.0, guess, 4.0 * guess)
-        return jnp.where(loaded, found, touch)
+        solution, _ = root(lambda at: curve.torque_at(at) / torque - 1.0, guess, 4.0 * guess)
+        return jnp.where(loaded, solution, touch)
 
     @property
     def stiffness(self) -> Float[Array, ""]:

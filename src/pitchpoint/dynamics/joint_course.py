@@ -185,8 +185,8 @@ def course(
     assert solution.ys is not None
     reached = solution.result == diffrax.RESULTS.successful
     states = jnp.where(jnp.isfinite(solution.ys), solution.ys, jnp.nan) * motion.units
-    found = jax.vmap(motion.described)(jnp.asarray(times), states)
-    return _judged(found, reached, solution.stats["num_steps"])
+    described = jax.vmap(motion.described)(jnp.asarray(times), states)
+    return _judged(described, reached, solution.stats["num_steps"])
 
 
 def _judged(found: Course, reached: Bool[Array, ""], steps: Int[Array, ""]) -> Course:
@@ -204,8 +204,8 @@ def _length(joint: Joint, excitation: Waves, drive: Drive, start: Array) -> Arra
         jnp.abs(start[0]) + jnp.abs(start[2] - joint.wind_up),
         joint.load * gain / joint.stiffness,
     ]
-    whole = sum(parts, jnp.zeros(()))
-    return jnp.where(whole > 0.0, whole, 1.0)
+    length = sum(parts, jnp.zeros(()))
+    return jnp.where(length > 0.0, length, 1.0)
 
 
 class _Motion(eqx.Module):
@@ -266,21 +266,21 @@ class _Motion(eqx.Module):
     def _friction(self, rate: Array, driver: Array) -> Array:
         """Friction of the flanks beyond that at an even motion [N m]."""
         sliding, creep = self.joint.sliding, CREEP * self.length * self.frequency
-        own = sliding.rate * driver
-        share = jnp.tanh((own + rate) / creep) - jnp.tanh(own / creep)
+        even_rate = sliding.rate * driver
+        share = jnp.tanh((even_rate + rate) / creep) - jnp.tanh(even_rate / creep)
         return jnp.sum(sliding.held * share)
 
     def described(self, time: Array, state: Array) -> Course:
         """What is kept of a state."""
         there, joint = self._at(time, state), self.joint
-        own = jnp.where(self.held, 0.0, joint.motor) * there.motor_rate**2
+        of_motor = jnp.where(self.held, 0.0, joint.motor) * there.motor_rate**2
         return Course(
             time=time,
             motor=state[0],
             wind_up=there.wind_up,
             torque=there.torque,
             output_rate=there.output_rate,
-            kinetic=(own + joint.load * there.output_rate**2) / 2.0,
+            kinetic=(of_motor + joint.load * there.output_rate**2) / 2.0,
             elastic=joint.curve.energy_at(there.wind_up),
             put_in=state[4],
             damping=state[5],
@@ -319,11 +319,11 @@ def settled(
     frequency = linear.frequency
     place, rate = jnp.real(linear.wind_up), jnp.real(1j * frequency * linear.wind_up)
     start = jnp.stack([jnp.zeros(()), jnp.zeros(()), joint.wind_up + place + amplitude, rate])
-    last = period * (periods + jnp.linspace(0.0, 2.0, 2 * POINTS + 1))
+    sampled = period * (periods + jnp.linspace(0.0, 2.0, 2 * POINTS + 1))
     wave = Waves(*(jnp.reshape(value, 1) for value in (amplitude, order, jnp.zeros(()))))
-    times = jnp.concatenate([jnp.zeros(1), last])
-    found = course(joint, wave, Drive.steady(speed), times, start)
-    return _settled(joint, wave, found, speed)
+    times = jnp.concatenate([jnp.zeros(1), sampled])
+    motion = course(joint, wave, Drive.steady(speed), times, start)
+    return _settled(joint, wave, motion, speed)
 
 
 def _settled(joint: Joint, wave: Waves, found: Course, speed: One) -> Settled:

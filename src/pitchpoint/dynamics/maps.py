@@ -49,17 +49,17 @@ class Chain(eqx.Module):
 def chain(maps: Float[Array, "state state+1 element interval"]) -> Chain:
     """Compose the maps from node to node, all elements side by side, then the elements."""
     size = maps.shape[0] // 2
-    rest = identity(size, maps.shape[2:3])
+    unmoved = identity(size, maps.shape[2:3])
 
     def further(before: Map, step: Map) -> tuple[Map, Map]:
         after = compose(step, before)
         return after, after
 
-    whole, inner = jax.lax.scan(further, rest, jnp.moveaxis(maps, -1, 0))
-    within = jnp.concatenate([rest[None], inner])
-    first = identity(size, ())
-    _, ends = jax.lax.scan(further, first, jnp.moveaxis(whole, -1, 0))
-    before = jnp.moveaxis(jnp.concatenate([first[None], ends]), 0, -1)
+    elements, inner = jax.lax.scan(further, unmoved, jnp.moveaxis(maps, -1, 0))
+    within = jnp.concatenate([unmoved[None], inner])
+    begin = identity(size, ())
+    _, ends = jax.lax.scan(further, begin, jnp.moveaxis(elements, -1, 0))
+    before = jnp.moveaxis(jnp.concatenate([begin[None], ends]), 0, -1)
     return Chain(jnp.moveaxis(within, 0, -1), before)
 
 
@@ -90,8 +90,8 @@ def inverse_matrix(matrix: Float[Array, "state state *b"]) -> Float[Array, "stat
 
 def on_last(column: Float[Array, "row *b"], columns: int) -> Float[Array, "row column *b"]:
     """Zeros but for the last column: to add it so remains elementwise, a scatter is slow."""
-    last = jnp.asarray(np.arange(columns) == columns - 1)
-    return column[:, None] * last.reshape(1, -1, *(1 for _ in column.shape[1:]))
+    is_last = jnp.asarray(np.arange(columns) == columns - 1)
+    return column[:, None] * is_last.reshape(1, -1, *(1 for _ in column.shape[1:]))
 
 
 def identity(size: int, batch: tuple[int, ...]) -> Map:

@@ -32,8 +32,10 @@ def mean_stiffness(moving: Moving) -> Matrix:
     assert moving.passage is not None
     mesh = moving.design.mesh
     phase, weight = nodes(mesh.events(), NODES)
-    own, springs = jax.vmap(moving.passage.at)(phase.ravel())
-    contacts = jax.vmap(lambda one: on_all_coordinates(one, mesh.coordinates, moving.bodies))(own)
+    of_mesh, springs = jax.vmap(moving.passage.at)(phase.ravel())
+    contacts = jax.vmap(
+        lambda at_node: on_all_coordinates(at_node, mesh.coordinates, moving.bodies)
+    )(of_mesh)
     normal, weighted = contacts.normal, springs * weight.ravel()[:, None, None]
     pushed = jnp.einsum("tps,taps,tbps->ab", weighted, normal, normal)
     return pushed + stiffness(moving.bodies)
@@ -48,8 +50,8 @@ def along_action(whole: Matrix, line: Float[Array, " dof"]) -> Float[Array, ""]:
 
     From k a a^T, the stiffness of a spring k on coordinates with arms a.
     """
-    own = whole[: line.shape[0], : line.shape[0]]
-    return line @ own @ line / jnp.sum(line**2) ** 2
+    of_mesh = whole[: line.shape[0], : line.shape[0]]
+    return line @ of_mesh @ line / jnp.sum(line**2) ** 2
 
 
 class Modes(eqx.Module):
@@ -75,15 +77,15 @@ def modes(moving: Moving) -> Modes:
 
     From the eigenvectors of M^-1/2 K M^-1/2, and C and the parts of K in them.
     """
-    whole, bearings = mean_stiffness(moving), stiffness(moving.bodies)
+    springs, bearings = mean_stiffness(moving), stiffness(moving.bodies)
     root = jnp.where(jnp.isinf(moving.mass), 0.0, 1.0 / jnp.sqrt(moving.mass))
-    square, vectors = jnp.linalg.eigh(root[:, None] * whole * root)
+    square, vectors = jnp.linalg.eigh(root[:, None] * springs * root)
     turning = jnp.sqrt(jnp.maximum(square, 0.0))
     vibrates = turning > RIGID * turning[-1]
     shape, some = root[:, None] * vectors, jnp.where(vibrates, turning, 1.0)
     held = shape * (bearings @ shape)
-    teeth = jnp.sum(shape * ((whole - bearings) @ shape), axis=0)
-    damped = jnp.sum(shape * (_damping(moving, whole) @ shape), axis=0)
+    teeth = jnp.sum(shape * ((springs - bearings) @ shape), axis=0)
+    damped = jnp.sum(shape * (_damping(moving, springs) @ shape), axis=0)
     translations = held[len(moving.bodies) :]
     share = jnp.concatenate([teeth[None], translations]) / some**2
     return Modes(

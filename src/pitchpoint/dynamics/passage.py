@@ -67,8 +67,8 @@ class Passage(eqx.Module):
     def _holding(self, place: Float[Array, "*b"]) -> Int[Array, "*b"]:
         """Number of the segment that holds a place in the period."""
         lengths = jnp.diff(self.edges)
-        last = jnp.max(jnp.where(lengths > 0.0, jnp.arange(lengths.shape[0]), 0))
-        return jnp.clip(jnp.searchsorted(self.edges, place, side="right") - 1, 0, last)
+        last_segment = jnp.max(jnp.where(lengths > 0.0, jnp.arange(lengths.shape[0]), 0))
+        return jnp.clip(jnp.searchsorted(self.edges, place, side="right") - 1, 0, last_segment)
 
     def within(
         self, segment: Int[Array, "*b"], phase: Float[Array, "*b"]
@@ -97,8 +97,8 @@ class PathStiffness(eqx.Module):
 
     def at(self, path: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """Stiffness at a place [N/m]; beyond the ends the polynomials go on."""
-        last = self.coefficients.shape[1] - 1
-        part = jnp.clip(jnp.searchsorted(self.places, path, side="right") - 1, 0, last)
+        last_segment = self.coefficients.shape[1] - 1
+        part = jnp.clip(jnp.searchsorted(self.places, path, side="right") - 1, 0, last_segment)
         return horner(self.coefficients[:, part], path - self.places[part])
 
 
@@ -157,13 +157,13 @@ def passage(
     if stiffness is None and not has(mesh, tooth_sections):
         raise InputError("bodies without teeth need the stiffness of their contact")
     curve = polynomial(stiffness) if isinstance(stiffness, int | float) else stiffness
-    found, lowest, place = _sampled(design, operation, terms, curve)
+    sampled, lowest, place = _sampled(design, operation, terms, curve)
     if not float(lowest) >= 0.0:
         raise InputError(
             f"the stiffness of a pair of teeth is never negative, got {float(lowest):.3g} N/m at "
             f"{float(place):.3g} on its path from where it enters"
         )
-    return found
+    return sampled
 
 
 def sampled(
@@ -192,8 +192,8 @@ def on_springs(
     Returns:
         Stiffness of each slice along its normal, zero out of contact [N/m].
     """
-    found = springs(design.mesh, design.loaded, contacts, design.solids, terms, load)
-    return replace(contacts, gap=found.gap), found.stiffness
+    tooth_springs = springs(design.mesh, design.loaded, contacts, design.solids, terms, load)
+    return replace(contacts, gap=tooth_springs.gap), tooth_springs.stiffness
 
 
 @program
@@ -214,13 +214,13 @@ def _with_softest(
         contacts, stiffness = on_springs(design, rigid, terms, operation.load)
     else:
         contacts, stiffness = rigid, _along_path(rigid, curve)
-    found = Passage(
+    sampled = Passage(
         edges=edges(events),
         contacts=jax.tree.map(lambda values: _powers(jnp.asarray(values, float)), contacts),
         stiffness=_powers(stiffness),
     )
     softest = jnp.argmin(jnp.where(contacts.active, stiffness, jnp.inf))
-    return found, stiffness.ravel()[softest], contacts.path.ravel()[softest]
+    return sampled, stiffness.ravel()[softest], contacts.path.ravel()[softest]
 
 
 def _breaks(mesh: Mesh, curve: PathStiffness | None) -> Float[Array, " event"]:
@@ -232,8 +232,8 @@ def _breaks(mesh: Mesh, curve: PathStiffness | None) -> Float[Array, " event"]:
 def _along_path(contacts: Contacts, curve: PathStiffness) -> Lanes:
     """Stiffness of a pair shared by its slices."""
     length = jnp.where(contacts.active, contacts.weight, 0.0)
-    whole = jnp.sum(length, axis=1, keepdims=True)
-    share = length / jnp.where(whole > 0.0, whole, 1.0)
+    pair_length = jnp.sum(length, axis=1, keepdims=True)
+    share = length / jnp.where(pair_length > 0.0, pair_length, 1.0)
     return curve.at(contacts.path) * share
 
 

@@ -147,10 +147,10 @@ def respond(
         iterations: of the search; one for a linear system.
     """
     size = equations.load.shape[0]
-    found = periodic & resolved & equations.finite & jnp.all(jnp.isfinite(states))
+    solved = periodic & resolved & equations.finite & jnp.all(jnp.isfinite(states))
 
     def checked(values: Array) -> Array:
-        return jnp.where(found, values, jnp.nan)
+        return jnp.where(solved, values, jnp.nan)
 
     def physical(values: Coordinates) -> Coordinates:
         return checked(jnp.einsum("ab,ben->aen", equations.scale, values))
@@ -162,7 +162,7 @@ def respond(
     checks = (
         (~equations.finite, Code.NOT_FINITE),
         (jnp.logical_not(resolved), Code.UNRESOLVED),
-        (~found, Code.NOT_PERIODIC),
+        (~solved, Code.NOT_PERIODIC),
         (jnp.max(jnp.abs(of_period)) > STABLE, Code.UNSTABLE),
         (_coarse(course, displacement), Code.UNRESOLVED),
         (_separated(course, stretch) & law.linear, Code.SEPARATES),
@@ -174,7 +174,7 @@ def respond(
         static_displacement=physical(_static(equations)),
         stretch=stretch,
         force=force,
-        multipliers=jnp.where(found, of_period, jnp.nan),
+        multipliers=jnp.where(solved, of_period, jnp.nan),
         status=Status(
             code=jnp.select(
                 [check for check, _ in checks],

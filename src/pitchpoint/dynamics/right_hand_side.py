@@ -237,13 +237,13 @@ def forces_beside(
 
     From a spring and a damper side by side, cut where together they would pull.
     """
-    (own, springs), design = engaged, moving.design
-    contacts = on_all_coordinates(own, design.mesh.coordinates, moving.bodies)
-    leaning = _leaning(design.mesh, own)
+    (of_mesh, springs), design = engaged, moving.design
+    contacts = on_all_coordinates(of_mesh, design.mesh.coordinates, moving.bodies)
+    leaning = _leaning(design.mesh, of_mesh)
     pace = design.onward / design.period * _driving(moving, rate)
     apart, parting = (leaning * value for value in _error(moving, phase, pace))
     stretch = _lanes(contacts.normal, beside) - contacts.gap - apart
-    roll_arm = _on_mesh(own.roll_arm, contacts)
+    roll_arm = _on_mesh(of_mesh.roll_arm, contacts)
     closing, slip, roll = (
         _lanes(arm, rate) for arm in (contacts.normal, contacts.slip_arm, roll_arm)
     )
@@ -349,8 +349,8 @@ def kinetic(moving: Moving, rate: Coordinates) -> Each:
 def _driving(moving: Moving, values: Coordinates) -> Each:
     """That of the driver, in its nominal sense."""
     design = moving.design
-    own: Each = jnp.tensordot(moving.padded(design.driver), values, axes=1)
-    return own * (design.driver @ design.motion)
+    of_driver: Each = jnp.tensordot(moving.padded(design.driver), values, axes=1)
+    return of_driver * (design.driver @ design.motion)
 
 
 def _engaged(moving: Moving, phase: Each) -> tuple[Contacts, Lanes]:
@@ -373,8 +373,8 @@ def _leaning(mesh: Mesh, contacts: Contacts) -> Lanes:
 
 def _on_mesh(arms: Float[Array, "dof pair slice *b"], contacts: Contacts) -> Array:
     """Arms on all coordinates, zero on the translations of bodies."""
-    more = contacts.normal.shape[0] - arms.shape[0]
-    return jnp.pad(arms, ((0, more), *((0, 0) for _ in arms.shape[1:])))
+    translations = contacts.normal.shape[0] - arms.shape[0]
+    return jnp.pad(arms, ((0, translations), *((0, 0) for _ in arms.shape[1:])))
 
 
 def _error(moving: Moving, phase: Each, pace: Each) -> tuple[Each, Each]:
@@ -398,9 +398,9 @@ def _external(moving: Moving, time: Each) -> Coordinates:
     """External torques and forces at a time, as given."""
     knots = moving.knots
     every = [jnp.broadcast_to(body.torque, knots.shape) for body in moving.bodies]
-    given = [jnp.interp(time, knots, torque) for torque in every]
-    still = [jnp.zeros_like(given[0])] * (moving.mass.shape[0] - len(given))
-    return jnp.stack([*given, *still])
+    applied = [jnp.interp(time, knots, torque) for torque in every]
+    still = [jnp.zeros_like(applied[0])] * (moving.mass.shape[0] - len(applied))
+    return jnp.stack([*applied, *still])
 
 
 def _push(
@@ -419,8 +419,8 @@ def _push(
 def _drag(moving: Moving, rate: Coordinates) -> Coordinates:
     """Torques against the motion of the bodies for themselves."""
     every = [
-        body.resistance * jnp.tanh(own / body.creep) + body.viscous * own
-        for body, own in zip(moving.bodies, rate, strict=False)
+        body.resistance * jnp.tanh(speed / body.creep) + body.viscous * speed
+        for body, speed in zip(moving.bodies, rate, strict=False)
     ]
     still = [jnp.zeros_like(every[0])] * (rate.shape[0] - len(every))
     return jnp.stack([*every, *still])

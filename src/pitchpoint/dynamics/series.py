@@ -56,15 +56,15 @@ def by_series(
     middle = identity(size, half.shape)
 
     def term(carry: Carry, at: tuple[Array, Array]) -> tuple[Carry, None]:
-        places, speed, (same, other) = carry
+        places, speed, (extended, waiting) = carry
         scale = half / at[1]
         force = product(damping, speed) - on_last(at[0], 2 * size + 1)
         # A product of two series: as many earlier places count as the stiffness has powers.
         for power, before in zip(stiffness, places, strict=True):
             force = force + product(power, before)
         place, speed = scale * speed, -scale * force
-        found = jnp.concatenate([place, speed])
-        return ((place, *places[:-1]), speed, (other + found, same)), None
+        new_term = jnp.concatenate([place, speed])
+        return ((place, *places[:-1]), speed, (waiting + new_term, extended)), None
 
     none = jnp.zeros_like(middle)
     places = (middle[:size], *(none[:size] for _ in stiffness[1:]))
@@ -73,8 +73,8 @@ def by_series(
     # Even terms are alike at both ends and odd ones opposite, so two sums give the state at either end.
     odd, even = sums if TERMS % 2 else sums[::-1]
     maps = compose(even + odd, _inverse(even - odd))
-    last = jnp.maximum(jnp.max(jnp.abs(places[0])), jnp.max(jnp.abs(speed)))
-    return maps.reshape(*maps.shape[:2], *course.length.shape, -1), last < LAST
+    last_term = jnp.maximum(jnp.max(jnp.abs(places[0])), jnp.max(jnp.abs(speed)))
+    return maps.reshape(*maps.shape[:2], *course.length.shape, -1), last_term < LAST
 
 
 def _inverse(ahead: Map) -> Map:

@@ -65,8 +65,8 @@ class Shot(eqx.Module):
     def nodes(self, elements: int) -> Float[Array, "state element node"]:
         """States of the last period at the nodes of all elements."""
         inner = self.states.reshape(elements, -1, self.states.shape[-1])
-        first = jnp.concatenate([self.start[None], inner[:-1, -1]])[:, None]
-        return jnp.moveaxis(jnp.concatenate([first, inner], axis=1), -1, 0)
+        begin = jnp.concatenate([self.start[None], inner[:-1, -1]])[:, None]
+        return jnp.moveaxis(jnp.concatenate([begin, inner], axis=1), -1, 0)
 
 
 Period = Callable[
@@ -165,8 +165,8 @@ def _decide(shot: Shot, before: Float[Array, ""], fine: Bool[Array, ""]) -> Shot
     # Near a solution Newton's step does far better than half: less means that it is not near one.
     falls = (shot.tries == 0) | (shot.residual < before / 2.0)
     goes_on = fine & falls & ~closed & (shot.tries < NEWTON_STEPS)
-    found = fine & closed & stable
-    lost = ~found & ~shot.newton & (~fine | (shot.marched >= PERIODS))
+    solved = fine & closed & stable
+    lost = ~solved & ~shot.newton & (~fine | (shot.marched >= PERIODS))
     eye = jnp.eye(shot.start.shape[0])
     corrected = shot.start + jnp.linalg.solve(eye - shot.monodromy, shot.end - shot.start)
     takes_up = (shot.residual < shot.near) | (shot.marched % RETRY == RETRY - 1)
@@ -177,7 +177,7 @@ def _decide(shot: Shot, before: Float[Array, ""], fine: Bool[Array, ""]) -> Shot
     origin = jnp.where(shot.newton, shot.origin, shot.end)
     start = jnp.where(newton & shot.newton, corrected, origin)
     return Shot(
-        start=jnp.where(found, shot.start, start),
+        start=jnp.where(solved, shot.start, start),
         origin=origin,
         newton=newton,
         tries=jnp.where(newton & shot.newton, shot.tries + 1, 0),
@@ -186,6 +186,6 @@ def _decide(shot: Shot, before: Float[Array, ""], fine: Bool[Array, ""]) -> Shot
         states=shot.states,
         monodromy=shot.monodromy,
         residual=shot.residual,
-        found=found,
+        found=solved,
         lost=lost,
     )

@@ -146,8 +146,8 @@ class Motion(eqx.Module):
         From the complex Fourier series: orders n and -n of a real course add up.
         """
         wanted = np.asarray(orders)
-        first, last = self.bounds[0], self.bounds[-1]
-        bounds = (self.bounds - first) / (last - first)
+        begin, end = self.bounds[0], self.bounds[-1]
+        bounds = (self.bounds - begin) / (end - begin)
         parts = jnp.abs(self.grid.fourier(values, bounds, wanted))
         sides = jnp.where(wanted == 0, 1.0, 2.0)
         return parts * sides.reshape(-1, *(1 for _ in values.shape[:-2]))
@@ -240,8 +240,8 @@ def steady_motion(
     Source: Nayfeh and Balachandran (1995), chapter 6, shooting; Poincaré's section at a phase of the mesh.
     """
     ready = _checked(moving, [speed], cycles)
-    found: Motion = _steady(ready, array(speed), grid or Grid(), cycles, start, array(tolerance))
-    return found
+    motion: Motion = _steady(ready, array(speed), grid or Grid(), cycles, start, array(tolerance))
+    return motion
 
 
 def steady_motions(
@@ -267,8 +267,8 @@ def steady_motions(
     """
     every = np.atleast_1d(np.asarray(speeds, float))
     ready = _checked(moving, every, cycles)
-    found: Motion = _many(ready, array(every), grid or Grid(), cycles, follow)
-    return found
+    motions: Motion = _many(ready, array(every), grid or Grid(), cycles, follow)
+    return motions
 
 
 def periodic_motion(
@@ -285,11 +285,11 @@ def periodic_motion(
     """
     fixed, at = jax.lax.stop_gradient((_arrays(moving), speed))
     search_in = _Turning(eqx.combine(fixed, moving), at, cycles, tolerance)
-    first = search_in.first
+    guess = search_in.first
     if start is not None:
-        known = jax.lax.stop_gradient(start)
-        first = jnp.where(jnp.all(jnp.isfinite(known)), known, first)
-    shot = search(search_in.period, first, 1, search_in.marched)
+        proposal = jax.lax.stop_gradient(start)
+        guess = jnp.where(jnp.all(jnp.isfinite(proposal)), proposal, guess)
+    shot = search(search_in.period, guess, 1, search_in.marched)
     turning = _Turning(moving, speed, cycles, tolerance)
     state = _polished(turning, shot)
     floquet = search_in.multipliers(jax.lax.stop_gradient(state))
@@ -317,8 +317,8 @@ def _many(
         return every
 
     def at(state: State, speed: Float[Array, ""]) -> tuple[State, Motion]:
-        found = periodic_motion(moving, speed, grid, cycles, state)
-        return found.state, found
+        motion = periodic_motion(moving, speed, grid, cycles, state)
+        return motion.state, motion
 
     _, motions = jax.lax.scan(at, jnp.full(2 * moving.mass.shape[0], jnp.nan), speeds)
     return motions
@@ -329,22 +329,24 @@ def _checked(moving: Moving, speeds: Sequence[float] | np.ndarray, cycles: int) 
     demand_bodies(moving, "a steady motion")
     demand_effects(moving, "a steady motion")
     if not all(0.0 < float(speed) < np.inf for speed in speeds):
-        told = ", ".join(f"{float(speed):g}" for speed in speeds)
-        raise InputError(f"a steady motion asks for a mean speed of the driver above 0, got {told}")
+        listed = ", ".join(f"{float(speed):g}" for speed in speeds)
+        raise InputError(
+            f"a steady motion asks for a mean speed of the driver above 0, got {listed}"
+        )
     if any(body.torque.size != 1 for body in moving.bodies):
         raise InputError("a steady motion asks for torques that are constant in time")
     _check_damping(moving)
     _check_orders(moving, cycles)
     if moving.passage is not None:
         return moving
-    given = None if moving.stiffness is None else float(moving.stiffness)
-    own = passage(moving.design, moving.operation, moving.models.compliance, given)
-    return replace(moving, passage=own)
+    constant = None if moving.stiffness is None else float(moving.stiffness)
+    sampled = passage(moving.design, moving.operation, moving.models.compliance, constant)
+    return replace(moving, passage=sampled)
 
 
 def _check_damping(moving: Moving) -> None:
     dampers = [moving.relaxation, moving.mesh_damping, jnp.max(damping(moving.bodies), initial=0.0)]
-    if not any(float(one) > 0.0 for one in dampers):
+    if not any(float(damper) > 0.0 for damper in dampers):
         raise InputError(
             "nothing damps the vibration, so that it never becomes steady; give a relaxation time of the "
             "contacts, a damping of the mesh or of the bearings"
@@ -412,16 +414,16 @@ class _Turning:
 
         def at(one: Float[Array, ""]) -> Float[Array, ""]:
             engaged = self.passage.at(one)
-            found = forces_beside(self.moving, engaged, one, places, self.nominal)
-            return total(found.lost)
+            forces = forces_beside(self.moving, engaged, one, places, self.nominal)
+            return total(forces.lost)
 
         return jax.vmap(at)(phase.ravel()) @ weight.ravel()
 
     def _wound_up(self, pushes: Float[Array, " coordinate"]) -> Float[Array, " coordinate"]:
         """Places under the torques on mean springs, the driver held; from there little swings at first."""
-        kept = 1.0 - self.driver
-        springs = mean_stiffness(self.moving) * kept[:, None] * kept + jnp.diag(self.driver)
-        places = jnp.linalg.solve(springs, pushes * kept)
+        free = 1.0 - self.driver
+        springs = mean_stiffness(self.moving) * free[:, None] * free + jnp.diag(self.driver)
+        places = jnp.linalg.solve(springs, pushes * free)
         return jnp.where(jnp.all(jnp.isfinite(places)), places, 0.0)
 
     @property
@@ -437,8 +439,8 @@ class _Turning:
 
     def phase(self, turned: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """Of the mesh, counted on [periods]."""
-        first = jnp.where(self.onward > 0.0, self.passage.edges[0], self.passage.edges[-1])
-        return first + self.onward * turned
+        begin = jnp.where(self.onward > 0.0, self.passage.edges[0], self.passage.edges[-1])
+        return begin + self.onward * turned
 
     def segments(self, edges: Float[Array, " edge"]) -> "_Place":
         """Where the passage holds the elements between such edges."""
@@ -460,33 +462,33 @@ class _Turning:
         beside, rate, _ = self.parts(state)
         driving = self.sense * (self.driver @ rate)
         pace = self.way / jnp.maximum(driving, SLOWEST * self.speed)
-        found = self.forces(moving, turned, place, beside, rate)
+        forces = self.forces(moving, turned, place, beside, rate)
         still = jnp.zeros(())
-        faster = acceleration(moving, still, beside, rate, found)
+        faster = acceleration(moving, still, beside, rate, forces)
         drift = (rate - self.motion * driving) * pace
         lag = pace - self.way / self.speed
         places = jnp.where(self.driver > 0.0, lag * self.speed, drift) / self.place
         parts = [places, faster * pace / self.rate]
         if works:
-            parts.append(powers(moving, still, beside, rate, found) * pace / self.energy)
+            parts.append(powers(moving, still, beside, rate, forces) * pace / self.energy)
         return jnp.concatenate(parts)
 
     def parts(self, state: Float[Array, "state *b"]) -> tuple[Array, Array, Array]:
         """Places beside the nominal motion, rates, and time lag of a scaled state."""
         half = self.size // 2
-        own = column(self.place, state) * state[:half]
+        places = column(self.place, state) * state[:half]
         rate = column(self.rate, state) * state[half : self.size] + column(self.nominal, state)
         driver = column(self.driver, state)
-        lag = jnp.sum(driver * own, axis=0) / self.speed
-        return own * (1.0 - driver), rate, lag
+        lag = jnp.sum(driver * places, axis=0) / self.speed
+        return places * (1.0 - driver), rate, lag
 
     def started(self, state: State) -> tuple[Moving, State]:
         """What moves under the torque that a state of the search holds, and the state of its motion."""
         half = self.size // 2
         torque = jnp.sum(self.driver * state[:half]) * self.push
         bodies = [
-            replace(body, torque=body.torque + own * torque)
-            for body, own in zip(self.moving.bodies, self.driver, strict=False)
+            replace(body, torque=body.torque + share * torque)
+            for body, share in zip(self.moving.bodies, self.driver, strict=False)
         ]
         moving = replace(self.moving, bodies=tuple(bodies))
         return moving, jnp.concatenate([state[:half] * (1.0 - self.driver), state[half:]])
@@ -495,8 +497,8 @@ class _Turning:
         """Scaled state of the motion after one period, and whether it was reached."""
         moving, start = self.started(state)
         edges = self.edges(self.passage.edges)
-        found, fine, _ = self.integrated(moving, start, edges, np.array([0.0, 1.0]), works=False)
-        return found[-1, -1], fine
+        states, fine, _ = self.integrated(moving, start, edges, np.array([0.0, 1.0]), works=False)
+        return states[-1, -1], fine
 
     def integrated(
         self, moving: Moving, start: State, edges: Array, place: np.ndarray, *, works: bool
@@ -504,10 +506,10 @@ class _Turning:
         """States at places of all elements in turn, whether all were reached, and the steps."""
 
         def element(
-            carry: tuple[State, Array, Array], given: tuple[Array, Array, _Place]
+            carry: tuple[State, Array, Array], segment: tuple[Array, Array, _Place]
         ) -> tuple[tuple[State, Array, Array], Array]:
             state, fine, steps = carry
-            low, length, where = given
+            low, length, where = segment
 
             def rate(at: Array, now: Array, _: None) -> Array:
                 return length * self.change(moving, low + length * at, where, now, works)
@@ -515,10 +517,10 @@ class _Turning:
             states, reached, count = _solved(rate, state, place, self.tolerance)
             return (states[-1], fine & reached, steps + count), states
 
-        first = jnp.append(start, jnp.zeros(len(WORKS))) if works else start
-        begin = (first, jnp.asarray(True), jnp.asarray(0))
-        given = (edges[:-1], jnp.diff(edges), self.segments(edges))
-        (_, fine, steps), states = jax.lax.scan(element, begin, given)
+        from_start = jnp.append(start, jnp.zeros(len(WORKS))) if works else start
+        begin = (from_start, jnp.asarray(True), jnp.asarray(0))
+        segments = (edges[:-1], jnp.diff(edges), self.segments(edges))
+        (_, fine, steps), states = jax.lax.scan(element, begin, segments)
         return states, fine, steps
 
     def after(self, end: State, state: State) -> State:
@@ -559,9 +561,9 @@ class _Turning:
         """Floquet multipliers of the motion from a state, without that of the mean speed."""
         half = self.size // 2
         others = jnp.argsort(self.driver)[: half - 1]
-        kept = jnp.concatenate([others, half + jnp.arange(half)])
+        chosen = jnp.concatenate([others, half + jnp.arange(half)])
         _, slope, _ = self._with_slope(state)
-        values = multipliers(slope[kept][:, kept])
+        values = multipliers(slope[chosen][:, chosen])
         return values[jnp.argsort(jnp.abs(values - 1.0))[1:]]
 
     def _with_slope(self, state: State) -> tuple[Array, Array, Bool[Array, ""]]:
@@ -586,13 +588,13 @@ def _units(moving: Moving) -> tuple[Array, Array, Array, Array]:
     arms = jnp.max(jnp.abs(moving.passage.contacts.normal[0]), axis=(1, 2, 3))
     squares = moving.padded(springs * arms**2)
     stiff = jnp.maximum(jnp.max((held + squares) / mass), 1e-12)
-    given = jnp.stack([jnp.max(jnp.abs(body.torque)) + body.resistance for body in moving.bodies])
-    pushes = jnp.sum(moving.padded(given) ** 2 / mass) / stiff
+    loads = jnp.stack([jnp.max(jnp.abs(body.torque)) + body.resistance for body in moving.bodies])
+    pushes = jnp.sum(moving.padded(loads) ** 2 / mass) / stiff
     waves = 0.0 if moving.error is None else jnp.sum(moving.error.amplitude**2)
     energy = (pushes + springs * waves) / 2.0
     energy = jnp.where(energy > 0.0, energy, 1.0)
-    own = jnp.sqrt(2.0 * energy / mass)
-    rate = jnp.where(jnp.isinf(mass), jnp.max(own), own)
+    rates = jnp.sqrt(2.0 * energy / mass)
+    rate = jnp.where(jnp.isinf(mass), jnp.max(rates), rates)
     push = jnp.sqrt(2.0 * energy * springs) * jnp.max(arms)
     return rate / jnp.sqrt(stiff), rate, energy, push
 
@@ -640,24 +642,24 @@ def _described(
     length = jnp.diff(bounds)
     turned = bounds[:-1, None] + length[:, None] * grid.place
     states, fine, _ = turning.integrated(moving, start, bounds, grid.place, works=True)
-    given = jnp.moveaxis(states, -1, 0)
-    beside, rate, lag = turning.parts(given)
-    each = jax.tree.map(
-        lambda one: jnp.broadcast_to(one[:, None], turned.shape), turning.segments(bounds)
+    columns = jnp.moveaxis(states, -1, 0)
+    beside, rate, lag = turning.parts(columns)
+    places = jax.tree.map(
+        lambda leaf: jnp.broadcast_to(leaf[:, None], turned.shape), turning.segments(bounds)
     )
-    found = turning.forces(moving, turned, each, beside, rate)
-    account = _account(turning, beside, rate, found, given[turning.size :])
-    torque = torques(moving, jnp.zeros_like(turned), beside, rate, found)
+    forces = turning.forces(moving, turned, places, beside, rate)
+    account = _account(turning, beside, rate, forces, columns[turning.size :])
+    torque = torques(moving, jnp.zeros_like(turned), beside, rate, forces)
     mesh = moving.design.mesh
     loaded, dof = moving.padded(moving.design.loaded), len(mesh.coordinates)
-    action = line_of_action(mesh) if has(mesh, line_of_action) else found.line[:dof, 0, 0]
+    action = line_of_action(mesh) if has(mesh, line_of_action) else forces.line[:dof, 0, 0]
     values: dict[str, Any] = {
         "turned": turned,
         "time": turned * turning.way / turning.speed + lag,
         "pace": turning.way / jnp.abs(jnp.tensordot(turning.driver, rate, 1)),
         "beside": beside,
         "rate": rate,
-        "found": found,
+        "found": forces,
         "torque": torque,
         "bearing": bearing_forces(moving.bodies, beside, rate),
         "load_power": -jnp.tensordot(loaded, torque * rate, 1),
@@ -668,9 +670,9 @@ def _described(
     }
     status = _status(turning, shot, fine, account.closure, values, grid)
     lost = (Code.NOT_FINITE, Code.NOT_PERIODIC, Code.NOT_CONVERGED)
-    known = jnp.all(status.code != jnp.array([int(code) for code in lost]))
-    kept = {name: where_known(known, value) for name, value in values.items()}
-    return Motion(bounds=bounds, status=status, elements=grid.elements, nodes=grid.nodes, **kept)
+    reliable = jnp.all(status.code != jnp.array([int(code) for code in lost]))
+    masked = {name: where_known(reliable, value) for name, value in values.items()}
+    return Motion(bounds=bounds, status=status, elements=grid.elements, nodes=grid.nodes, **masked)
 
 
 def _account(
@@ -722,15 +724,15 @@ def _status(
 
 def _finite(moving: Moving) -> Bool[Array, ""]:
     """True if nothing but inertias and backlash is infinite, and nothing is no number."""
-    given = (moving.passage, [body.torque for body in moving.bodies], moving.relaxation)
+    parts = (moving.passage, [body.torque for body in moving.bodies], moving.relaxation)
     others = (moving.mesh_damping, moving.error, moving.creep)
-    leaves = jax.tree.leaves((given, others))
+    leaves = jax.tree.leaves((parts, others))
     return jnp.all(jnp.stack([jnp.all(jnp.isfinite(leaf)) for leaf in leaves]))
 
 
 def _arrays(moving: Moving) -> Moving:
-    found: Moving = eqx.filter(moving, eqx.is_inexact_array)
-    return found
+    arrays: Moving = eqx.filter(moving, eqx.is_inexact_array)
+    return arrays
 
 
 def _driver(moving: Moving) -> Float[Array, " coordinate"]:

@@ -100,9 +100,9 @@ def separating_steady_state(
     law = law or CONTACT_LAWS["separating"]
     course = excitation.on(grid or Grid())
     scaled = equations(system, course)
-    first = resting(scaled, course) if start is None else scaled_start(scaled, start)
-    own = pieces(scaled, course, system.period)
-    shot = shoot(scaled, own, law, jnp.asarray(backlash) / scaled.unit, first)
+    begin = resting(scaled, course) if start is None else scaled_start(scaled, start)
+    intervals = pieces(scaled, course, system.period)
+    shot = shoot(scaled, intervals, law, jnp.asarray(backlash) / scaled.unit, begin)
     return respond_to(shot, course, scaled, law, jnp.asarray(backlash))
 
 
@@ -111,8 +111,8 @@ def respond_to(
 ) -> Response:
     """Response of the motion that a search found."""
     states = shot.nodes(course.length.shape[0])
-    given = states, shot.monodromy, shot.residual, shot.found
-    return respond(course, scaled, law, backlash, *given, iterations=shot.marched + shot.tries)
+    orbit = states, shot.monodromy, shot.residual, shot.found
+    return respond(course, scaled, law, backlash, *orbit, iterations=shot.marched + shot.tries)
 
 
 def resting(scaled: Equations, course: Course) -> State:

@@ -56,13 +56,13 @@ def speed_sweep(
     def at(
         state: Float[Array, " state"], period: Float[Array, ""]
     ) -> tuple[Float[Array, " state"], Response]:
-        own = eqx.tree_at(lambda p: p.half, unit, unit.half * period)
-        shot = shoot(scaled, own, law, free, state)
+        intervals = eqx.tree_at(lambda p: p.half, unit, unit.half * period)
+        shot = shoot(scaled, intervals, law, free, state)
         response = respond_to(shot, course, scaled, law, jnp.asarray(backlash))
         return jnp.where(shot.found, shot.start, _finite(shot.end, state)), response
 
-    first = resting(scaled, course) if start is None else scaled_start(scaled, start)
-    _, responses = jax.lax.scan(at, first, periods)
+    begin = resting(scaled, course) if start is None else scaled_start(scaled, start)
+    _, responses = jax.lax.scan(at, begin, periods)
     return responses
 
 

@@ -121,26 +121,26 @@ def transient(
 
     Source: Prince and Dormand (1981), their method of order eight, as diffrax has it.
     """
-    asked = np.asarray(times, float)
-    _check(moving, asked)
-    places, rates = (_start(moving, *one) for one in (("place", place), ("rate", rate)))
-    events = _hand_overs(moving, asked, places, rates)
-    found: Transient = _travel(moving, array(asked), places, rates, events)
-    return found
+    instants = np.asarray(times, float)
+    _check(moving, instants)
+    places, rates = (_start(moving, *named) for named in (("place", place), ("rate", rate)))
+    events = _hand_overs(moving, instants, places, rates)
+    motion: Transient = _travel(moving, array(instants), places, rates, events)
+    return motion
 
 
 def _hand_overs(
     moving: Moving, times: np.ndarray, place: Vector, rate: Vector
 ) -> Float[Array, " event"] | None:
     """Times at which pairs enter or leave, where they are known; put behind the end to fill a bucket."""
-    phase, pace, held, edges = (np.asarray(one) for one in _course(moving, place, rate))
-    whole = abs(pace) * (times[-1] - times[0])
-    if not held or pace == 0.0 or whole * edges.size > MOST_HAND_OVERS:
+    phase, pace, held, edges = (np.asarray(values) for values in _course(moving, place, rate))
+    periods = abs(pace) * (times[-1] - times[0])
+    if not held or pace == 0.0 or periods * edges.size > MOST_HAND_OVERS:
         return None
-    turns = np.arange(math.floor(-whole) - 1, math.ceil(whole) + 2)
+    turns = np.arange(math.floor(-periods) - 1, math.ceil(periods) + 2)
     every = times[0] + (np.add.outer(turns, edges - phase % 1.0) / pace).ravel()
-    known = np.concatenate([times, np.asarray(moving.knots)])
-    inside = _apart(every, known, TOGETHER * (times[-1] - times[0]))
+    stops = np.concatenate([times, np.asarray(moving.knots)])
+    inside = _apart(every, stops, TOGETHER * (times[-1] - times[0]))
     inside = inside[(inside > times[0]) & (inside < times[-1])]
     size = BUCKET
     while size < inside.size:
@@ -148,11 +148,11 @@ def _hand_overs(
     return jnp.asarray(np.pad(inside, (0, size - inside.size), constant_values=times[-1] + 1.0))
 
 
-def _apart(events: np.ndarray, known: np.ndarray, nearest: float) -> np.ndarray:
+def _apart(events: np.ndarray, stops: np.ndarray, nearest: float) -> np.ndarray:
     """Events, each once; those next to a known time are put at it: no step fits between the two."""
-    known, events = np.sort(known), np.sort(events)
-    after = np.clip(np.searchsorted(known, events), 1, known.size - 1)
-    low, high = known[after - 1], known[after]
+    stops, events = np.sort(stops), np.sort(events)
+    after = np.clip(np.searchsorted(stops, events), 1, stops.size - 1)
+    low, high = stops[after - 1], stops[after]
     close = np.where(events - low < high - events, low, high)
     events = np.unique(np.where(np.abs(events - close) < nearest, close, events))
     return events[np.diff(events, prepend=-np.inf) > nearest]
@@ -162,11 +162,11 @@ def _apart(events: np.ndarray, known: np.ndarray, nearest: float) -> np.ndarray:
 def _course(moving: Moving, place: Vector, rate: Vector) -> tuple[Array, Array, Array, Array]:
     """Phase at the start, periods in a second, whether these are prescribed, and phases of the events."""
     design = moving.design
-    found = contact_forces(moving, place, rate)
+    forces = contact_forces(moving, place, rate)
     driver = moving.padded(design.driver)
     pace = design.onward / design.period * (driver @ rate) * (design.driver @ design.motion)
     held = jnp.isinf(driver @ jnp.where(driver > 0.0, moving.mass, 0.0))
-    return found.phase, pace, held, _edges(moving)
+    return forces.phase, pace, held, _edges(moving)
 
 
 def _edges(moving: Moving) -> Float[Array, " edge"]:
@@ -192,8 +192,8 @@ def _check(moving: Moving, times: np.ndarray) -> None:
     if times.size < 2 or not np.all(np.diff(times) > 0.0):
         raise InputError("times of a transient grow from its start on, at least two of them")
     if not np.all(np.diff(moving.knots) > 0.0):
-        told = ", ".join(f"{time:g}" for time in np.asarray(moving.knots))
-        raise InputError(f"knots of the external torques grow with time, got {told} s")
+        listed = ", ".join(f"{time:g}" for time in np.asarray(moving.knots))
+        raise InputError(f"knots of the external torques grow with time, got {listed} s")
     demand_effects(moving, "a transient")
 
 
@@ -204,10 +204,10 @@ def demand_bodies(moving: Moving, what: str) -> None:
         moving: mesh and bodies.
         what: asks for them.
     """
-    names = [one.body for one in moving.design.mesh.coordinates]
+    names = [coordinate.body for coordinate in moving.design.mesh.coordinates]
     if len(moving.bodies) != len(names):
-        told = f"{', '.join(names)}; {len(moving.bodies)} bodies are given"
-        raise InputError(f"{what} asks for one body for each of {told}")
+        wanted = f"{', '.join(names)}; {len(moving.bodies)} bodies are given"
+        raise InputError(f"{what} asks for one body for each of {wanted}")
     for name, body in zip(names, moving.bodies, strict=True):
         _check_body(name, body, moving.knots.size)
 
@@ -231,10 +231,10 @@ def _check_support(name: str, support: Support) -> None:
         raise InputError(f"{name} needs a positive mass, got {float(support.mass):g}")
     ways = np.asarray(support.ways)
     if not np.allclose(ways @ ways.T, np.eye(len(ways)), rtol=0.0, atol=UNIT):
-        told = ", ".join(f"{length:g}" for length in np.linalg.norm(ways, axis=1))
+        lengths = ", ".join(f"{length:g}" for length in np.linalg.norm(ways, axis=1))
         raise InputError(
             f"{name} shifts along unit vectors at right angles to each other; "
-            f"the ways of its bearings are {told} long, or not at right angles"
+            f"the ways of its bearings are {lengths} long, or not at right angles"
         )
 
 
@@ -250,12 +250,12 @@ def demand_effects(moving: Moving, what: str) -> None:
         raise InputError(
             f"creep of the contacts is a sliding speed above 0 m/s, got {float(moving.creep):g}"
         )
-    for told, value in (
+    for quantity, value in (
         ("relaxation time of the contacts", moving.relaxation),
         ("damping of the mesh", moving.mesh_damping),
     ):
         if float(value) < 0.0:
-            raise InputError(f"{told} is not negative, got {float(value):g}")
+            raise InputError(f"{quantity} is not negative, got {float(value):g}")
     if mesh.body.couples:
         raise InputError(f"{what} takes each pair of teeth as a spring, and a ring couples these")
     if moving.stiffness is None and moving.passage is None and not has(mesh, tooth_sections):
@@ -290,8 +290,8 @@ def transient_motion(
     scale = _Scale(moving, times, place, rate)
     start = scale.scaled(place, rate)
     states, reached, steps = _integrated(moving, times, scale, start, events)
-    given = scale.parts(jnp.where(jnp.isfinite(states), states, jnp.nan).T)
-    return _described(moving, times, given, reached, steps)
+    solved = scale.parts(jnp.where(jnp.isfinite(states), states, jnp.nan).T)
+    return _described(moving, times, solved, reached, steps)
 
 
 class _Scale:
@@ -303,16 +303,16 @@ class _Scale:
 
     def __init__(self, moving: Moving, times: Array, place: Vector, rate: Vector) -> None:
         mass, held = moving.mass, stiffness(moving.bodies)
-        found = contact_forces(moving, place, rate)
-        pushed = found.stiffness * found.contacts.normal**2
+        forces = contact_forces(moving, place, rate)
+        pushed = forces.stiffness * forces.contacts.normal**2
         stiff = jnp.max((jnp.diag(held) + jnp.sum(pushed, axis=(1, 2))) / mass)
         frequency = jnp.where(stiff > 0.0, jnp.sqrt(stiff), 1.0 / (times[-1] - times[0]))
         kicked = jnp.sum(_pushes(moving) ** 2 / mass) / frequency**2
         there = moved_masses(moving.bodies) @ rate**2 + place @ held @ place
-        energy = (kicked + there) / 2.0 + found.energy
+        energy = (kicked + there) / 2.0 + forces.energy
         self.energy = jnp.where(energy > 0.0, energy, 1.0)
-        own = jnp.sqrt(2.0 * self.energy / mass)
-        self.rate = jnp.where(jnp.isinf(mass), jnp.max(own), own)
+        rates = jnp.sqrt(2.0 * self.energy / mass)
+        self.rate = jnp.where(jnp.isinf(mass), jnp.max(rates), rates)
         self.place = self.rate / frequency
 
     def scaled(self, place: Vector, rate: Vector) -> Float[Array, " state"]:
@@ -323,8 +323,8 @@ class _Scale:
         """Places, rates and works of states without dimensions."""
         size = self.place.shape[0]
         units = jnp.concatenate([self.place, self.rate, jnp.full(len(WORKS), self.energy)])
-        whole = units.reshape(-1, *[1] * (state.ndim - 1)) * state
-        return whole[:size], whole[size : 2 * size], whole[2 * size :]
+        physical = units.reshape(-1, *[1] * (state.ndim - 1)) * state
+        return physical[:size], physical[size : 2 * size], physical[2 * size :]
 
     def changes(self, rate: Vector, faster: Vector, powers: Array) -> Float[Array, " state"]:
         """Derivative of the state without dimensions."""
@@ -333,8 +333,8 @@ class _Scale:
 
 def _pushes(moving: Moving) -> Vector:
     """Largest external torque and resistance on each coordinate."""
-    own = [jnp.max(jnp.abs(body.torque)) + body.resistance for body in moving.bodies]
-    return moving.padded(jnp.stack(own))
+    largest = [jnp.max(jnp.abs(body.torque)) + body.resistance for body in moving.bodies]
+    return moving.padded(jnp.stack(largest))
 
 
 def _integrated(
@@ -378,9 +378,9 @@ def _bends(knots: Array, times: Array, events: Array | None) -> Array | None:
 def _rate(moving: Moving, scale: _Scale) -> Callable[..., Array]:
     def rate(time: Array, state: Array, _: None) -> Array:
         place, moved, _works = scale.parts(state)
-        found = contact_forces(moving, place, moved)
-        faster = acceleration(moving, time, place, moved, found)
-        return scale.changes(moved, faster, powers(moving, time, place, moved, found))
+        forces = contact_forces(moving, place, moved)
+        faster = acceleration(moving, time, place, moved, forces)
+        return scale.changes(moved, faster, powers(moving, time, place, moved, forces))
 
     return rate
 
@@ -394,16 +394,16 @@ def _described(
 ) -> Transient:
     """Forces and energies of states that were found."""
     place, rate, works = states
-    found = contact_forces(moving, place, rate)
+    forces = contact_forces(moving, place, rate)
     account = Account(
         kinetic=kinetic(moving, rate),
-        contacts=found.energy,
+        contacts=forces.energy,
         bearings=jnp.sum(place * (stiffness(moving.bodies) @ place), axis=0) / 2.0,
         **dict(zip(WORKS, works, strict=True)),
     )
     status = Status(_code(reached, account.closure), account.closure, steps)
-    given = place, rate, found, torques(moving, times, place, rate, found), account
-    return Transient(times, *where_known(_known(states, account.closure), given), status)
+    fields = place, rate, forces, torques(moving, times, place, rate, forces), account
+    return Transient(times, *where_known(_known(states, account.closure), fields), status)
 
 
 def _code(reached: Bool[Array, ""], closure: Float[Array, ""]) -> Int[Array, ""]:
@@ -428,5 +428,5 @@ def where_known(known: Bool[Array, "*b"], values: Found) -> Found:
     def kept(value: Array) -> Array:
         return jnp.where(known, value, False if value.dtype == bool else jnp.nan)
 
-    found: Found = jax.tree.map(kept, values)
-    return found
+    masked: Found = jax.tree.map(kept, values)
+    return masked

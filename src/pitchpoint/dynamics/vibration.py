@@ -163,9 +163,11 @@ def transmission_figures(
     total = stiffness.total
     dynamic, static = found.transmission_error, found.static_transmission_error
     factors = found.dynamic_factor(nominal_force(stiffness, moved))
-    whole = jnp.sum(factors, axis=0)
+    mesh_factor = jnp.sum(factors, axis=0)
     # Together, so that the polynomials between the nodes are compiled once.
-    low, high = found.extremes(jnp.concatenate([dynamic[None], static[None], whole[None], factors]))
+    low, high = found.extremes(
+        jnp.concatenate([dynamic[None], static[None], mesh_factor[None], factors])
+    )
     spread = high - low
     return {
         "mean_stiffness": stiffness.mean,
