@@ -191,7 +191,8 @@ def test_bearings_of_planets_and_seals_take_their_part():
 def test_life_of_planet_bearings():
     """ISO 281 at the speed against the carrier, under K_γ times the teeth and the pull of the planet."""
     pin = {**PIN, "f0": 1e-9, "f1": 0, "dynamic_load_rating": "8 kN", "life_exponent": 10 / 3}
-    case = PLANETARY | {"losses": {"pin": pin}}
+    pin |= {"static_load_rating": "6 kN"}
+    case = PLANETARY | {"losses": {"pin": pin}, "strength": {"life": "2000 h"}}
     case |= {"models": {"friction": {"name": "constant", "coefficient": 0}}}
     built, found = figures(case)
     speed = np.pi * 100.0
@@ -209,6 +210,12 @@ def test_life_of_planet_bearings():
     assert lives["pin"].life(history) == pytest.approx(life / part, rel=1e-9)
     assert lives["pin"].count == 3
     assert data["equivalent_bearing_load"].item() == pytest.approx(load, rel=1e-9)
+    # What it bears at a static safety of 1, and for 2000 h: loads of the teeth beside the same pull.
+    assert data["static_bearing_safety"].item() == pytest.approx(6000.0 / load, rel=1e-9)
+    lasting = load * (life / (2000.0 * 3600.0)) ** 0.3
+    for name, borne in (("static", 6000.0), ("life", lasting)):
+        margin = np.sqrt(borne**2 - pull**2) / (1.1 * 60.0 / 3 / 27e-3)
+        assert data[f"{name}_torque_margin"].item() == pytest.approx(margin, rel=1e-9)
 
 
 def test_life_of_planet_bearings_over_a_duty_hangs_on_no_operating_load():

@@ -1145,6 +1145,7 @@ def bad_drives() -> Iterator[Bad]:
         ({"seal_torque": "1 N m", "preload": "10 N"}, "a bearing"),
         ({"seal_torque": "1 N m", "dynamic_load_rating": "9 kN"}, "a bearing"),
         ({"seal_torque": "1 N m", "life_exponent": 3}, "dynamic_load_rating"),
+        ({"seal_torque": "1 N m", "static_load_rating": "9 kN"}, "a bearing"),
         ({"seal_torque": "1 N m", "churning_speed": "100 rpm"}, "churning_torque"),
         ({"seal_torque": "1 N m", "churning_exponent": 2}, "churning_torque"),
     ]:

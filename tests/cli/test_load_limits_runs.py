@@ -79,6 +79,7 @@ def test_margins_and_life_are_those_of_the_case(asked) -> None:
     assert float(margin) == pytest.approx(30.0 / 67.0)
     assert np.isnan(asked["limit_margin"].sel(against="buckling"))
     assert float(asked["bearing_life"]) == pytest.approx(3500.0 * 3600.0)
+    assert float(asked["rated_life_torque"]) == pytest.approx(67.0 / 2.0 ** (1.0 / 3.0))
     (told,) = json.loads(asked.attrs["warnings"])
     assert told == "Fails: the torque on the flexspline is 2.23 times that of ratcheting."
 

@@ -103,6 +103,28 @@ def test_a_result_without_the_map_says_how_to_get_it() -> None:
         joint_model(made_joint(), law="mad")
 
 
+def test_bearings_limit_the_torque_by_their_ratings() -> None:
+    """The least of all places, and a wave generator by the torque on its flexspline."""
+    margins = {
+        "static_torque_margin": [2.5, np.nan, np.inf],
+        "life_torque_margin": [0.9, 1.2, np.inf],
+    }
+    dims = ("law", "point", "place")
+    point = xr.Dataset({name: (dims, [[row]]) for name, row in margins.items()})
+    parts = strengths()
+    parts["load_limits"]["rated_life_torque"] = 17.0
+    joint = joint_model(made_joint(more={"operation": point, **parts}))
+    bearing = {name: torque for name, torque in joint.part_limits.items() if "bearing" in name}
+    assert bearing == pytest.approx(
+        {
+            "static_bearing_torque": 50.0,
+            "lasting_bearing_torque": 18.0,
+            "rated_bearing_torque": 17.0,
+        }
+    )
+    assert joint.torque_limit == pytest.approx(17.0)
+
+
 def test_parts_limit_the_torque_where_the_record_has_them() -> None:
     """Flanks by the square of their safety, roots and margins by themselves, at the load of operation."""
     joint = joint_model(made_joint(more=strengths()))

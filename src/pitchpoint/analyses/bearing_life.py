@@ -14,7 +14,7 @@ from pitchpoint.drive.torques import train_torques
 from pitchpoint.duty_cycle.history import load_steps
 from pitchpoint.duty_cycle.life import BALL, RatedBearing
 
-__all__ = ["bearing_lives", "rated_bearings"]
+__all__ = ["bearing_limits", "bearing_lives", "rated_bearings"]
 
 Vector = tuple[float, float, float]
 
@@ -43,6 +43,51 @@ def bearing_lives(
     return of_places(lambda one: one.life(there)), of_places(
         lambda one: float(one.load(load, speed))
     )
+
+
+def bearing_limits(
+    built: Ready, loads: Float[np.ndarray, "law place"]
+) -> dict[str, Float[np.ndarray, "law place"]]:
+    """Static safety of bearings, and torques of the output that they bear over that of operation [1].
+
+    Args:
+        built: the drive, under a load.
+        loads: on the bearing of each place at the operating point, by friction law [N].
+
+    Returns:
+        By name `static_bearing_safety` C_0/P_0, `static_torque_margin` up to a safety of 1, where a bearing
+        has a static load rating, and `life_torque_margin` up to the life of [strength], where it asks for
+        one; NaN of places that have none, infinite where a bearing bears nothing.
+
+    Source: ISO 76:2006, S_0 = C_0/P_0 with X_0 = Y_0 = 1; ISO 281:2007.
+    """
+    torque = float(built.case.operation.load)
+    speed = float(built.operation.speed) * built.output_rate
+    each = [rated_bearings(built, row, torque) for row in loads if torque > 0.0]
+    found = {
+        name: np.array([[of(row[n]) if n in row else nan for n in built.places] for row in each])
+        for name, of in _limiting(built, torque, speed).items()
+    }
+    return {name: values for name, values in found.items() if not np.isnan(values).all()}
+
+
+def _limiting(
+    built: Ready, torque: float, speed: float
+) -> dict[str, Callable[[RatedBearing], float]]:
+    """By name what limits a bearing, see `bearing_limits`; a life where the case asks for one."""
+
+    def margin(bearing: RatedBearing, load: float) -> float:
+        return bearing.torque_under(load, speed) / torque
+
+    figures: dict[str, Callable[[RatedBearing], float]] = {
+        "static_bearing_safety": lambda one: float(one.static_rating / one.load(torque, speed)),
+        "static_torque_margin": lambda one: margin(one, one.static_rating),
+    }
+    table = built.case.strength
+    life = None if table is None else table.life
+    if life is not None:
+        figures["life_torque_margin"] = lambda one: margin(one, one.load_for(life, speed))
+    return figures
 
 
 def rated_bearings(
@@ -81,6 +126,7 @@ def rated_bearings(
                 loss.preload,
                 loss.life_exponent or BALL,
                 level.planets if _in_planets(level, loss) else 1,
+                loss.static_load_rating or nan,
             )
     return found
 

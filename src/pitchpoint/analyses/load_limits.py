@@ -17,6 +17,7 @@ from pitchpoint.gears.strain_wave.load_limits import (
     flexspline_torque,
     goodman_safety,
     of_other_size,
+    rated_life_torque,
     torque_by_goodman,
     tube_shear,
     von_mises,
@@ -63,6 +64,7 @@ def load_limits_part(built: Built) -> xr.Dataset:
             "flexspline_torque": ((), torque),
             **({} if life is None else {"bearing_life": ((), life)}),
             **({} if there == life else {"operating_bearing_life": ((), there)}),
+            **({} if there is None else {"rated_life_torque": ((), _lasting(built, limits))}),
         },
         {"place": [*PLACES], **({"against": [*AGAINST]} if against else {})},
         title="load limits",
@@ -142,18 +144,31 @@ def _against(limits: LoadLimits, torque: float, diameter: float) -> dict[str, np
         return {"limit_torque": found, "limit_margin": np.divide(found, torque)}
 
 
+def _turning(built: Built) -> float:
+    """Speed of the wave generator against the circular spline [rad/s]."""
+    motion = built.nominal["motion"]
+    turns = abs(float(motion[0] - motion[MEMBERS.index("circular spline")]))
+    return float(built.case.operation.speed) * turns
+
+
+def _lasting(built: Built, limits: LoadLimits) -> float:
+    """Torque of the flexspline at which the bearing has its rated life at the speed of operation [N m]."""
+    assert limits.rated_torque is not None and limits.rated_speed is not None
+    return rated_life_torque(
+        rated_torque=limits.rated_torque, rated_speed=limits.rated_speed, speed=_turning(built)
+    )
+
+
 def _life(built: Built, limits: LoadLimits, torque: float) -> float | None:
     """Life of the wave generator's bearing [s]; None where no rating is given."""
     if limits.rated_life is None or limits.rated_torque is None or limits.rated_speed is None:
         return None
-    motion = built.nominal["motion"]
-    turns = abs(float(motion[0] - motion[MEMBERS.index("circular spline")]))
     return bearing_life(
         rated_life=limits.rated_life,
         rated_torque=limits.rated_torque,
         rated_speed=limits.rated_speed,
         torque=limits.average_torque or torque,
-        speed=limits.average_speed or built.case.operation.speed * turns,
+        speed=limits.average_speed or _turning(built),
     )
 
 

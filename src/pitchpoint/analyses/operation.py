@@ -41,10 +41,12 @@ DIFFERS = 1.5
 def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     data = summaries([built], built.models, beside([built]), title="operating point")
     if built.rates_bearings:
-        from pitchpoint.analyses.bearing_life import bearing_lives  # few cases ask for it
+        from pitchpoint.analyses import bearing_life  # few cases ask for it
 
-        lives, loads = bearing_lives(built, data["bearing_load"].values[:, 0])
+        borne = data["bearing_load"].values[:, 0]
+        lives, loads = bearing_life.bearing_lives(built, borne)
         each = {"bearing_life": lives, "equivalent_bearing_load": loads}
+        each |= bearing_life.bearing_limits(built, borne)
         rated = {name: (("law", "point", "place"), one[:, None]) for name, one in each.items()}
         data = data.assign(dataset(rated, {}, title="lives").data_vars)
     beyond = *_implausible(built), *_rated_below(built, data)

@@ -550,8 +550,9 @@ class Loss(Table):
     bearing between wave generator and flexspline bears the radial load of the teeth in both zones.
     In a train a place that names the planet is at every planet, and a bearing stands for all of its body:
     of a planet in its carrier, or of a body in the housing; between two others it bears its preload.
-    A bearing with its dynamic load rating has a life by ISO 281 at the speed between its bodies; those of
-    planets bear K_γ times an equal share of the teeth, and the centrifugal force of the planet.
+    A bearing with its dynamic load rating has a life by ISO 281 at the speed between its bodies, and with a
+    static one a static safety; those of planets bear K_γ times an equal share of the teeth, and the
+    centrifugal force of the planet.
     A breakaway model and its torque by value hold the bodies at rest, beside the bearing and the seal.
     """
 
@@ -571,6 +572,8 @@ class Loss(Table):
     """Load on the bearing without any on the teeth, which adds to theirs."""
     dynamic_load_rating: Annotated[float, RATING] | None = None
     """Basic dynamic load rating C of the bearing by its maker; gives its life by ISO 281."""
+    static_load_rating: Annotated[float, RATING] | None = None
+    """Basic static load rating C_0 of the bearing by its maker, which limits the torque by ISO 76."""
     life_exponent: Annotated[float, LIFE_EXPONENT] | None = None
     """Exponent of that life over the load, 3 of balls, 10/3 of rollers and needles; 3 unless given."""
     position: Annotated[float, PLACE] | None = None
@@ -631,11 +634,13 @@ class Loss(Table):
                 "is missing; churning_torque is that at this speed", key="churning_speed"
             )
         of_bearing = dict.fromkeys(
-            ("preload", "dynamic_load_rating", "position", "locating"), "a bearing"
+            ("preload", "dynamic_load_rating", "static_load_rating", "position", "locating"),
+            "a bearing",
         )
         alone = of_bearing if self.bearing == "none" else {}
         if not _given(self, "dynamic_load_rating"):
             alone |= {"life_exponent": "dynamic_load_rating"}
+            alone = {"static_load_rating": "dynamic_load_rating"} | alone
         if not _given(self, "churning_torque"):
             alone |= dict.fromkeys(("churning_speed", "churning_exponent"), "churning_torque")
         if not (held or _given(self, "breakaway_torque")):

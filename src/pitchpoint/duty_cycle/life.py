@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import inf, nan, sqrt
 from typing import ClassVar
 
 import numpy as np
@@ -85,11 +86,14 @@ class RatedBearing:
             [N s2 or N s2/m2].
         preload: without any load [N].
         count: of equal ones, as of planets.
+        static_rating: basic static load rating C_0 [N]; NaN where it is not known.
 
     Example:
         >>> bearing = RatedBearing(rating=1e4, turning=5.0, teeth=(0.0, 20.0, 0.0))
         >>> round(float(bearing.load(torque=50.0, speed=10.0)), 9)
         1000.0
+        >>> round(bearing.torque_under(1000.0, speed=10.0), 9)
+        50.0
     """
 
     rating: float
@@ -99,6 +103,7 @@ class RatedBearing:
     preload: float = 0.0
     exponent: float = BALL
     count: int = 1
+    static_rating: float = nan
 
     def load(self, torque: ArrayLike, speed: ArrayLike) -> Floats:
         """Load on the bearing [N], shape (n,) or ().
@@ -111,6 +116,38 @@ class RatedBearing:
         outward, along, axial = np.multiply.outer(self.teeth, np.abs(torque))
         outward = outward + self.pull * np.square(speed)
         return np.asarray(self.preload + np.sqrt(outward**2 + along**2 + axial**2))
+
+    def torque_under(self, load: float, speed: float) -> float:
+        """Torque of the output under which the bearing bears a load [N m or N]: that for which `load` is it.
+
+        Args:
+            load: on the bearing [N].
+            speed: of the output [rad/s or m/s].
+
+        Returns:
+            Infinite where the teeth put nothing on the bearing, NaN where it bears more without them.
+        """
+        outward, along, axial = self.teeth
+        size, pull = outward**2 + along**2 + axial**2, self.pull * speed**2
+        left = load - self.preload
+        if not left >= abs(pull):
+            return nan
+        if size == 0.0:
+            return inf
+        inwards = -outward * pull
+        return (inwards + sqrt(inwards**2 + size * (left**2 - pull**2))) / size
+
+    def load_for(self, life: float, speed: float) -> float:
+        """Load under which the bearing has a life [N]; infinite where it does not turn.
+
+        Args:
+            life: L10 [s].
+            speed: of the output [rad/s or m/s].
+
+        Source: ISO 281:2007, L10 = 1e6 (C/P)^p turns.
+        """
+        turns = life * abs(speed) * self.turning / (2.0 * np.pi)
+        return self.rating * float((1e6 / turns) ** (1.0 / self.exponent)) if turns > 0.0 else inf
 
     def life(self, history: LoadHistory) -> float:
         """Time until one in ten has failed, the load history over and over [s]; infinite where nothing moves.

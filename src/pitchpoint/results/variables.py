@@ -118,6 +118,7 @@ VARIABLES: dict[str, Variable] = {
     "flexspline_torque": torque("torque on the flexspline, without losses", "T_F"),
     "limit_torque": torque("torque of a maker, at this size", "T_limit"),
     "limit_margin": dimensionless("that torque over the one on the flexspline", "T_limit/T_F"),
+    "rated_life_torque": torque("torque for the rated life of the bearing at this speed", "T_L"),
     "bearing_life": time("life of the bearing by its rating, with 90 % unharmed", "L", shown="h"),
     "operating_bearing_life": time("life of the bearing at the operating point", "L", shown="h"),
     "flank_tolerance": deviation("tolerance of the flanks by ISO 1328-1", "T"),
@@ -513,6 +514,15 @@ VARIABLES: dict[str, Variable] = {
     "axial_reaction_2": force("mean axial load of the teeth on the bearings of gear 2", "F_a2"),
     "bearing_load": force("mean load on the bearing", "F_B"),
     "equivalent_bearing_load": force("load on the bearing that gives its life", "P"),
+    "static_bearing_safety": Variable("static safety of the bearing", "S_0", "1"),
+    "static_torque_margin": Variable(
+        "load of the drive at a static safety of the bearing of 1, over that of operation", "", "1"
+    ),
+    "life_torque_margin": Variable(
+        "load of the drive at which the bearing has the life that is asked, over that of operation",
+        "",
+        "1",
+    ),
     "mean_drag_loss": power("mean power loss beside the teeth", "P_drag mean"),
     "latent_power": power("mean power that rolls through all meshes of sets", "P_roll"),
     "mean_efficiency": percent("mean efficiency", "η mean"),

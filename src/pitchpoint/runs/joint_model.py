@@ -49,6 +49,9 @@ PARTS: Mapping[str, str] = {
     "flexspline_torque": "the flexspline for endless life",
     "ratcheting_torque": "ratcheting",
     "buckling_torque": "buckling of the flexspline",
+    "static_bearing_torque": "bearings at a static safety of 1",
+    "lasting_bearing_torque": "bearings for the life that [strength] asks for",
+    "rated_bearing_torque": "the wave generator for its rated life",
 }
 """What limits the torque of the output by the strength of a part, in words, by its name."""
 
@@ -522,6 +525,24 @@ _LIMITED: tuple[tuple[str, str, Any], ...] = (
         },
     ),
     ("load_limits", "limit_margin", _margins),
+    (
+        "load_limits",
+        "rated_life_torque",
+        lambda data: {
+            "rated_bearing_torque": data["rated_life_torque"].values
+            / float(data["flexspline_torque"])
+        },
+    ),
+    (
+        "operation",
+        "static_torque_margin",
+        lambda data: {"static_bearing_torque": data["static_torque_margin"].values},
+    ),
+    (
+        "operation",
+        "life_torque_margin",
+        lambda data: {"lasting_bearing_torque": data["life_torque_margin"].values},
+    ),
 )
 """Parts of a result, the variable in it, and its loads over that of operation by name of the limit."""
 

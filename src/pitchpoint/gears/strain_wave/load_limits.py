@@ -10,6 +10,7 @@ __all__ = [
     "flexspline_torque",
     "goodman_safety",
     "of_other_size",
+    "rated_life_torque",
     "torque_by_goodman",
     "tube_shear",
     "von_mises",
@@ -205,3 +206,20 @@ def bearing_life(
     if torque == 0.0 or speed == 0.0:
         return float("inf")
     return rated_life * (rated_torque / torque) ** 3 * rated_speed / speed
+
+
+def rated_life_torque(*, rated_torque: float, rated_speed: float, speed: float) -> float:
+    """Torque for the rated life at another speed, T_r (n_r/n)^(1/3) [N m]; endless at rest.
+
+    Args:
+        rated_torque: of the flexspline [N m].
+        rated_speed, speed: of the wave generator against the circular spline [rad/s].
+
+    Source: `bearing_life`, solved for its torque.
+
+    Example:
+        >>> from pitchpoint.gears.strain_wave.load_limits import rated_life_torque
+        >>> round(rated_life_torque(rated_torque=67.0, rated_speed=2000.0, speed=250.0), 9)
+        134.0
+    """
+    return rated_torque * (rated_speed / speed) ** (1.0 / 3.0) if speed > 0.0 else float("inf")

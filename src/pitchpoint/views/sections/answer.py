@@ -324,7 +324,7 @@ def _lives(data: xr.Dataset, law: int) -> list[tuple[str, str]]:
     if "bearing_life" not in data:
         return []
     each = zip(data["place"].values, data["bearing_life"].values[law, 0], strict=True)
-    return [
+    return [*_static_safeties(data, law)] + [
         (
             f"life of {place}".replace("_", " "),
             "without load" if np.isinf(life) else show.quantity("bearing_life", life),
@@ -332,6 +332,15 @@ def _lives(data: xr.Dataset, law: int) -> list[tuple[str, str]]:
         for place, life in each
         if not np.isnan(life)
     ]
+
+
+def _static_safeties(data: xr.Dataset, law: int) -> Iterator[tuple[str, str]]:
+    """Static safeties of bearings that have that rating and bear something: names and words."""
+    if "static_bearing_safety" in data:
+        safeties = data["static_bearing_safety"].values[law, 0]
+        for place, safety in zip(data["place"].values, safeties, strict=True):
+            if np.isfinite(safety):
+                yield f"static safety of {place}".replace("_", " "), show.number(float(safety))
 
 
 _ACROSS = {
