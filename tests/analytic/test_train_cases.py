@@ -118,6 +118,30 @@ def test_power_that_rolls_through_the_meshes():
     assert found["latent_power"] > 50.0 * power
 
 
+@pytest.mark.whole
+def test_planets_that_either_flank_of_an_idle_sun_pushes_onto_the_other_one_lie_on_neither():
+    """Two equal rings turn each other at ratio 1; their friction alone presses three planets on the sun."""
+    equal = {"teeth": [44, 130], "module": "0.5 mm", "face_width": "7.54 mm"}
+    rings = SET | {
+        "teeth": [41, 44, 130],
+        "module": "0.5 mm",
+        "profile_shift": [0.175, 0.203],
+        "fillet_radius": [0.3, 0.2, 0.1],
+        "second": equal | {"profile_shift": [0.215, "from centre distance"]},
+        "input": "second ring",
+        "output": "ring",
+        "held": "sun",
+    }
+    built, found = figures(PLANETARY | {"gears": rings}, models__friction__coefficient=0.1121)
+    speed = built.case.operation.speed
+    assert built.output_rate == pytest.approx(1.0, rel=1e-12)
+    taken = found["mean_input_torque"] * speed
+    assert taken == pytest.approx(60.0 * speed + found["mean_loss"], rel=1e-12)
+    assert 0.99 < found["mean_efficiency"] < 1.0 and not found["locked"]
+    # A mesh that carries nothing without friction has no force to compare with.
+    assert 1.0 <= found["largest_contact_force_ratio"] < 1.2
+
+
 def test_other_flows_planets_and_teeth_take_the_programs_that_are_there():
     """All six flows of a set are one program, and so are 3K sets whose planets come round in like times."""
 

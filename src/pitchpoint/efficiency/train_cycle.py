@@ -47,6 +47,12 @@ IDLE = 1e-9
 NEAR = 1e-14
 """Relative change of the forces at which the search ends."""
 
+MOST_TURNS = 3
+"""Changes of the flank that a mesh without load presses, from step to step, after which it lies on neither.
+
+On its way to forces that stand a flank changes once or twice.
+"""
+
 
 class MeshState(eqx.Module):
     """State of a mesh of a train at the nodes of its period.
@@ -56,7 +62,7 @@ class MeshState(eqx.Module):
         friction: coefficient at each slice.
         sliding_loss, rolling_loss: power lost at each slice [W].
         force, nominal: normal force of each copy, negative on other flanks that losses press, and its size
-            without friction; zero at places without a copy [N].
+            without friction; zero at places without a copy, and of a mesh that then idles [N].
         input_torque: torque on the driving member of the mesh in its sense of motion, of all copies [N m].
         speed: of that member against the carrier [rad/s].
     """
@@ -195,7 +201,8 @@ def train_cycle(
     """States of a train over its period, integrated segment by segment between the events of all meshes.
 
     Where planets share a load, equilibrium leaves open how: of all forces in equilibrium those are taken
-    that, over equal ones without friction, have the least sum of squares; planets in phase share equally.
+    that, over equal ones without friction, have the least sum of squares; planets in phase share equally. A
+    planet that either flank of a mesh without load would push onto the other one lies on neither.
 
     Args:
         train: see `gear_train`.
@@ -287,6 +294,7 @@ class _Meshing:
         self.rates = motion * operation.speed
         self.carry(self.operation.load / arm)
         self.either: Bool[Array, "..."] = jnp.asarray(bool(train.drag))
+        self.idle: Bool[Array, "..."] = jnp.asarray(False)
         slip, roll = along(self.contacts.slip_arm, motion), along(self.contacts.roll_arm, motion)
         # Beside the pitch point by rounding, a contact does not slide.
         self.sense = jnp.where(jnp.abs(slip) > 1e-13 * jnp.abs(roll), jnp.sign(slip), 0.0)
@@ -381,7 +389,7 @@ class _Meshing:
             at.load * coefficient * as_array(at.sliding),
             2.0 * resistance * as_array(at.entrainment),
             force,
-            self.nominal,
+            jnp.where(self.idle, 0.0, self.nominal),
             driver,
             self.operation.speed,
         )
@@ -394,12 +402,28 @@ class _Balanced(eqx.Module):
     code: Int[Array, " node"]
 
 
+class _Search(NamedTuple):
+    """A step of the search for forces, with the changes of flanks up to it."""
+
+    forces: Forces
+    turns: Int[Array, "force node"]
+    residual: Nodes
+    steps: Int[Array, ""]
+
+
 def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Balanced:
     """Forces of all copies in equilibrium; friction is that under the forces of the step before."""
     external = _asked(train, operation)
+    either = jnp.concatenate(
+        [jnp.broadcast_to(meshing.either, meshing.nominal.shape) for meshing in every]
+    )
+    # A planet alone is held by the mesh, whichever flank it is.
+    one_of_several = either & jnp.concatenate(
+        [jnp.broadcast_to(meshing.mesh.count > 1.0, meshing.nominal.shape) for meshing in every]
+    )
 
-    def step(held: tuple[Forces, Nodes, Array]) -> tuple[Forces, Nodes, Array]:
-        forces, _, steps = held
+    def step(held: _Search) -> _Search:
+        forces, turns, _, steps = held
         by_mesh = _by_mesh(every, forces)
         laws = [meshing.laws(force) for meshing, force in zip(every, by_mesh, strict=True)]
         taken = [
@@ -423,11 +447,13 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
         # A body that idles is in balance within rounding of the forces in the rest of the train.
         size = jnp.maximum(size, IDLE * jnp.max(size, axis=0))
         residual = jnp.max(jnp.abs(left) / jnp.where(size > 0.0, size, 1.0), axis=0)
-        return usual * _least(arms * usual, wanted), residual, steps + 1
+        scale = jnp.where(turns < MOST_TURNS, usual, 0.0)
+        renewed = scale * _least(arms * scale, wanted)
+        turned = one_of_several & (renewed * forces < 0.0)
+        return _Search(renewed, turns + turned, residual, steps + 1)
 
-    def goes_on(held: tuple[Forces, Nodes, Array]) -> Array:
-        _, residual, steps = held
-        return (steps < MOST_STEPS) & jnp.any(residual > NEAR)
+    def goes_on(held: _Search) -> Array:
+        return (held.steps < MOST_STEPS) & jnp.any(held.residual > NEAR)
 
     nominal = jnp.concatenate([meshing.nominal for meshing in every])
     largest = jnp.max(nominal, axis=0)
@@ -435,12 +461,12 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
     nominal = jnp.maximum(nominal, jnp.where(largest > 0.0, IDLE * largest, 1.0))
     # Forces of a mesh that idles without losses are free to become what these ask for.
     usual = jnp.where(idle & (largest > 0.0), largest, nominal)
-    begin = nominal, jnp.full(nominal.shape[1], jnp.inf), jnp.asarray(0)
-    forces, residual, steps = jax.lax.while_loop(goes_on, step, begin)
+    turns, unknown = jnp.zeros(nominal.shape, int), jnp.full(nominal.shape[1], jnp.inf)
+    begin = _Search(nominal, turns, unknown, jnp.asarray(0))
+    forces, _, residual, steps = jax.lax.while_loop(goes_on, step, begin)
     pulled = forces < -IDLE * jnp.max(jnp.abs(forces), axis=0)
     # Where other flanks may be pressed, no forces hold a train that is locked.
-    either = [jnp.broadcast_to(meshing.either, meshing.nominal.shape) for meshing in every]
-    pulled = jnp.any(pulled & ~jnp.concatenate(either), axis=0)
+    pulled = jnp.any(pulled & ~either, axis=0)
     code = jnp.where(pulled, int(Code.LOCKED), int(Code.SOLVED))
     code = jnp.where(residual <= UNSOLVED, code, int(Code.NOT_CONVERGED))
     return _Balanced(forces, residual, steps, code)
@@ -664,9 +690,10 @@ def _leave_open(every: Sequence[_Meshing]) -> None:
     As that of the sun of a 3K set between two rings: what rounding leaves has no side.
     """
     nominal = jnp.concatenate([meshing.nominal for meshing in every])
-    idle = IDLE * jnp.max(nominal, axis=0)
+    rounding = IDLE * jnp.max(nominal, axis=0)
     for meshing in every:
-        meshing.either = meshing.either | (meshing.nominal <= idle)
+        meshing.idle = meshing.nominal <= rounding
+        meshing.either = meshing.either | meshing.idle
 
 
 def _press(train: Train, every: Sequence[_Meshing], operation: Operation) -> None:

@@ -514,14 +514,13 @@ VARIABLES: dict[str, Variable] = {
     "axial_reaction_2": force("mean axial load of the teeth on the bearings of gear 2", "F_a2"),
     "bearing_load": force("mean load on the bearing", "F_B"),
     "equivalent_bearing_load": force("load on the bearing that gives its life", "P"),
-    "static_bearing_safety": Variable("static safety of the bearing", "S_0", "1"),
-    "static_torque_margin": Variable(
-        "load of the drive at a static safety of the bearing of 1, over that of operation", "", "1"
+    "static_bearing_safety": dimensionless("static safety of the bearing", "S_0"),
+    "static_torque_margin": dimensionless(
+        "load of the drive at a static safety of the bearing of 1, over that of operation", ""
     ),
-    "life_torque_margin": Variable(
+    "life_torque_margin": dimensionless(
         "load of the drive at which the bearing has the life that is asked, over that of operation",
         "",
-        "1",
     ),
     "mean_drag_loss": power("mean power loss beside the teeth", "P_drag mean"),
     "latent_power": power("mean power that rolls through all meshes of sets", "P_roll"),
