@@ -15,6 +15,7 @@ from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.document import read, resolve
 from pitchpoint.cases.schema import Case, DriveCase, keys, quantity_at, validate
 from pitchpoint.cases.template import FAMILIES, sample_tree, template
+from pitchpoint.drive.assembly import ROOM_BETWEEN_PLANETS
 from pitchpoint.duty_cycle.table import DutyTable, HeatTable
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
@@ -158,7 +159,8 @@ def test_teeth_for_a_ratio_assemble_and_planets_stay_apart(planets: int) -> None
             assert (sun + ring) % planets == 0
             assert 0 <= ring - sun - 2 * planet <= 1
             if planets > 1:
-                assert (sun + planet) * np.sin(np.pi / planets) > planet + 2.0
+                apart = (sun + planet) * np.sin(np.pi / planets) - (planet + 2.0)
+                assert apart >= ROOM_BETWEEN_PLANETS
         assert teeth[0][2] / teeth[0][0] == pytest.approx(basic, rel=0.006)
 
 

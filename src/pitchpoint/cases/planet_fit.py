@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import pi
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ from jaxtyping import Int
 
 from pitchpoint.cases.schema import DriveCase, TrainTable
 from pitchpoint.drive.assembly import (
+    clear_neighbours,
     equal_angles,
     fit_at_equal_angles,
     nearest_places,
@@ -30,9 +30,6 @@ MOST_TRIED = 8
 
 OF_TOOTH, OF_DISTANCE = 0.003, 0.05
 """What a tooth more, and a module of distance between two meshes of a planet, count beside the ratio."""
-
-BETWEEN_TIPS = 2.0
-"""Addenda of neighbouring planets, about [modules]."""
 
 
 def with_fitting(error: InputError, case: DriveCase, ratio: float, attempt: Attempt) -> InputError:
@@ -180,11 +177,9 @@ def _nearest_teeth(case: DriveCase, ratio: float) -> Iterator[Cure]:
 
 def _fits(meshes: Sequence[tuple[np.ndarray, np.ndarray]], planets: int) -> np.ndarray:
     """True where planets fit in at equal angles, and beside each other, with rings around them."""
-    fits = fit_at_equal_angles(meshes, planets)
+    fits = fit_at_equal_angles(meshes, planets) & clear_neighbours(meshes, planets)
     for planet, mate in meshes:
         fits &= (planet >= 5) & (np.where(mate < 0, -mate - planet, mate) >= 5)
-        if planets > 1:
-            fits &= np.abs(planet + mate) * np.sin(pi / planets) > planet + BETWEEN_TIPS
     return fits
 
 

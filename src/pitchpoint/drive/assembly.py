@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import combinations
-from math import floor, gcd, pi
+from math import floor, gcd, pi, sin
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -13,7 +13,9 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.pairs import planet_gears
 
 __all__ = [
+    "ROOM_BETWEEN_PLANETS",
     "check_neighbours",
+    "clear_neighbours",
     "equal_angles",
     "fit_at_equal_angles",
     "nearest_places",
@@ -23,6 +25,16 @@ __all__ = [
 
 FITS = 1e-6
 """Part of a pitch by which a planet may miss a tooth space: that of rounding, not of play."""
+
+ROOM_BETWEEN_PLANETS = 0.5
+"""Least distance between tip circles of planets beside each other, of sets that are proposed [modules].
+
+Our choice: the tip clearance of usual racks, .25 modules, for each of the two. It holds deviations of pins
+and tips and lets oil through; a set that is given may have less, and is refused where planets touch.
+"""
+
+_USUAL_TIPS = 2.0
+"""Tip diameter over that of the reference circle, addendum 1 and no profile shift [modules]."""
 
 Body = tuple[str, int]
 """A body by name and number."""
@@ -82,6 +94,30 @@ def fit_at_equal_angles(
         step = planets * np.maximum(np.gcd(first, second), 1)
         fits = fits & ((second * mate - first * other) % step == 0)
     return fits
+
+
+def clear_neighbours(
+    meshes: Sequence[tuple[Counts | int, Counts | int]], planets: int
+) -> Bool[np.ndarray, "..."]:
+    """True for numbers of teeth with which planets at equal angles have room beside each other.
+
+    Args:
+        meshes: see `fit_at_equal_angles`, or plain numbers; without profile shift, addendum 1.
+        planets: their number; one has no neighbour.
+
+    From the distance of neighbours, 2 a sin(pi/N), against tip circle and `ROOM_BETWEEN_PLANETS`.
+
+    Example:
+        >>> [bool(clear_neighbours([(30, 24)], count)) for count in (1, 4, 5)]
+        [True, True, False]
+    """
+    clear = np.ones((), bool)
+    if planets == 1:
+        return clear
+    for planet, mate in meshes:
+        apart = np.abs(planet + mate) * sin(pi / planets)
+        clear = clear & (apart >= planet + _USUAL_TIPS + ROOM_BETWEEN_PLANETS)
+    return np.asarray(clear)
 
 
 def nearest_places(angles: Float[np.ndarray, " copy"], places: int) -> Float[np.ndarray, " copy"]:

@@ -14,7 +14,7 @@ from pitchpoint._jax import double_precision
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.template import sample_tree, template
 from pitchpoint.cases.trains import USUAL_BEARING
-from pitchpoint.drive.assembly import fit_at_equal_angles
+from pitchpoint.drive.assembly import clear_neighbours, fit_at_equal_angles
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.planetary import PLANETARY, PLANETS
@@ -50,8 +50,6 @@ SUNS, LARGEST_RING = range(12, 81), 240
 LEAST_PLANET = 18
 STRAIGHT = 1.1184
 """Depth of the straight flank of the usual rack below its datum, 1.25 - 0.2 (1 - sin 20 deg) [modules]."""
-_BETWEEN_PLANETS = 2.5
-"""Addenda and room between tip circles of neighbouring planets [modules]."""
 _NEAR = 0.005
 """Relative difference of ratios that counts as none against the size of a set."""
 FEW_IN_RING, SHIFT_IN_RING = 30, 0.3
@@ -98,10 +96,9 @@ def planetary_teeth(basic: float, planets: int) -> Iterator[tuple[int, int, int]
         for sun in SUNS:
             for ring in range(round(basic * sun) - 3, round(basic * sun) + 4):
                 planet = (ring - sun) // 2
-                apart = (sun + planet) * sin(pi / planets)
-                touching = planets > 1 and apart < planet + _BETWEEN_PLANETS
+                clear = bool(clear_neighbours([(planet, sun)], planets))
                 whole = (sun + ring) % planets == 0
-                if whole and planet >= LEAST_PLANET and ring <= LARGEST_RING and not touching:
+                if whole and planet >= LEAST_PLANET and ring <= LARGEST_RING and clear:
                     yield sun, planet, ring
 
     def order(teeth: tuple[int, int, int]) -> tuple[int, int, int]:
@@ -358,8 +355,7 @@ def stepped_teeth(ratio: float, planets: int) -> Iterator[tuple[int, int, int, i
     met = 1.0 + first * ring / (sun * second)
     fits = (first > second) & (ring <= LARGEST_RING) & (np.abs(met / ratio - 1.0) < 0.03)
     fits &= fit_at_equal_angles([(first, sun), (second, -ring)], planets)
-    if planets > 1:
-        fits &= (sun + first) * sin(pi / planets) >= first + _BETWEEN_PLANETS
+    fits &= clear_neighbours([(first, sun)], planets)
     found = [(sun.flat[i], first.flat[j], second.flat[k]) for i, j, k in np.argwhere(fits).tolist()]
     every = [(int(s), int(p), int(q), int(s + p + q)) for s, p, q in found]
 

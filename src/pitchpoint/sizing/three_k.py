@@ -16,6 +16,7 @@ from jaxtyping import Float, Int
 
 from pitchpoint import units
 from pitchpoint._jax import double_precision
+from pitchpoint.drive.assembly import ROOM_BETWEEN_PLANETS
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pairs
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
@@ -46,8 +47,6 @@ _PAIRS = (
 """Of each mesh its gears, the sign of the second number of teeth, and fillets [modules]."""
 
 _THIN_TIP = 0.2
-_BETWEEN_PLANETS = 0.5
-"""Least distance of neighbouring planets [modules]."""
 
 _ROOM = 1.02
 """Room at the root of a ring over its fillet: flanks are taken as straight there, and are not."""
@@ -369,7 +368,7 @@ def _best(teeth: np.ndarray, grid: Sequence[np.ndarray], task: _Task) -> _Points
         distance = nominal * cos(_ALPHA) / np.cos(angle)
         outer, held, last = _three_meshes(z, distance, first, second)
         room = (
-            2.0 * distance * sin(pi / task.planets) - _BETWEEN_PLANETS
+            2.0 * distance * sin(pi / task.planets) - ROOM_BETWEEN_PLANETS
             if task.planets > 1
             else np.inf
         )
