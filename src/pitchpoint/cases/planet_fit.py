@@ -177,7 +177,7 @@ def _nearest_teeth(case: DriveCase, ratio: float) -> Iterator[Cure]:
 
 def _fits(meshes: Sequence[tuple[np.ndarray, np.ndarray]], planets: int) -> np.ndarray:
     """True where planets fit in at equal angles, and beside each other, with rings around them."""
-    fits = fit_at_equal_angles(meshes, planets) & clear_neighbours(meshes, planets)
+    fits: np.ndarray = fit_at_equal_angles(meshes, planets) & clear_neighbours(meshes, planets)
     for planet, mate in meshes:
         fits &= (planet >= 5) & (np.where(mate < 0, -mate - planet, mate) >= 5)
     return fits
