@@ -189,11 +189,11 @@ def course(
     return _judged(described, reached, solution.stats["num_steps"])
 
 
-def _judged(found: Course, reached: Bool[Array, ""], steps: Int[Array, ""]) -> Course:
+def _judged(motion: Course, reached: Bool[Array, ""], steps: Int[Array, ""]) -> Course:
     """The course with what became of it: the energy has to close."""
-    closes = reached & (found.closure <= CLOSED)
+    closes = reached & (motion.closure <= CLOSED)
     code = jnp.where(closes, int(Code.SOLVED), int(Code.NOT_CONVERGED))
-    return replace(found, status=Status(code, found.closure, steps))
+    return replace(motion, status=Status(code, motion.closure, steps))
 
 
 def _length(joint: Joint, excitation: Waves, drive: Drive, start: Array) -> Array:
@@ -326,20 +326,20 @@ def settled(
     return _settled(joint, wave, motion, speed)
 
 
-def _settled(joint: Joint, wave: Waves, found: Course, speed: One) -> Settled:
-    before, after = found.wind_up[1 : POINTS + 2], found.wind_up[POINTS + 1 :]
+def _settled(joint: Joint, wave: Waves, motion: Course, speed: One) -> Settled:
+    before, after = motion.wind_up[1 : POINTS + 2], motion.wind_up[POINTS + 1 :]
     swing = jnp.ptp(after) / 2.0
     changed = jnp.max(jnp.abs(after - before)) / jnp.where(swing > 0.0, swing, 1.0)
-    error = wave.at(jnp.asarray(speed) / TURN * found.time[POINTS + 1 :])
-    torque = found.torque[POINTS + 1 :]
+    error = wave.at(jnp.asarray(speed) / TURN * motion.time[POINTS + 1 :])
+    torque = motion.torque[POINTS + 1 :]
     alike = jnp.where(changed <= REPEATS, int(Code.SOLVED), int(Code.NOT_SETTLED))
-    code = jnp.where(found.status.code == int(Code.SOLVED), alike, found.status.code)
+    code = jnp.where(motion.status.code == int(Code.SOLVED), alike, motion.status.code)
     return Settled(
         torque=jnp.ptp(torque) / 2.0,
         wind_up=swing,
         output=jnp.ptp(after + error) / 2.0,
         smallest=jnp.min(torque),
-        status=Status(code, changed, found.status.iterations),
+        status=Status(code, changed, motion.status.iterations),
     )
 
 

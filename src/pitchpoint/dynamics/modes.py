@@ -95,9 +95,9 @@ def modes(moving: Moving) -> Modes:
     )
 
 
-def _damping(moving: Moving, whole: Matrix) -> Matrix:
+def _damping(moving: Moving, springs: Matrix) -> Matrix:
     """Of the bearings, of the contacts in proportion to their stiffness, and along the line of action."""
     still = jnp.zeros(moving.mass.shape[0])
     line = contact_forces(moving, still, still).line
-    of_contacts = moving.relaxation * (whole - stiffness(moving.bodies))
+    of_contacts = moving.relaxation * (springs - stiffness(moving.bodies))
     return damping(moving.bodies) + of_contacts + moving.mesh_damping * jnp.outer(line, line)

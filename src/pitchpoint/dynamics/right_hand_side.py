@@ -408,12 +408,12 @@ def _push(
     external: Coordinates,
     place: Coordinates,
     rate: Coordinates,
-    found: ContactForces,
+    forces: ContactForces,
 ) -> Coordinates:
     """What is left of the external torques to accelerate the bodies."""
     bodies = moving.bodies
     held = bearing_forces(bodies, place, rate)
-    return external - held - _drag(moving, rate) - found.on_coordinates
+    return external - held - _drag(moving, rate) - forces.on_coordinates
 
 
 def _drag(moving: Moving, rate: Coordinates) -> Coordinates:

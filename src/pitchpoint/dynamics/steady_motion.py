@@ -412,9 +412,9 @@ class _Turning:
         """Mean power that the nominal motion loses in its contacts [W]."""
         phase, weight = nodes(self.passage.edges[:-1], Grid().nodes)
 
-        def at(one: Float[Array, ""]) -> Float[Array, ""]:
-            engaged = self.passage.at(one)
-            forces = forces_beside(self.moving, engaged, one, places, self.nominal)
+        def at(phase: Float[Array, ""]) -> Float[Array, ""]:
+            engaged = self.passage.at(phase)
+            forces = forces_beside(self.moving, engaged, phase, places, self.nominal)
             return total(forces.lost)
 
         return jax.vmap(at)(phase.ravel()) @ weight.ravel()
@@ -569,8 +569,8 @@ class _Turning:
     def _with_slope(self, state: State) -> tuple[Array, Array, Bool[Array, ""]]:
         """Scaled state after one period, its derivative, and whether it was reached."""
 
-        def twice(given: State) -> tuple[Array, tuple[Array, Array]]:
-            end, fine = self.end(given)
+        def twice(state: State) -> tuple[Array, tuple[Array, Array]]:
+            end, fine = self.end(state)
             return end, (end, fine)
 
         slope, (end, fine) = jax.jacfwd(twice, has_aux=True)(state)
@@ -676,7 +676,7 @@ def _described(
 
 
 def _account(
-    turning: _Turning, beside: States, rate: States, found: ContactForces, works: Array
+    turning: _Turning, beside: States, rate: States, forces: ContactForces, works: Array
 ) -> Account:
     moving = turning.moving
 
@@ -686,7 +686,7 @@ def _account(
     held = jnp.tensordot(stiffness(moving.bodies), beside, 1)
     return Account(
         kinetic=flat(kinetic(moving, rate)),
-        contacts=flat(found.energy),
+        contacts=flat(forces.energy),
         bearings=flat(jnp.sum(beside * held, axis=0) / 2.0),
         **dict(zip(WORKS, flat(works) * turning.energy, strict=True)),
     )

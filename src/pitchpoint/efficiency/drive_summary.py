@@ -143,21 +143,21 @@ def _chunk(
 
 
 def _with_train(
-    found: dict[str, np.ndarray], levers: np.ndarray, friction: np.ndarray, lost: np.ndarray
+    figures: dict[str, np.ndarray], levers: np.ndarray, friction: np.ndarray, lost: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Figures with what locks one of the trains, see `nearest_to_jamming`; all along [point node]."""
     from pitchpoint.efficiency.train_summary import nearest_to_jamming
 
     near = nearest_to_jamming(np.moveaxis(levers, 2, 1), friction, lost)
     nearer = near.friction / near.limit > (
-        found["nearest_friction"] / found["nearest_jamming_coefficient"]
+        figures["nearest_friction"] / figures["nearest_jamming_coefficient"]
     )
     return {
-        "locked": found["locked"] | near.held,
-        "jamming_coefficient": np.minimum(found["jamming_coefficient"], near.limit),
-        "nearest_friction": np.where(nearer, near.friction, found["nearest_friction"]),
+        "locked": figures["locked"] | near.held,
+        "jamming_coefficient": np.minimum(figures["jamming_coefficient"], near.limit),
+        "nearest_friction": np.where(nearer, near.friction, figures["nearest_friction"]),
         "nearest_jamming_coefficient": np.where(
-            nearer, near.limit, found["nearest_jamming_coefficient"]
+            nearer, near.limit, figures["nearest_jamming_coefficient"]
         ),
     }
 
@@ -168,9 +168,9 @@ def _figures(
     operation: Operation,
     models: tuple[LinkModels, ...],
     nodes: int,
-    known: Engagement | None,
+    engagement: Engagement | None,
 ) -> tuple[dict[str, Array], list[Locking]]:
-    cycle = drive_cycle.function(drive, operation, models, nodes, known)
+    cycle = drive_cycle.function(drive, operation, models, nodes, engagement)
     points = operation.load.shape
     every = {
         **_of_drive(cycle),
@@ -249,16 +249,16 @@ class _Forces(NamedTuple):
     rubbing: Array
 
     @classmethod
-    def none(cls, last: "State | TrainState") -> "_Forces":
+    def none(cls, state: "State | TrainState") -> "_Forces":
         """Without any link."""
-        zero = jnp.zeros((1, *last.input_torque.shape[:-1]))
+        zero = jnp.zeros((1, *state.input_torque.shape[:-1]))
         return cls(zero, zero + 1.0, zero)
 
-    def with_link(self, one: "State | TrainState", weight: Array) -> "_Forces":
+    def with_link(self, state: "State | TrainState", weight: Array) -> "_Forces":
         """With those of a link at every node of it, along a last axis."""
         normal, often, rubbing = (values[..., None] for values in self)
-        rubbing = (rubbing + often * one.friction_force) * weight
-        return _Forces(normal + one.normal_force, often * weight, rubbing)
+        rubbing = (rubbing + often * state.friction_force) * weight
+        return _Forces(normal + state.normal_force, often * weight, rubbing)
 
     def met(self, loads: Meetings) -> "_Forces":
         """The same by the loads of the next link, and few sums of normal forces."""

@@ -127,7 +127,7 @@ def _begin(
     design: Design,
     operation: Operation,
     models: Models,
-    known: Engagement,
+    engagement: Engagement,
     progress: Callable[[int], None] | None = None,
 ) -> tuple[Models, Engagement, Any]:
     from pitchpoint.lubrication.ehl.traction import FilmTraction
@@ -137,9 +137,9 @@ def _begin(
     has_rolling = models.rolling.name != "none"
     conditions = films, design.lubricant, operation.temperature
     solver = FilmTraction(*conditions, rolling=not has_rolling, progress=progress)
-    friction, none = (array(np.full(known.share.shape, value)) for value in (FIRST, 0.0))
+    friction, none = (array(np.full(engagement.share.shape, value)) for value in (FIRST, 0.0))
     begin = models.holding(friction, None if has_rolling else none)
-    return begin, replace(known, body=None), solver
+    return begin, replace(engagement, body=None), solver
 
 
 def _solved(

@@ -441,11 +441,11 @@ def _beside(corners: Any, cell: Any, weights: Any) -> "tuple[Any, Any]":
     return np.where(locked, math.nan, lost), locked
 
 
-def _efficiency(given: float, taken: float) -> float:
+def _efficiency(delivered: float, taken: float) -> float:
     """Power out over power in, from torques of the output and of the driver along the motion."""
-    if given > 0.0 and taken > 0.0:
-        return given / taken
-    return taken / given if given < 0.0 and taken < 0.0 else math.nan
+    if delivered > 0.0 and taken > 0.0:
+        return delivered / taken
+    return taken / delivered if delivered < 0.0 and taken < 0.0 else math.nan
 
 
 def _cell(axis: Sequence[float], value: float) -> "tuple[int, int, float]":

@@ -84,14 +84,14 @@ def profile(
 def _profile(
     design: Design,
     operation: Operation,
-    known: Engagement,
-    found: Balance,
+    engagement: Engagement,
+    balance: Balance,
     film: FilmThickness,
     asperities: AsperityLoad | None,
     limited: tuple[str, ...],
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """The state by name, and conditions by which laws are limited [pair, slice, node]."""
-    result = cycle_of(design, operation, known, found)
+    result = cycle_of(design, operation, engagement, balance)
     state = result.state
     at, contacts = state.conditions, state.contacts
     carries = state.balance.force > 0.0

@@ -628,30 +628,30 @@ def _balance(
     return balance(**_in_balance(problem, models), guess=guess)
 
 
-def _state(design: Design, operation: Operation, unloaded: Conditions, found: Balance) -> State:
+def _state(design: Design, operation: Operation, unloaded: Conditions, forces: Balance) -> State:
     """What follows from the forces."""
-    at_contact, motion, loaded = replace(unloaded, load=found.load), design.motion, design.loaded
+    at_contact, motion, loaded = replace(unloaded, load=forces.load), design.motion, design.loaded
     driver = design.driver * jnp.sign(design.driver @ motion)
     putting, taking = (1.0 - loaded) * motion, loaded * motion
     return State(
         contacts=unloaded.contacts,
         conditions=at_contact,
-        balance=found,
-        sliding_loss=found.load * found.friction * as_array(at_contact.sliding),
-        rolling_loss=2.0 * found.rolling * as_array(at_contact.entrainment),
-        drag_loss=along(found.drag, motion) * operation.speed,
-        input_torque=along(found.torque, driver),
-        input_power=along(found.torque, putting) * operation.speed,
-        output_power=-along(found.torque, taking) * operation.speed,
+        balance=forces,
+        sliding_loss=forces.load * forces.friction * as_array(at_contact.sliding),
+        rolling_loss=2.0 * forces.rolling * as_array(at_contact.entrainment),
+        drag_loss=along(forces.drag, motion) * operation.speed,
+        input_torque=along(forces.torque, driver),
+        input_power=along(forces.torque, putting) * operation.speed,
+        output_power=-along(forces.torque, taking) * operation.speed,
     )
 
 
 _Given = tuple[Design, Operation, Contacts, Lanes, Conditions, Array, Array]
 
 
-def _in_balance(given: _Given, models: Models) -> dict[str, Any]:
+def _in_balance(problem: _Given, models: Models) -> dict[str, Any]:
     """What the balance of forces asks for, with the laws under any load."""
-    design, operation, contacts, share, unloaded, motion, loaded = given
+    design, operation, contacts, share, unloaded, motion, loaded = problem
 
     def friction(load: Lanes) -> Lanes:
         return models.coefficient(replace(unloaded, load=load))

@@ -123,9 +123,9 @@ def balance_in_rows(
     return balance
 
 
-def _part(known: Engagement, number: int, count: int) -> Engagement:
+def _part(engagement: Engagement, number: int, count: int) -> Engagement:
     """One of so many equal parts of the nodes."""
-    alone = replace(known, body=None, nodes=known.nodes // count)
+    alone = replace(engagement, body=None, nodes=engagement.nodes // count)
     part: Engagement = jax.tree.map(
         lambda leaf: np.split(np.asarray(leaf), count, axis=-1)[number], alone
     )

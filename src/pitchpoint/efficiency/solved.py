@@ -81,9 +81,9 @@ def solved_cycle(
     return mesh_cycle, Status(array(balanced), array(change), array(turns))
 
 
-def _first(found: Cycle, models: Models) -> np.ndarray:
+def _first(mesh_cycle: Cycle, models: Models) -> np.ndarray:
     """Coefficients, and rolling resistances where they are asked for, before the first turn [what, ...]."""
-    coefficients = np.asarray(found.state.balance.friction)
+    coefficients = np.asarray(mesh_cycle.state.balance.friction)
     if models.held_rolling is None:
         return coefficients[None]
     return np.stack([coefficients, np.broadcast_to(models.held_rolling, coefficients.shape)])

@@ -321,9 +321,9 @@ def _prepared(points: Sequence[Point], models: Models) -> Iterator[Prepared]:
         yield design, operation, meshing and replace(meshing, body=None)
 
 
-def _alike(one: Design, other: Design) -> bool:
+def _alike(design: Design, neighbour: Design) -> bool:
     """True if both have the same drive in hand and equal solids."""
-    return one.mesh is other.mesh and _equal(one.solids, other.solids)
+    return design.mesh is neighbour.mesh and _equal(design.solids, neighbour.solids)
 
 
 def _equal(one: Any, other: Any) -> bool:
@@ -440,16 +440,16 @@ def whole_of(
 
 @program
 def _summaries(
-    rows: Row, found: Balance, models: Models, film: FilmThickness | None
+    rows: Row, balances: Balance, models: Models, film: FilmThickness | None
 ) -> dict[str, Array]:
     def one(
-        design: Design, operation: Operation, known: Engagement, found: Balance
+        design: Design, operation: Operation, meshing: Engagement, balance: Balance
     ) -> dict[str, Array]:
-        factor = loss_factor(design, models, None if touching(design.mesh) else known)
-        result = cycle_of(design, operation, known, found)
+        factor = loss_factor(design, models, None if touching(design.mesh) else meshing)
+        result = cycle_of(design, operation, meshing, balance)
         return summary(design, result, factor) | _extremes(result, film)
 
-    result: dict[str, Array] = eqx.filter_vmap(one)(*rows, found)
+    result: dict[str, Array] = eqx.filter_vmap(one)(*rows, balances)
     return result
 
 

@@ -174,29 +174,29 @@ def _figures(trains: Train, operations: Operation, models: tuple[Models, ...]) -
     return result
 
 
-def _of_train(found: TrainCycle) -> dict[str, Array]:
-    efficiency = power_ratio(found.output_power, found.input_power)
-    low, high = found.extremes(efficiency)
-    torque_low, torque_high = found.extremes(found.input_torque)
+def _of_train(cycle: TrainCycle) -> dict[str, Array]:
+    efficiency = power_ratio(cycle.output_power, cycle.input_power)
+    low, high = cycle.extremes(efficiency)
+    torque_low, torque_high = cycle.extremes(cycle.input_torque)
     return {
-        "mean_loss": found.mean(found.loss),
-        "mean_drag_loss": found.mean(found.drag_loss),
-        "latent_power": found.mean(_latent_power(found.meshes)),
-        "mean_efficiency": found.mean_efficiency,
+        "mean_loss": cycle.mean(cycle.loss),
+        "mean_drag_loss": cycle.mean(cycle.drag_loss),
+        "latent_power": cycle.mean(_latent_power(cycle.meshes)),
+        "mean_efficiency": cycle.mean_efficiency,
         "min_efficiency": low,
         # Between the nodes the interpolation may overshoot; no state is better than free of loss.
         "max_efficiency": jnp.minimum(high, jnp.maximum(1.0, jnp.max(efficiency))),
-        "mean_input_torque": found.mean(found.input_torque),
+        "mean_input_torque": cycle.mean(cycle.input_torque),
         "min_input_torque": torque_low,
         "max_input_torque": torque_high,
-        "mean_friction": found.mean(_mean_friction(found.meshes)),
-        "residual": jnp.max(found.status.residual),
-        "iterations": found.status.iterations,
-        "locked": found.locked,
-        "largest_contact_force_ratio": jnp.max(found.contact_force_ratio),
-        "largest_friction": found.largest_friction,
-        "lost": found.status.code == int(Code.NOT_CONVERGED),
-        "levers": found.levers,
+        "mean_friction": cycle.mean(_mean_friction(cycle.meshes)),
+        "residual": jnp.max(cycle.status.residual),
+        "iterations": cycle.status.iterations,
+        "locked": cycle.locked,
+        "largest_contact_force_ratio": jnp.max(cycle.contact_force_ratio),
+        "largest_friction": cycle.largest_friction,
+        "lost": cycle.status.code == int(Code.NOT_CONVERGED),
+        "levers": cycle.levers,
     }
 
 
@@ -231,11 +231,11 @@ def _of_meshes(cycle: TrainCycle) -> dict[str, Array]:
     }
 
 
-def _of_places(found: TrainCycle) -> dict[str, Array]:
+def _of_places(cycle: TrainCycle) -> dict[str, Array]:
     """Mean load on the bearing of each place [place]."""
-    if not found.pressed:
+    if not cycle.pressed:
         return {}
-    return {"bearing_load": jnp.stack([found.mean(load) for load in found.pressed])}
+    return {"bearing_load": jnp.stack([cycle.mean(load) for load in cycle.pressed])}
 
 
 def _of_powers(

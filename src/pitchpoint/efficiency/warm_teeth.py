@@ -112,9 +112,9 @@ def warm_teeth(design: Design, operation: Operation, models: Models, heated: Hea
 Given = tuple[Design, Operation, Models, Heated]
 
 
-def _loss(at: Float[Array, "2"], given: Given) -> Float[Array, "2"]:
+def _loss(at: Float[Array, "2"], inputs: Given) -> Float[Array, "2"]:
     """Friction and loss factor of teeth that those of `at` have warmed."""
-    design, operation, models, heated = given
+    design, operation, models, heated = inputs
     young = _moduli(_temperatures(at, design, operation, heated).root, heated)
     pinion, gear = (replace(solid, young=young[k]) for k, solid in enumerate(design.solids))
     losses = heat(replace(design, solids=(pinion, gear)), operation, models)
@@ -122,7 +122,7 @@ def _loss(at: Float[Array, "2"], given: Given) -> Float[Array, "2"]:
 
 
 @eqx.filter_custom_jvp
-def _settled(given: Given) -> tuple[Array, Array, Array]:
+def _settled(inputs: Given) -> tuple[Array, Array, Array]:
     """Friction and loss factor that make themselves, the last relative change, and the number of passes."""
 
     def unsettled(state: tuple[Array, Array, Array]) -> Array:
@@ -131,7 +131,7 @@ def _settled(given: Given) -> tuple[Array, Array, Array]:
 
     def step(state: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         before, _, passes = state
-        after = _loss(before, given)
+        after = _loss(before, inputs)
         change = jnp.max(jnp.abs(after - before) / jnp.maximum(jnp.abs(after), _TINY))
         return after, change, passes + 1
 

@@ -99,7 +99,7 @@ _NUMBERS = {
 }
 
 
-def _parts(point: Point, given: PairInMotion) -> list[Excited]:
+def _parts(point: Point, formulas: PairInMotion) -> list[Excited]:
     """Springs and masses for both line stiffnesses, each at both torques."""
     mesh = point.design.mesh
     assert isinstance(mesh, CylindricalPair)
@@ -116,7 +116,7 @@ def _parts(point: Point, given: PairInMotion) -> list[Excited]:
             vibrating,
         )
         for name in PROCEDURES
-        for torque in given.input_torques
+        for torque in formulas.input_torques
     ]
 
 
@@ -166,25 +166,25 @@ def _moved(parts: Excited, grid: Grid) -> dict[str, Float[Array, "..."]]:
     return figures
 
 
-def _courses(found: dict[str, np.ndarray]) -> dict[str, float | Course]:
+def _courses(figures: dict[str, np.ndarray]) -> dict[str, float | Course]:
     """Courses over the time since the pair entered, of one torque."""
-    entered = found["entered"]
+    entered = figures["entered"]
     every = {
         "pair_time": entered.ravel(),
         **{
-            f"pair_{name}": np.tile(found[name], len(entered))
+            f"pair_{name}": np.tile(figures[name], len(entered))
             for name in ("total_stiffness", "error", "other_error")
         },
     }
     period = entered.shape[1]
     for name in ("stiffness", "factor", "load"):
-        course = found[name].ravel()
+        course = figures[name].ravel()
         for number in range(TOGETHER):
             later = np.full_like(course, np.nan)
             late = number * period
             later[late:] = course[: max(len(course) - late, 0)]
             every[f"pair_{name}_{number + 1}"] = later
-    return {name: _cut(values, found["stiffness"]) for name, values in every.items()}
+    return {name: _cut(values, figures["stiffness"]) for name, values in every.items()}
 
 
 def _cut(values: Course, stiffness: np.ndarray) -> Float[np.ndarray, " kept"]:

@@ -184,9 +184,9 @@ def friction_forces(drive: Drive, force: Float[Array, "2"], found: Pairs) -> Flo
     return jnp.where(pushing, coefficient * pressed, 0.0) * jnp.sign(found.sliding)
 
 
-def _pressure(drive: Drive, force: Float[Array, "2"], found: Pairs) -> Float[Array, "2"]:
+def _pressure(drive: Drive, force: Float[Array, "2"], contacts: Pairs) -> Float[Array, "2"]:
     """Pressure of both pairs [Pa]: that of eq. 21 without a face width, or of Hertz's ellipse and line."""
-    both = {"radius": found.radius, "modulus": drive.modulus}
+    both = {"radius": contacts.radius, "modulus": drive.modulus}
     if drive.radii == "printed":
         return line_pressure(line_load=force, **both)
     points = hamrock_brewe_1983(load=force, transverse_radius=drive.transverse_radius, **both)
@@ -288,7 +288,7 @@ def _acceleration(
     state: State,
     force: Float[Array, "2"],
     friction: Float[Array, "2"],
-    found: Pairs,
+    contacts: Pairs,
 ) -> Float[Array, "6"]:
     """Of all coordinates, eqs. 15 to 20 [m/s2]."""
     normal, across = jnp.sum(force), jnp.sum(friction)
@@ -296,7 +296,7 @@ def _acceleration(
     held = drive.bearing * state[:4]
     held += 2.0 * drive.bearing_damping * jnp.sqrt(drive.bearing * mass) * state[6:10]
     pushed = jnp.stack([-normal, normal, across, across])
-    arms = jnp.stack([found.place, drive.tangent - found.place])
+    arms = jnp.stack([contacts.place, drive.tangent - contacts.place])
     outer = jnp.stack([drive.input_torque, -drive.torque])
     torque = outer + jnp.array([-1.0, 1.0]) * drive.base_radii * normal + arms @ friction
     turned = drive.base_radii * torque / drive.inertia

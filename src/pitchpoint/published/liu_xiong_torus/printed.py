@@ -230,12 +230,12 @@ def _literal(point: Point, mesh: TorusPair) -> Read:
     return {**reading, **_beside(reading, power), **_stiffness(point, conditions, drives)}
 
 
-def _stiffness(point: Point, known: Known, drives: Mapping[str, Drive]) -> Read:
+def _stiffness(point: Point, conditions: Known, drives: Mapping[str, Drive]) -> Read:
     """Stiffness of a pair of teeth over its path: of the library, as given, and as the motion has it."""
     formulas = point.formulas
     assert isinstance(formulas, TorusFormulas)
-    path = np.linspace(_INSIDE, 1.0 - _INSIDE, _ROLLS) * float(known["ratio"])
-    roll = path * _roll_of(known)
+    path = np.linspace(_INSIDE, 1.0 - _INSIDE, _ROLLS) * float(conditions["ratio"])
+    roll = path * _roll_of(conditions)
     curves: dict[str, Values] = {"stiffness_roll": roll}
     for name in PAIRS:
         rolls, springs = (
@@ -254,9 +254,9 @@ def _stiffness(point: Point, known: Known, drives: Mapping[str, Drive]) -> Read:
     return curves
 
 
-def _roll_of(known: Known) -> float:
+def _roll_of(line: Known) -> float:
     """Roll angle of the pinion for one base pitch [rad]."""
-    return float(known["base_pitch"] / known["base_radii"][0])
+    return float(line["base_pitch"] / line["base_radii"][0])
 
 
 def _teeth(name: str, point: Point) -> tuple[Mesh, Array, tuple[Solid, Solid], Terms]:
@@ -270,16 +270,16 @@ def _mesh(name: str, point: Point) -> Mesh:
     return point.design.mesh if name == "torus" else middle_pair(point.gears)
 
 
-def _named(pair: str, told: Mapping[str, Values | Array]) -> dict[str, float | Values]:
+def _named(pair: str, figures: Mapping[str, Values | Array]) -> dict[str, float | Values]:
     """Numbers and courses of a pair."""
     return {
         f"{pair}_{key}": np.asarray(value) if np.ndim(value) else float(value)
-        for key, value in told.items()
+        for key, value in figures.items()
     }
 
 
-def _check_found(name: str, told: Known) -> None:
-    numbers = [value for key, value in told.items() if key not in CYCLE_COURSES]
+def _check_found(name: str, figures: Known) -> None:
+    numbers = [value for key, value in figures.items() if key not in CYCLE_COURSES]
     if not all(np.all(np.isfinite(value)) for value in numbers):
         raise ConvergenceError(
             f"the motion of the {name} pair by the printed equations was not found: it grows without bound, "
@@ -287,17 +287,17 @@ def _check_found(name: str, told: Known) -> None:
         )
 
 
-def _beside(found: Read, power: float) -> Read:
+def _beside(reading: Read, power: float) -> Read:
     """Torus pair over standard pair, and less it; of the power put in [W]."""
-    sliding = np.subtract(found["standard_friction_heat"], found["torus_friction_heat"]) / power
-    torus, standard = (found[f"{name}_film_0"] + found[f"{name}_film_1"] for name in PAIRS)
+    sliding = np.subtract(reading["standard_friction_heat"], reading["torus_friction_heat"]) / power
+    torus, standard = (reading[f"{name}_film_0"] + reading[f"{name}_film_1"] for name in PAIRS)
     return {
-        "error_ratio": found["torus_largest_error"] / found["standard_largest_error"],
-        "friction_ratio": found["torus_sliding_friction"] / found["standard_sliding_friction"],
+        "error_ratio": reading["torus_largest_error"] / reading["standard_largest_error"],
+        "friction_ratio": reading["torus_sliding_friction"] / reading["standard_sliding_friction"],
         "printed_film_ratio": torus / standard,
         "torus_less_standard_sliding_efficiency": float(sliding),
         **{
-            f"torus_less_standard_{figure}": found[f"torus_{name}"] - found[f"standard_{name}"]
+            f"torus_less_standard_{figure}": reading[f"torus_{name}"] - reading[f"standard_{name}"]
             for figure, name in _LESS.items()
         },
     }
@@ -330,11 +330,11 @@ def _steady(point: Point, mesh: TorusPair) -> Read:
 _OVER = ("steady_friction", "steady_film")
 
 
-def _springs(drive: Drive, known: Known, given: TorusFormulas) -> Springs:
+def _springs(drive: Drive, conditions: Known, formulas: TorusFormulas) -> Springs:
     """Bodies and springs of the corrected equations; a place on the path is counted in base pitches."""
-    roll = _roll_of(known)
+    roll = _roll_of(conditions)
     by_roll, powers = np.asarray(drive.coefficients), np.arange(1, _DEGREE + 1)
-    coefficients, ratio = by_roll * roll**powers, float(known["ratio"])
+    coefficients, ratio = by_roll * roll**powers, float(conditions["ratio"])
     return Springs(
         mass=drive.mass,
         inertia=drive.inertia,
@@ -345,11 +345,11 @@ def _springs(drive: Drive, known: Known, given: TorusFormulas) -> Springs:
         bearing_damping=drive.bearing_damping,
         mesh_damping=drive.mesh_damping,
         error=drive.error,
-        held=given.steady_pinion == "held",
+        held=formulas.steady_pinion == "held",
     )
 
 
-def _pieces(line: Known, given: TorusFormulas) -> Piece:
+def _pieces(line: Known, formulas: TorusFormulas) -> Piece:
     single, pitch = float(line["single"]), float(line["pitch"])
     if not 0.0 < single < 1.0:
         raise InputError(
@@ -357,7 +357,7 @@ def _pieces(line: Known, given: TorusFormulas) -> Piece:
             f"{single + 1.0:.4g}",
             key="formulas",
         )
-    return pieces(single=single, pitch=pitch % 1.0, cycles=given.mesh_cycles)
+    return pieces(single=single, pitch=pitch % 1.0, cycles=formulas.mesh_cycles)
 
 
 @program
@@ -382,11 +382,11 @@ _OF_LINE = ("base_radii", "tangent", "entry", "base_pitch", "transverse_radius")
 _OF_CONDITIONS = ("inertia", "mass", "teeth", "modulus", "viscosity", "face_width")
 
 
-def _drive(name: str, point: Point, known: Known) -> Drive:
+def _drive(name: str, point: Point, conditions: Known) -> Drive:
     formulas, operation = point.formulas, point.operation
     assert isinstance(formulas, TorusFormulas)
     numbers: dict[str, ArrayLike] = {
-        "coefficients": _coefficients(name, point, known),
+        "coefficients": _coefficients(name, point, conditions),
         "pointed": float(name == "torus"),
         "radius_factor": formulas.radius_factor,
         "bearing": formulas.bearing_stiffness,
@@ -397,12 +397,12 @@ def _drive(name: str, point: Point, known: Known) -> Drive:
         "speed": operation.speed,
         "torque": operation.load,
     }
-    conditions = {key: known[key] for key in (*_OF_LINE, *_OF_CONDITIONS)}
-    values = {key: jnp.asarray(value, float) for key, value in {**conditions, **numbers}.items()}
+    of_mesh = {key: conditions[key] for key in (*_OF_LINE, *_OF_CONDITIONS)}
+    values = {key: jnp.asarray(value, float) for key, value in {**of_mesh, **numbers}.items()}
     return Drive(**values, radii=formulas.radius)
 
 
-def _coefficients(name: str, point: Point, known: Known) -> Values:
+def _coefficients(name: str, point: Point, conditions: Known) -> Values:
     """Polynomial on which the motion runs, see `pair_stiffness`; InputError if it is negative somewhere.
 
     The library's stiffness is taken at the roll angles of Table 1 that lie on the path, as the table has it.
@@ -412,23 +412,23 @@ def _coefficients(name: str, point: Point, known: Known) -> Values:
     rolls, springs = (np.asarray(getattr(formulas, f"{name}_{of}")) for of in ("roll", "stiffness"))
     if formulas.stiffness == "library":
         rolls = np.asarray(formulas.torus_roll)
-        path = rolls / _roll_of(known)
-        there = path < float(known["ratio"])
-        _check_places(int(there.sum()), known)
+        path = rolls / _roll_of(conditions)
+        there = path < float(conditions["ratio"])
+        _check_places(int(there.sum()), conditions)
         rolls, load = rolls[there], float(point.operation.load)
         springs = library_stiffness(*_teeth(name, point), load, path[there])["secant"]
     elif name != "torus":
         rolls, springs = _filled(formulas, rolls, springs)
     coefficients = pair_stiffness(roll=rolls, stiffness=springs)
     key = "stiffness" if formulas.stiffness == "library" else f"{name}_stiffness"
-    _check_stiffness(key, coefficients, known)
+    _check_stiffness(key, coefficients, conditions)
     return coefficients
 
 
-def _check_places(there: int, known: Known) -> None:
+def _check_places(there: int, line: Known) -> None:
     """InputError if fewer roll angles lie on the path than the polynomial has coefficients."""
     if there < _DEGREE:
-        end = np.rad2deg(_roll_of(known) * float(known["ratio"]))
+        end = np.rad2deg(_roll_of(line) * float(line["ratio"]))
         raise InputError(
             f"{there} of these roll angles lie on the path of a pair, which ends at {end:.4g} deg; the "
             f"library's stiffness is taken at {_DEGREE} of them at least",
@@ -436,9 +436,9 @@ def _check_places(there: int, known: Known) -> None:
         )
 
 
-def _check_stiffness(key: str, coefficients: Values, known: Known) -> None:
+def _check_stiffness(key: str, coefficients: Values, line: Known) -> None:
     """InputError if the polynomial is negative somewhere on the way of a pair."""
-    end = float(known["ratio"] * known["base_pitch"] / known["base_radii"][0])
+    end = float(line["ratio"] * line["base_pitch"] / line["base_radii"][0])
     roll = np.linspace(0.0, end, 201)[1:]
     values = np.polynomial.polynomial.polyval(roll, [0.0, *coefficients])
     if values.min() <= 0.0:
@@ -449,8 +449,8 @@ def _check_stiffness(key: str, coefficients: Values, known: Known) -> None:
         )
 
 
-def _filled(given: TorusFormulas, rolls: Values, springs: Values) -> tuple[Values, Values]:
+def _filled(formulas: TorusFormulas, rolls: Values, springs: Values) -> tuple[Values, Values]:
     """Stiffness of the standard pair at the roll angles of the torus pair, by a polynomial of degree 4."""
-    every = np.asarray(given.torus_roll)
+    every = np.asarray(formulas.torus_roll)
     smooth = np.polynomial.Polynomial.fit(rolls, springs, _DEGREE)
-    return every, given.standard_scale * smooth(every)
+    return every, formulas.standard_scale * smooth(every)

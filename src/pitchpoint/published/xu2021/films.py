@@ -308,8 +308,8 @@ def _of_point(teeth: ToothFilms, angle: float, speed: float, temperature: float)
 class _Chain:
     """Films of a point, each found from the one before and none twice."""
 
-    def __init__(self, teeth: ToothFilms, angle: float, last: PatchFilms | None = None) -> None:
-        self.teeth, self.angle, self.last = teeth, angle, last
+    def __init__(self, teeth: ToothFilms, angle: float, film: PatchFilms | None = None) -> None:
+        self.teeth, self.angle, self.last = teeth, angle, film
         self.known: dict[tuple[float, float], PatchFilms] = {}
 
     def film(self, speed: float, temperature: float) -> PatchFilms:

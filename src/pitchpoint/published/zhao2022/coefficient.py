@@ -121,17 +121,17 @@ def mixed_lubrication(point: Point, *, tip_angle: float, tip_force: float) -> Mi
 
 @program
 def _laws(
-    contact: Mapping[str, jax.Array], own: Mapping[str, jax.Array], flank: Conductor
+    contact: Mapping[str, jax.Array], of_case: Mapping[str, jax.Array], flank: Conductor
 ) -> dict[str, jax.Array]:
     """Eqs. 9, 10 and 29 at the reference and at the case, shape (2) each.
 
     One flank passes the strip at the speed of sliding and takes all the heat, the other stays under it; the
     limit of fast surfaces makes it warmer than it is. Entrainment is half the sliding.
     """
-    sliding = own["passing"] * contact["speed"]
+    sliding = of_case["passing"] * contact["speed"]
     flash = shared_flash(
-        heat=own["friction_per_area"] * contact["line_load"] * sliding,
-        half_width=own["strip"] / 2.0,
+        heat=of_case["friction_per_area"] * contact["line_load"] * sliding,
+        half_width=of_case["strip"] / 2.0,
         speed_a=sliding,
         speed_b=jnp.zeros_like(sliding),
         bodies=(flank, flank),
@@ -142,22 +142,22 @@ def _laws(
         "defect": fractional_film_defect(
             sliding=sliding,
             temperature=contact["temperature"] + flash,
-            adsorption_heat=own["adsorption_heat"],
-            molecule_diameter=own["molecule_diameter"],
-            vibration_period=own["vibration_period"],
+            adsorption_heat=of_case["adsorption_heat"],
+            molecule_diameter=of_case["molecule_diameter"],
+            vibration_period=of_case["vibration_period"],
         ),
         "asperity_regression": masjedi_khonsari_2012_regression(
             line_load=contact["line_load"],
             entrainment=sliding / 2.0,
             viscosity=contact["viscosity"],
-            radius=own["radius"],
+            radius=of_case["radius"],
             roughness_rq=contact["roughness"],
             hardness=contact["hardness"],
             **oil,
         ),
         "regression": janakiraman_2013(
             line_load=contact["line_load"],
-            radius=own["radius"],
+            radius=of_case["radius"],
             ra_1=contact["roughness"],
             ra_2=jnp.zeros_like(contact["roughness"]),
             **oil,

@@ -181,10 +181,10 @@ def _double_arc(flank: DoubleArcFlank) -> _Curve:
     upper, lower = complex(flank.convex_centre), complex(flank.concave_centre)
     arc, straight = convex * (theta_a - theta_b), float(flank.tangent_length)
 
-    def curve(way: Array) -> tuple[Array, Places]:
-        line = way - arc
+    def curve(from_tip: Array) -> tuple[Array, Places]:
+        line = from_tip - arc
         at_root = theta_b + np.maximum(line - straight, 0.0) / concave
-        angle = np.where(line < 0.0, theta_a - way / convex, at_root)
+        angle = np.where(line < 0.0, theta_a - from_tip / convex, at_root)
         along = -np.exp(-1j * theta_b) * np.minimum(line, straight)
         tangent = upper + 1j * convex * np.exp(-1j * theta_b) + along
         on_convex = upper + 1j * convex * np.exp(-1j * angle)
@@ -201,8 +201,8 @@ def _involute(flank: InvoluteFlank) -> _Curve:
     half = float(flank.half_angle_at(flank.base_radius))
     tip = tan(acos(base / float(flank.tip_radius)))
 
-    def curve(way: Array) -> tuple[Array, Places]:
-        roll = np.sqrt(tip**2 - 2.0 * way / base)
+    def curve(from_tip: Array) -> tuple[Array, Places]:
+        roll = np.sqrt(tip**2 - 2.0 * from_tip / base)
         angle = roll - half
         return angle, base * np.exp(-1j * angle) * (1.0 + 1j * roll) - neutral
 
@@ -303,15 +303,15 @@ def readings(point: Point) -> Read:
     return reading
 
 
-def _limit(strips: Strips, given: FlankWear, module: float) -> float:
+def _limit(strips: Strips, table: FlankWear, module: float) -> float:
     """Depth at which wear is severe [m]."""
-    return min(strips.tip_land, given.severe_depth * module)
+    return min(strips.tip_land, table.severe_depth * module)
 
 
-def _depths(with_offset: March, strips: Strips, rate: float, given: FlankWear) -> dict[str, Any]:
+def _depths(with_offset: March, strips: Strips, rate: float, table: FlankWear) -> dict[str, Any]:
     """Depth with and without the offset over the cycles."""
-    cycles = np.linspace(0.0, given.cycles, BLOCKS + 1)
-    both = with_offset, marched(strips.without_offset(), rate=rate, cycles=given.cycles)
+    cycles = np.linspace(0.0, table.cycles, BLOCKS + 1)
+    both = with_offset, marched(strips.without_offset(), rate=rate, cycles=table.cycles)
     course = [_over(cycles, wear.cycles, wear.depth.max(axis=1)) for wear in both]
     return {
         "wear_depth": float(course[0][-1]),
@@ -326,10 +326,10 @@ def _depths(with_offset: March, strips: Strips, rate: float, given: FlankWear) -
     }
 
 
-def _over(places: Array, known: Array, values: Array) -> Array:
+def _over(places: Array, nodes: Array, values: Array) -> Array:
     """Values at places; NaN beyond those that are known."""
-    end = known[-1] * (1.0 + 1e-12)
-    return np.where(places <= end, np.interp(places, known, values), np.nan)
+    end = nodes[-1] * (1.0 + 1e-12)
+    return np.where(places <= end, np.interp(places, nodes, values), np.nan)
 
 
 def _stages(strips: Strips, rate: float, limit: float) -> dict[str, Any]:
@@ -351,19 +351,19 @@ def _stages(strips: Strips, rate: float, limit: float) -> dict[str, Any]:
 
 
 def _dry(
-    strips: Strips, found: dict[str, Any], mixed: MixedLubrication, given: FlankWear
+    strips: Strips, reading: dict[str, Any], mixed: MixedLubrication, table: FlankWear
 ) -> dict[str, Any]:
     """Depths of dry flanks: those of the reference, deeper by ψ L_a / 100 of the reference.
 
     A march with the dry coefficient itself would end within a thousandth of the cycles.
     """
-    deeper, rate = mixed.dry / mixed.reference, mixed.reference / given.hardness
+    deeper, rate = mixed.dry / mixed.reference, mixed.reference / table.hardness
     late, all_cycles = (
         deeper * marched(strips, rate=rate, cycles=cycles).at(cycles, "depth")
-        for cycles in (LATER["late"], given.cycles)
+        for cycles in (LATER["late"], table.cycles)
     )
     depth = float(np.max(all_cycles))
-    over_dry = found["wear_depth"] / depth
+    over_dry = reading["wear_depth"] / depth
     return {
         "dry_depth": depth,
         "dry_flank_depth": _spread(late),
@@ -417,7 +417,7 @@ def _profile(strips: Strips, depth: Array) -> Array:
 
 
 def _beside_involute(
-    found: dict[str, Any], ours: March, point: Point, rate: float
+    reading: dict[str, Any], ours: March, point: Point, rate: float
 ) -> dict[str, Any]:
     """Double arc beside the involute flank of Table 1 with the same coefficient, eqs. 11 to 33."""
     mesh, gears, table = point.design.mesh, point.gears, point.formulas
@@ -436,12 +436,12 @@ def _beside_involute(
     }
     late = marched(involute, rate=rate, cycles=LATER["late"]).at(LATER["late"], "depth")
     return {
-        "onset_over_involute": found["severe_wear_cycles"] / until_severe.cycles_to(limit),
+        "onset_over_involute": reading["severe_wear_cycles"] / until_severe.cycles_to(limit),
         **{f"{name}_over_involute": ratio for name, ratio in ratios.items()},
         "involute_flank_depth": _spread(late),
         **{
             f"involute_tip_{name}": _over(
-                found["severe_course"], until_severe.cycles, getattr(until_severe, name)[:, 0]
+                reading["severe_course"], until_severe.cycles, getattr(until_severe, name)[:, 0]
             )
             for name in ("pressure", "step", "depth")
         },
