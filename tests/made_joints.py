@@ -93,6 +93,8 @@ def record(slides: bool) -> dict[str, Any]:
         "title": TITLE,
         "driver": "wave generator",
         "loaded": "flexspline",
+        "stages": [],
+        "period": 2.0 * np.pi / 40.0,
         "members": ["wave generator", "flexspline", "circular spline"],
         "motion": [1.0, 1.0 / RATIO, 0.0],
         "travels": ["loaded"] if slides else [],
@@ -131,6 +133,35 @@ def error() -> xr.Dataset:
         {"curve": ["geometry", "under load"]},
         {"turn_angle": "wave generator against circular spline"},
     )
+
+
+def rippling() -> dict[str, xr.Dataset]:
+    """A mesh cycle, of which 40 come in a turn of the driver, with waves of 30 and 10 % of friction."""
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    phase, lost = (nodes + 1.0) / 2.0, 0.1
+    angle = 2.0 * np.pi * phase
+    waves = (
+        0.3 * np.cos(angle - 0.7) + 0.1 * np.cos(2.0 * angle + 0.2) + 0.005 * np.cos(3.0 * angle)
+    )
+    torque = 20.0 / abs(RATIO) + lost * (1.0 + waves)
+    mean = (("law", "point"), [[20.0 / abs(RATIO) + lost]])
+    return {
+        "cycle": xr.Dataset(
+            {
+                "input_torque": (("law", "node"), torque[None]),
+                "phase": ("node", phase),
+                "weight": ("node", weights / 2.0),
+            },
+            {"law": ["made"]},
+            {
+                "title": "mesh cycle",
+                "version": "0.1.0",
+                "solve": '{"code": 0, "residual": 0.0}',
+                "warnings": "[]",
+            },
+        ),
+        "operation": xr.Dataset({"mean_input_torque": mean}, {"law": ["made"]}),
+    }
 
 
 def strengths() -> dict[str, xr.Dataset]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from made_joints import RATIO, error, locking, made_joint, plain, torsion
+from made_joints import RATIO, error, locking, made_joint, plain, rippling, torsion
 from scipy.integrate import solve_ivp
 
 from pitchpoint._jax import array
@@ -30,6 +30,7 @@ STRICT = ("gcc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-shar
 ROTOR, LOAD = 0.7, 1.2
 WISHES = Asked(rotor_inertia=f"{ROTOR / RATIO**2} kg m2", temperature="40 degC")
 NAMES = ["motor_torque", "load_torque", "temperature", "inertia", "load_inertia", "damping"]
+NAMES += ["ripple"]
 NAMES += ["start_angle", "start_speed", "start_wind_up", "start_wind_up_rate"]
 NAMES += ["motor_angle", "motor_speed", "output_angle", "output_speed", "wind_up", "torque"]
 NAMES += ["friction", "loss"]
@@ -301,6 +302,75 @@ def test_wind_up_play_and_error_move_as_in_the_product(torque: float, tmp_path: 
     for column, values in ((2, expected.torque), (1, expected.output_rate)):
         size = float(np.ptp(values))
         np.testing.assert_allclose(found[:, column], values[1:], atol=1e-3 * size)
+
+
+def held_loop(height: float) -> dict[str, xr.Dataset]:
+    """A wind-up of one stiffness whose loop is as high everywhere, without play."""
+    spring = with_play(0.0)["torsion"]
+    for way, sign in (("loading", 1.0), ("unloading", -1.0)):
+        values = (spring["torque"].values + sign * height / 2.0)[None]
+        spring[f"{way}_torque"] = (("law", "torque"), values)
+    return {"torsion": spring}
+
+
+@pytest.mark.whole
+def test_teeth_that_hold_brake_a_vibration_as_in_the_product(tmp_path: Path) -> None:
+    """The driver rests: the load swings, and each swing is shorter by the same, as in `course`."""
+    held, start = 2.0, 0.05
+    unit = Unit(made_joint(locking, more=held_loop(2.0 * held)), tmp_path, start_wind_up=start)
+    found = np.array(unit.run(0.6, 2e-3, motor_torque=0.0, load_torque=0.0))
+    assert unit.sticks
+    line = map(array, ([0.0, 1.0, 2.0], [0.0, 1e3, 2e3], [1e3] * 3, 0.0))
+    values = map(array, (0.0, np.inf, LOAD, 0.0, abs(RATIO)))
+    joint = Joint(WindUpCurve(*line), *values, Sliding(array([held]), array([0.0])))
+    still, times = Waves(array([0.0]), array([1.0]), array([0.0])), np.linspace(0.0, 0.6, 301)
+    begin = array([0.0, 0.0, start, 0.0])
+    expected = course(joint, still, Drive.steady(0.0), array(times), begin)
+    swing = np.asarray(expected.wind_up)
+    assert swing.min() == pytest.approx(-start + 2.0 * held / 1e3, rel=1e-2)
+    rate = np.asarray(expected.output_rate)[1:]
+    np.testing.assert_allclose(found[:, 1], rate, atol=1e-2 * np.ptp(rate))
+
+
+def test_the_loop_of_the_wind_up_is_as_wide_as_friction_holds(tmp_path: Path) -> None:
+    """Slowly loaded both ways with the driver at rest; a driver that turns sets the teeth free."""
+    held = 2.0
+    more = held_loop(2.0 * held)
+    unit = Unit(made_joint(locking, more=more), tmp_path / "held", damping=100.0)
+    wound = []
+    for load in (
+        *np.linspace(0.0, 30.0, 16),
+        *np.linspace(28.0, -30.0, 30),
+        *np.linspace(-28.0, 0.0, 15),
+    ):
+        unit.run(0.4, 0.1, load_torque=float(load))
+        wound.append(unit.of("wind_up")[0])
+    assert wound[30] - wound[-1] == pytest.approx(2.0 * held / 1e3, rel=2e-2)
+    free = Unit(made_joint(more=more), tmp_path / "turns", damping=40.0)
+    joint = joint_model(made_joint(more=more))
+    free.run(4.0, 0.1, motor_torque=joint.driver_torque(20.0, 1.0) + 0.01, load_torque=20.0)
+    assert free.of("output_speed")[0] > 0.1
+    assert free.of("wind_up")[0] == pytest.approx(20.0 / 1e3, rel=1e-2)
+
+
+def test_friction_ripples_over_the_angle_of_the_driver(tmp_path: Path) -> None:
+    """By its waves about what the map loses, and not at all where that is not wanted."""
+    made = made_joint(more=rippling())
+    unit, table = Unit(made, tmp_path, start_speed=0.5), joint_model(made).table
+    found = []
+    unit.put(motor_torque=0.5, load_torque=20.0)
+    for _ in range(200):
+        unit.unit.doStep(unit.time, 1e-4)
+        unit.time += 1e-4
+        found.append(np.abs(unit.of("friction", "motor_angle", "torque", "output_speed")))
+    friction, angle, torque, speed = np.array(found).T
+    waves = 1.0 + 0.3 * np.cos(40.0 * angle - 0.7) + 0.1 * np.cos(80.0 * angle + 0.2)
+    lost = [table.lost(*point, 40.0) / 50.0 for point in zip(torque, speed, strict=True)]
+    assert np.ptp(friction) > 0.5 * np.mean(friction)
+    np.testing.assert_allclose(friction, waves * lost, rtol=1e-6)
+    unit.put(ripple=0.0)
+    torque, speed, smooth = unit.of("torque", "output_speed", "friction")
+    assert abs(smooth) == pytest.approx(table.lost(torque, speed, 40.0) / 50.0, rel=1e-9)
 
 
 def test_a_gear_that_locks_holds_its_load_and_is_driven_down(tmp_path: Path) -> None:

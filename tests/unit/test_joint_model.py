@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 import xarray as xr
-from made_joints import RATIO, error, locking, made_joint, plain, strengths, torsion
+from made_joints import RATIO, error, locking, made_joint, plain, rippling, strengths, torsion
 
 from pitchpoint.errors import InputError
+from pitchpoint.results.by_stage import by_stage
 from pitchpoint.runs.joint_model import joint_model, part_of_map
 
 
@@ -48,6 +49,33 @@ def test_what_the_result_has_is_there_with_units_and_the_rest_has_a_reason() -> 
     bare = joint_model(made_joint())
     assert (bare.wind_up, bare.lacks["wind_up"]) == (None, "the teeth are rigid")
     assert bare.lacks.keys() >= {"rotor_inertia", "backlash", "kinematic_error", "torque_ripple"}
+
+
+def test_friction_ripples_as_the_torque_of_the_driver_over_a_mesh_cycle() -> None:
+    joint = joint_model(made_joint(more=rippling()))
+    assert joint.friction_waves is not None
+    order, amplitude, phase, angle, turns = joint.friction_waves
+    assert (order.tolist(), angle, turns) == ([40.0, 80.0], "angle of wave generator", 1.0)
+    assert amplitude == pytest.approx([0.3, 0.1], rel=1e-6)
+    assert phase == pytest.approx([-0.7, 0.2], rel=1e-6)
+    smooth = rippling()
+    smooth["cycle"]["input_torque"][:] = 0.5
+    assert "less than 1 %" in joint_model(made_joint(more=smooth)).lacks["friction_waves"]
+
+
+def test_friction_of_stages_ripples_at_the_orders_of_each() -> None:
+    """The second stage turns a fifth as fast: 8 of its 40 cycles come in a turn of the driver."""
+    two = rippling()
+    two["cycle"] = by_stage({1: two["cycle"], 2: two["cycle"]})
+    made = made_joint(more=two)
+    each = {"bodies": "", "period": 2.0 * np.pi / 40.0}
+    made.manifest["stages"] = [
+        {**each, "number": number, "speed": speed} for number, speed in ((1, 100.0), (2, -20.0))
+    ]
+    waves = joint_model(made).friction_waves
+    assert waves is not None
+    assert waves.order == pytest.approx([8.0, 16.0, 40.0, 80.0])
+    assert waves.amplitude == pytest.approx([0.3, 0.1, 0.3, 0.1], rel=1e-6)
 
 
 def test_inertia_is_that_at_the_output_with_the_rotor_by_value() -> None:

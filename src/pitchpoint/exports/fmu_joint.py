@@ -7,19 +7,23 @@ import numpy as np
 from pitchpoint.exports.evaluator import inert
 from pitchpoint.exports.fmu import SimulationUnit, UnitVariable, write_unit
 from pitchpoint.exports.simulators import LOCKED_SHARE, HandedOver, Simulated
-from pitchpoint.runs.joint_model import JointModel, WindUpTable
+from pitchpoint.runs.joint_model import AngleWaves, JointModel, WindUpTable
 
 __all__ = ["write_joint_fmu"]
 
+LOOP_TRAVEL = 0.03
+"""Travel within which friction of wound up teeth turns, over that by which it winds them up at most."""
+
 BESIDE = (
-    "That holds in steady motion. Lost are the ripple of friction over the angle, the hysteresis of the "
-    "wind-up, and the change of temperature by the losses."
+    "That holds in steady motion, in the mean over the angle. Lost is the change of temperature by the "
+    "losses; friction ripples at any load by the part that it does at that of operation, without its jumps "
+    "where teeth come to carry."
 )
 
 STEPS = (
     "Inside, fixed steps of Runge and Kutta of order four: a hundredth of the shortest period of the wind-up "
-    "with the inertia of the load that is set, a thirtieth of the shortest wave of the kinematic error, at "
-    "most 0.1 ms. Where the driver comes to rest within a step, it is found there."
+    "with the inertia of the load that is set, a thirtieth of the shortest wave of friction and of the "
+    "kinematic error, at most 0.1 ms. Where the driver comes to rest within a step, it is found there."
 )
 
 
@@ -61,6 +65,13 @@ def _variables(given: Simulated) -> list[UnitVariable]:
         UnitVariable(
             "damping", "of the wind-up", "N s/m" if slides else "N m s/rad", 0.0, "tunable"
         ),
+        UnitVariable(
+            "ripple",
+            "of friction over the angle, 0 for none",
+            "1",
+            _rippling(given.joint),
+            "tunable",
+        ),
         UnitVariable("start_angle", "of the driver over the ratio", travel, 0.0, True),
         UnitVariable("start_speed", "of the driver over the ratio", speed, 0.0, True),
         UnitVariable("start_wind_up", "from the middle of the play", travel, 0.0, True),
@@ -83,16 +94,21 @@ def _variables(given: Simulated) -> list[UnitVariable]:
 def _numbers(given: Simulated) -> str:
     """What the equations ask for, as C has it; arrays of nothing have a place that nothing reads."""
     joint = given.joint
-    knots = np.zeros((3, 0)) if joint.wind_up is None else _knots(joint.wind_up)
+    knots = np.zeros((4, 0)) if joint.wind_up is None else _knots(joint.wind_up)
     waves = joint.kinematic_error
-    order = np.zeros(0) if waves is None else waves.order * waves.turns * abs(joint.ratio)
+    order, *error = _waves_at_output(joint, waves)
+    rippling, *ripple = _waves_at_output(joint, joint.friction_waves)
     arrays = {
         "wind_up": knots[0],
         "wind_up_torque": knots[1],
         "stiffness": knots[2],
         "wave_order": order,
-        "wave_amplitude": order if waves is None else waves.amplitude,
-        "wave_phase": order if waves is None else waves.phase,
+        "wave_amplitude": error[0],
+        "wave_phase": error[1],
+        "friction_order": rippling,
+        "friction_amplitude": ripple[0],
+        "friction_phase": ripple[1],
+        "loop_torque": knots[3],
     }
     numbers = {
         "ARMATURE": joint.armature,
@@ -100,12 +116,26 @@ def _numbers(given: Simulated) -> str:
         "LOCKED_SHARE": LOCKED_SHARE,
         "STIFFEST": max(knots[2], default=0.0),
         "HIGHEST_ORDER": max(abs(order), default=0.0),
+        "FRICTION_ORDER": max(abs(rippling), default=0.0),
+        "LOOP_TRAVEL": LOOP_TRAVEL * max(knots[3] / np.maximum(knots[2], 1e-300), default=0.0),
     }
     return (
         f"#define JOINT_MOVES\n#define JOINT_KNOTS {knots.shape[1]}\n#define JOINT_WAVES {order.size}\n"
+        f"#define JOINT_FRICTION_WAVES {rippling.size}\n"
         + "".join(f"#define JOINT_{name} {float(value)!r}\n" for name, value in numbers.items())
         + "".join(f"static const double joint_{n}[] = {{{_row(v)}}};\n" for n, v in arrays.items())
     )
+
+
+def _waves_at_output(joint: JointModel, waves: AngleWaves | None) -> tuple[np.ndarray, ...]:
+    """Order over the driver's angle at the output, amplitude and phase; of nothing where there is none."""
+    if waves is None:
+        return (np.zeros(0),) * 3
+    return waves.order * waves.turns * abs(joint.ratio), waves.amplitude, waves.phase
+
+
+def _rippling(joint: JointModel) -> float:
+    return 0.0 if joint.friction_waves is None else 1.0
 
 
 def _row(values: np.ndarray) -> str:
@@ -114,11 +144,12 @@ def _row(values: np.ndarray) -> str:
 
 
 def _knots(curve: WindUpTable) -> np.ndarray:
-    """Wind-up from first touch, torque and stiffness, rising from zero."""
-    points = np.stack([curve.wind_up, curve.torque, curve.stiffness])
+    """Wind-up from first touch, torque and stiffness, and height of the loop, rising from zero."""
+    points = np.stack([curve.wind_up, curve.torque, curve.stiffness, curve.held])
     if points[1, 0] > 0.0:
         start = points[0, 0] - points[1, 0] / points[2, 0]
-        points = np.concatenate([[[start], [0.0], [points[2, 0]]], points], axis=1)
+        first = [[start], [0.0], [points[2, 0]], [points[3, 0]]]
+        points = np.concatenate([first, points], axis=1)
     points[0] -= points[0, 0]
     return points
 
@@ -129,6 +160,7 @@ def _lacks(joint: JointModel) -> list[str]:
         "wind_up": "The drive is rigid and has no play in it",
         "backlash": "It has no play",
         "kinematic_error": "It has no error over the angle",
+        "friction_waves": "Its friction does not ripple",
     }
     still = (
         "No inertia of the drive is known: set inertia and load_inertia, without which the unit does not "

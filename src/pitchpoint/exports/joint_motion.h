@@ -1,11 +1,14 @@
-/* Rotor and load of a drive with its friction, wind-up, play and error over the angle between them.
+/* Rotor and load of a drive with its friction, wind-up, play, hysteresis and error over the angle between them.
  *
  * Everything counts at the output. Of the angles a of the driver over the ratio and b of the load,
  *     J1 a'' = motor - friction - T (1 - e'(a)),    J2 b'' = T - load,
- *     T = curve(a - b - e(a)) + damping (a - b - e(a))',
- * with the error e by which the output lags. Without a curve the drive is rigid, b = a - e(a), and T follows from
- * both inertias. Friction is the torque that the loss map loses under T; at rest it is what holds. A rigid drive
- * that a heavy load is to turn against friction that locks has no such T: it jams, and stands at once. */
+ *     T = curve(d) + held(d) z + damping d',    d = a - b - e(a),
+ * with the error e by which the output lags. Teeth that the wind-up slides hold as much as their loop is high: z
+ * goes with d from -1 to 1 within JOINT_LOOP_TRAVEL, and fades while the driver slides the teeth itself, for
+ * what they hold then is in the map. Without a curve the drive is rigid, b = a - e(a), and T follows from
+ * both inertias. Friction is the torque that the loss map loses under T, times its waves over the angle of the
+ * driver; at rest it is what holds. A rigid drive that a heavy load is to turn against friction that locks has no
+ * such T: it jams, and stands at once. */
 #ifndef JOINT_MOTION_H
 #define JOINT_MOTION_H
 
@@ -16,6 +19,7 @@ enum {
     INERTIA,
     LOAD_INERTIA,
     DAMPING,
+    RIPPLE,
     START_ANGLE,
     START_SPEED,
     START_WIND_UP,
@@ -46,6 +50,7 @@ static const double joint_turn = 6.283185307179586;
 
 struct motion {
     double angle, speed, output, output_speed;
+    double wind_up, slid; /* where the wind-up was, and z there */
     int jams; /* no torque goes on with this motion, whose numbers are none then */
 };
 
@@ -58,7 +63,7 @@ struct joint {
 
 /* Forces on a state; friction is that along the motion, against which way it is counted by the sense. */
 struct forces {
-    double wind_up, rate, slope, bend, torque, friction, acceleration, load_acceleration;
+    double wind_up, rate, slope, bend, waves, torque, friction, acceleration, load_acceleration;
     int jams;
 };
 
@@ -72,6 +77,38 @@ static double joint_error(double angle, double *slope, double *bend)
         *bend -= joint_wave_amplitude[k] * order * order * cos(phase);
     }
     return error;
+}
+
+/* Friction over its mean at an angle of the driver. */
+static double joint_waves(const struct joint *joint, double angle)
+{
+    double waves = 0.0;
+    for (int k = 0; k < JOINT_FRICTION_WAVES; ++k)
+        waves += joint_friction_amplitude[k] * cos(joint_friction_order[k] * angle + joint_friction_phase[k]);
+    return fmax(1.0 + joint->inputs[RIPPLE] * waves, 0.0);
+}
+
+/* What part of the friction of the wound up teeth acts at a wind-up, -1 to 1. */
+static double joint_slid(const struct motion *from, double wind_up)
+{
+    if (!(JOINT_LOOP_TRAVEL > 0.0))
+        return 0.0;
+    return fmax(-1.0, fmin(1.0, from->slid + (wind_up - from->wind_up) / JOINT_LOOP_TRAVEL));
+}
+
+/* Torque that friction of the wound up teeth holds, linear between the points. */
+static double joint_held(double wind_up)
+{
+    const double way = fabs(wind_up) - 0.5 * JOINT_PLAY;
+    const double *at = joint_wind_up, *height = joint_loop_torque;
+    int k = 0;
+    if (way <= 0.0)
+        return height[0];
+    if (way >= at[JOINT_LAST])
+        return height[JOINT_LAST];
+    while (way >= at[k + 1])
+        ++k;
+    return height[k] + (way - at[k]) * (height[k + 1] - height[k]) / (at[k + 1] - at[k]);
 }
 
 /* Torque of the wind-up: cubics through points with their slopes behind half the play, straight beyond. */
@@ -93,21 +130,21 @@ static double joint_spring(double wind_up)
 }
 
 /* Torque that is lost along a motion of one sense; where friction locks, what holds more than the load. */
-static double joint_lost(const struct joint *joint, double torque, double speed, double sense)
+static double joint_lost(const struct joint *joint, double torque, double speed, double sense, double waves)
 {
     const double degree = joint->inputs[TEMPERATURE];
     const double lost = loss_table_lost(sense * torque, fabs(speed), degree, JOINT_LAW);
     if (!(lost < 0.0))
-        return lost;
+        return lost * waves;
     const double alone = loss_table_lost(0.0, fabs(speed), degree, JOINT_LAW);
     return JOINT_LOCKED_SHARE * fabs(torque) + (alone > 0.0 ? alone : 0.0);
 }
 
 /* In motion that which is slowest or faster, for at rest the table has what starts the drive. */
-static double joint_sliding(const struct joint *joint, double torque, double speed, double sense)
+static double joint_sliding(const struct joint *joint, double torque, double speed, double sense, double waves)
 {
     const double least = 1e-3 * loss_table_speeds[1];
-    return joint_lost(joint, torque, fabs(speed) > least ? speed : least, sense);
+    return joint_lost(joint, torque, fabs(speed) > least ? speed : least, sense, waves);
 }
 
 /* An inertia; that which is not known and was not set is small until the start, which it forbids. */
@@ -128,7 +165,8 @@ static double joint_excess(const struct joint *joint, const struct forces *at, d
     const double inertia = joint_inertia(joint, LOAD_INERTIA), gain = 1.0 - at->slope;
     double acceleration = 0.0;
     if (sense != 0.0)
-        acceleration = (joint_motor(joint) - sense * joint_sliding(joint, torque, speed, sense) - torque * gain) /
+        acceleration = (joint_motor(joint) - sense * joint_sliding(joint, torque, speed, sense, at->waves) -
+                        torque * gain) /
                        joint_inertia(joint, INERTIA);
     return torque - joint->inputs[LOAD_TORQUE] - inertia * (gain * acceleration - at->bend * speed * speed);
 }
@@ -177,14 +215,16 @@ static double joint_rigid(const struct joint *joint, const struct forces *at, do
 static struct forces joint_forces(const struct joint *joint, const struct motion *at, double sense)
 {
     struct forces found;
+    found.waves = joint_waves(joint, at->angle);
     const double error = joint_error(at->angle, &found.slope, &found.bend);
     found.wind_up = JOINT_KNOTS ? at->angle - at->output - error : 0.0;
     found.rate = JOINT_KNOTS ? at->speed * (1.0 - found.slope) - at->output_speed : 0.0;
     found.jams = 0;
-    found.torque = JOINT_KNOTS ? joint_spring(found.wind_up) + joint->inputs[DAMPING] * found.rate
+    found.torque = JOINT_KNOTS ? joint_spring(found.wind_up) + joint->inputs[DAMPING] * found.rate +
+                                     joint_held(found.wind_up) * joint_slid(at, found.wind_up)
                                : joint_rigid(joint, &found, at->speed, sense, &found.jams);
     found.friction = sense == 0.0 ? joint_motor(joint) - found.torque * (1.0 - found.slope)
-                                  : sense * joint_sliding(joint, found.torque, at->speed, sense);
+                                  : sense * joint_sliding(joint, found.torque, at->speed, sense, found.waves);
     found.acceleration = (joint_motor(joint) - found.friction - found.torque * (1.0 - found.slope)) /
                          joint_inertia(joint, INERTIA);
     if (sense == 0.0)
@@ -200,7 +240,7 @@ static double joint_breaks(const struct joint *joint, const struct motion *at)
 {
     const struct forces here = joint_forces(joint, at, 0.0);
     const double sense = here.friction < 0.0 ? -1.0 : 1.0;
-    return fabs(here.friction) > joint_lost(joint, here.torque, 0.0, sense) ? sense : 0.0;
+    return fabs(here.friction) > joint_lost(joint, here.torque, 0.0, sense, here.waves) ? sense : 0.0;
 }
 
 static struct motion joint_moved(const struct motion *from, const struct motion *at, const struct forces *by,
@@ -249,12 +289,19 @@ static double joint_stops(const struct joint *joint, double step, double sense)
     return low;
 }
 
-/* A rigid load follows its driver. */
-static void joint_follow(struct joint *joint)
+/* A rigid load follows its driver; teeth slide with the wind-up, and what they hold fades with the driver. */
+static void joint_follow(struct joint *joint, double turned)
 {
     double slope, bend;
-    if (JOINT_KNOTS)
+    struct motion *now = &joint->now;
+    if (JOINT_KNOTS) {
+        const double wind_up = now->angle - now->output - joint_error(now->angle, &slope, &bend);
+        now->slid = joint_slid(now, wind_up);
+        if (JOINT_LOOP_TRAVEL > 0.0)
+            now->slid *= exp(-fabs(turned) / JOINT_LOOP_TRAVEL);
+        now->wind_up = wind_up;
         return;
+    }
     joint->now.output = joint->now.angle - joint_error(joint->now.angle, &slope, &bend);
     joint->now.output_speed = joint->now.speed * (1.0 - slope);
 }
@@ -262,7 +309,7 @@ static void joint_follow(struct joint *joint)
 static void joint_small_step(struct joint *joint, double step)
 {
     for (int turns = 0; step > 0.0; ++turns) {
-        const double before = joint->now.speed;
+        const double before = joint->now.speed, angle = joint->now.angle;
         double sense = before == 0.0 ? joint_breaks(joint, &joint->now) : copysign(1.0, before), part = step;
         struct motion next = joint_advanced(joint, step, turns < CREEPS ? sense : 0.0);
         if ((next.jams || sense * next.speed < 0.0) && before == 0.0)
@@ -273,7 +320,7 @@ static void joint_small_step(struct joint *joint, double step)
             next.speed = 0.0;
         }
         joint->now = next;
-        joint_follow(joint);
+        joint_follow(joint, joint->now.angle - angle);
         step = part < step ? step - part : 0.0;
     }
 }
@@ -283,7 +330,8 @@ static double joint_longest(const struct joint *joint)
 {
     const double yields = 1.0 / joint_inertia(joint, INERTIA) + 1.0 / joint_inertia(joint, LOAD_INERTIA);
     const double damped = joint->inputs[DAMPING] * yields;
-    const double waving = JOINT_HIGHEST_ORDER * fabs(joint->now.speed);
+    const double order = fmax(JOINT_HIGHEST_ORDER, joint->inputs[RIPPLE] != 0.0 ? JOINT_FRICTION_ORDER : 0.0);
+    const double waving = order * fabs(joint->now.speed);
     double step = LONGEST_STEP;
     if (JOINT_STIFFEST > 0.0)
         step = fmin(step, joint_turn / PARTS / sqrt(JOINT_STIFFEST * yields));
@@ -323,6 +371,8 @@ static void joint_begin(struct joint *joint)
     const double *start = joint->inputs;
     const double error = joint_error(start[START_ANGLE], &slope, &bend);
     joint->now.jams = 0;
+    joint->now.slid = 0.0;
+    joint->now.wind_up = JOINT_KNOTS ? start[START_WIND_UP] : 0.0;
     joint->now.angle = start[START_ANGLE];
     joint->now.speed = start[START_SPEED];
     joint->now.output = start[START_ANGLE] - error - (JOINT_KNOTS ? start[START_WIND_UP] : 0.0);
@@ -336,6 +386,7 @@ static void joint_reset(struct joint *joint)
         joint->inputs[k] = 0.0;
     joint->inputs[TEMPERATURE] = JOINT_TEMPERATURE;
     joint->inputs[INERTIA] = joint->inputs[LOAD_INERTIA] = JOINT_ARMATURE;
+    joint->inputs[RIPPLE] = JOINT_FRICTION_WAVES > 0 ? 1.0 : 0.0;
     joint->time = 0.0;
     joint->started = 0;
     joint_begin(joint);
@@ -346,7 +397,7 @@ static int joint_set(struct joint *joint, unsigned number, double value)
 {
     if (number >= SETTABLE || !isfinite(value))
         return 0;
-    if (((number == INERTIA || number == LOAD_INERTIA) && value <= 0.0) || (number == DAMPING && value < 0.0))
+    if (((number == INERTIA || number == LOAD_INERTIA) && value <= 0.0) || ((number == DAMPING || number == RIPPLE) && value < 0.0))
         return 0;
     if (number >= START_ANGLE && joint->started)
         return 0;

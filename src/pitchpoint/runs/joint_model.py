@@ -1,7 +1,7 @@
 """A drive as a joint of a robot: what a simulator has to know of it, at its output, from a result alone."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -25,6 +25,7 @@ from pitchpoint.efficiency.loss_table import LossTable, Rest
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
+from pitchpoint.results.by_stage import of_stage
 from pitchpoint.runs.run import Outcome
 from pitchpoint.units import degrees_celsius
 
@@ -41,7 +42,7 @@ __all__ = [
 ]
 
 LEAST_WAVE = 0.01
-"""Part of the largest wave of an error from which on one counts."""
+"""Part of the largest wave of an error, and of the mean of friction, from which on one counts."""
 
 PARTS: Mapping[str, str] = {
     "flank_torque": "flanks of the teeth",
@@ -58,6 +59,17 @@ PARTS: Mapping[str, str] = {
 MOST_WAVES = 32
 """Waves that are handed over, the largest ones."""
 
+MOST_FRICTION_WAVES = 8
+"""The same of friction, whose passing teeth ask simulators for short steps."""
+
+LEAST_FRICTION_WAVE = 0.1
+"""Part of the largest wave of friction from which on one counts."""
+
+NODES_OF_A_WAVE = 4
+"""Nodes of a mesh cycle for the shortest wave that is taken from it."""
+
+TURN = 2.0 * np.pi
+
 
 class WindUpTable(NamedTuple):
     """How far the output turns under torque with the driver held.
@@ -68,6 +80,8 @@ class WindUpTable(NamedTuple):
         stiffness: slope of torque over wind-up [torque] [N m/rad or N/m].
         at_load: that slope at the load of operation [N m/rad or N/m].
         covers: what yields, in words.
+        held: torque that friction of the teeth holds at rest beside that of the wind-up; zero where the
+            result has no loop [torque].
     """
 
     torque: np.ndarray
@@ -75,6 +89,7 @@ class WindUpTable(NamedTuple):
     stiffness: np.ndarray
     at_load: float
     covers: str
+    held: np.ndarray
 
 
 class AngleWaves(NamedTuple):
@@ -118,6 +133,8 @@ class JointModel:
         kinematic_error: waves of the output's position by deviations of the teeth [rad or m].
         transmission_error: of the teeth under the load of operation, peak to peak [rad or m].
         torque_ripple: of the driver at the operating point, peak to peak [torque of the driver].
+        friction_waves: waves of friction over its mean at the operating point, over the rotation of the
+            driver from the start of a mesh cycle [1].
         limits: largest torque and speed of the output in the map, by name, and the torques of it that its
             parts bear, see `PARTS` [torque].
         lacks: why an attribute is None, in a sentence, by its name.
@@ -158,6 +175,7 @@ class JointModel:
     kinematic_error: AngleWaves | None
     transmission_error: float | None
     torque_ripple: float | None
+    friction_waves: AngleWaves | None
     limits: Mapping[str, float]
     lacks: Mapping[str, str]
     warnings: tuple[str, ...] = ()
@@ -317,6 +335,7 @@ _MAYBE = (
     "kinematic_error",
     "transmission_error",
     "torque_ripple",
+    "friction_waves",
 )
 
 
@@ -337,6 +356,10 @@ def _told(joint: JointModel) -> Any:
     if joint.wind_up is not None:
         slope = f"{joint.wind_up.at_load:.4g} {unit['torque']}/{unit['travel']}"
         yield f"stiffness {slope} at the load of operation"
+    if joint.friction_waves is not None:
+        orders = ", ".join(f"{order:.4g}" for order in joint.friction_waves.order)
+        share = float(np.hypot.reduce(joint.friction_waves.amplitude)) / math.sqrt(2.0)
+        yield f"friction ripples by {100.0 * share:.3g} % (rms) at the load of operation, orders {orders}"
     yield from (f"{name}: {why}" for name, why in joint.lacks.items())
 
 
@@ -606,16 +629,84 @@ def _known(value: Any) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def _wind_up(data: xr.Dataset, _: Outcome, __: str, load: float) -> WindUpTable | None:
+def _wind_up(data: xr.Dataset, _: Outcome, law: str, load: float) -> WindUpTable | None:
     torque, turned, slope = (
         data[name].values for name in ("torque", "wind_up", "tangent_torsional_stiffness")
     )
     known = np.isfinite(torque) & np.isfinite(turned) & np.isfinite(slope)
     if known.sum() < 2:
         return None
-    torque, turned, slope = (one[known] for one in (torque, turned, slope))
+    torque, turned, slope, held = (
+        one[known] for one in (torque, turned, slope, _held(data, law, torque))
+    )
     covers = str(data["torsional_stiffness"].attrs.get("covers", ""))
-    return WindUpTable(torque, turned, slope, float(np.interp(load, torque, slope)), covers)
+    return WindUpTable(torque, turned, slope, float(np.interp(load, torque, slope)), covers, held)
+
+
+def _held(data: xr.Dataset, law: str, torque: np.ndarray) -> np.ndarray:
+    """Half of the height of the loop of wind-up at each torque; zero where there is none."""
+    if "loading_torque" not in data or law not in data["law"].values:
+        return 0.0 * torque
+    loading, unloading = (
+        data[f"{way}_torque"].sel(law=law).values for way in ("loading", "unloading")
+    )
+    half: np.ndarray = np.nan_to_num(loading - unloading) / 2.0
+    return half.clip(0.0)
+
+
+def _friction_waves(data: xr.Dataset, outcome: Outcome, law: str, load: float) -> AngleWaves | None:
+    """Waves of the torque of the driver over the torque that is lost, under the load of operation."""
+    record, point = outcome.manifest, outcome.parts.get("operation")
+    if point is None or "mean_input_torque" not in point:
+        return None
+    mean = float(point["mean_input_torque"].sel(law=law).values.ravel()[0])
+    lost = mean - load / abs(_ratio(record))
+    each = [*_torque_cycles(data, record, law)]
+    if not each or not lost > LEAST_WAVE**2 * mean:
+        return None
+    rows = np.concatenate([_harmonics(*one) for one in each])
+    order, size = np.real(rows[:, 0]), np.abs(rows[:, 1]) * mean / lost
+    largest = np.argsort(-size)[:MOST_FRICTION_WAVES]
+    kept = largest[size[largest] >= max(LEAST_FRICTION_WAVE * size.max(), LEAST_WAVE)]
+    if not kept.size:
+        return None
+    kept = kept[np.argsort(order[kept])]
+    angle = f"angle of {record['driver']}"
+    return AngleWaves(order[kept], size[kept], np.angle(rows[kept, 1]), angle, 1.0)
+
+
+def _torque_cycles(
+    data: xr.Dataset, record: Mapping[str, Any], law: str
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, float]]:
+    """Torque of a driver over the phase of a cycle, weights, and cycles in a turn of the driver of all.
+
+    Of drives of several meshes each one's own: their phases meet freely.
+    """
+    if "driver_angle" in data and data["driver_angle"].ndim == 1:
+        period = float(data.attrs["driver_period"])
+        torque = data["input_torque"].sel(law=law).values
+        yield torque, data["driver_angle"].values / period, data["weight"].values, TURN / period
+    elif "phase" in data and not record["stages"]:
+        torque = data["input_torque"].sel(law=law).values
+        turns = TURN / abs(float(record["period"]))
+        yield torque, data["phase"].values, data["weight"].values, turns
+    elif "phase" in data and not any(stage["bodies"] for stage in record["stages"]):
+        first = abs(float(record["stages"][0]["speed"]))
+        for stage in record["stages"]:
+            one = of_stage(data, stage["number"])
+            turns = TURN / abs(float(stage["period"])) * abs(float(stage["speed"])) / first
+            torque = one["input_torque"].sel(law=law).values
+            yield torque, one["phase"].values, one["weight"].values, turns
+
+
+def _harmonics(
+    torque: np.ndarray, phase: np.ndarray, weight: np.ndarray, turns: float
+) -> np.ndarray:
+    """Orders over the driver and amplitudes over the mean, with their phases, of what the nodes resolve."""
+    count = np.arange(1, min(MOST_FRICTION_WAVES, torque.size // NODES_OF_A_WAVE) + 1)
+    ripple = torque / (torque @ weight) - 1.0  # the nodes are those of a quadrature
+    lines = 2.0 * np.exp(-1j * TURN * np.outer(count, phase)) @ (weight * ripple)
+    return np.stack([count * turns + 0j, lines], axis=1)
 
 
 def _of_law(name: str) -> Any:
@@ -715,6 +806,11 @@ _READERS: Mapping[str, tuple[tuple[str, ...], Any, str]] = {
         ("operation",),
         _of_law("torque_ripple"),
         "the result has no operating point",
+    ),
+    "friction_waves": (
+        ("train_period", "cycle"),
+        _friction_waves,
+        "over a mesh cycle it changes by less than 1 %, or that of a train among other stages is not known",
     ),
 }
 """By attribute: the parts that may have it, how it is read, and what is told where none has."""
