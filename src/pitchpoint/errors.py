@@ -83,6 +83,12 @@ class InputError(PitchpointError, ValueError):
         where = (shorten(part, LONGEST_PLACE) for part in (self.file, self.key) if part)
         return ": ".join((*where, self.message))
 
+    def __copy__(self) -> Self:
+        # Packages that pickle tracebacks (tblib, for dask) tell `copy` to share what an exception holds.
+        made = self.__class__.__new__(self.__class__, *self.args)
+        made.__dict__.update(self.__dict__)
+        return made
+
     def at(self, *, file: str | None = None, key: str | None = None) -> Self:
         """Return a copy with the location filled in; what is not given stays as it was.
 
