@@ -1,6 +1,5 @@
 """Many designs of a case computed together; one that cannot be computed says why, and stops no other."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -8,17 +7,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, silent
+from pitchpoint.analyses.analysis import Progress, silent
 from pitchpoint.analyses.studies import more_of
 from pitchpoint.analyses.summaries import joined, summaries
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError
 
-__all__ = ["Designs"]
+__all__ = ["TOGETHER", "Designs"]
 
-PIECE = 256
-"""Designs that are computed, and kept on disk, together."""
+TOGETHER = 256
+"""Designs that are computed together."""
 
 LOCKED = "friction locks the mesh"
 UNKNOWN = "no solution was found"
@@ -31,63 +30,44 @@ class Designs:
     """Designs of a case.
 
     Attributes:
-        name: of the part.
         variant: the case.
         changes: of each design, by dotted key.
     """
 
-    name: str
     variant: Variant
     changes: Sequence[Mapping[str, Any]]
 
-    @property
-    def analysis(self) -> Analysis:
-        """The designs as a part of a result."""
-        return Analysis(
-            name=self.name,
-            title="designs",
-            of="drive",
-            compute=self.compute,
-            pieces=lambda _: self.pieces,
-            joined=self.joined,
-        )
-
-    @property
-    def pieces(self) -> list[Piece]:
-        """Ranges of designs."""
-        count = len(self.changes)
-        return [{"first": n, "stop": min(n + PIECE, count)} for n in range(0, count, PIECE)]
-
-    def compute(self, _: Ready, piece: Piece, progress: Progress = silent) -> xr.Dataset:
-        """Figures of those of a range that can be computed; why not of the others, as attribute."""
-        points: dict[int, Ready] = {}
-        reasons: dict[int, str] = {}
-        built = self.variant.built_each(self.changes[piece["first"] : piece["stop"]])
-        for number, one in enumerate(built, piece["first"]):
-            if isinstance(one, InputError):
-                reasons[number] = _told(one)
-            else:
-                points[number] = one
-        found = _figures(points, reasons) if points else []
-        data = joined(found) if found else xr.Dataset()
-        return data.assign_attrs(reasons=json.dumps(reasons))
-
-    def joined(self, _: Ready, pieces: Sequence[xr.Dataset]) -> xr.Dataset:
+    def compute(self, progress: Progress = silent) -> xr.Dataset:
         """All designs [law, point], NaN where there are no figures, with the reason.
 
-        Raises:
-            InputError: no design can be computed.
+        Args:
+            progress: told how many are done.
         """
-        reasons = {
-            int(number): told
-            for piece in pieces
-            for number, told in json.loads(piece.attrs["reasons"]).items()
-        }
-        found = [piece for piece in pieces if piece.data_vars]
+        reasons: dict[int, str] = {}
+        found: list[xr.Dataset] = []
+        for first in range(0, len(self.changes), TOGETHER):
+            progress(first)
+            found += self._range(first, reasons)
+        return self._joined(found, reasons)
+
+    def _range(self, first: int, reasons: dict[int, str]) -> list[xr.Dataset]:
+        """Figures of those of a range that can be computed; of the others the reason is noted."""
+        points: dict[int, Ready] = {}
+        built = self.variant.built_each(self.changes[first : first + TOGETHER])
+        for number, design in enumerate(built, first):
+            if isinstance(design, InputError):
+                reasons[number] = _told(design)
+            else:
+                points[number] = design
+        return _figures(points, reasons) if points else []
+
+    def _joined(self, found: Sequence[xr.Dataset], reasons: Mapping[int, str]) -> xr.Dataset:
         if not found:
-            first = next(iter(reasons.values()), "")
-            told = f"none of {len(self.changes)} designs can be computed; the first one: {first}"
-            raise InputError(told, file=self.variant.name)
+            laws = [models.law.name for models in self.variant.built({}).models]
+            why = np.array([[*reasons.values()]] * len(laws), dtype=str)
+            return xr.Dataset(
+                {"reason": (("law", "point"), why, {"long_name": REASON})}, {"law": laws}
+            )
         every = joined(found).reindex(
             point=np.arange(len(self.changes)), fill_value={"locked": False, "out_of_range": ""}
         )

@@ -36,6 +36,7 @@ __all__ = [
     "AT_CONTACT",
     "alone",
     "at_contact",
+    "balance_codes",
     "beside",
     "few",
     "joined",
@@ -247,6 +248,14 @@ def _balances(values: Mapping[str, Any]) -> dict[str, Any]:
     locked, residual, iterations = found
     lost = np.isnan(residual)
     return told_of(locked_or_lost(locked.astype(bool), lost), residual, iterations)
+
+
+def balance_codes(data: xr.Dataset) -> np.ndarray:
+    """How the balances of designs ended, see `Code`, those left out that were never tried."""
+    tried = ~np.isnan(data["iterations"].values)
+    lost = np.isnan(data["residual"].values)
+    codes = locked_or_lost(data["locked"].values.astype(bool), lost)
+    return np.asarray(codes[tried])
 
 
 def _labels(built: Ready) -> dict[str, Any]:

@@ -4,7 +4,7 @@ xarray and h5netcdf take a tenfold of the time of h5py itself, for the many smal
 long as its numerics.
 """
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Collection, Hashable, Mapping
 from functools import cache
 from importlib.metadata import version
 from typing import Any
@@ -63,16 +63,22 @@ def _beside(others: Mapping[str, set[Hashable]], variable: xr.Variable) -> dict[
     return {_COORDINATES: " ".join(names)} if names else {}
 
 
-def decode(image: bytes) -> xr.Dataset:
-    """Dataset of a file that `encode` made; whatever else it is given raises some exception."""
+def decode(image: bytes, only: Collection[str] | None = None) -> xr.Dataset:
+    """Dataset of a file that `encode` made; whatever else it is given raises some exception.
+
+    Args:
+        image: the file.
+        only: names of variables; all by default.
+    """
     with h5py.File.in_memory(image) as file:
         items = dict(file.items())
         scales = [name for name, item in items.items() if _NUMBER in item.attrs]
         order = [*(name for name in items if name not in scales), *scales]  # as xarray has them
-        kept = {name: items[name] for name in order if not _bare(items[name])}
+        asked = order if only is None else [name for name in order if name in only]
+        kept = {name: items[name] for name in asked if not _bare(items[name])}
         variables = {name: _read(name, item, scales) for name, item in kept.items()}
         beside = {one for item in kept.values() for one in item.attrs.get(_COORDINATES, "").split()}
-        return xr.Dataset(variables, attrs=_described(file)).set_coords(beside)
+        return xr.Dataset(variables, attrs=_described(file)).set_coords(beside & variables.keys())
 
 
 def _scale(

@@ -33,6 +33,7 @@ __all__ = [
     "load",
     "make_folder",
     "save",
+    "save_image",
     "sole_writer",
     "sweep",
     "without_nan",
@@ -119,19 +120,27 @@ def save(data: xr.Dataset, path: Path) -> None:
     Raises:
         OSError: the disk is full, say; its `filename` is the path.
     """
-    image = encode(data)
+    save_image(encode(data), path)
+
+
+def save_image(image: bytes, path: Path) -> None:
+    """Write a dataset that is encoded already, see `save`."""
     _whole(path, image + _seal(image), lasting=True)
 
 
-def load(path: Path) -> xr.Dataset:
+def load(path: Path, only: Collection[str] | None = None) -> xr.Dataset:
     """Read a dataset that `save` wrote.
+
+    Args:
+        path: of the file.
+        only: names of variables; all by default.
 
     Raises:
         InputError: there is no such file, or it is not what was written.
     """
     image = _unsealed(path)
     try:
-        return decode(image)
+        return decode(image, only)
     except Exception as error:  # sealed by someone else: h5py raises what it likes
         raise InputError(f"is not a result of pitchpoint: {error}", file=str(path)) from None
 

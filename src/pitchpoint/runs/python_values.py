@@ -157,10 +157,13 @@ _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "only": (_are_names, 'a list of names of variants, ["default"],'),
     "over": (_by_key, "a dictionary of values by key"),
     "overwrite": (_is_flag, "True or False"),
+    "piece": (_whole(1), "a whole number from 1 on"),
+    "scheduler": (_is_name, 'the address of a scheduler, "tcp://host:8786",'),
     "seed": (_whole(0), "a whole number from 0 on"),
     "settings": (_by_key, "a dictionary of values by key"),
     "studies": (_are_studies, "a dictionary of studies by name"),
     "variant": (_is_name, "the name of a variant"),
+    "workers": (_whole(1), "a whole number from 1 on"),
 }
 """Which values an argument takes, and what they are."""
 

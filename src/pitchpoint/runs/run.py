@@ -15,7 +15,7 @@ from uuid import uuid4
 import xarray as xr
 
 from pitchpoint._jax import double_precision, jax
-from pitchpoint.analyses.analysis import Analysis, Piece, Unasked
+from pitchpoint.analyses.analysis import Piece, Unasked
 from pitchpoint.analyses.comparison import compare, demand_parts
 from pitchpoint.analyses.plausibility import unlikely
 from pitchpoint.analyses.registry import ANALYSES, DUTY
@@ -75,8 +75,8 @@ __all__ = [
     "FrictionChoice",
     "Outcome",
     "Progress",
-    "compute_alone",
     "keep",
+    "mark_of",
     "open_result",
     "own_law",
     "pieces_of",
@@ -274,7 +274,7 @@ def run_variant(
     if folder is not None:
         _hand_over(variant, outcome.manifest["title"], folder, studies)
     for job in work:
-        mark = _mark(variant, built, rows, job)
+        mark = _mark(variant, built, rows, job.name)
         if beside := [*_beside(job, outcome.parts)]:
             mark = fingerprint(mark, beside)  # parts that there were not before count
         part = _part(job, variant, mark, folder, progress, outcome.parts)
@@ -294,24 +294,10 @@ _LEFT = ("study_*", "loss_map", "four_quadrants")
 """Parts of which pieces are dropped that were not asked for again."""
 
 
-@double_precision()
-def compute_alone(
-    analysis: Analysis, variant: Variant, *, told: Any, folder: Path | None, progress: Progress
-) -> xr.Dataset:
-    """A part that no case names, computed, or read where the folder has it of these very inputs.
-
-    Args:
-        analysis: of the part.
-        variant: case.
-        told: what decides about the part beside the case.
-        folder: where it is kept; nothing is written without one.
-        progress: told about its pieces.
-    """
+def mark_of(variant: Variant, part: str) -> str:
+    """Digest of all that decides about a part of that name which no case asks for."""
     built = variant.built({})
-    job = Job(analysis, built)
-    rows = inputs.input_rows(built, variant.document())
-    mark = fingerprint(_mark(variant, built, rows, job), told)
-    return _part(job, variant, mark, folder, progress, {})
+    return _mark(variant, built, inputs.input_rows(built, variant.document()), part)
 
 
 def _of_design(variant: Variant, built: Ready) -> list[str]:
@@ -627,22 +613,22 @@ def _opened(path: Path) -> Outcome:
     return Outcome(manifest, parts)
 
 
-def _mark(variant: Variant, built: Ready, rows: Sequence[inputs.Row], job: Job) -> str:
+def _mark(variant: Variant, built: Ready, rows: Sequence[inputs.Row], part: str) -> str:
     """Digest of the inputs of a part, out of their rows: the same for a case and for its record."""
     study = inputs.STUDIES
-    rows = [row for row in rows if row["table"] != DUTY.name or job.name == DUTY.name]
+    rows = [row for row in rows if row["table"] != DUTY.name or part == DUTY.name]
     given = [
         [row["table"], row["key"], row["value"]]
         for row in rows
         if row["given"]
         and row["table"] != OUTPUT
-        and (row["table"] != study or f"study_{row['key']}.".startswith(f"{job.name}."))
+        and (row["table"] != study or f"study_{row['key']}.".startswith(f"{part}."))
         and not _names_file(row)
     ]
     # What a function of the user's own gave is nobody else's result, nor that of its next version.
     own = uuid4().hex if any(isinstance(law, FrictionLaw) for law in variant.own) else ""
     source = built.case.source
-    return fingerprint(surroundings(), source, given, job.name, own, *_digests(rows))
+    return fingerprint(surroundings(), source, given, part, own, *_digests(rows))
 
 
 def _beside(job: Job, before: Mapping[str, xr.Dataset]) -> Iterator[str]:

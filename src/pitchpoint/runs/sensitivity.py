@@ -12,8 +12,9 @@ from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
 from pitchpoint.registry import nearest
 from pitchpoint.runs.case import CaseLike
+from pitchpoint.runs.layouts import sobol_shares
 from pitchpoint.runs.run import FrictionChoice, Progress
-from pitchpoint.runs.study import drawn_values, sobol_shares, study
+from pitchpoint.runs.study import drawn_values, study
 
 __all__ = ["indices_of", "sobol_indices"]
 

@@ -1,35 +1,43 @@
 """Studies from Python: many designs of a case in one dataset with a dimension for each key."""
 
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import nullcontext
-from itertools import product
-from math import prod
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any, Literal, get_args
+from time import monotonic
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from jaxtyping import Float
 
-from pitchpoint import units as units_of_numbers
 from pitchpoint._jax import double_precision
-from pitchpoint.analyses.designs import Designs
-from pitchpoint.analyses.studies import SWEPT, demand_films, demand_one
+from pitchpoint.analyses.designs import TOGETHER
+from pitchpoint.analyses.studies import demand_films, demand_one
+from pitchpoint.analyses.summaries import balance_codes, few
 from pitchpoint.cases.record import OUTPUT
-from pitchpoint.cases.schema import COUNT, Sweep, quantity_at
+from pitchpoint.cases.schema import Sweep
 from pitchpoint.cases.variant import Variant
+from pitchpoint.doubts import stored
 from pitchpoint.errors import InputError
-from pitchpoint.input.quantities import Quantity, shown
-from pitchpoint.results.chosen_units import shown_in, unit_choice, unit_in_use
+from pitchpoint.results.chosen_units import shown_in, unit_choice
 from pitchpoint.results.labelled import Units, demand_units, in_units, showing
-from pitchpoint.results.store import fingerprint, make_folder, sole_writer
-from pitchpoint.runs.case import Case, CaseLike, as_case, written
+from pitchpoint.results.pieces import ALONG, Pieces, Summary, as_whole, summary_of
+from pitchpoint.results.store import make_folder, sole_writer, sweep
+from pitchpoint.runs.case import Case, CaseLike, as_case
+from pitchpoint.runs.described import StudyDescription
+from pitchpoint.runs.layouts import Axis, How, Layout, layout_of
 from pitchpoint.runs.python_values import demand_arguments
-from pitchpoint.runs.run import FrictionChoice, Progress, compute_alone, own_law
+from pitchpoint.runs.run import FrictionChoice, Progress, own_law
+from pitchpoint.runs.workers import pieces_of_workers
+from pitchpoint.status import told
 
-__all__ = ["drawn_values", "sobol_shares", "study"]
+__all__ = ["PIECE", "drawn_values", "study"]
 
-How = Literal["grid", "zip", "latin_hypercube", "sobol"]
+PIECE = 16 * TOGETHER
+"""Designs that are kept together: a loss of a minute or less, and a file of a megabyte or two."""
+
+MOST_IN_MEMORY = 100_000
+"""Designs of a study without a folder."""
 
 
 @double_precision()
@@ -44,9 +52,12 @@ def study(
     variant: str | None = None,
     friction: FrictionChoice | None = None,
     folder: str | Path | None = None,
+    piece: int = PIECE,
+    workers: int | None = None,
+    scheduler: str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Main figures of many designs of a case, computed together.
+    """Main figures of many designs of a case, from a few to millions.
 
     Args:
         case: a `Case`, or what makes one.
@@ -61,48 +72,48 @@ def study(
             {"angle": "arcmin"}, and the others as shown.
         variant: of the case, the first one by default.
         friction: laws of one's own, see `run`.
-        folder: where pieces of 256 designs are kept as soon as they are computed, so that the same call
-            goes on from there.
+        folder: where pieces are kept as soon as they are computed, each a NetCDF file that is whole or not
+            there, so that the same call goes on from them. Whoever computes them, in whatever order and after
+            whatever was killed, the files are the same bit for bit.
+        piece: designs that are computed and kept together.
+        workers: processes of this machine that compute pieces, by `dask.distributed`; this one by default.
+        scheduler: in their place the address of a scheduler of `dask.distributed`, "tcp://host:8786", whose
+            workers have this version of the package, and need share no disk with this process.
         progress: told about pieces.
 
     Returns:
         Figures over `law` and a dimension for each key of a grid, named as the key; otherwise over
         `design`, along which the keys are coordinates. A design that cannot be computed is NaN, and
-        `reason` says why.
+        `reason` says why. Values of several pieces in a folder stay there and are read when asked for.
 
     Raises:
         InputError: no such key, one whose values cannot be changed by design, values that it cannot take,
-            or none of the designs can be computed.
+            none of the designs can be computed, or workers that cannot be had.
 
     Example:
-        >>> found = study("tian2024", {"operation.torque": [20.0, 60.0]}, variant="physical")
+        >>> import pitchpoint as pp
+        >>> found = pp.study("tian2024", {"operation.torque": [20.0, 60.0]}, variant="physical")
         >>> dict(found.sizes)["operation.torque"]
         2
     """
     demand_units(units)
-    demand_arguments(
-        over=over, how=how, n=n, seed=seed, variant=variant, friction=friction, folder=folder
-    )
+    demand_arguments(over=over, how=how, n=n, seed=seed, variant=variant, friction=friction)
+    demand_arguments(folder=folder, piece=piece, workers=workers, scheduler=scheduler)
     chosen = as_case(case) if variant is None else Case(case, variant=variant)
     base = chosen.held[0] if friction is None else own_law(chosen.held[0], friction)
-    axes = {key: _Axis.of(chosen, key, values) for key, values in _whole(chosen, over).items()}
-    dims, columns = _LAID_OUT[_known(how)](axes, n, seed)
-    changes = [dict(zip(axes, row, strict=True)) for row in zip(*columns, strict=True)]
-    for key, axis in axes.items():
-        _demand_meant(base, key, axis)
-    tree = base.document().tree
-    told = [{key: table for key, table in tree.items() if key != OUTPUT}, changes]
-    designs = Designs(f"designs_{fingerprint(*told)[:8]}", base, changes)
-    with nullcontext() if folder is None else _alone(Path(folder)):
-        data = compute_alone(
-            designs.analysis,
-            base,
-            told=told,
-            folder=None if folder is None else Path(folder),
-            progress=progress or Progress(),
-        )
-    with shown_in(unit_choice(tree.get(OUTPUT, {}).get("units", {}))), showing(units):
-        return _laid_out(in_units(data, units), axes, dims, columns, units)
+    layout = layout_of(base, _whole_keys(chosen, over), how, n, seed)
+    _demand_meant(base, layout)
+    _demand_place(layout, base, folder, workers, scheduler)
+    values = {key: axis.values for key, axis in layout.axes.items()}
+    asked = StudyDescription(base.computed, values, how, n, seed, piece)
+    where = None if folder is None else Path(folder)
+    pieces = Pieces(where, f"designs_{asked.mark[:8]}", asked.mark, layout.count, piece)
+    with ExitStack() as stack:
+        if where is not None:
+            stack.enter_context(_alone(where))
+        _compute(asked, pieces, workers, scheduler, progress or Progress())
+    choice = unit_choice(base.document().tree.get(OUTPUT, {}).get("units", {}))
+    return _opened(pieces, layout, base.name, choice, units)
 
 
 def drawn_values(
@@ -120,212 +131,160 @@ def drawn_values(
         InputError: see `study`; a key without two numbers.
     """
     chosen = as_case(case) if variant is None else Case(case, variant=variant)
-    ranges = _whole(chosen, over).items()
+    ranges = _whole_keys(chosen, over).items()
     return {
-        key: _Axis.of(chosen, key, values).drawn(shares[:, at])
+        key: Axis.of(chosen.held[0], key, values).drawn(shares[:, at])
         for at, (key, values) in enumerate(ranges)
     }
 
 
-class _Axis:
-    """Values of one key.
-
-    Attributes:
-        key: dotted.
-        quantity: what its values are; None for names.
-        values: as a case file has them.
-    """
-
-    def __init__(self, key: str, quantity: Quantity | None, values: Sequence[Any]) -> None:
-        self.key, self.quantity, self.values = key, quantity, values
-
-    @classmethod
-    def of(cls, case: Case, key: str, values: Any) -> "_Axis":
-        """Axis of a case; InputError for a key or values that are none."""
-        try:
-            quantity = quantity_at(key, case.held[0].document().tree)
-            if key.partition(".")[0] not in SWEPT:
-                raise InputError(f"cannot be studied; keys of {', '.join(SWEPT)} can")
-            given = written(key, values)
-            if not isinstance(given, list) or not given:
-                raise InputError(f"{shown(given)} was given where a list of values belongs")
-            for one in given:
-                _demand_value(one, quantity)
-        except InputError as error:
-            raise error.at(file=case.name, key=key) from None
-        return cls(key, quantity, given)
-
-    def numbers(self, values: Sequence[Any], unit: Units) -> tuple[Any, dict[str, str]]:
-        """Values as a coordinate, and its attributes."""
-        quantity = self.quantity
-        if quantity is None:
-            return np.array([str(value) for value in values]), {"long_name": self.key}
-        si = np.array([quantity.si(value) for value in values])
-        name = units_of_numbers.si_unit(quantity.kind) or "1"
-        if unit != "si" and quantity.unit != "1":
-            name = unit_in_use(quantity.kind, quantity.unit)
-            si = units_of_numbers.convert(si, name, quantity.kind)
-        return si, {"units": name, "long_name": self.key}
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """Lowest and highest value in SI; InputError if there are no two numbers."""
-        if self.quantity is None or len(self.values) != 2:
-            raise InputError(
-                f"{shown(self.values)} was given where the lowest and the highest number belong",
-                key=self.key,
-            )
-        low, high = sorted(self.quantity.si(value) for value in self.values)
-        return low, high
-
-    def drawn(self, share: np.ndarray) -> list[Any]:
-        """Values at shares of the range, whole ones for a count."""
-        low, high = self.ends
-        si = low + share * (high - low)
-        whole = self.quantity is not None and self.quantity.whole
-        return [*written(self.key, np.round(si) if whole else si)]
-
-
-def _demand_value(value: Any, quantity: Quantity | None) -> None:
-    if isinstance(value, list | dict):
-        told = "was given as one value; each design takes one number, those of two gears by key.1 and key.2"
-        raise InputError(f"{shown(value)} {told}")
-    if quantity is not None:
-        quantity.si(value)
-
-
-def _whole(case: Case, over: Mapping[str, Any]) -> dict[str, Any]:
+def _whole_keys(case: Case, over: Mapping[str, Any]) -> dict[str, Any]:
     """Values by whole key."""
     if not over:
         raise InputError("a study needs the values of one key at least")
     return {case.key(name): values for name, values in over.items()}
 
 
-def _known(how: str) -> How:
-    if how not in get_args(How):
-        known = ", ".join(f'"{name}"' for name in get_args(How))
-        raise InputError(f"{shown(how)} is no way to lay out a study; use one of {known}")
-    return how  # type: ignore[return-value]
+def _demand_meant(base: Variant, layout: Layout) -> None:
+    """InputError where one number would stand for two different ones, or changes nothing."""
+    built = base.built({})
+    for key, axis in layout.axes.items():
+        demand_one(base, Sweep(key=key, values=tuple(axis.values[:1])), "study")
+        demand_films(built, base, key, "study")
 
 
-_Axes = Mapping[str, _Axis]
-_Layout = tuple[dict[str, int], list[list[Any]]]
+def _demand_place(
+    layout: Layout, base: Variant, folder: object, workers: int | None, scheduler: str | None
+) -> None:
+    """InputError for designs that would fill the memory, and for workers that cannot do them."""
+    if folder is None and layout.count > MOST_IN_MEMORY:
+        told = f"{layout.count} designs need a folder to be kept in"
+        raise InputError(f"{told}; {MOST_IN_MEMORY} at most go without one", key="folder")
+    if workers is not None and scheduler is not None:
+        raise InputError("goes with workers of this machine; give it or a scheduler", key="workers")
+    if base.own and (workers or scheduler):
+        raise InputError(
+            "laws of the user's own are functions of this process, and its workers have none of them; leave "
+            "workers and scheduler out",
+            key="friction",
+        )
 
 
-def _grid(axes: _Axes, _: int | None, __: int) -> _Layout:
-    _demand_count(prod(len(axis.values) for axis in axes.values()))
-    rows = product(*(axis.values for axis in axes.values()))
-    dims = {key: len(axis.values) for key, axis in axes.items()}
-    return dims, [list(column) for column in zip(*rows, strict=True)]
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Keep others out of a folder, after what killed ones left half written is removed."""
+    make_folder(folder)
+    with sole_writer(folder) as alone:
+        if alone:
+            sweep(folder)
+        yield
 
 
-def _zip(axes: _Axes, _: int | None, __: int) -> _Layout:
-    lengths = {key: len(axis.values) for key, axis in axes.items()}
-    if len({*lengths.values()}) > 1:
-        told = ", ".join(f"{count} of {key}" for key, count in lengths.items())
-        raise InputError(f"values that go together are equally many; given were {told}")
-    count = next(iter(lengths.values()))
-    _demand_count(count)
-    return {"design": count}, [list(axis.values) for axis in axes.values()]
+def _compute(
+    asked: StudyDescription,
+    pieces: Pieces,
+    workers: int | None,
+    scheduler: str | None,
+    progress: Progress,
+) -> None:
+    """Keep every piece that is not there yet, in whatever order they come."""
+    missing = pieces.missing()
+    progress.part(asked.variant.variant, "designs", not missing)
+    pace = Pace(pieces, missing, progress)
+    if workers is None and scheduler is None:
+        for number in missing:
+            pieces.keep(number, asked.computed(*pieces.range(number), pace.within))
+            pace.landed(number)
+    elif missing:
+        for number, image in pieces_of_workers(asked, pieces, missing, workers, scheduler):
+            pieces.keep(number, image)
+            pace.landed(number)
 
 
-def _latin_hypercube(axes: _Axes, n: int | None, seed: int) -> _Layout:
-    from scipy.stats import qmc
-
-    if n is None:
-        raise InputError("a Latin hypercube needs the number of designs, n")
-    _demand_count(n)
-    shares = qmc.LatinHypercube(d=len(axes), rng=np.random.default_rng(seed)).random(n)
-    return {"design": n}, [axis.drawn(shares[:, k]) for k, axis in enumerate(axes.values())]
-
-
-def sobol_shares(
-    n: int | None, keys: int, seed: int, least: int = 1
-) -> Float[np.ndarray, "design key"]:
-    """Shares of ranges by a scrambled Sobol' sequence.
+class Pace:
+    """How many designs are there, at which rate they come, and when the last one will.
 
     Args:
-        n: of designs, a power of two.
-        keys: that change.
-        seed: the same one draws the same designs.
-        least: of designs.
-
-    Raises:
-        InputError: n is no power of two, less than the least, or more than a study has.
+        pieces: of the study.
+        missing: pieces that are computed now.
+        progress: that is told.
     """
-    from scipy.stats import qmc
 
-    if n is None or n < least or n & (n - 1):
-        told = "no number of designs was given" if n is None else f"{n} designs were asked for"
-        most = f", {least} at least" if least > 1 else ""
-        raise InputError(f"{told}; a Sobol' sequence is even with a power of two of them{most}")
-    _demand_count(n)
-    return np.asarray(qmc.Sobol(d=keys, rng=np.random.default_rng(seed)).random(n))
+    def __init__(self, pieces: Pieces, missing: Sequence[int], progress: Progress) -> None:
+        self.pieces, self.progress, self.begun = pieces, progress, monotonic()
+        self.left = sum(map(self._designs, missing))
+        self.done = 0
 
+    def _designs(self, number: int) -> int:
+        first, stop = self.pieces.range(number)
+        return stop - first
 
-def _sobol(axes: _Axes, n: int | None, seed: int) -> _Layout:
-    shares = sobol_shares(n, len(axes), seed)
-    columns = [axis.drawn(shares[:, k]) for k, axis in enumerate(axes.values())]
-    return {"design": len(shares)}, columns
+    def landed(self, number: int) -> None:
+        """A piece is kept."""
+        self.done += self._designs(number)
+        self.within(0)
 
-
-_LAID_OUT: dict[How, Callable[[_Axes, int | None, int], _Layout]] = {
-    "grid": _grid,
-    "zip": _zip,
-    "latin_hypercube": _latin_hypercube,
-    "sobol": _sobol,
-}
-
-
-def _demand_count(count: int) -> None:
-    if not 1 <= count <= COUNT.high:
-        raise InputError(f"{count} designs were asked for; {COUNT.allowed}")
+    def within(self, done: int, doing: str = "") -> None:
+        """So many designs of the next piece are computed."""
+        there = self.pieces.count - self.left + self.done + done
+        computed, seconds = self.done + done, monotonic() - self.begun
+        if not computed or not seconds:
+            return self.progress.points(there, f"of {self.pieces.count}")
+        rate = computed / seconds
+        left = _duration((self.left - computed) / rate)
+        self.progress.points(there, f"of {self.pieces.count}, {rate:.3g} a second, {left} left")
+        return None
 
 
-def _demand_meant(base: Variant, key: str, axis: _Axis) -> None:
-    """InputError where one number would stand for two different ones, or changes nothing."""
-    demand_one(base, Sweep(key=key, values=tuple(axis.values[:1])), "study")
-    demand_films(base.built({}), base, key, "study")
+def _duration(seconds: float) -> str:
+    """A time as one reads it.
+
+    Example:
+        >>> _duration(50.0), _duration(600.0), _duration(9000.0)
+        ('50 s', '10 min', '2.5 h')
+    """
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
 
 
-def _alone(folder: Path) -> Any:
-    make_folder(folder)
-    return sole_writer(folder)
-
-
-def _laid_out(
-    data: xr.Dataset,
-    axes: _Axes,
-    dims: Mapping[str, int],
-    columns: Sequence[Sequence[Any]],
-    unit: Units,
+def _opened(
+    pieces: Pieces, layout: Layout, name: str, choice: Mapping[str, str], units: Units
 ) -> xr.Dataset:
-    """The dataset with its designs along the dimensions of the study."""
-    variables = {
-        str(name): (_dims(one.dims, dims), _shaped(one, dims), one.attrs)
-        for name, one in data.variables.items()
-    }
-    made = xr.Dataset(variables, attrs=data.attrs).set_coords([*map(str, data.coords)])
-    if "design" in dims:
-        labels: dict[str, Any] = {
-            key: ("design", *axis.numbers(column, unit))
-            for (key, axis), column in zip(axes.items(), columns, strict=True)
-        }
-        return made.assign_coords(design=np.arange(dims["design"]), **labels)
-    return made.assign_coords(
-        {key: (key, *axis.numbers(axis.values, unit)) for key, axis in axes.items()}
-    )
+    """All pieces as one dataset in some units; one piece, and what no folder keeps, in memory."""
+
+    def shown(part: xr.Dataset) -> xr.Dataset:
+        with shown_in(choice), showing(units):
+            return _keys_in(in_units(part, units), layout, units)
+
+    summary = summary_of(pieces, balance_codes)
+    if not summary.attributes:
+        first = next(iter(summary.reasons), "")
+        told = f"none of {pieces.count} designs can be computed; the first one: {first}"
+        raise InputError(told, file=name)
+    data = as_whole(pieces, summary, layout.dims, shown).assign_attrs(_attributes(summary))
+    if ALONG in layout.dims:
+        data = data.assign_coords({ALONG: np.arange(pieces.count)})
+    else:
+        axes = (axis.coordinate() for axis in layout.axes.values())
+        data = data.assign_coords(shown(xr.Dataset(coords=dict(axes))).coords)
+    return data.load() if pieces.folder is None or len(pieces) == 1 else data
 
 
-def _dims(old: Sequence[Any], dims: Mapping[str, int]) -> list[str]:
-    return [name for one in old for name in (dims if one == "point" else [str(one)])]
+def _keys_in(part: xr.Dataset, layout: Layout, units: Units) -> xr.Dataset:
+    """A part of a study whose keys are in the units in which they are shown."""
+    for key, axis in layout.axes.items():
+        if key in part.variables and (unit := axis.unit_in(units)):
+            values, attributes = axis.shown(part[key].values, units), part[key].attrs
+            part = part.assign_coords(
+                {key: (part[key].dims, values, {**attributes, "units": unit})}
+            )
+    return part
 
 
-def _shaped(one: xr.Variable, dims: Mapping[str, int]) -> np.ndarray:
-    """Values with the designs along so many dimensions."""
-    sizes = [
-        size
-        for name, length in zip(one.dims, one.shape, strict=True)
-        for size in (dims.values() if name == "point" else [length])
-    ]
-    return np.reshape(one.values, sizes)
+def _attributes(summary: Summary) -> dict[str, Any]:
+    """Attributes of all designs: how their solves ended, and what is doubtful."""
+    codes = np.repeat([*summary.codes], [*summary.codes.values()])
+    most = {"residual": summary.residual, "iterations": summary.iterations}
+    solve = json.dumps({**told(codes), **most})
+    return {**summary.attributes, **stored(few([*summary.warnings])), "solve": solve}

@@ -1,0 +1,126 @@
+"""A study as a description of some hundred bytes, from which any piece of it is computed in any process."""
+
+import json
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint._jax import double_precision
+from pitchpoint.analyses.analysis import Progress as AnalysisProgress
+from pitchpoint.analyses.analysis import silent
+from pitchpoint.analyses.designs import Designs
+from pitchpoint.cases.record import OUTPUT
+from pitchpoint.cases.variant import Variant
+from pitchpoint.programs import bound_programs, surroundings
+from pitchpoint.results.netcdf import encode
+from pitchpoint.results.pieces import ALONG
+from pitchpoint.results.store import fingerprint
+from pitchpoint.runs.layouts import Layout, layout_of
+from pitchpoint.runs.run import mark_of
+
+__all__ = ["StudyDescription", "piece_elsewhere"]
+
+_PART = "designs"
+_OF_VARIANT = ("tree", "name", "variant", "settings", "recorded")
+
+
+@dataclass(frozen=True)
+class StudyDescription:
+    """All that decides about the designs of a study.
+
+    Attributes:
+        variant: the case.
+        over: values by whole key.
+        how, n, seed: see `study`.
+        size: designs of a piece.
+    """
+
+    variant: Variant
+    over: Mapping[str, Any]
+    how: str
+    n: int | None
+    seed: int
+    size: int
+
+    @classmethod
+    @lru_cache(maxsize=4)
+    def read(cls, packed: bytes) -> "StudyDescription":
+        """The description that `packed` made."""
+        plain = json.loads(zlib.decompress(packed))
+        folder = plain["case"].pop("folder")
+        variant = Variant(**plain["case"], folder=None if folder is None else Path(folder))
+        return cls(variant, **plain["study"])
+
+    @cached_property
+    def packed(self) -> bytes:
+        """The description as another process takes it; a law of the user's own is not in it."""
+        case = {name: getattr(self.variant, name) for name in _OF_VARIANT}
+        folder = None if self.variant.folder is None else str(self.variant.folder)
+        plain = {"case": {**case, "folder": folder}, "study": self._layout}
+        return zlib.compress(json.dumps(plain, separators=(",", ":")).encode(), 9)
+
+    @property
+    def _layout(self) -> dict[str, Any]:
+        return {
+            "over": {key: [*values] for key, values in self.over.items()},
+            "how": self.how,
+            "n": self.n,
+            "seed": self.seed,
+            "size": self.size,
+        }
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Values of the designs; InputError for what cannot be."""
+        return layout_of(self.variant, self.over, self.how, self.n, self.seed)
+
+    @cached_property
+    def mark(self) -> str:
+        """Digest of the description, of the code and of what it runs on: equal ones give equal bits."""
+        tree = self.variant.document().tree
+        case = {key: table for key, table in tree.items() if key != OUTPUT}
+        return fingerprint(mark_of(self.variant, _PART), case, self._layout)
+
+    def computed(self, first: int, stop: int, progress: AnalysisProgress = silent) -> xr.Dataset:
+        """Figures [law, design] of a range of designs, with their values as coordinates.
+
+        Args:
+            first, stop: of the range.
+            progress: told how many of them are done.
+        """
+        bound_programs()  # those of the pieces before
+        columns = self.layout.columns(first, stop)
+        data = Designs(self.variant, self.layout.changes(first, stop)).compute(progress)
+        labels = {"case": self.variant.label, "variant": self.variant.variant}
+        keys: dict[str, Any] = {
+            key: (ALONG, *self.layout.axes[key].stored(values)) for key, values in columns.items()
+        }
+        return (
+            data.rename(point=ALONG)
+            .assign_coords({ALONG: np.arange(first, stop), **keys})
+            .assign_attrs({**labels, "fingerprint": self.mark})
+        )
+
+
+@double_precision()
+def piece_elsewhere(packed: bytes, mark: str, first: int, stop: int) -> bytes | dict[str, str]:
+    """The file of a piece, computed in a process that shares nothing with the one that asks.
+
+    Args:
+        packed: description of the study.
+        mark: of the study where it was asked for.
+        first, stop: range of designs.
+
+    Returns:
+        The file; what decides about numbers here, where that is not what decides there.
+    """
+    study = StudyDescription.read(packed)
+    if study.mark != mark:
+        return surroundings()
+    return encode(study.computed(first, stop))

@@ -1,0 +1,310 @@
+"""How the designs of a study are laid out: values of any of them out of a description of a few numbers."""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import prod
+from typing import Any, Literal, get_args
+
+import numpy as np
+from jaxtyping import Float
+
+from pitchpoint import units as units_of_numbers
+from pitchpoint.analyses.studies import SWEPT
+from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.variant import Variant
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import Quantity, shown
+from pitchpoint.results.chosen_units import unit_in_use
+from pitchpoint.results.labelled import Units
+from pitchpoint.runs.case import written
+
+__all__ = ["MOST_DESIGNS", "Axis", "How", "Layout", "layout_of", "sobol_shares"]
+
+How = Literal["grid", "zip", "latin_hypercube", "sobol"]
+
+MOST_DESIGNS = 10_000_000
+"""Designs of a study."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Values of one key.
+
+    Attributes:
+        key: dotted.
+        quantity: what its values are; None for names.
+        values: as a case file has them.
+    """
+
+    key: str
+    quantity: Quantity | None
+    values: Sequence[Any]
+
+    @classmethod
+    def of(cls, variant: Variant, key: str, values: Any) -> "Axis":
+        """Axis of a case; InputError for a key or values that are none."""
+        try:
+            quantity = quantity_at(key, variant.document().tree)
+            if key.partition(".")[0] not in SWEPT:
+                raise InputError(f"cannot be studied; keys of {', '.join(SWEPT)} can")
+            listed = written(key, values)
+            if not isinstance(listed, list) or not listed:
+                raise InputError(f"{shown(listed)} was given where a list of values belongs")
+            for value in listed:
+                _demand_value(value, quantity)
+        except InputError as error:
+            raise error.at(file=variant.name, key=key) from None
+        return cls(key, quantity, listed)
+
+    def stored(self, values: Sequence[Any]) -> tuple[np.ndarray, dict[str, str]]:
+        """Values as a coordinate in SI, and its attributes."""
+        if self.quantity is None:
+            return np.array([str(value) for value in values]), {"long_name": self.key}
+        si = np.array([self.quantity.si(value) for value in values])
+        unit = units_of_numbers.si_unit(self.quantity.kind) or "1"
+        return si, {"units": unit, "long_name": self.key}
+
+    def coordinate(self) -> tuple[str, tuple[str, np.ndarray, dict[str, str]]]:
+        """The key, and its values as a dimension."""
+        return self.key, (self.key, *self.stored(self.values))
+
+    def unit_in(self, units: Units) -> str:
+        """Unit in which its values are shown; empty where they stay as they are stored."""
+        if self.quantity is None or units == "si" or self.quantity.unit == "1":
+            return ""
+        return unit_in_use(self.quantity.kind, self.quantity.unit)
+
+    def shown(self, si: np.ndarray, units: Units) -> np.ndarray:
+        """Values in the unit in which they are shown."""
+        unit = self.unit_in(units)
+        if not unit or self.quantity is None:
+            return si
+        return np.asarray(units_of_numbers.convert(si, unit, self.quantity.kind))
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Lowest and highest value in SI; InputError if there are no two numbers."""
+        if self.quantity is None or len(self.values) != 2:
+            raise InputError(
+                f"{shown(self.values)} was given where the lowest and the highest number belong",
+                key=self.key,
+            )
+        low, high = sorted(self.quantity.si(value) for value in self.values)
+        return low, high
+
+    def drawn(self, share: np.ndarray) -> list[Any]:
+        """Values at shares of the range, whole ones for a count."""
+        low, high = self.ends
+        si = low + share * (high - low)
+        whole = self.quantity is not None and self.quantity.whole
+        return [*written(self.key, np.round(si) if whole else si)]
+
+
+def _demand_value(value: Any, quantity: Quantity | None) -> None:
+    if isinstance(value, list | dict):
+        told = "was given as one value; each design takes one number, those of two gears by key.1 and key.2"
+        raise InputError(f"{shown(value)} {told}")
+    if quantity is not None:
+        quantity.si(value)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Designs of a study, of which any range is made without the others.
+
+    Attributes:
+        axes: by key.
+        count: of designs.
+        n: asked for, see `study`.
+        seed: of what is drawn.
+    """
+
+    axes: Mapping[str, Axis]
+    count: int
+    n: int | None
+    seed: int
+
+    @property
+    def dims(self) -> dict[str, int]:
+        """Dimensions of the result and their lengths."""
+        return {"design": self.count}
+
+    def columns(self, first: int, stop: int) -> dict[str, list[Any]]:
+        """Values of a range of designs by key, as a case file has them."""
+        raise NotImplementedError
+
+    def changes(self, first: int, stop: int) -> list[dict[str, Any]]:
+        """The same by design."""
+        columns = self.columns(first, stop)
+        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+class _Grid(Layout):
+    @property
+    def dims(self) -> dict[str, int]:
+        return {key: len(axis.values) for key, axis in self.axes.items()}
+
+    def columns(self, first: int, stop: int) -> dict[str, list[Any]]:
+        places = np.unravel_index(np.arange(first, stop), [*self.dims.values()])
+        return {
+            key: [axis.values[at] for at in place]
+            for (key, axis), place in zip(self.axes.items(), places, strict=True)
+        }
+
+
+class _Zip(Layout):
+    def columns(self, first: int, stop: int) -> dict[str, list[Any]]:
+        return {key: [*axis.values[first:stop]] for key, axis in self.axes.items()}
+
+
+class _Drawn(Layout):
+    def shares(self, first: int, stop: int) -> Float[np.ndarray, "design key"]:
+        """Shares of the ranges of a range of designs."""
+        raise NotImplementedError
+
+    def columns(self, first: int, stop: int) -> dict[str, list[Any]]:
+        shares = self.shares(first, stop)
+        return {key: axis.drawn(shares[:, at]) for at, (key, axis) in enumerate(self.axes.items())}
+
+
+class _LatinHypercube(_Drawn):
+    @cached_property
+    def _whole(self) -> Float[np.ndarray, "design key"]:
+        from scipy.stats import qmc
+
+        rng = np.random.default_rng(self.seed)
+        return np.asarray(qmc.LatinHypercube(d=len(self.axes), rng=rng).random(self.count))
+
+    def shares(self, first: int, stop: int) -> Float[np.ndarray, "design key"]:
+        return self._whole[first:stop]  # strata are permuted over all designs: no part stands alone
+
+
+class _Sobol(_Drawn):
+    def shares(self, first: int, stop: int) -> Float[np.ndarray, "design key"]:
+        return sobol_shares(self.count, len(self.axes), self.seed, first=first, stop=stop)
+
+
+_LAYOUTS: dict[str, type[Layout]] = {
+    "grid": _Grid,
+    "zip": _Zip,
+    "latin_hypercube": _LatinHypercube,
+    "sobol": _Sobol,
+}
+
+
+def layout_of(
+    variant: Variant, over: Mapping[str, Any], how: str, n: int | None, seed: int
+) -> Layout:
+    """Designs of a study, see there.
+
+    Args:
+        variant: the case.
+        over: values by whole key.
+        how, n, seed: see `study`.
+
+    Raises:
+        InputError: no such key or way, values that a key does not take, a number of designs that cannot be.
+    """
+    axes = {key: Axis.of(variant, key, values) for key, values in over.items()}
+    _demand_way(how)
+    return _LAYOUTS[how](axes, _COUNTED[how](axes, n), n, seed)
+
+
+def _demand_way(how: str) -> None:
+    if how not in get_args(How):
+        known = ", ".join(f'"{name}"' for name in get_args(How))
+        raise InputError(f"{shown(how)} is no way to lay out a study; use one of {known}")
+
+
+def _of_grid(axes: Mapping[str, Axis], _: int | None) -> int:
+    return _possible(prod(len(axis.values) for axis in axes.values()))
+
+
+def _of_zip(axes: Mapping[str, Axis], _: int | None) -> int:
+    lengths = {key: len(axis.values) for key, axis in axes.items()}
+    if len({*lengths.values()}) > 1:
+        told = ", ".join(f"{count} of {key}" for key, count in lengths.items())
+        raise InputError(f"values that go together are equally many; given were {told}")
+    return _possible(next(iter(lengths.values())))
+
+
+def _of_latin_hypercube(axes: Mapping[str, Axis], n: int | None) -> int:
+    if n is None:
+        raise InputError("a Latin hypercube needs the number of designs, n")
+    _demand_ranges(axes)
+    return _possible(n)
+
+
+def _of_sobol(axes: Mapping[str, Axis], n: int | None) -> int:
+    count = _power_of_two(n)
+    _demand_ranges(axes)
+    return count
+
+
+_COUNTED = {
+    "grid": _of_grid,
+    "zip": _of_zip,
+    "latin_hypercube": _of_latin_hypercube,
+    "sobol": _of_sobol,
+}
+
+
+def _demand_ranges(axes: Mapping[str, Axis]) -> None:
+    for axis in axes.values():
+        _ = axis.ends
+
+
+def _possible(count: int) -> int:
+    if not 1 <= count <= MOST_DESIGNS:
+        raise InputError(f"{count} designs were asked for; allowed is 1 to {MOST_DESIGNS}")
+    return count
+
+
+def sobol_shares(
+    n: int | None,
+    keys: int,
+    seed: int,
+    least: int = 1,
+    *,
+    first: int = 0,
+    stop: int | None = None,
+) -> Float[np.ndarray, "design key"]:
+    """Shares of ranges by a scrambled Sobol' sequence.
+
+    Args:
+        n: of designs, a power of two.
+        keys: that change.
+        seed: the same one draws the same designs.
+        least: of designs.
+        first, stop: range of designs; all by default.
+
+    Raises:
+        InputError: n is no power of two, less than the least, or more than a study has.
+
+    Example:
+        >>> import numpy as np
+        >>> part = sobol_shares(8, 2, 1, first=3, stop=5)
+        >>> bool(np.all(part == sobol_shares(8, 2, 1)[3:5]))
+        True
+    """
+    from scipy.stats import qmc
+
+    count = _power_of_two(n, least)
+    sequence = qmc.Sobol(d=keys, rng=np.random.default_rng(seed))
+    if first:
+        sequence.fast_forward(first)
+    with warnings.catch_warnings():
+        # The whole is even; a range of it needs no power of two.
+        warnings.simplefilter("ignore", UserWarning)
+        return np.asarray(sequence.random((count if stop is None else stop) - first))
+
+
+def _power_of_two(n: int | None, least: int = 1) -> int:
+    """The number of designs of a Sobol' sequence."""
+    if n is None or n < least or n & (n - 1):
+        told = "no number of designs was given" if n is None else f"{n} designs were asked for"
+        most = f", {least} at least" if least > 1 else ""
+        raise InputError(f"{told}; a Sobol' sequence is even with a power of two of them{most}")
+    return _possible(n)

@@ -1,0 +1,270 @@
+"""Studies in pieces: any range of designs alone, a store of whole files, one dataset over them."""
+
+import copy
+import hashlib
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import pitchpoint as pp
+from pitchpoint.analyses.designs import Designs
+from pitchpoint.errors import InputError
+from pitchpoint.results.netcdf import encode
+from pitchpoint.results.pieces import ALONG, Pieces, as_whole, summary_of
+from pitchpoint.runs import workers
+from pitchpoint.runs.described import StudyDescription, piece_elsewhere
+from pitchpoint.runs.layouts import layout_of
+from pitchpoint.runs.run import Progress
+
+TORQUE, WIDTH = "operation.torque", "gears.face_width"
+PAIR = pp.Case(
+    gears={"teeth": [20, 40], "module": "2 mm", "face_width": "20 mm"},
+    lubricant={"name": "pao-vg-150"},
+    roughness={"ra": "0.4 um"},
+    operation={"torque": "60 N m", "speed": "1200 rpm", "temperature": "50 degC"},
+)
+VARIANT = PAIR.held[0].computed
+RANGES = {TORQUE: [5.0, 45.0], WIDTH: ["10 mm", "30 mm"]}
+LISTS = {TORQUE: [5.0, 6.0, 7.0, 8.0], WIDTH: ["10 mm", "20 mm", "25 mm", "30 mm"]}
+
+
+@pytest.mark.parametrize(
+    ("over", "how", "n"),
+    [
+        (LISTS, "grid", None),
+        (LISTS, "zip", None),
+        (RANGES, "latin_hypercube", 16),
+        (RANGES, "sobol", 16),
+    ],
+)
+def test_any_range_of_designs_is_made_without_the_others(
+    over: dict[str, Any], how: str, n: int | None
+) -> None:
+    layout = layout_of(VARIANT, over, how, n, 3)
+    every = layout.changes(0, layout.count)
+    assert len({str(design) for design in every}) == layout.count
+    ends = [0, 1, 3, layout.count]
+    parts = [layout.changes(first, stop) for first, stop in pairwise(ends)]
+    assert [design for part in parts for design in part] == every
+
+
+@pytest.mark.parametrize(("over", "how", "n"), [(LISTS, "grid", None), (RANGES, "sobol", 1 << 20)])
+def test_a_description_is_less_than_a_kilobyte(
+    over: dict[str, Any], how: str, n: int | None
+) -> None:
+    study = StudyDescription(VARIANT, over, how, n, 3, 4096)
+    assert len(study.packed) + len(study.mark) < 1000
+    again = StudyDescription.read(study.packed)
+    assert again.mark == study.mark
+    assert again.layout.changes(5, 9) == study.layout.changes(5, 9)
+
+
+def _piece(first: int, stop: int, *, figures: bool = True) -> xr.Dataset:
+    """A piece of which design 2 has no figures."""
+    number = np.arange(first, stop)
+    reason = np.where(number == 2, "too thin", "" if figures else "no gears")
+    made: dict[str, Any] = {"reason": (("law", ALONG), reason[None])}
+    if figures:
+        loss = np.where(number == 2, np.nan, number + 0.5)
+        made |= {
+            "mean_loss": (("law", ALONG), loss[None], {"units": "W"}),
+            "locked": (("law", ALONG), (number == 0)[None]),
+            "iterations": (
+                ("law", ALONG),
+                number[None] if first else np.where(loss > 0, 3.0, np.nan)[None],
+            ),
+            "bearing_load": (("law", ALONG, "place"), number[None, :, None] + np.array([0.1, 0.2])),
+        }
+    attributes = {"solve": '{"residual": 1e-9, "iterations": 4}'} if figures else {}
+    keys = {ALONG: number, TORQUE: (ALONG, number * 10.0)}
+    return xr.Dataset(made, {"law": ["xu_2007"], **keys}, {"fingerprint": "mark", **attributes})
+
+
+@pytest.fixture(params=["memory", "folder"])
+def pieces(request: pytest.FixtureRequest, tmp_path: Path) -> Pieces:
+    folder = tmp_path if request.param == "folder" else None
+    made = Pieces(folder, "designs", "mark", 12, 4)
+    for number in (2, 0, 1):  # in whatever order
+        made.keep(number, _piece(*made.range(number), figures=number < 2))
+    return made
+
+
+def _codes(piece: xr.Dataset) -> np.ndarray:
+    return np.zeros(piece.sizes[ALONG], int)
+
+
+def test_pieces_are_read_as_one_dataset(pieces: Pieces) -> None:
+    assert pieces.missing() == []
+    summary = summary_of(pieces, _codes)
+    assert summary.reasons == {"no gears": 4, "too thin": 1}
+    assert summary.dtypes["locked"].kind == "b"
+    data = as_whole(pieces, summary, {ALONG: 12}, lambda part: part)
+    expected = np.where(np.arange(12) < 8, np.arange(12) + 0.5, np.nan)
+    expected[2] = np.nan
+    np.testing.assert_array_equal(data.mean_loss.values[0], expected)
+    np.testing.assert_array_equal(data.mean_loss[0, [7, 1, 5]], expected[[7, 1, 5]])
+    assert data.bearing_load[0, 5, 1].item() == 5.2
+    np.testing.assert_array_equal(data.bearing_load[0, 3:6, 0], [3.1, 4.1, 5.1])
+    assert data[TORQUE][11].item() == 110.0
+    assert data.mean_loss.attrs == {"units": "W"}
+
+
+def test_designs_of_a_grid_have_a_dimension_for_each_key(pieces: Pieces) -> None:
+    data = as_whole(pieces, summary_of(pieces, _codes), {"a": 3, "b": 4}, lambda part: part)
+    flat = np.arange(12.0) + 0.5
+    flat[[2, *range(8, 12)]] = np.nan
+    np.testing.assert_array_equal(data.mean_loss.values[0], flat.reshape(3, 4))
+    picked = data.mean_loss.isel(law=0, a=[1, 0], b=slice(1, 3))
+    np.testing.assert_array_equal(picked, flat.reshape(3, 4)[[1, 0], 1:3])
+    assert data.mean_loss.isel(law=0, a=1, b=3).item() == 7.5
+
+
+@pytest.mark.parametrize("harm", ["gone", "cut", "of another study"])
+def test_a_piece_that_is_not_whole_is_missing(harm: str, tmp_path: Path) -> None:
+    pieces = Pieces(tmp_path, "designs", "mark", 8, 4)
+    for number in (0, 1):
+        pieces.keep(number, _piece(*pieces.range(number)))
+    path = pieces.path(1)
+    assert path is not None
+    if harm == "gone":
+        path.unlink()
+    elif harm == "cut":
+        path.write_bytes(path.read_bytes()[:-100])
+    else:
+        pieces.keep(1, _piece(4, 8).assign_attrs(fingerprint="another"))
+    assert pieces.missing() == [1]
+
+
+def _computed(self: Designs, progress: Any = None) -> xr.Dataset:
+    """Figures that take no time."""
+    torque = np.array([float(str(change[TORQUE]).split()[0]) for change in self.changes])
+    values = {
+        "mean_loss": (("law", "point"), np.sin(torque)[None]),
+        "residual": (("law", "point"), np.zeros((1, len(torque)))),
+        "iterations": (("law", "point"), np.ones((1, len(torque)), int)),
+        "locked": (("law", "point"), np.zeros((1, len(torque)), bool)),
+        "reason": (("law", "point"), np.full((1, len(torque)), "")),
+    }
+    solve = {"solve": '{"residual": 0.0, "iterations": 1}'}
+    return xr.Dataset(values, {"law": ["xu_2007"]}, solve)
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Designs, "compute", _computed)
+
+
+class Interrupted(Progress):
+    """Interrupts after some pieces, and notes what it hears."""
+
+    def __init__(self, after: int) -> None:
+        self.left, self.heard = after, list[str]()
+
+    def points(self, done: int, doing: str = "") -> None:
+        self.heard.append(f"{done} {doing}")
+        if done % 4 == 0 and done:
+            self.left -= 1
+            if self.left == 0:
+                raise KeyboardInterrupt
+
+
+def _digests(folder: Path) -> dict[str, str]:
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir()}
+
+
+def _study(folder: Path, **more: Any) -> xr.Dataset:
+    return pp.study(PAIR, {TORQUE: (5.0, 45.0)}, "sobol", n=16, folder=folder, piece=4, **more)
+
+
+@pytest.mark.usefixtures("quick")
+@pytest.mark.parametrize("after", [1, 3])
+def test_an_interrupted_study_goes_on_to_the_same_bits(after: int, tmp_path: Path) -> None:
+    whole, resumed = tmp_path / "whole", tmp_path / "resumed"
+    found = _study(whole)
+    assert len(_digests(whole)) == 4
+    with pytest.raises(KeyboardInterrupt):
+        _study(resumed, progress=Interrupted(after))
+    assert len(_digests(resumed)) == after
+    heard = Interrupted(0)
+    again = _study(resumed, progress=heard)
+    assert _digests(resumed) == _digests(whole)
+    assert heard.heard[-1].startswith("16 of 16, ") and heard.heard[-1].endswith("0 s left")
+    xr.testing.assert_identical(again.load(), found.load())
+
+
+@pytest.mark.usefixtures("quick")
+def test_pieces_of_workers_are_those_of_this_process(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def backwards(
+        study: StudyDescription, pieces: Pieces, missing: list[int], *_: Any
+    ) -> Iterator[tuple[int, bytes]]:
+        for number in reversed(missing):
+            made = piece_elsewhere(study.packed, study.mark, *pieces.range(number))
+            assert isinstance(made, bytes)
+            yield number, made
+
+    monkeypatch.setattr("pitchpoint.runs.study.pieces_of_workers", backwards)
+    _study(tmp_path / "here")
+    _study(tmp_path / "there", workers=2)
+    assert _digests(tmp_path / "there") == _digests(tmp_path / "here")
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_worker_of_another_version_is_told() -> None:
+    study = StudyDescription(VARIANT, RANGES, "sobol", 4, 0, 4)
+    theirs = piece_elsewhere(study.packed, "another", 0, 4)
+    assert isinstance(theirs, dict)
+    told = workers._other({**theirs, "jax": "0.1"})
+    assert told.startswith("a worker has what gives other numbers than here: jax 0.1 for ")
+    assert workers._other(theirs) == "a worker does not have the files that the case names"
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ({"scheduler": "tcp://127.0.0.1:1"}, '"tcp://127.0.0.1:1": Connection refused; `dask sch'),
+        ({"scheduler": "here"}, 'no scheduler at "here": Invalid url scheme'),
+        (
+            {"scheduler": "tcp://127.0.0.1:1", "workers": 2},
+            "workers: goes with workers of this mac",
+        ),
+        ({"workers": 0}, "workers: 0 was given where a whole number from 1 on belongs"),
+        ({"piece": 0}, "piece: 0 was given where a whole number from 1 on belongs"),
+        ({"n": 1 << 20}, "folder: 1048576 designs need a folder to be kept in; 100000 at most"),
+        (
+            {"workers": 2, "friction": lambda film_thickness: film_thickness},
+            "functions of this pro",
+        ),
+    ],
+)
+@pytest.mark.usefixtures("quick")
+def test_workers_that_cannot_be_had(more: dict[str, Any], told: str) -> None:
+    if "scheduler" in more:
+        pytest.importorskip("distributed")
+    with pytest.raises(InputError) as caught:
+        pp.study(PAIR, {TORQUE: (5.0, 45.0)}, "sobol", **({"n": 16} | more))
+    assert told in str(caught.value)
+
+
+def test_a_copied_error_shares_nothing_though_a_package_pickles_tracebacks() -> None:
+    """`dask` brings one whose copies of exceptions hold the very dictionary of the first one."""
+    support = pytest.importorskip("tblib.pickling_support")
+    support.install(InputError)
+    error = InputError("is missing", key="module")
+    assert error.at(key="gears.module").key == "gears.module"
+    assert error.key == "module"
+    assert copy.copy(error).message == "is missing"
+
+
+def test_a_piece_is_its_file_bit_for_bit(tmp_path: Path) -> None:
+    made = [Pieces(tmp_path / name, "designs", "mark", 4, 4) for name in ("dataset", "bytes")]
+    made[0].keep(0, _piece(0, 4))
+    made[1].keep(0, encode(_piece(0, 4)))
+    first, second = (pieces.path(0) for pieces in made)
+    assert first is not None and second is not None and first.read_bytes() == second.read_bytes()
