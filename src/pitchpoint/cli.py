@@ -20,6 +20,7 @@ from pitchpoint.errors import InputError, PitchpointError, shorten, visible
 if TYPE_CHECKING:
     from pitchpoint.cases.schema import Study, Sweep
     from pitchpoint.results.target_rows import Row
+    from pitchpoint.runs.case import Case
     from pitchpoint.runs.run import Outcome, Progress
     from pitchpoint.views.section import Printed
 
@@ -194,7 +195,6 @@ _OTHER_COMMANDS = {
     **dict.fromkeys(("list", "ls"), "pitchpoint cases lists the shipped ones"),
     **dict.fromkeys(("init", "create", "template"), "pitchpoint new FAMILY writes a case file"),
     "help": "pitchpoint docs has the pages",
-    "study": "a table [studies] of a case, or pitchpoint run CASE --sweep KEY=START:STOP:COUNT",
     "sweep": 'it is an option: pitchpoint run CASE --sweep operation.speed="500 rpm:3000 rpm:11"',
 }
 """Commands as other programs have them, with what to call."""
@@ -208,6 +208,7 @@ _TAKES = {
 
 _OPTIONS = {
     "--set": '--set operation.torque="50 N m"',
+    "--over": '--over operation.torque="20 N m:90 N m:8"',
     "--sweep": '--sweep operation.speed="500 rpm:3000 rpm:11"',
     "--units": "--units angle=arcmin",
 }
@@ -429,6 +430,87 @@ def explore(
     make_folder(path.parent)
     write_explorer(found, read.drawings, path)
     typer.echo(visible(str(path)))
+
+
+@app.command()
+def study(
+    case: CaseName,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--over",
+            metavar="KEY=VALUES",
+            help='"operation.torque=20 N m:90 N m:8", a list "gears.teeth.1=[20, 21]"; two ends where drawn.',
+            autocompletion=_keys_from,
+        ),
+    ] = None,
+    how: Annotated[
+        str, typer.Option("--how", metavar="WAY", help="grid, zip, latin_hypercube or sobol.")
+    ] = "grid",
+    n: Annotated[
+        int | None, typer.Option("-n", "--designs", metavar="N", help="Designs to draw.")
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", help="The same one draws the same designs.")] = 0,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Default: results/CASE/study."),
+    ] = None,
+    variant: Annotated[
+        str | None,
+        typer.Option("--variant", help="The first one by default.", autocompletion=_variants_from),
+    ] = None,
+    set_: Settings = None,
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", metavar="N", help="Processes of this machine that compute."),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            "--scheduler", metavar="ADDRESS", help="Of dask.distributed: tcp://host:8786."
+        ),
+    ] = None,
+    piece: Annotated[
+        int | None, typer.Option("--piece", metavar="N", help="Designs kept together; 4096.")
+    ] = None,
+    units: UnitsByKind = None,
+    json_: AsJson = False,
+) -> None:
+    """Compute many designs of a case, from a few to millions, into a folder of files.
+
+    What is killed goes on from the pieces that are kept, when the same command is given again.
+    """
+    from pitchpoint.cases.record import default_folder
+    from pitchpoint.runs.case import Case
+    from pitchpoint.runs.study import PIECE
+    from pitchpoint.runs.study import study as compute
+    from pitchpoint.views.many_designs import as_plain, figures_of_many
+
+    settings = _settings(set_ or [])
+    folder = output or default_folder(case, Path("results"), settings) / "study"
+    chosen = Case(case).set(settings)
+    with _progress(folder, "pieces") as progress:
+        found = compute(
+            chosen,
+            _values_over(over or [], chosen),
+            how,  # type: ignore[arg-type]
+            n=n,
+            seed=seed,
+            units=_units(units) if units else "si" if json_ else "shown",
+            variant=variant,
+            folder=folder,
+            piece=PIECE if piece is None else piece,
+            workers=workers,
+            scheduler=scheduler,
+            progress=progress,
+        )
+    if json_:
+        _emit(as_plain(found, folder))
+        return
+    told, rows = figures_of_many(found, folder)
+    _table(rows, tuple(rows[0]))
+    for line in told:
+        _console().print(_plain_line(line), soft_wrap=True)
 
 
 @app.command()
@@ -1075,6 +1157,35 @@ def _sweeps(texts: list[str], option: str) -> "Iterator[Sweep]":
         yield Sweep(key=key, start=start, stop=stop, count=float(count))
 
 
+def _values_over(texts: list[str], case: "Case") -> dict[str, Any]:
+    """Values by key of a study: a range of numbers, two ends, or a list."""
+    from pitchpoint.input.quantities import shown
+
+    values: dict[str, Any] = {}
+    for text in texts:
+        key, equals, given = (part.strip() for part in text.partition("="))
+        if not (key and equals and given):
+            told = f"{shown(text)} is not KEY=VALUES, such as {_OPTIONS['--over']}"
+            raise InputError(told, key="--over")
+        if key in values:
+            raise InputError(f"{shown(key)} was given twice", key="--over")
+        values[key] = _listed(case, case.key(key), given, text)
+    return values
+
+
+def _listed(case: "Case", key: str, given: str, text: str) -> Any:
+    if not given.startswith("[") and given.count(":") == 1:
+        return [_value(end.strip()) for end in given.split(":")]
+    if not given.startswith("[") and ":" in given:
+        from pitchpoint.analyses.studies import sweep_values
+
+        (sweep,) = _sweeps([text.replace(text.partition("=")[0], key, 1)], "--over")
+        tree = case.held[0].document().tree
+        return sweep_values(sweep, "--over", case.name, tree)[0]
+    value = _value(given)
+    return value if isinstance(value, list) else [value]
+
+
 def _units(texts: list[str]) -> dict[str, str]:
     """Units by kind of quantity."""
     from pitchpoint.results.chosen_units import unit_choice
@@ -1108,7 +1219,7 @@ def _write_report(
 
 
 @contextmanager
-def _progress(folder: Path | None) -> "Iterator[Progress]":
+def _progress(folder: Path | None, kept: str = "parts") -> "Iterator[Progress]":
     """Progress: a moving line on a terminal, else a line for each part; what is on disk if interrupted."""
     from pitchpoint.runs.run import Progress
 
@@ -1144,10 +1255,10 @@ def _progress(folder: Path | None) -> "Iterator[Progress]":
     except KeyboardInterrupt:
         if folder is None:
             raise
-        _complain(
-            f"interrupted: {max(shown.begun - 1, 0)} finished parts are in {folder}; "
-            "the same command goes on from there"
+        done = (
+            f"{max(shown.begun - 1, 0)} finished parts" if kept == "parts" else f"finished {kept}"
         )
+        _complain(f"interrupted: {done} are in {folder}; the same command goes on from there")
         raise SystemExit(_INTERRUPTED) from None
 
 

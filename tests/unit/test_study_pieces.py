@@ -1,7 +1,10 @@
 """Studies in pieces: any range of designs alone, a store of whole files, one dataset over them."""
 
 import copy
+import errno
 import hashlib
+import json
+import sys
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -12,8 +15,10 @@ import pytest
 import xarray as xr
 
 import pitchpoint as pp
+from pitchpoint import cli
 from pitchpoint.analyses.designs import Designs
 from pitchpoint.errors import InputError
+from pitchpoint.results import store
 from pitchpoint.results.netcdf import encode
 from pitchpoint.results.pieces import ALONG, Pieces, as_whole, summary_of
 from pitchpoint.runs import workers
@@ -144,7 +149,7 @@ def _computed(self: Designs, progress: Any = None) -> xr.Dataset:
     """Figures that take no time."""
     torque = np.array([float(str(change[TORQUE]).split()[0]) for change in self.changes])
     values = {
-        "mean_loss": (("law", "point"), np.sin(torque)[None]),
+        "mean_loss": (("law", "point"), np.sin(torque)[None], {"units": "W", "long_name": "loss"}),
         "residual": (("law", "point"), np.zeros((1, len(torque)))),
         "iterations": (("law", "point"), np.ones((1, len(torque)), int)),
         "locked": (("law", "point"), np.zeros((1, len(torque)), bool)),
@@ -268,3 +273,102 @@ def test_a_piece_is_its_file_bit_for_bit(tmp_path: Path) -> None:
     made[1].keep(0, encode(_piece(0, 4)))
     first, second = (pieces.path(0) for pieces in made)
     assert first is not None and second is not None and first.read_bytes() == second.read_bytes()
+
+
+def _command(*given: str) -> int:
+    with pytest.MonkeyPatch.context() as patched, pytest.raises(SystemExit) as ended:
+        patched.setattr(sys, "argv", ["pitchpoint", "study", *given])
+        cli.main()
+    return int(ended.value.code or 0)
+
+
+DRAWN = ("--over", "torque=5 N m:45 N m", "--how", "sobol", "-n", "16", "--piece", "4")
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> str:
+    PAIR.to_toml(tmp_path / "pair.toml")
+    return str(tmp_path / "pair.toml")
+
+
+@pytest.mark.usefixtures("quick")
+def test_the_command_computes_the_study_of_python(
+    case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert _command(case, *DRAWN, "-o", str(tmp_path / "out")) == 0
+    told = capsys.readouterr().out
+    assert "16 designs\n" in told and f"every design: {tmp_path / 'out'}" in told
+    assert len(_digests(tmp_path / "out")) == 4
+    assert _command(case, *DRAWN, "-o", str(tmp_path / "out"), "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    loss = np.sin(_study(tmp_path / "python")[TORQUE].values)
+    ends = found["figures"]["mean_loss"]["by_law"]["xu_2007"]
+    assert [ends["least"], ends["largest"]] == pytest.approx([loss.min(), loss.max()])
+    assert (found["designs"], found["reasons"]) == (16, {})
+
+
+@pytest.mark.usefixtures("quick")
+def test_values_of_a_grid_are_ranges_and_lists(
+    case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    over = ("--over", "torque=5 N m:45 N m:3", "--over", 'gears.face_width=["9 mm", "10 mm"]')
+    assert _command(case, *over, "-o", str(tmp_path / "out"), "--json") == 0
+    assert json.loads(capsys.readouterr().out)["designs"] == 6
+    (piece,) = (tmp_path / "out").glob("*.nc")
+    with xr.open_dataset(piece, engine="h5netcdf") as kept:
+        np.testing.assert_allclose(kept[TORQUE], [5.0, 5.0, 25.0, 25.0, 45.0, 45.0])
+        np.testing.assert_allclose(kept[WIDTH], [0.009, 0.01] * 3)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (("--over", "torque"), '--over: "torque" is not KEY=VALUES, such as --over operation.tor'),
+        (("--over", "torque=[5]", "--over", "torque=[6]"), '--over: "torque" was given twice'),
+        (("--over", "torque=5:6:0"), "is not KEY=START:STOP:COUNT with a count of 1 to 100000"),
+        ((), "error: a study needs the values of one key at least"),
+        ((*DRAWN, "--scheduler", "tcp://127.0.0.1:1"), "Connection refused; `dask scheduler` star"),
+        ((*DRAWN, "--workers", "0"), "workers: 0 was given where a whole number from 1 on belongs"),
+    ],
+)
+def test_a_command_that_cannot_be_is_one_sentence(
+    given: tuple[str, ...],
+    told: str,
+    case: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    if "--scheduler" in given:
+        pytest.importorskip("distributed")
+    assert _command(case, *given, "-o", str(tmp_path / "out")) == 2
+    assert told in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_full_disk_is_one_sentence_and_leaves_whole_pieces(
+    case: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    whole, kept = store._renamed, list[Path]()
+
+    def renamed(path: Path, content: bytes, *, lasting: bool) -> None:
+        if len(kept) == 2:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        whole(path, content, lasting=lasting)
+        kept.append(path)
+
+    monkeypatch.setattr(store, "_renamed", renamed)
+    assert _command(case, *DRAWN, "-o", str(tmp_path / "out")) != 0
+    assert "No space left on device; what was finished before is kept" in capsys.readouterr().err
+    assert {path.name for path in kept} == {*_digests(tmp_path / "out")}
+
+
+@pytest.mark.whole
+def test_workers_of_this_machine_compute_the_same_bits(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    over = {TORQUE: (5.0, 45.0), "gears.profile_shift.1": (0.0, 1.5)}  # some have pointed tips
+    for name, count in (("here", None), ("there", 2)):
+        pp.study(PAIR, over, "sobol", n=16, folder=tmp_path / name, piece=4, workers=count)
+    assert _digests(tmp_path / "there") == _digests(tmp_path / "here")

@@ -36,6 +36,9 @@ __all__ = ["PIECE", "drawn_values", "study"]
 PIECE = 16 * TOGETHER
 """Designs that are kept together: a loss of a minute or less, and a file of a megabyte or two."""
 
+MOST_REASONS = 20
+"""Sentences on designs without figures that are counted, the most frequent first."""
+
 MOST_IN_MEMORY = 100_000
 """Designs of a study without a folder."""
 
@@ -287,4 +290,6 @@ def _attributes(summary: Summary) -> dict[str, Any]:
     codes = np.repeat([*summary.codes], [*summary.codes.values()])
     most = {"residual": summary.residual, "iterations": summary.iterations}
     solve = json.dumps({**told(codes), **most})
-    return {**summary.attributes, **stored(few([*summary.warnings])), "solve": solve}
+    reasons = dict([*summary.reasons.items()][:MOST_REASONS])
+    doubts = stored(few([*summary.warnings]))
+    return {**summary.attributes, **doubts, "solve": solve, "reasons": json.dumps(reasons)}

@@ -149,7 +149,7 @@ def _local(workers: int) -> "Iterator[Client]":
             n_workers=0,
             protocol="tcp://",
             host="127.0.0.1",
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",
             processes=False,
         ) as cluster,
         _processes(cluster.scheduler_address, workers),
