@@ -1068,6 +1068,80 @@ def new(
     )
 
 
+@app.command()
+def size(
+    torque: Annotated[str, typer.Option(help='At the output, "60 N m".')],
+    ratio: Annotated[str, typer.Option(help="Speed of the input over that of the output.")],
+    speed: Annotated[str, typer.Option(help='Of the output, "30 rpm".')],
+    life: Annotated[str, typer.Option(help='Time under load, "5000 h".')],
+    ratio_tolerance: Annotated[
+        str | None, typer.Option(help="Part by which the ratio may differ; 0.03 unless given.")
+    ] = None,
+    diameter: Annotated[
+        str | None, typer.Option(help='Largest one around the gears, "120 mm".')
+    ] = None,
+    length: Annotated[str | None, typer.Option(help="Largest one of the gears.")] = None,
+    centre_distances: Annotated[
+        str | None,
+        typer.Option(help='Largest ones of stages from the input, or one: "53 mm, 57 mm, 77 mm".'),
+    ] = None,
+    families: Annotated[
+        str | None,
+        typer.Option(help='Which are tried, "two stages, planetary, 3K"; all unless given.'),
+    ] = None,
+    material: Annotated[str | None, typer.Option(help="Of gears; case-hardened-mq.")] = None,
+    flank_safety: Annotated[str | None, typer.Option(help="Least one; 1.2 unless given.")] = None,
+    root_safety: Annotated[str | None, typer.Option(help="Least one; 1.5 unless given.")] = None,
+    slenderness: Annotated[
+        str | None,
+        typer.Option(help="Largest face width over the pinion's diameter; 1.2 unless given."),
+    ] = None,
+    aims: Annotated[
+        str | None, typer.Option(help="What counts; mass, loss, diameter, backlash unless given.")
+    ] = None,
+    lubricant: Annotated[str | None, typer.Option(help="Oil; pao-vg-150 unless given.")] = None,
+    temperature: Annotated[
+        str | None, typer.Option(help='Of the oil; "60 degC" unless given.')
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Folder for cases of the front."),
+    ] = None,
+    json_: AsJson = False,
+) -> None:
+    """Find drives for a torque, a ratio, a speed and a life.
+
+    Stages of spur and helical pairs, planetary, stepped and 3K sets, strain wave gears: those that bear the
+    load and that no other one beats, each a case file that runs.
+    """
+    from pitchpoint.sizing.sizing import size as sized
+    from pitchpoint.views.sizing_screen import as_json, sizing_screen
+
+    options: dict[str, Any] = {
+        "ratio_tolerance": ratio_tolerance,
+        "diameter": diameter,
+        "length": length,
+        "centre_distances": centre_distances,
+        "families": families,
+        "material": material,
+        "flank_safety": flank_safety,
+        "root_safety": root_safety,
+        "slenderness": slenderness,
+        "aims": aims,
+        "lubricant": lubricant,
+        "temperature": temperature,
+    }
+    found = sized(torque, _ratio(ratio), speed, life, **options)
+    if output is not None:
+        found.write(output)
+    if json_:
+        _emit(as_json(found))
+        return
+    console = _console()
+    for line in sizing_screen(found, console.width, output):
+        console.print(_plain_line(line.text), style=_STYLES[line.style], soft_wrap=True)
+
+
 def _ratio(text: str) -> float:
     """A ratio as it is written: 80, or 80:1."""
     from pitchpoint.input.quantities import shown

@@ -25,6 +25,7 @@ from pitchpoint.cases.document import Document
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.schema import Case, DriveCase, Target, keys, validate
 from pitchpoint.cases.variant import Variant
+from pitchpoint.errors import InputError
 from pitchpoint.lubrication.conditions import UNITS as CONDITIONS
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.store import dataset, save
@@ -32,6 +33,7 @@ from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs import run
 from pitchpoint.runs.designs import wanted
 from pitchpoint.runs.jobs import jobs
+from pitchpoint.sizing.task import Task
 
 PAIR, VARIANTS = blocks("README.md", "toml")
 (WHOLE_WITH_VARIANTS,) = blocks("guide/variants.md", "toml")
@@ -54,6 +56,7 @@ SHELL = [
     for text in blocks(page, "sh")
     for line in text.replace("\\\n", "").splitlines()
 ]
+TASK_READ = Task.read
 SET_UP = [
     "sh bootstrap && .venv/bin/pitchpoint run tian2024",
     "sh bootstrap dev && .venv/bin/pytest",
@@ -96,6 +99,7 @@ PYTHON = {
     ("guide/python.md", "plot_in"),
     ("guide/python.md", "analyses="),
     ("guide/sizing.md", "def next_speed"),
+    ("guide/sizing.md", "pp.size"),
     ("guide/simulators.md", "renewed_friction"),
 }
 """Blocks of Python by page and by what they alone hold; each is run by a test."""
@@ -353,9 +357,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 COMPARED = [line for line in SHELL if " compare " in line]
 """Designs beside each other, computed by tests of their own."""
 EXPLORED = [line for line in SHELL if " explore " in line]
+SIZED = [line for line in SHELL if " size " in line]
 
 
-@pytest.mark.parametrize("line", sorted({*SHELL} - {*SET_UP, *COMPARED, *EXPLORED}))
+@pytest.mark.parametrize("line", sorted({*SHELL} - {*SET_UP, *COMPARED, *EXPLORED, *SIZED}))
 def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Parsed and laid out as far as the computation itself."""
     laid_out = []
@@ -385,6 +390,28 @@ def test_designs_that_are_compared(line: str, folder: Path) -> None:
     found = [wanted(one) for one in references]
     assert [one.variant for one in found] == [None, "physical"]
     assert all(run.describe(one.case, only=[one.variant] if one.variant else []) for one in found)
+
+
+@pytest.mark.parametrize("line", SIZED)
+def test_a_drive_that_is_sized(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Read as far as the search itself, which `test_size.py` runs."""
+    tasks = []
+
+    def read(**values: Any) -> None:
+        tasks.append(TASK_READ(**values))
+        raise InputError("was read")
+
+    monkeypatch.setattr(Task, "read", read)
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", *shlex.split(line)[1:]])
+    with pytest.raises(SystemExit):
+        cli.main()
+    assert [(task.torque, task.ratio) for task in tasks] == [(60.0, 60.0)]
+
+
+def test_the_guide_has_every_option_of_a_task() -> None:
+    (table,) = re.findall(r"^\| option .*?\n\n", PAGES["guide/sizing.md"], re.DOTALL | re.MULTILINE)
+    told = {name.replace("-", "_") for name in re.findall(r"`--([\w-]+)`", table)}
+    assert told | {"torque", "ratio", "speed", "life"} == {*Task.__dataclass_fields__}
 
 
 @pytest.mark.parametrize("line", EXPLORED)
@@ -417,7 +444,7 @@ def test_pages_can_be_read_without_the_site(
     listed = json.loads(printed(monkeypatch, capsys, "--json"))
     apart = {"README.md", "index.md"}
     assert {f"{one['page']}.md" for one in listed} > PAGES.keys() - apart
-    assert {"page": "guide/sizing", "title": "Sizing a stage"} in listed
+    assert {"page": "guide/sizing", "title": "Sizing a drive"} in listed
     for name in ("guide/sizing", "sizing.md", "Guide/Sizing"):
         assert printed(monkeypatch, capsys, name) == PAGES["guide/sizing.md"]
     assert printed(monkeypatch, capsys, "gallery/paper").startswith("# A published model")

@@ -23,7 +23,15 @@ from pitchpoint.registry import letters
 from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.three_k import three_k_sets, three_k_tables
 
-__all__ = ["case_for_ratio", "planetary_teeth", "stepped_teeth"]
+__all__ = [
+    "MODULES",
+    "case_for_ratio",
+    "in_planet_ring",
+    "planetary_teeth",
+    "stepped_gears",
+    "stepped_teeth",
+    "without_undercut",
+]
 
 Tree = dict[str, Any]
 Making = Callable[[float], Tree]
@@ -309,7 +317,7 @@ def _simple_sets(arranged: tuple[Any, ...], ratio: float, planets: int) -> Itera
     ends = {} if held == "ring" else {"input": turned, "output": loaded, "held": held}
     for sun, planet, ring in planetary_teeth(basic(ratio), planets):
         # Of no shift as well: a variant takes what it leaves out from the first set.
-        shifts = [_without_undercut(sun), _in_ring(planet)]
+        shifts = [without_undercut(sun), in_planet_ring(planet)]
         gears: Tree = {
             "teeth": [sun, planet, ring],
             "planets": planets,
@@ -321,18 +329,35 @@ def _simple_sets(arranged: tuple[Any, ...], ratio: float, planets: int) -> Itera
 
 def _stepped_sets(ratio: float, planets: int) -> Iterator[Set]:
     """Sets of stepped planets from sun to carrier, the nearest and smallest one first."""
+    for gears, met in stepped_gears(ratio, planets):
+        yield gears, USUAL_BEARING * gears["second"]["teeth"][0], met
+
+
+def stepped_gears(ratio: float, planets: int) -> Iterator[tuple[Tree, float]]:
+    """Tables of sets of stepped planets without lengths, each with its ratio; see `stepped_teeth`.
+
+    Args:
+        ratio: of the sun over the carrier, the ring is held.
+        planets: at equal angles, whose tips are apart.
+
+    Example:
+        >>> from pitchpoint.sizing.for_ratio import stepped_gears
+        >>> gears, met = next(stepped_gears(20.0, 3))
+        >>> gears["teeth"], gears["second"]["teeth"], round(met, 3)
+        ([13, 53], [18, 84], 20.026)
+    """
     for sun, first, second, ring in stepped_teeth(ratio, planets):
-        shift = _without_undercut(sun)
+        shift = without_undercut(sun)
         gears: Tree = {
             "teeth": [sun, first],
             "planets": planets,
             "profile_shift": [shift, 0.0 - shift],  # which leaves the centre distance as it is
             "second": {
                 "teeth": [second, ring],
-                "profile_shift": [_in_ring(second), FROM_CENTRE_DISTANCE],
+                "profile_shift": [in_planet_ring(second), FROM_CENTRE_DISTANCE],
             },
         }
-        yield gears, USUAL_BEARING * second, 1.0 + first * ring / (sun * second)
+        yield gears, 1.0 + first * ring / (sun * second)
 
 
 def stepped_teeth(ratio: float, planets: int) -> Iterator[tuple[int, int, int, int]]:
@@ -366,14 +391,14 @@ def stepped_teeth(ratio: float, planets: int) -> Iterator[tuple[int, int, int, i
     return iter(sorted(every, key=order))
 
 
-def _without_undercut(teeth: int) -> float:
+def without_undercut(teeth: float) -> float:
     """Least profile shift of two digits, not negative, with which a rack of 20 degrees does not undercut."""
     return max(ceil(100.0 * (STRAIGHT - 0.5 * teeth * sin(radians(20.0)) ** 2)) / 100.0, 0.0)
 
 
-def _in_ring(teeth: int) -> float:
+def in_planet_ring(teeth: int) -> float:
     """Profile shift of a planet that a ring meets well above its base circle."""
-    return max(_without_undercut(teeth), SHIFT_IN_RING * (teeth < FEW_IN_RING))
+    return max(without_undercut(teeth), SHIFT_IN_RING * (teeth < FEW_IN_RING))
 
 
 def _reach(planets: int) -> Iterator[tuple[tuple[Any, ...], float, float]]:

@@ -70,14 +70,14 @@ Numbers = np.ndarray | np.number[Any] | int
 
 
 def mesh_efficiency(
-    teeth: tuple[Values, Values], parts: tuple[Values, Values], friction: float
+    teeth: tuple[Values, Values], parts: tuple[Values, Values], friction: float | Values
 ) -> Values:
     """Mean efficiency of a mesh by Coulomb friction, seen from the carrier of its axes.
 
     Args:
         teeth: z1, z2, negative for a ring.
         parts: of the transverse contact ratio on either side of the pitch point, which may be negative.
-        friction: coefficient.
+        friction: coefficient, one or of each mesh.
 
     Validity: one or two pairs in contact that share the load as one, small losses: with a coefficient of 0.1
     it is low by some 2 % of the loss.

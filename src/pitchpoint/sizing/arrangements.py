@@ -1,0 +1,196 @@
+"""Arrangements that reach a ratio: how it is shared among stages, and which gears each of them may have."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import product
+from math import cos, radians
+from typing import Any
+
+from pitchpoint.errors import InputError
+from pitchpoint.gears.planetary import PLANETARY
+from pitchpoint.sizing.for_ratio import (
+    in_planet_ring,
+    planetary_teeth,
+    stepped_gears,
+    without_undercut,
+)
+from pitchpoint.sizing.stage_forms import CENTRE_FIELD, FIELD, Form, formed
+from pitchpoint.sizing.task import Task
+from pitchpoint.sizing.three_k import three_k_sets, three_k_tables
+
+__all__ = ["Arrangement", "arrangements", "reach_words"]
+
+Tree = dict[str, Any]
+
+PINIONS = (13, 16, 20, 25, 31)
+HELICES = (0.0, 15.0, 30.0)
+SHIFT_SUMS = (0.0, 0.6)
+PINION_SHIFT = 0.5
+"""Profile shift of pinions at large ratios; (1 - 1/u) of it at a ratio u, more where undercut asks for it."""
+
+PAIR_RATIOS = 1.25, 8.0
+SET_RATIOS = 2.8, 11.0
+"""Ratios of a stage between which it is looked for: of pairs, and of planetary sets."""
+
+STEP, STEPS = 1.22, range(-3, 4)
+"""Factor between ratios of a stage that are tried, and how many on either side of equal ones."""
+
+SUNS = (12, 15, 18, 22, 27, 34)
+PLANETS = (3, 4, 5)
+STEPPED, THREE_K = 6, 4
+"""Sets of stepped planets, and 3K sets, that are tried for each number of planets."""
+
+LEAST_THREE_K = 20.0
+
+INSPECTION = {"inspection": {"thickness_field": FIELD, "centre_distance_field": CENTRE_FIELD}}
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """A family, ratios of its stages from the input, and the gears that each of them may have.
+
+    Attributes:
+        family: its name.
+        ratios: nominal ones.
+        stages: for each stage, names of forms that it may have.
+    """
+
+    family: str
+    ratios: tuple[float, ...]
+    stages: tuple[tuple[Form, ...], ...]
+
+
+def arrangements(task: Task, family: str) -> Iterator[Arrangement]:
+    """Arrangements of a family that reach the ratio, with forms that can be made.
+
+    Args:
+        task: what is asked.
+        family: of `SIZED_FAMILIES`, but those with strain wave gears.
+    """
+    many = {"one stage": 1, "two stages": 2, "three stages": 3}
+    if family in many:
+        for ratios in _shared(task.ratio, many[family], PAIR_RATIOS):
+            pairs = tuple(_pairs(task, ratio, many[family]) for ratio in ratios)
+            yield Arrangement(family, ratios, pairs)
+    elif family in ("planetary", "two planetary sets"):
+        count = 1 if family == "planetary" else 2
+        for ratios in _shared(task.ratio, count, SET_RATIOS):
+            yield Arrangement(family, ratios, tuple(_sets(task, ratio, count) for ratio in ratios))
+    else:
+        forms = _stepped(task) if family == "stepped planets" else _three_k(task)
+        yield Arrangement(family, (task.ratio,), (forms,))
+
+
+def reach_words(task: Task, family: str) -> str:
+    """Why a family has no arrangement of the ratio that is asked, without its stop."""
+    of_pairs = {"one stage": 1, "two stages": 2, "three stages": 3}
+    stages = of_pairs.get(family) or {"planetary": 1, "two planetary sets": 2}.get(family)
+    low, high = PAIR_RATIOS if family in of_pairs else SET_RATIOS
+    if stages and not low**stages <= task.ratio <= high**stages:
+        return (
+            f"reaches ratios of {low**stages:.3g} to {high**stages:.4g}, {task.ratio:.6g} is asked"
+        )
+    if family == "3K" and task.ratio < LEAST_THREE_K:
+        return f"reaches ratios from {LEAST_THREE_K:g} on, {task.ratio:.6g} is asked"
+    return (
+        f"no teeth that can be made come within {100.0 * task.ratio_tolerance:.3g} % of that ratio"
+    )
+
+
+def _shared(ratio: float, count: int, limits: tuple[float, float]) -> Iterator[tuple[float, ...]]:
+    """Ratios of stages whose product is the whole, in equal steps around equal ones."""
+    equal = ratio ** (1.0 / count)
+    for powers in product(STEPS, repeat=count):
+        ratios = tuple(equal * STEP**power for power in powers)
+        if sum(powers) == 0 and all(limits[0] <= each <= limits[1] for each in ratios):
+            yield ratios
+
+
+@lru_cache(maxsize=256)
+def _pairs(task: Task, ratio: float, stages: int) -> tuple[Form, ...]:
+    """Pairs near a ratio."""
+    forms = []
+    for pinion, helix, shifts in product(PINIONS, HELICES, SHIFT_SUMS):
+        wheel = round(ratio * pinion)
+        if abs(wheel / pinion / ratio - 1.0) > task.ratio_tolerance:
+            continue
+        forms.append(formed(task, "pair", _pair(pinion, wheel, helix, shifts)))
+    return tuple(form for form in forms if form is not None)
+
+
+def _pair(pinion: int, wheel: int, helix: float, shifts: float) -> Tree:
+    """Table of a pair: shifts that leave no undercut, more on the pinion at large ratios."""
+    virtual = cos(radians(helix)) ** 3
+    least = [without_undercut(teeth / virtual) for teeth in (pinion, wheel)]
+    first = max(least[0], round(PINION_SHIFT * (1.0 - pinion / wheel), 2))
+    second = max(least[1] if wheel < LEAST_WHEEL else -1.0, round(shifts - first, 2))
+    skew = {"helix_angle": f"{helix:g} deg"} if helix else {}
+    return {"teeth": [pinion, wheel], "profile_shift": [first, second], **skew, **INSPECTION}
+
+
+LEAST_WHEEL = 30
+"""Teeth from which a shift below zero leaves no undercut that counts."""
+
+
+@lru_cache(maxsize=256)
+def _sets(task: Task, ratio: float, stages: int) -> tuple[Form, ...]:
+    """Planetary sets near a ratio from sun to carrier, of a few suns for each number of planets."""
+    forms = []
+    for planets in PLANETS:
+        near = [
+            teeth
+            for teeth in planetary_teeth(ratio - 1.0, planets)
+            if abs((1.0 + teeth[2] / teeth[0]) / ratio - 1.0) <= task.ratio_tolerance
+        ]
+        for sun in SUNS:
+            close = min(near, key=lambda teeth: abs(teeth[0] - sun), default=None)
+            if close is None:
+                continue
+            near = [teeth for teeth in near if teeth[0] != close[0]]
+            gears = {
+                "family": PLANETARY,
+                "teeth": [*close],
+                "planets": planets,
+                "profile_shift": [without_undercut(close[0]), in_planet_ring(close[1])],
+                **INSPECTION,
+            }
+            forms.append(formed(task, "planetary", gears))
+    return tuple(form for form in forms if form is not None)
+
+
+def _stepped(task: Task) -> tuple[Form, ...]:
+    """Sets of stepped planets of the ratio."""
+    forms = []
+    for planets in PLANETS[:2]:
+        near, suns = [], set()
+        for gears, met in stepped_gears(task.ratio, planets):
+            if abs(met / task.ratio - 1.0) > task.ratio_tolerance:
+                continue
+            if gears["teeth"][0] not in suns:
+                suns.add(gears["teeth"][0])
+                near.append(gears)
+            if len(near) == STEPPED:
+                break
+        for gears in near:
+            second = gears["second"] | INSPECTION
+            table = gears | {"family": PLANETARY, "second": second, **INSPECTION}
+            forms.append(formed(task, "stepped", table))
+    return tuple(form for form in forms if form is not None)
+
+
+def _three_k(task: Task) -> tuple[Form, ...]:
+    """3K sets of the ratio that lose least."""
+    forms = []
+    for planets in PLANETS[:2] if task.ratio >= LEAST_THREE_K else ():
+        try:
+            sets = three_k_sets(task.reaches, planets=planets, count=THREE_K)
+        except InputError:
+            continue
+        for number in range(sets.sizes["set"]):
+            gears = three_k_tables(sets.isel(set=number), "1 mm", "1 mm")["gears"]
+            del gears["module"], gears["face_width"]
+            second = {key: value for key, value in gears["second"].items() if key != "face_width"}
+            table = gears | {"second": second | INSPECTION, **INSPECTION}
+            forms.append(formed(task, "3K", table))
+    return tuple(form for form in forms if form is not None)

@@ -1,0 +1,400 @@
+"""From torque, ratio, speed and life to a front of designs, each of which is a case file that runs."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import nan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomlkit
+import xarray as xr
+
+from pitchpoint._jax import double_precision
+from pitchpoint.analyses.analysis import silent
+from pitchpoint.analyses.bodies import bodies_of
+from pitchpoint.analyses.inspection import inspection_part
+from pitchpoint.analyses.registry import REFLECTED
+from pitchpoint.analyses.strength import ratings_of
+from pitchpoint.analyses.summaries import summaries
+from pitchpoint.cases.built_drive import Ready
+from pitchpoint.doubts import GUESSED
+from pitchpoint.errors import InputError
+from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
+from pitchpoint.registry import enumerated
+from pitchpoint.results.store import make_folder
+from pitchpoint.runs.run import load_case
+from pitchpoint.sizing.combining import Drives, NoDriveError, drives_of, exactly_loaded
+from pitchpoint.sizing.front import non_dominated
+from pitchpoint.sizing.stage_forms import case_of
+from pitchpoint.sizing.strain_wave import (
+    SIZES,
+    WIDTH,
+    StrainWaveSize,
+    strain_wave_case,
+    strain_wave_sizes,
+    why_no_size,
+)
+from pitchpoint.sizing.task import Task
+
+__all__ = ["SizedDrive", "Sizing", "size"]
+
+Tree = dict[str, Any]
+
+OF_EACH = 24
+"""Designs of a family that are worked out."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizedDrive:
+    """A design of a drive, with what its case file computes.
+
+    Attributes:
+        name: of its file.
+        family: of `SIZED_FAMILIES`.
+        tree: tables of its case.
+        ratio: speed of the input over that of the output, without its sense.
+        mass: of the gears as discs, a strain wave gear with its bodies [kg].
+        loss: part of the power that is lost, of strain wave gears with their bearing and grease.
+        diameter, length: of the gears [m].
+        backlash: mean one at the output, by the fields of thickness and centre distance [rad].
+        inertia: at the input [kg m2].
+        flank_safety, root_safety: least ones; not numbers of strain wave gears.
+    """
+
+    name: str
+    family: str
+    tree: Tree = field(repr=False)
+    ratio: float
+    mass: float
+    loss: float
+    diameter: float
+    length: float
+    backlash: float
+    inertia: float
+    flank_safety: float
+    root_safety: float
+
+    @property
+    def loss_range(self) -> tuple[float, float]:
+        """Loss as friction laws disagree far from what they were fitted to."""
+        return self.loss * (1.0 - GUESSED), self.loss * (1.0 + GUESSED)
+
+    @property
+    def case(self) -> str:
+        """Text of a case file."""
+        figures = (
+            f"{self.family}, ratio {self.ratio:.5g}: {self.mass:.4g} kg, loss {100.0 * self.loss:.3g} %, "
+            f"diameter {1e3 * self.diameter:.4g} mm"
+        )
+        return f"# {figures}; as sized.\n{tomlkit.dumps({'title': figures} | self.tree)}"
+
+
+@dataclass(frozen=True, eq=False)
+class Sizing:
+    """Designs that do what is asked.
+
+    Attributes:
+        task: what is asked.
+        designs: all that were worked out, by family.
+        front: names of those that no other one beats in what counts.
+        tried: numbers of gears that were rated with a module and a load, by family.
+        without: why families have no design, by family.
+    """
+
+    task: Task
+    designs: Mapping[str, SizedDrive]
+    front: tuple[str, ...]
+    tried: Mapping[str, int]
+    without: Mapping[str, str]
+
+    @property
+    def best(self) -> dict[str, str]:
+        """Names of the designs of the front that are best by each aim, and of a balanced one.
+
+        The balanced one has the least sum of the squares of what it lacks of the best of each aim, over the
+        median of the front.
+        """
+        costs = np.array([_costs(self.designs[name], self.task.aims) for name in self.front])
+        best = {aim: self.front[int(costs[:, k].argmin())] for k, aim in enumerate(self.task.aims)}
+        scale = np.maximum(np.median(costs, axis=0) - costs.min(axis=0), 1e-300)
+        lacks = np.sum(((costs - costs.min(axis=0)) / scale) ** 2, axis=1)
+        return best | {"balanced": self.front[int(lacks.argmin())]}
+
+    @property
+    def table(self) -> xr.Dataset:
+        """Figures of all designs over `design`, and whether they are on the front."""
+        rows = [*self.designs.values()]
+        units = {
+            "ratio": "1",
+            "mass": "kg",
+            "loss": "1",
+            "diameter": "m",
+            "length": "m",
+            "backlash": "rad",
+            "inertia": "kg m2",
+            "flank_safety": "1",
+            "root_safety": "1",
+        }
+        columns = {
+            name: ("design", [getattr(row, name) for row in rows], {"units": unit})
+            for name, unit in units.items()
+        }
+        names = [*self.designs]
+        return xr.Dataset(
+            {
+                "family": ("design", [row.family for row in rows]),
+                "on_front": ("design", [name in self.front for name in names]),
+                **columns,
+            },
+            coords={"design": names},
+        )
+
+    def write(self, folder: Path | str) -> list[Path]:
+        """Write each design of the front as a case file.
+
+        Args:
+            folder: made if it is not there.
+
+        Raises:
+            InputError: files of these names are there.
+        """
+        place = Path(folder)
+        make_folder(place)
+        paths = [place / f"{name}.toml" for name in self.front]
+        for path in paths:
+            if path.exists():
+                raise InputError("is there already; name another folder", file=str(path))
+        for path, name in zip(paths, self.front, strict=True):
+            path.write_text(self.designs[name].case, encoding="utf-8")
+        return paths
+
+
+@double_precision()
+def size(
+    torque: str,
+    ratio: float,
+    speed: str,
+    life: str,
+    *,
+    ratio_tolerance: float | None = None,
+    diameter: str | None = None,
+    length: str | None = None,
+    centre_distances: str | Sequence[str] | None = None,
+    families: str | Sequence[str] | None = None,
+    material: str | None = None,
+    flank_safety: float | None = None,
+    root_safety: float | None = None,
+    slenderness: float | None = None,
+    aims: str | Sequence[str] | None = None,
+    lubricant: str | None = None,
+    temperature: str | None = None,
+) -> Sizing:
+    """Designs of drives for a torque, a ratio, a speed and a life, and the front of those that none beats.
+
+    Args:
+        torque: at the output, with its unit.
+        ratio: speed of the input over that of the output, of either sense.
+        speed: of the output.
+        life: time under load.
+        ratio_tolerance: part by which the ratio may differ, 0.03 unless given.
+        diameter, length: largest ones of the gears.
+        centre_distances: largest ones of pairs, one, or one for each stage from the input.
+        families: those that are tried, all of `SIZED_FAMILIES` unless given.
+        material: of all gears, "case-hardened-mq" unless given.
+        flank_safety, root_safety: least ones, 1.2 and 1.5 unless given.
+        slenderness: largest face width over the diameter of the pinion or sun, 1.2 unless given.
+        aims: what counts, some of mass, loss, diameter and backlash, all unless given.
+        lubricant: "pao-vg-150" unless given.
+        temperature: of the oil, "60 degC" unless given.
+
+    Returns:
+        All designs that were worked out, each a case that opens and runs.
+
+    Raises:
+        InputError: a value that is wrong; no design does it, with what stands against it and by how much.
+
+    Validity: spur and helical teeth, planetary, stepped and 3K sets are rated by ISO 6336-2 and -3 with K_A =
+    K_Halpha = K_Hbeta = 1 and K_v by method C, planets with their mesh load factor; losses are those of teeth
+    by ISO/TR 14179-2. Shafts, bearings, seals, oil that is churned, housings and carriers are in nothing.
+    Strain wave gears have the proportions and the rating of a catalogue, and no rated teeth.
+
+    Example:
+        >>> from pitchpoint.sizing.sizing import size
+        >>> size("60 N m", 60.0, "30 rpm", "5000 h", families="planetary")
+        Traceback (most recent call last):
+            ...
+        pitchpoint.errors.InputError: no drive does this: planetary: reaches ratios of 2.8 to 11, 60 is asked
+    """
+    given = dict(locals())
+    task = Task.read(**given)
+    designs: list[SizedDrive] = []
+    tried, without = {}, {}
+    for family in task.families:
+        try:
+            made, tried[family] = _MAKERS.get(family, _of_stages)(task, family)
+            designs += made
+        except NoDriveError as error:
+            without[family] = error.words
+    if not designs:
+        raise _infeasible(task, without)
+    front = non_dominated(np.array([_costs(design, task.aims) for design in designs]))
+    names = tuple(design.name for design, on in zip(designs, front, strict=True) if on)
+    return Sizing(task, {design.name: design for design in designs}, names, tried, without)
+
+
+def _costs(design: SizedDrive, aims: Sequence[str]) -> list[float]:
+    return [float(getattr(design, aim)) for aim in aims]
+
+
+def _infeasible(task: Task, without: Mapping[str, str]) -> InputError:
+    """What stands against every family, each with how much it misses."""
+    families: dict[str, list[str]] = {}
+    for family, words in without.items():
+        families.setdefault(words, []).append(family)
+    told = "; ".join(f"{enumerated(names)}: {words}" for words, names in families.items())
+    return InputError(f"no drive does this: {told}")
+
+
+def _of_stages(task: Task, family: str) -> tuple[list[SizedDrive], int]:
+    """Designs of a family of stages, and how many gears were rated for them."""
+    drives = drives_of(task, family)
+    few = exactly_loaded(task, _within(task, drives).few(OF_EACH))
+    few = _within(task, few)
+    made = [_designed(task, family, number, few) for number in range(len(few))]
+    return made, drives.tried
+
+
+FILES = {
+    "one stage": "1_stage",
+    "two stages": "2_stages",
+    "three stages": "3_stages",
+    "planetary": "planetary",
+    "two planetary sets": "2_sets",
+    "stepped planets": "stepped",
+    "3K": "3K",
+    "strain wave": "strain_wave",
+}
+"""What names of designs begin with, by family."""
+
+
+def _name(family: str, number: int) -> str:
+    return f"{FILES[family]}_{number + 1:02d}"
+
+
+def _within(task: Task, drives: Drives) -> Drives:
+    """Those in the envelope; NoDriveError where there are none."""
+    sizes = {"diameter": drives.diameter, "length": drives.length}
+    small = np.ones(len(drives), bool)
+    for key, values in sizes.items():
+        most = getattr(task, key)
+        if most is not None and not (small & (values <= most)).any():
+            least = float(values[small].min(initial=np.inf))
+            beside = " in that diameter" if key == "length" and task.diameter else ""
+            words = f"the least {key} of gears{beside} is {1e3 * least:.4g} mm"
+            raise NoDriveError(f"{words}, {1e3 * most:.4g} mm are allowed")
+        small &= values <= (np.inf if most is None else most)
+    return drives[small]
+
+
+def _designed(task: Task, family: str, number: int, drives: Drives) -> SizedDrive:
+    """A drive as a case that opens, with the figures of that case."""
+    forms = [drives.forms.forms[k] for k in drives.form[number]]
+    sizes = zip(forms, drives.module[number], drives.width[number], strict=True)
+    tables = [form.table(module, width) for form, module, width in sizes]
+    ratio = float(drives.ratio[number])
+    tree = case_of(task, tables, task.torque, task.speed * ratio)
+    built = load_case(tree)
+    rated = ratings_of([built], 1)
+    mass, inertia, backlash = _bodies(built)
+    return SizedDrive(
+        name=_name(family, number),
+        family=family,
+        tree=tree,
+        ratio=abs(1.0 / built.output_rate),
+        mass=mass,
+        loss=float(drives.loss[number]),
+        diameter=float(drives.diameter[number]),
+        length=float(drives.length[number]),
+        backlash=backlash,
+        inertia=inertia,
+        flank_safety=float(rated["least_flank_safety"][1][0, 0]),
+        root_safety=float(rated["least_root_safety"][1][0, 0]),
+    )
+
+
+def _bodies(built: Ready) -> tuple[float, float, float]:
+    """Mass [kg], inertia at the input [kg m2], and mean backlash at the output [rad] of gears."""
+    if REFLECTED.why_not(built) is None:
+        data = REFLECTED.compute(built, {}, silent)
+        play = float(data["output_backlash"].sel(case="mean"))
+        inertia = float(data["reflected_inertia"].sel(end="input"))
+        return float(data["drive_mass"]), inertia, play
+    data = inspection_part(built.meshes[0])
+    wheel = float(data["disc_inertia"][1]) * built.output_rate**2
+    play = float(data["backlash_angle"].sel(case="mean")[1])
+    return float(data["disc_mass"].sum()), float(data["disc_inertia"][0]) + wheel, play
+
+
+def _strain_waves(task: Task, family: str) -> tuple[list[SizedDrive], int]:
+    """Designs of strain wave gears."""
+    sizes = strain_wave_sizes(task, task.ratio)
+    if not sizes:
+        raise NoDriveError(why_no_size(task, task.ratio))
+    small = [one for one in sizes if _fits(task, one)]
+    if not small:
+        around, along = _outside(sizes[0]), WIDTH * sizes[0].diameter
+        raise NoDriveError(
+            f"the smallest one has a diameter of {1e3 * around:.4g} mm and a face of {1e3 * along:.3g} mm, "
+            "more than is allowed"
+        )
+    made = _waves_designed(task, family, small)
+    return made, len(SIZES)
+
+
+def _cup(built: Ready) -> float:
+    """Length of the cup of a strain wave gear [m]."""
+    mesh: Any = built.meshes[0].design.mesh
+    return float(mesh.rim.cup_length)
+
+
+def _outside(gear: StrainWaveSize) -> float:
+    """Outer diameter of the circular spline by usual proportions [m]."""
+    return float(PROPORTIONS.behind(gear.diameter)["outside_diameter"])
+
+
+def _fits(task: Task, gear: StrainWaveSize) -> bool:
+    limits = ((task.diameter, _outside(gear)), (task.length, WIDTH * gear.diameter))
+    return all(most is None or value <= most for most, value in limits)
+
+
+def _waves_designed(task: Task, family: str, sizes: Sequence[StrainWaveSize]) -> list[SizedDrive]:
+    """Strain wave gears with the losses of their case, which no closed form has."""
+    trees = [strain_wave_case(task, one, task.speed * one.ratio) for one in sizes]
+    built = [load_case(tree) for tree in trees]
+    data = summaries(built, built[0].models, {}, title=family, several=True)
+    made = []
+    for number, (gear, tree, one) in enumerate(zip(sizes, trees, built, strict=True)):
+        bodies = bodies_of(one.meshes[0], {}, silent)
+        made.append(
+            SizedDrive(
+                name=_name(family, number),
+                family=family,
+                tree=tree,
+                ratio=gear.ratio,
+                mass=float(bodies["body_mass"].sum()),
+                loss=1.0 - float(data["mean_efficiency"][0, number]),
+                diameter=_outside(gear),
+                length=_cup(one),
+                backlash=0.0,
+                inertia=float(bodies["reflected_inertia"].sel(end="input")),
+                flank_safety=nan,
+                root_safety=nan,
+            )
+        )
+    return made
+
+
+_MAKERS: dict[str, Callable[[Task, str], tuple[list[SizedDrive], int]]] = {
+    "strain wave": _strain_waves,
+}

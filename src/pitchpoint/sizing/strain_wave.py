@@ -1,0 +1,158 @@
+"""Strain wave gears in the sizes of catalogues, by a maker's rating and the life of their bearing."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from pitchpoint.gears.strain_wave.load_limits import bearing_life, of_other_size
+from pitchpoint.sizing.task import Task
+
+__all__ = [
+    "SIZES",
+    "WIDTH",
+    "StrainWaveSize",
+    "strain_wave_case",
+    "strain_wave_sizes",
+    "why_no_size",
+]
+
+Tree = dict[str, Any]
+
+SIZES = (8, 11, 14, 17, 20, 25, 32, 40, 45, 50, 58, 65, 80, 90, 100)
+"""Sizes of catalogues; the pitch diameter is 2.4 mm times that."""
+
+PER_SIZE = 2.4e-3
+RATED_DIAMETER, RATED_TORQUE = 60e-3, 67.0
+RATED_SPEED, RATED_LIFE = 2000.0, 7000.0
+"""Rating of the size 25 at a ratio of 100: pitch diameter [m], torque [N m], speed [rpm], life [h]."""
+
+FULL_RATIO = 100.0
+"""Ratio from which on that torque is taken; below it goes with the ratio, a rule on the safe side."""
+
+RATIOS = 30.0, 320.0
+WIDTH = 1.0 / 6.0
+"""Face width over pitch diameter."""
+
+KEPT = 3
+
+
+@dataclass(frozen=True)
+class StrainWaveSize:
+    """A strain wave gear of a catalogue's size.
+
+    Attributes:
+        teeth: of flexspline and circular spline.
+        diameter: pitch diameter [m].
+        rated: torque [N m].
+    """
+
+    teeth: tuple[int, int]
+    diameter: float
+    rated: float
+
+    @property
+    def ratio(self) -> float:
+        """Speed of the wave generator over that of the flexspline, without its sense."""
+        return self.teeth[0] / 2.0
+
+    @property
+    def gears(self) -> Tree:
+        """Table of a case file."""
+        return {
+            "family": "strain_wave",
+            "teeth": [*self.teeth],
+            "module": f"{1e3 * self.diameter / self.teeth[0]:.6g} mm",
+            "face_width": f"{1e3 * WIDTH * self.diameter:.4g} mm",
+            "tooth": {"set": "liu"},
+            "wave_generator": {"bearing": {}},
+            "yielding": {},
+            "limits": {
+                "rated_torque": f"{self.rated:.4g} N m",
+                "rated_speed": f"{RATED_SPEED:g} rpm",
+                "rated_life": f"{RATED_LIFE:g} h",
+            },
+        }
+
+
+def strain_wave_sizes(task: Task, ratio: float) -> list[StrainWaveSize]:
+    """The smallest sizes that bear the torque of a task for its life.
+
+    Args:
+        task: torque, output speed and life count.
+        ratio: of the gear.
+
+    Source: torque by the cube of the size, life by Harmonic Drive AG, Engineering Data CSD-2A (2014), eq.
+    20.2; see `bearing_life`.
+
+    Example:
+        >>> from pitchpoint.sizing.task import Task
+        >>> task = Task.read(torque="60 N m", ratio=100, speed="20 rpm", life="5000 h")
+        >>> [round(1e3 * size.diameter, 1) for size in strain_wave_sizes(task, 100.0)]
+        [60.0, 76.8, 96.0]
+    """
+    if not RATIOS[0] <= ratio <= RATIOS[1]:
+        return []
+    sizes = [size for size in _every(ratio) if size.rated >= task.torque]
+    return [size for size in sizes if _life(task, size) >= task.life][:KEPT]
+
+
+def why_no_size(task: Task, ratio: float) -> str:
+    """Why no size does what a task asks, without its stop."""
+    low, high = RATIOS
+    if not low <= ratio <= high:
+        return f"reaches ratios of {low:g} to {high:g}, {ratio:.6g} is asked"
+    largest = _every(ratio)[-1]
+    part = (_life(task, largest) / task.life) ** (1.0 / 3.0)  # it goes with the cube of the torque
+    most = min(largest.rated, part * task.torque)
+    return (
+        f"the largest of a catalogue's sizes bears {most:.4g} N m for that life, {task.torque:.6g} N m are "
+        "asked"
+    )
+
+
+def _every(ratio: float) -> list[StrainWaveSize]:
+    """All sizes at a ratio, the smallest one first."""
+    teeth = round(2.0 * ratio)
+    sizes = []
+    for size in SIZES:
+        diameter = PER_SIZE * size
+        rated = of_other_size(RATED_TORQUE, size=diameter, known=RATED_DIAMETER)
+        rated *= min(ratio / FULL_RATIO, 1.0)
+        sizes.append(StrainWaveSize((teeth, teeth + 2), diameter, rated))
+    return sizes
+
+
+def _life(task: Task, size: StrainWaveSize) -> float:
+    """Life of the bearing of the wave generator under a task [s]."""
+    return bearing_life(
+        rated_life=3600.0 * RATED_LIFE,
+        rated_torque=size.rated,
+        rated_speed=RATED_SPEED * TURNS,
+        torque=task.torque,
+        speed=task.speed * (size.ratio + 1.0),
+    )
+
+
+TURNS = 0.10471975511965977
+"""A turn a minute [rad/s]."""
+
+
+def strain_wave_case(task: Task, size: StrainWaveSize, speed: float) -> Tree:
+    """Tables of a case of a strain wave gear, with the bearing and grease of the component.
+
+    Args:
+        task: torque, oil and temperature count.
+        size: of the gear.
+        speed: of the wave generator [rad/s].
+    """
+    return {
+        "gears": size.gears,
+        "losses": {"set": "strain_wave_component"},
+        "lubricant": {"name": task.lubricant},
+        "roughness": {"ra": "0.4 um"},
+        "operation": {
+            "torque": f"{task.torque:.12g} N m",
+            "speed": f"{speed:.12g} rad/s",
+            "temperature": f"{task.temperature - 273.15:.12g} degC",
+        },
+        "models": {"friction": {"name": "constant", "coefficient": 0.08}},
+    }
