@@ -12,8 +12,32 @@ from pathlib import Path
 SOURCE = Path(__file__).parent.parent / "src" / "pitchpoint"
 
 GENERIC = frozenset(
-    "one found told given own each first said known asked last whole same other more much many rest kept made"
-    " put way thing things".split()
+    [
+        "one",
+        "found",
+        "told",
+        "given",
+        "own",
+        "each",
+        "first",
+        "said",
+        "known",
+        "asked",
+        "last",
+        "whole",
+        "same",
+        "other",
+        "more",
+        "much",
+        "many",
+        "rest",
+        "kept",
+        "made",
+        "put",
+        "way",
+        "thing",
+        "things",
+    ]
 )
 
 
@@ -39,9 +63,7 @@ def generic_share(names: Counter[str]) -> float:
 
 
 def _defined(kind: type[ast.ClassDef] | type[ast.FunctionDef]) -> Counter[str]:
-    return Counter(
-        node.name for _, tree in trees() for node in tree.body if isinstance(node, kind)
-    )
+    return Counter(node.name for _, tree in trees() for node in tree.body if isinstance(node, kind))
 
 
 def repeated_classes() -> set[str]:
@@ -58,6 +80,11 @@ def repeated_functions() -> set[str]:
 if __name__ == "__main__":
     names = assigned()
     print(f"{generic_share(names):.1%} of {names.total()} assigned names are generic")
-    print(*(f"  {count:5d} {name}" for name, count in names.most_common() if name in GENERIC), sep="\n")
+    print(
+        *(f"  {count:5d} {name}" for name, count in names.most_common() if name in GENERIC),
+        sep="\n",
+    )
     for what, repeated in (("classes", repeated_classes()), ("functions", repeated_functions())):
-        print(f"{len(repeated)} names of {what} stand more than once: {', '.join(sorted(repeated))}")
+        print(
+            f"{len(repeated)} names of {what} stand more than once: {', '.join(sorted(repeated))}"
+        )
