@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import sound
+import xarray as xr
 from scipy.io import loadmat
 
 from pitchpoint import cli
@@ -251,6 +252,26 @@ def test_films_count_only_where_pairs_touch(compared: Outcomes) -> None:
             law = [str(one) for one in cycle["law"].values].index(figure.law)
             films = cycle["film_thickness"].values[law][cycle["active"].values]
             assert value == np.min(films) > 0.0
+
+
+def test_mass_and_inertia_of_a_drive_stand_beside_those_of_a_strain_wave_gear() -> None:
+    """Which has them by its bodies: their sum, and the same inertias at both ends."""
+    ends = {"end": ["input", "output"]}
+    felt = {"reflected_inertia": ("end", [4e-5, 0.4])}
+    mass = ("member", [0.15, 0.04, 0.18])
+    named = {"member": ["wave generator", "flexspline", "circular spline"]}
+    wave = xr.Dataset({**felt, "body_mass": mass}, {**ends, **named})
+    train = xr.Dataset({**felt, "drive_mass": 0.5}, ends)
+    each = {"wave": {"bodies": wave}, "train": {"reflected": train}}
+    found = {
+        (one.name, one.place): one.values
+        for one in main_results(
+            {name: Outcome({"laws": [], "inputs": []}, parts) for name, parts in each.items()}
+        )
+    }
+    assert found["drive_mass", ""] == pytest.approx({"wave": 0.37, "train": 0.5})
+    assert found["reflected_inertia", "output"] == {"wave": 0.4, "train": 0.4}
+    assert found["body_mass", "flexspline"] == {"wave": 0.04}
 
 
 def test_designs_of_other_families(folder: Path) -> None:

@@ -279,18 +279,27 @@ def _of_design(outcome: Outcome, shared: Sequence[str]) -> Iterator[tuple[Keys, 
         for variable in dict.fromkeys((*analysis.main, *_MORE.get(name, ()))):
             if variable in data and variable not in twice and data[variable].dtype.kind in "fiu":
                 yield from _of_variable(outcome, name, variable, shared)
+        if name == "bodies" and "body_mass" in data:
+            mass = float(data["body_mass"].sum(skipna=False))
+            if np.isfinite(mass):
+                yield ("reflected", "drive_mass", "", "", variable_of(data, "drive_mass")), mass
+
+
+_ALIKE = {"bodies": "reflected"}
+"""Parts that have figures of the same names for other gears, and with which of them these stand."""
 
 
 def _of_variable(
     outcome: Outcome, part: str, name: str, shared: Sequence[str]
 ) -> Iterator[tuple[Keys, float]]:
     data = outcome.parts[part]
+    alike = ANALYSES[_ALIKE[part]].main if part in _ALIKE else ()
     described = variable_of(data, name)
     for law, array in _by_law(data[name], shared):
         reduced = _extreme(data, array) if part == "cycle" else _there(outcome, array)
         for place, value in _places(reduced):
             if np.isfinite(value):
-                yield (part, name, law, place, described), value
+                yield (_ALIKE[part] if name in alike else part, name, law, place, described), value
 
 
 def _by_law(array: xr.DataArray, shared: Sequence[str]) -> Iterator[tuple[str, xr.DataArray]]:

@@ -53,10 +53,14 @@ SHORT = {
     ("torsion", "torsional_stiffness"): "stiffness",
     ("torsion", "angular_transmission_error_range"): "transmission error",
     ("kinematic_error", "kinematic_error_range"): "kinematic error",
+    ("torsion", "catalogue_lost_motion"): "lost motion",
     ("reflected", "drive_mass"): "mass",
+    ("reflected", "reflected_inertia"): "inertia",
+    ("running", "no_load_torque"): "input without load",
     ("running", "starting_torque"): "input to start",
     ("running", "back_driving_torque"): "output to move back",
     ("back_driving", "mean_efficiency"): "efficiency backwards",
+    ("operation", "torque_ripple"): "torque ripple",
     ("operation", "contact_ratio"): "contact ratio",
 }
 """Figures that answer for most designs, under short names, in the order in which they stand."""
