@@ -260,8 +260,15 @@ def _of_stages(task: Task, family: str) -> tuple[list[SizedDrive], int]:
     """Designs of a family of stages, and how many gears were rated for them."""
     drives = drives_of(task, family)
     few = exactly_loaded(task, _within(task, drives).few(OF_EACH))
-    few = _within(task, few)
-    made = [_designed(task, family, number, few) for number in range(len(few))]
+    few = _within(task, few) if len(few) else few
+    cases = {number: _opened(task, few, number) for number in range(len(few))}
+    open_ones = {number: case for number, case in cases.items() if case is not None}
+    if not open_ones:
+        raise NoDriveError("no teeth that bear the load run with the backlash of their fields")
+    made = [
+        _designed(family, _name(family, place), few, number, *case)
+        for place, (number, case) in enumerate(open_ones.items())
+    ]
     return made, drives.tried
 
 
@@ -297,18 +304,32 @@ def _within(task: Task, drives: Drives) -> Drives:
     return drives[small]
 
 
-def _designed(task: Task, family: str, number: int, drives: Drives) -> SizedDrive:
-    """A drive as a case that opens, with the figures of that case."""
+def _opened(task: Task, drives: Drives, number: int) -> tuple[Tree, Ready] | None:
+    """The case of a drive and what it opens as; None where it is refused, as its teeth are too thin."""
     forms = [drives.forms.forms[k] for k in drives.form[number]]
     sizes = zip(forms, drives.module[number], drives.width[number], strict=True)
     tables = [form.table(module, width) for form, module, width in sizes]
-    ratio = float(drives.ratio[number])
-    tree = case_of(task, tables, task.torque, task.speed * ratio)
-    built = load_case(tree)
+    tree = case_of(task, tables, task.torque, task.speed * float(drives.ratio[number]))
+    try:
+        return tree, load_case(tree)
+    except InputError:
+        return None
+
+
+def _designed(
+    family: str, name: str, drives: Drives, number: int, tree: Tree, built: Ready
+) -> SizedDrive:
+    """A drive with the figures of its case.
+
+    Args:
+        family, name: of it.
+        drives, number: which one it is.
+        tree, built: its case, and what that opens as.
+    """
     rated = ratings_of([built], 1)
     mass, inertia, backlash = _bodies(built)
     return SizedDrive(
-        name=_name(family, number),
+        name=name,
         family=family,
         tree=tree,
         ratio=abs(1.0 / built.output_rate),
