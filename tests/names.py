@@ -1,7 +1,7 @@
 """What the names of the package say: `python tests/names.py` counts them.
 
-A generic name (`found`, `one`) says nothing of what it holds; a class or public function whose name stands twice
-means two things.
+A generic name (`found`, `one`) says nothing of what it holds; the name of a class or
+of a public function that stands twice means two things.
 """
 
 import ast

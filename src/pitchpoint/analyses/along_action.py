@@ -87,14 +87,14 @@ def _still(built: Built) -> str | None:
 
 
 def _one_speed(built: Built) -> str | None:
-    asked = built.case.dynamics
-    alone = asked is not None and asked.speeds is None
+    dynamics = built.case.dynamics
+    alone = dynamics is not None and dynamics.speeds is None
     return _still(built) or (Unasked("[dynamics] gives no speeds") if alone else None)
 
 
 def _unmoved(built: Built) -> str | None:
-    asked = built.case.dynamics
-    alone = asked is not None and asked.motion is None
+    dynamics = built.case.dynamics
+    alone = dynamics is not None and dynamics.motion is None
     return _still(built) or (Unasked("the case has no [dynamics.motion]") if alone else None)
 
 
@@ -103,13 +103,15 @@ def _one_motion(built: Built) -> str | None:
 
 
 def _no_start(built: Built) -> str | None:
-    told = _unmoved(built)
-    if told is not None:
-        return told
-    asked = built.case.dynamics
-    assert asked is not None
-    assert asked.motion is not None
-    return Unasked("[dynamics.motion] has no start_up") if asked.motion.start_up is None else None
+    reason = _unmoved(built)
+    if reason is not None:
+        return reason
+    dynamics = built.case.dynamics
+    assert dynamics is not None
+    assert dynamics.motion is not None
+    return (
+        Unasked("[dynamics.motion] has no start_up") if dynamics.motion.start_up is None else None
+    )
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:

@@ -93,8 +93,8 @@ def _whole(_: Ready) -> Iterable[Piece]:
 
 
 def _only(_: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    (whole,) = parts
-    return whole
+    (part,) = parts
+    return part
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,10 +141,14 @@ class Entry:
         """Entries of `--json`; of a part of the meshes of a drive by stage."""
         data = parts.get(self.name)
         stages = {} if data is None else {n: of_stage(data, n) for n in stages_of(data)}
-        each = {n: self._shown({**parts, self.name: own}) for n, own in stages.items()}
-        names = dict.fromkeys(name for found in each.values() for name in found)
+        per_stage = {
+            n: self._shown({**parts, self.name: stage_data}) for n, stage_data in stages.items()
+        }
+        names = dict.fromkeys(name for entries in per_stage.values() for name in entries)
         figures = {
-            name: {f"stage {n}": found[name] for n, found in each.items() if name in found}
+            name: {
+                f"stage {n}": entries[name] for n, entries in per_stage.items() if name in entries
+            }
             for name in names
         }
         return figures or self._shown(parts)
@@ -199,9 +203,9 @@ def of_stages(analysis: Analysis) -> Analysis:
     """
 
     def meshes(built: BuiltDrive) -> dict[Label, Built]:
-        each = built.at_work if analysis.under_load else built.meshes
-        labelled = zip(built.mesh_labels, each, strict=True)
-        return {label: one for label, one in labelled if analysis.lacks(one) is None}
+        all_meshes = built.at_work if analysis.under_load else built.meshes
+        labelled = zip(built.mesh_labels, all_meshes, strict=True)
+        return {label: mesh for label, mesh in labelled if analysis.lacks(mesh) is None}
 
     def pieces(built: BuiltDrive) -> Iterator[Piece]:
         for label, mesh in meshes(built).items():
@@ -226,13 +230,13 @@ def of_stages(analysis: Analysis) -> Analysis:
     def joined(built: BuiltDrive, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         there = meshes(built)
         groups = groupby(parts, key=lambda part: as_label(part.attrs[_OF_STAGE]))
-        each = {label: analysis.joined(there[label], [*own]) for label, own in groups}
-        for data in each.values():
+        of_meshes = {label: analysis.joined(there[label], [*group]) for label, group in groups}
+        for data in of_meshes.values():
             data.attrs.pop(_OF_STAGE, None)
-        whole = by_stage(each)
+        drive_data = by_stage(of_meshes)
         if analysis.under_load and built.locked:
-            whole.attrs.update(stored([*doubts_of(whole.attrs), _UNDER_NO_LOSSES]))
-        return whole
+            drive_data.attrs.update(stored([*doubts_of(drive_data.attrs), _UNDER_NO_LOSSES]))
+        return drive_data
 
     march = None if analysis.onward is None else onward
     return replace(

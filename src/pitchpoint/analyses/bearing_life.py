@@ -34,14 +34,14 @@ def bearing_lives(
     speed = float(built.operation.speed) * built.output_rate
     load = built.case.operation.load
     there = load_steps(1.0, load, speed, float(built.operation.temperature))
-    each = [rated_bearings(built, row, load) for row in loads]
+    rated = [rated_bearings(built, row, load) for row in loads]
 
     def of_places(value: Callable[[RatedBearing], float]) -> Float[np.ndarray, "law place"]:
         names = built.places
-        return np.array([[value(row[n]) if n in row else nan for n in names] for row in each])
+        return np.array([[value(row[n]) if n in row else nan for n in names] for row in rated])
 
-    return of_places(lambda one: one.life(there)), of_places(
-        lambda one: float(one.load(load, speed))
+    return of_places(lambda bearing: bearing.life(there)), of_places(
+        lambda bearing: float(bearing.load(load, speed))
     )
 
 
@@ -106,7 +106,7 @@ def rated_bearings(
     """
     places = iter(zip(built.places, _beyond_rounding(loads), strict=True))
     output = float(built.operation.speed) * built.output_rate
-    found: dict[str, RatedBearing] = {}
+    rated: dict[str, RatedBearing] = {}
     for level in built.with_losses if output > 0.0 else ():
         rates = dict(zip(level.case.bodies, level.motion, strict=True))
         step = float(level.operation.speed) / output
@@ -114,13 +114,13 @@ def rated_bearings(
             name, borne = next(places)
             if loss.dynamic_load_rating is None:
                 continue
-            first, second = (rates.get(body, 0.0) * step for body in loss.between)
+            rate_a, rate_b = (rates.get(body, 0.0) * step for body in loss.between)
             pull = _pull(level, loss)
             outward, along, axial = _of_teeth(level, loss, borne - loss.preload, pull)
             per = load if load > 0.0 else inf
-            found[name] = RatedBearing(
+            rated[name] = RatedBearing(
                 loss.dynamic_load_rating,
-                abs(first - second),
+                abs(rate_a - rate_b),
                 (outward / per, along / per, axial / per),
                 pull / output**2,
                 loss.preload,
@@ -128,13 +128,15 @@ def rated_bearings(
                 level.planets if _in_planets(level, loss) else 1,
                 loss.static_load_rating or nan,
             )
-    return found
+    return rated
 
 
 def _beyond_rounding(loads: Float[np.ndarray, " place"]) -> list[float]:
     """Loads without those that are nothing beside the others, as of planets that cancel around a carrier."""
-    found: list[float] = np.where(loads > ROUNDING * loads.max(initial=0.0), loads, 0.0).tolist()
-    return found
+    remaining: list[float] = np.where(
+        loads > ROUNDING * loads.max(initial=0.0), loads, 0.0
+    ).tolist()
+    return remaining
 
 
 ROUNDING = 1e-9
@@ -176,14 +178,14 @@ def _of_teeth(level: Any, loss: Loss, borne: float, pull: float) -> Vector:
     part = (inwards + sqrt(max(inwards**2 + size * (borne**2 - pull**2), 0.0))) / size
     from pitchpoint.analyses.strength import mesh_load_of  # few cases ask for it
 
-    first, second, third = (mesh_load_of(level) * part * along).tolist()
-    return first, second, third
+    radial, tangential, axial = (mesh_load_of(level) * part * along).tolist()
+    return radial, tangential, axial
 
 
 def _on_planet(built: BuiltTrain) -> Float[np.ndarray, " 3"]:
     """Force on a planet for a unit load, by all meshes without friction, in equal shares [N per N m or N]."""
     train = built.design
-    links = [one.link for one in train.meshes]
+    links = [mesh.link for mesh in train.meshes]
     ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
     shares = train_torques(links, ends, 1.0, [1.0] * len(links)).shares
     force = np.zeros(3)

@@ -21,8 +21,8 @@ def bodies_of(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     make = built.family.bodies
     assert make is not None
     densities = [float(solid.density) for solid in built.design.solids]
-    made, told = make(built.case.gears, built.design.mesh, densities)
-    masses, inertias = zip(*made, strict=True)
+    members, note = make(built.case.gears, built.design.mesh, densities)
+    masses, inertias = zip(*members, strict=True)
     data: dict[str, Any] = {
         "body_mass": (("member",), masses),
         "body_inertia": (("member",), inertias),
@@ -30,8 +30,8 @@ def bodies_of(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     rates = np.asarray(built.nominal["motion"])
     energy = np.sum(np.asarray(inertias) * rates**2, where=rates != 0.0)
     if built.travels or not isfinite(energy):
-        return dataset(data, {"member": list(built.case.bodies)}, title="bodies", note=told)
+        return dataset(data, {"member": list(built.case.bodies)}, title="bodies", note=note)
     ends = {"input": energy, "output": energy / built.output_rate**2}
     data["reflected_inertia"] = (("end",), [*ends.values()])
     coordinates = {"member": list(built.case.bodies), "end": [*ends]}
-    return dataset(data, coordinates, title="bodies", note=told)
+    return dataset(data, coordinates, title="bodies", note=note)

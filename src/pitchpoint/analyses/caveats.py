@@ -87,14 +87,14 @@ def demand_films(code: np.ndarray, points: Sequence[Ready], laws: Sequence[str])
     lost = films_lost(code)
     if lost.any():
         law, point = divmod(int(np.argmax(lost)), code.shape[1])
-        told = Code(int(code[law, point])).sentence
-        raise ConvergenceError(f"{told}, with {laws[law]} {_where(points[point])}")
+        sentence = Code(int(code[law, point])).sentence
+        raise ConvergenceError(f"{sentence}, with {laws[law]} {_where(points[point])}")
 
 
 def films_lost(code: np.ndarray) -> np.ndarray:
     """True where the turns of films and forces ended without a result."""
-    found: np.ndarray = (code != Code.SOLVED) & (code != Code.LOCKED)
-    return found
+    lost: np.ndarray = (code != Code.SOLVED) & (code != Code.LOCKED)
+    return lost
 
 
 def demand_motion(
@@ -165,8 +165,8 @@ def _where(built: Ready) -> str:
 def conformal(mesh: Mesh, run: Mapping[str, Any]) -> np.ndarray:
     """True for loaded contacts whose flanks have the same curvature nearly: their relative radius is cut."""
     flat = np.asarray(run["radius"]) > float(largest_radius(mesh)) * (1.0 - 1e-9)
-    found: np.ndarray = (np.asarray(run["load"]) > 0.0) & flat
-    return found
+    alike: np.ndarray = (np.asarray(run["load"]) > 0.0) & flat
+    return alike
 
 
 def conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
@@ -225,12 +225,12 @@ def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndar
     if len(points) == 1:
         return []
     gaps = np.array([not touching(point.design.mesh) for point in points])
-    known = np.where(np.isnan(carrying) | ~gaps, np.inf, carrying).min(axis=0)
-    nearly = (known < LEAST_FACE) & (slices > 1)
-    partly = (known < slices * (1.0 - 1e-9)) & ~nearly
-    told: list[str] = []
+    fewest = np.where(np.isnan(carrying) | ~gaps, np.inf, carrying).min(axis=0)
+    nearly = (fewest < LEAST_FACE) & (slices > 1)
+    partly = (fewest < slices * (1.0 - 1e-9)) & ~nearly
+    doubts: list[str] = []
     if nearly.any():
-        told.append(
+        doubts.append(
             Doubt(
                 f"At {nearly.sum()} of {len(points)} points fewer than {LEAST_FACE:g} slices of a contact "
                 "line get load in the mean, nearly a point in place of a line: their figures say little. "
@@ -241,8 +241,8 @@ def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndar
             )
         )
     if partly.any():
-        most = 1.0 - (known[partly] / slices[partly]).min()
-        told.append(
+        most = 1.0 - (fewest[partly] / slices[partly]).min()
+        doubts.append(
             Doubt(
                 f"At {partly.sum()} of {len(points)} points a part of the contact lines that carry, up to "
                 f"{in_percent(most)}, gets no load; flanks do not touch there.",
@@ -250,7 +250,7 @@ def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndar
                 brief=f"Up to {in_percent(most)} of the contact lines carry nothing at some points.",
             )
         )
-    return told
+    return doubts
 
 
 def beyond_face(run: Mapping[str, Any]) -> np.ndarray:
@@ -258,8 +258,8 @@ def beyond_face(run: Mapping[str, Any]) -> np.ndarray:
     if "contact_room" not in run:
         return np.zeros(np.shape(run["weight"]), bool)
     longest = np.asarray(run["semi_axis_across"]).max(axis=(1, 2))
-    found: np.ndarray = longest > np.asarray(run["contact_room"])
-    return found
+    beyond: np.ndarray = longest > np.asarray(run["contact_room"])
+    return beyond
 
 
 def room_warning(run: Mapping[str, Any]) -> list[str]:
@@ -291,7 +291,10 @@ def proportions_words(points: Sequence[Built]) -> str:
     if not names:
         return ""
     varies = dict.fromkeys(
-        one.varies for built in points for one in built.assumed.values() if one.varies
+        assumption.varies
+        for built in points
+        for assumption in built.assumed.values()
+        if assumption.varies
     )
     return "; ".join([f"; assumed proportions: {', '.join(names)}", *varies])
 
@@ -302,11 +305,11 @@ def proportions_counted(points: Sequence[Built]) -> str:
     Args:
         points: one, or the stages of a drive.
     """
-    many = len(_proportions(points))
-    if not many:
+    count = len(_proportions(points))
+    if not count:
         return ""
-    told = "1 dimension of its parts is" if many == 1 else f"{many} dimensions of its parts are"
-    return f"; {told} assumed, see the inputs"
+    phrase = "1 dimension of its parts is" if count == 1 else f"{count} dimensions of its parts are"
+    return f"; {phrase} assumed, see the inputs"
 
 
 def _proportions(points: Sequence[Built]) -> list[str]:
@@ -332,15 +335,15 @@ def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
         return Doubt(f"{COLD}; {INLET}.", brief=f"{COLD}: as warm as the oil in their inlet.")
     felt = 1.0 - exp(-THINS * warmest)
     brief = f"{COLD}; friction would warm them by some {warmest:.2g} K."
-    told = f"{COLD}, and friction would warm them by up to about {warmest:.2g} K; {INLET}"
+    sentence = f"{COLD}, and friction would warm them by up to about {warmest:.2g} K; {INLET}"
     if warmest < WARM:
-        return Doubt(f"{told}.", moves=felt, brief=brief)
+        return Doubt(f"{sentence}.", moves=felt, brief=brief)
     squeezes = built.case.film is not None and built.case.film.squeezes
     advice = 'thermal = "mean_film" in [film] takes the heat along' + (
         ", of steady films alone: leave time out for that" if squeezes else ""
     )
     return Doubt(
-        f"{told}, so that friction comes out too high and the film too thick; {advice}.",
+        f"{sentence}, so that friction comes out too high and the film too thick; {advice}.",
         moves=felt,
         brief=brief,
     )
@@ -414,11 +417,11 @@ def boundary_warning(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarra
     if np.min(carried, where=loaded, initial=1.0) < 0.5:
         return []
     loss = run["sliding_loss"] * run["weight"][:, None, None]
-    more = np.divide(
+    ratio = np.divide(
         USUAL_BOUNDARY * carried, run["friction"], where=loss > 0.0, out=np.ones_like(loss)
     )
     times = (
-        float(np.sum(loss * np.maximum(more, 1.0)) / np.sum(loss)) if np.any(loss > 0.0) else 1.0
+        float(np.sum(loss * np.maximum(ratio, 1.0)) / np.sum(loss)) if np.any(loss > 0.0) else 1.0
     )
     thinnest = float(np.min(run["lambda_ratio"], where=loaded, initial=np.inf))
     doubt = Doubt(

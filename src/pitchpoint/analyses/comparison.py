@@ -130,9 +130,9 @@ def demand_parts(targets: Sequence[Target], parts: Sequence[str], name: str) -> 
 def _absent(target: Target, parts: Iterable[str]) -> InputError:
     if not target.part:
         return InputError(f"there is no study {shown(target.study)}", key="study")
-    known = [part for part in parts if not part.startswith("study_")]
-    told = f"this case computes no part {shown(target.part)}{nearest(target.part, known)}"
-    return InputError(told, key="part")
+    present = [part for part in parts if not part.startswith("study_")]
+    sentence = f"this case computes no part {shown(target.part)}{nearest(target.part, present)}"
+    return InputError(sentence, key="part")
 
 
 def _part(target: Target, results: Mapping[str, xr.Dataset]) -> xr.Dataset:
@@ -172,8 +172,8 @@ class _Axis:
         if not low - (margin := 1e-9 * (high - low)) <= place <= high + margin:
             show = Quantity(self.kind, low, high, self.unit).show
             low, high = (0.0 if abs(end) < 1e-6 * (high - low) else end for end in (low, high))
-            told = f"{self.name} runs from {show(low)} to {show(high)}"
-            raise _OutsideError(f"{shown(given)} lies outside; {told}", key="at")
+            span = f"{self.name} runs from {show(low)} to {show(high)}"
+            raise _OutsideError(f"{shown(given)} lies outside; {span}", key="at")
         return place
 
 
@@ -183,10 +183,12 @@ def _read(target: Target, data: xr.Dataset) -> tuple[np.ndarray, _Axis]:
     over = [str(dim) for dim in array.dims if dim != "law"]
     several = [dim for dim in over if array.sizes[dim] > 1]
     if len(several) > 1 or array.dtype.kind not in "biuf":
-        told = f"runs over {' and '.join(several)}" if several[1:] else "is no number"
-        raise InputError(f"{target.variable} {told}; it must be one over one axis", key="variable")
+        reason = f"runs over {' and '.join(several)}" if several[1:] else "is no number"
+        raise InputError(
+            f"{target.variable} {reason}; it must be one over one axis", key="variable"
+        )
     dim = (several or over or ["place"])[0]
-    array = array.squeeze([other for other in over if other != dim])
+    array = array.squeeze([name for name in over if name != dim])
     missing = {"law": data.sizes.get("law", 1)} if "law" not in array.dims else {}
     array = array.expand_dims({**missing, **({} if over else {dim: 1})})
     values, axis = array.transpose("law", dim).values.astype(float), _axis(data, dim)
@@ -201,9 +203,11 @@ def _read(target: Target, data: xr.Dataset) -> tuple[np.ndarray, _Axis]:
 def _axis(data: xr.Dataset, dim: str) -> _Axis:
     """Axis of a study, or that of another part by the name of its dimension."""
     if dim == "point" and "axis" in data:
-        told = data.attrs
+        attributes = data.attrs
         places = data["axis"].values
-        return _Axis(told["sweep_key"], places, told["axis_kind"], told["axis_unit"])
+        return _Axis(
+            attributes["sweep_key"], places, attributes["axis_kind"], attributes["axis_unit"]
+        )
     if dim not in data.coords or dim not in VARIABLES:
         return _along(dim, data)
     variable = VARIABLES[dim]
@@ -221,11 +225,11 @@ def _along(dim: str, data: xr.Dataset) -> _Axis:
 
 def _demand_places(target: Target, axis: _Axis) -> None:
     """InputError if a reduction has not the places that it needs."""
-    given, spans = len(target.at), target.reduce in SPANS
-    same = np.ptp(axis.at(target.at)) == 0.0 if given else axis.places.size < 2
-    if spans and same and (given or target.reduce in RISES):
+    count, spans = len(target.at), target.reduce in SPANS
+    coincide = np.ptp(axis.at(target.at)) == 0.0 if count else axis.places.size < 2
+    if spans and coincide and (count or target.reduce in RISES):
         raise InputError(f"{target.reduce} takes two places of the axis", key="at")
-    several = given > 1 or (target.part and not given and axis.places.size > 1)
+    several = count > 1 or (target.part and not count and axis.places.size > 1)
     if several and target.reduce == "value":
         raise InputError("value takes one place of the axis", key="at")
     if target.reduce in (SLOPE, INVERSE_SLOPE) and not abs(axis.places[-1] - axis.places[0]) > 0.0:
@@ -233,8 +237,8 @@ def _demand_places(target: Target, axis: _Axis) -> None:
 
 
 def _unsteady(data: xr.Dataset, laws: list[int]) -> bool:
-    told = data.get("vibration_status")
-    return told is not None and bool(told.values[laws].any())
+    status = data.get("vibration_status")
+    return status is not None and bool(status.values[laws].any())
 
 
 def _laws(target: Target, count: int) -> list[int]:

@@ -72,7 +72,7 @@ def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
         for name in runs[0]
         if name not in common and not name.startswith("outside")
     }
-    each = {
+    by_law = {
         name: (lanes, in_pairs(mesh, values, 2)) if values.ndim == 4 else (lanes[:2], values)
         for name, values in stacked.items()
     }
@@ -93,16 +93,16 @@ def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
     warnings += face_warning(built, runs[0])
     warnings += room_warning(runs[0])
     warnings += implausible(AtWork(built, built.laws, runs))
-    code = locked_or_lost(each["locked"][1])
+    code = locked_or_lost(by_law["locked"][1])
     beyond = np.stack([beyond_face(run) for run in runs])
     code = np.where(beyond & (code == Code.SOLVED), int(Code.BEYOND_FACE), code)
     data = dataset(
-        {**common, **each},
+        {**common, **by_law},
         {"law": names},
         title="mesh cycle",
         travels=built.travels,
         warnings=warnings,
-        solve=told_of(code, each["residual"][1]),
+        solve=told_of(code, by_law["residual"][1]),
         film_law=built.case.models.film_thickness,
         events=built.nominal["events"].tolist(),
     )

@@ -44,11 +44,11 @@ class Designs:
             progress: told how many are done.
         """
         reasons: dict[int, str] = {}
-        found: list[xr.Dataset] = []
+        figures: list[xr.Dataset] = []
         for first in range(0, len(self.changes), TOGETHER):
             progress(first)
-            found += self._range(first, reasons)
-        return self._joined(found, reasons)
+            figures += self._range(first, reasons)
+        return self._joined(figures, reasons)
 
     def _range(self, first: int, reasons: dict[int, str]) -> list[xr.Dataset]:
         """Figures of those of a range that can be computed; of the others the reason is noted."""
@@ -85,7 +85,9 @@ def _figures(points: Mapping[int, Ready], reasons: dict[int, str]) -> list[xr.Da
         if len(points) == 1:
             reasons[next(iter(points))] = _told(error)
             return []
-    return [part for number, one in points.items() for part in _figures({number: one}, reasons)]
+    return [
+        part for number, design in points.items() for part in _figures({number: design}, reasons)
+    ]
 
 
 def _together(points: Mapping[int, Ready]) -> xr.Dataset:
@@ -101,8 +103,8 @@ def _reasons(data: xr.Dataset, failed: Mapping[int, str]) -> np.ndarray:
     missing = np.isnan(data["mean_loss"].values)
     why = np.where(data["locked"].values.astype(bool), LOCKED, np.where(missing, UNKNOWN, ""))
     why = why.astype(object)
-    for number, told in failed.items():
-        why[:, number] = told
+    for number, reason in failed.items():
+        why[:, number] = reason
     return why.astype(str)
 
 

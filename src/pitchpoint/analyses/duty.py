@@ -44,22 +44,22 @@ def duty_of_map(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         parts: the loss map of the output, and those that have lives, see `recorded_lives`.
     """
     data, *others = parts
-    asked = _asked(built)
-    rated = bool(load_classes(asked.history).way.size) and bool(rating_inputs(built))
+    duty = _asked(built)
+    rated = bool(load_classes(duty.history).way.size) and bool(rating_inputs(built))
     speed = float(built.operation.speed) * built.output_rate
     compute = partial(
         duty_dataset,
         table_of(data),
-        asked.history,
-        law=asked.law,
-        motor=asked.motor,
-        lives={**rated_lives(built, asked.history), **asked.lives},
+        duty.history,
+        law=duty.law,
+        motor=duty.motor,
+        lives={**rated_lives(built, duty.history), **duty.lives},
         recorded=recorded_lives(others, float(built.operation.load), abs(speed)),
         teeth=partial(tooth_life, built) if rated else None,
         travels="loaded" in built.travels,
     )
     try:
-        return _told_first(compute, asked.heating)
+        return _told_first(compute, duty.heating)
     except InputError as error:
         raise _of_duty(error) from None
 
@@ -67,13 +67,13 @@ def duty_of_map(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
 def _told_first(compute: Callable[..., xr.Dataset], heating: Heating | None) -> xr.Dataset:
     """The cycle as heat lets it be, with what is too hot before all else."""
     try:
-        found = compute(heating=heating)
+        cycle = compute(heating=heating)
     except RunawayError as error:
-        told = f"{error}; the duty cycle is that at the temperatures of its file."
+        sentence = f"{error}; the duty cycle is that at the temperatures of its file."
         brief = f"The duty cycle heats {error.body} without end."
-        return compute(runaway=error.body, warnings=[fails(told, brief)])
+        return compute(runaway=error.body, warnings=[fails(sentence, brief)])
     limits = {} if heating is None else heating.limits
-    return found.assign_attrs(stored([*_too_hot(found, limits), *doubts_of(found.attrs)]))
+    return cycle.assign_attrs(stored([*_too_hot(cycle, limits), *doubts_of(cycle.attrs)]))
 
 
 def _too_hot(data: xr.Dataset, limits: Mapping[str, float]) -> Iterator[str]:
@@ -82,7 +82,8 @@ def _too_hot(data: xr.Dataset, limits: Mapping[str, float]) -> Iterator[str]:
         hottest = float(data["body_temperature"].sel(body=body).max())
         if hottest > most:
             reached, bears = (
-                f"{float(degrees_celsius(np.asarray(one))):.4g}" for one in (hottest, most)
+                f"{float(degrees_celsius(np.asarray(temperature))):.4g}"
+                for temperature in (hottest, most)
             )
             yield fails(
                 f"{body} gets {reached} degC hot in the duty cycle, and bears {bears} degC.",
@@ -116,10 +117,12 @@ def demand_in_map(built: Ready) -> None:
     Args:
         built: the case.
     """
-    asked, (loads, speeds, degrees) = _asked(built), quadrant_axes(built)
-    if asked.law and asked.law not in built.law_names:
-        told = f"{shown(asked.law)} is no friction law of this case{nearest(asked.law, built.law_names)}"
-        raise InputError(told, key="duty.law")
+    duty, (loads, speeds, degrees) = _asked(built), quadrant_axes(built)
+    if duty.law and duty.law not in built.law_names:
+        sentence = (
+            f"{shown(duty.law)} is no friction law of this case{nearest(duty.law, built.law_names)}"
+        )
+        raise InputError(sentence, key="duty.law")
     empty = LossTable(
         torques=both(loads).tolist(),
         speeds=(speeds * speed_ratio(built)).tolist(),
@@ -130,7 +133,7 @@ def demand_in_map(built: Ready) -> None:
     if "loaded" in built.travels:
         empty = empty._replace(units=("N", "m/s", "N m"))
     try:  # temperatures that follow from the losses are not known yet
-        demand_inside(empty, asked.history, warm=asked.heating is None)
+        demand_inside(empty, duty.history, warm=duty.heating is None)
     except InputError as error:
         raise _of_duty(error) from None
 

@@ -55,8 +55,8 @@ class PairCourse:
 
     def values(self, lanes: np.ndarray) -> np.ndarray:
         """Values of contacts [phase, pair, line] at the moments [moment]."""
-        found: np.ndarray = lanes[tuple(self.places.T)]
-        return found
+        at_moments: np.ndarray = lanes[tuple(self.places.T)]
+        return at_moments
 
 
 def check_course(built: Built) -> None:
@@ -73,23 +73,23 @@ def check_heights(built: Built) -> None:
     """InputError for height maps that do not fit the contact that carries most."""
     if asked(built).heights is None:
         return
-    given = wholes(built)
-    loads = np.where(given.states["loaded"], given.states["load"], 0.0)
+    contacts = wholes(built)
+    loads = np.where(contacts.states["loaded"], contacts.states["load"], 0.0)
     if loads.any():
         at = np.unravel_index(np.argmax(loads), loads.shape)
-        _check_maps(one_contact(built, given.numbers[at]), patch_grid_of(built)[1])
+        _check_maps(one_contact(built, contacts.numbers[at]), patch_grid_of(built)[1])
 
 
 def _check_travel(course: PairCourse) -> None:
     """InputError for height maps that take too many steps of time to pass."""
-    for one in course.contacts[0].heights:
-        if one.member is None:
+    for height_map in course.contacts[0].heights:
+        if height_map.member is None:
             continue
-        way = abs(float(passed(course.contacts, course.times)[-1, one.member, 0]))
-        step = float(np.min(np.diff(np.asarray(one.x))))
-        if way > MOST_STEPS * step:
+        distance = abs(float(passed(course.contacts, course.times)[-1, height_map.member, 0]))
+        step = float(np.min(np.diff(np.asarray(height_map.x))))
+        if distance > MOST_STEPS * step:
             raise InputError(
-                f"{1e3 * way:.4g} mm of the surface pass the contact in its engagement, in steps of "
+                f"{1e3 * distance:.4g} mm of the surface pass the contact in its engagement, in steps of "
                 f"{1e6 * step:.4g} um, and films follow at most {MOST_STEPS} of them; take a coarser map, or "
                 "one of both surfaces, which stays where it is",
                 key="film.heights",
@@ -116,25 +116,25 @@ def course_of(built: Built) -> PairCourse:
         InputError: nothing is loaded, contact lines that move across the face all the time, no contacts that
             one grid shows.
     """
-    given = wholes(built)
-    if not np.any(given.states["loaded"]):
+    contacts = wholes(built)
+    if not np.any(contacts.states["loaded"]):
         raise InputError("nothing is loaded, and no film is squeezed; leave it out", key=KEY)
-    places, entered = _in_order(built, given)
-    load = _values(given, "load", places)
+    places, entered = _in_order(built, contacts)
+    load = _values(contacts, "load", places)
     most = int(np.argmax(load))
-    heavy, long = load >= LIGHT * load[most], _stays(given, places, most)
-    kept = _around(heavy & long, most)
-    if kept.stop - kept.start < FEWEST:
+    heavy, long = load >= LIGHT * load[most], _stays(contacts, places, most)
+    stretch = _around(heavy & long, most)
+    if stretch.stop - stretch.start < FEWEST:
         raise InputError(
             "the contact line of these gears grows, shrinks or moves across the face all the time, and a "
             "film is squeezed on lines that stay as they are; leave it out",
             key=KEY,
         )
-    told = [
+    notes = [
         text for text, taken in zip((_LIGHT, _SHORT), (heavy, long), strict=True) if not taken.all()
     ]
-    some = kept.start + _thinned(kept, most, course_moments(asked(built)))
-    return _taken(built, given, entered, places, some, told)
+    some = stretch.start + _thinned(stretch, most, course_moments(asked(built)))
+    return _taken(built, contacts, entered, places, some, notes)
 
 
 _LIGHT = (
@@ -148,16 +148,16 @@ _SHORT = (
 
 
 def _values(given: Wholes, name: str, places: np.ndarray) -> np.ndarray:
-    found: np.ndarray = given.states[name][tuple(places.T)]
-    return found
+    at_places: np.ndarray = given.states[name][tuple(places.T)]
+    return at_places
 
 
 def _stays(given: Wholes, places: np.ndarray, most: int) -> np.ndarray:
     """True for moments at which the contact lies across the face as that does which carries most."""
     lengths, across = (_values(given, name, places) for name in ("weight_of_line", "across"))
     off = np.maximum(np.abs(lengths - lengths[most]), np.abs(across - across[most]))
-    found: np.ndarray = off <= SPAN * lengths[most]
-    return found
+    in_place: np.ndarray = off <= SPAN * lengths[most]
+    return in_place
 
 
 def _period(built: Built) -> float:
@@ -193,9 +193,9 @@ def _around(taken: np.ndarray, middle: int) -> slice:
 def _thinned(kept: slice, heaviest: int, most: int) -> np.ndarray:
     """So many moments of a run, from its first one on, with the one that carries most among them."""
     size = kept.stop - kept.start
-    found = np.linspace(0, size - 1, min(size, most)).round().astype(int)
-    found[np.argmin(np.abs(found - (heaviest - kept.start)))] = heaviest - kept.start
-    return np.unique(found)
+    moments = np.linspace(0, size - 1, min(size, most)).round().astype(int)
+    moments[np.argmin(np.abs(moments - (heaviest - kept.start)))] = heaviest - kept.start
+    return np.unique(moments)
 
 
 def _taken(
@@ -226,21 +226,21 @@ def _taken(
         except InputError as error:
             layouts.append(None)
             told.append(f"a contact ends the engagement that no grid takes: {error.message}")
-    kept = _shown(layouts, nodes, int(np.argmax(_values(given, "load", places))))
-    if kept.stop - kept.start < FEWEST:
+    stretch = _shown(layouts, nodes, int(np.argmax(_values(given, "load", places))))
+    if stretch.stop - stretch.start < FEWEST:
         raise InputError(
             "contacts of this pair differ so much that no grid shows the one that carries most together with "
             "one before or behind it; take more nodes, or leave it out",
             key=KEY,
         )
-    if kept.stop - kept.start < len(layouts) and None not in layouts:
+    if stretch.stop - stretch.start < len(layouts) and None not in layouts:
         told.append(_NARROW)
-    at = entered[some][kept]
+    at = entered[some][stretch]
     if told:
-        first, last = (100.0 * float(at[k] / entered[-1]) for k in (0, -1))
-        told.insert(0, f"the pair is followed from {first:.0f} to {last:.0f} % of its engagement")
-    found = (at - at[0]) * _period(built), places[kept], tuple(contacts[kept])
-    return PairCourse(*found, tuple(dict.fromkeys(told)))
+        begin, end = (100.0 * float(at[k] / entered[-1]) for k in (0, -1))
+        told.insert(0, f"the pair is followed from {begin:.0f} to {end:.0f} % of its engagement")
+    fields = (at - at[0]) * _period(built), places[stretch], tuple(contacts[stretch])
+    return PairCourse(*fields, tuple(dict.fromkeys(told)))
 
 
 _NARROW = (
@@ -252,15 +252,15 @@ _NARROW = (
 def _shown(layouts: Sequence[Layout | None], nodes: int, heaviest: int) -> slice:
     """The longest run of contacts around the one that carries most, all of which one grid shows."""
     best = slice(0, 0)
-    for first in range(heaviest + 1):
+    for start in range(heaviest + 1):
         begin, end, narrow = np.inf, -np.inf, np.inf
-        for number, one in enumerate(layouts[first:], first):
-            if one is None:
+        for number, layout in enumerate(layouts[start:], start):
+            if layout is None:
                 break
-            begin, end = min(begin, one.inlet), max(end, one.outlet)
-            narrow = min(narrow, one.half_width)
+            begin, end = min(begin, layout.inlet), max(end, layout.outlet)
+            narrow = min(narrow, layout.half_width)
             if narrow / (end - begin) * (nodes - 1) < SHOWN:
                 break
-            if number >= heaviest and number + 1 - first > best.stop - best.start:
-                best = slice(first, number + 1)
+            if number >= heaviest and number + 1 - start > best.stop - best.start:
+                best = slice(start, number + 1)
     return best

@@ -151,8 +151,8 @@ WIND_UP = ("wind_up", "angular_transmission_error_range", "torsional_stiffness",
 
 def numbers(values: Any) -> Any:
     """Values as JSON has them, None for NaN; one alone without a list."""
-    each = np.atleast_1d(values).tolist()
-    plain = [None if isinstance(v, float) and np.isnan(v) else v for v in each]
+    listed = np.atleast_1d(values).tolist()
+    plain = [None if isinstance(v, float) and np.isnan(v) else v for v in listed]
     return plain if len(plain) > 1 else plain[0]
 
 
@@ -201,20 +201,20 @@ def covers(data: xr.Dataset) -> str:
 
 def covered(every: Iterable[Parts]) -> str:
     """The same as sentences for some results, each once; empty where whole drives are meant."""
-    found = dict.fromkeys(covers(parts["operation"]) for parts in every if "operation" in parts)
-    return " ".join(f"Efficiencies are those of the {of}." for of in found if of)
+    scopes = dict.fromkeys(covers(parts["operation"]) for parts in every if "operation" in parts)
+    return " ".join(f"Efficiencies are those of the {of}." for of in scopes if of)
 
 
 def out_of_range(laws: xr.Dataset) -> list[dict[str, Any]]:
     """Laws of the library that do not hold at the operating point, with their efficiency and the reasons."""
-    found: list[dict[str, Any]] = json.loads(laws.attrs.get("outside", "[]"))
-    return found
+    outside: list[dict[str, Any]] = json.loads(laws.attrs.get("outside", "[]"))
+    return outside
 
 
 def why_not(parts: Parts) -> dict[str, list[str]]:
     """Laws that do not hold at the operating point, and the reasons; none where that is not known."""
-    told = out_of_range(parts["laws"]) if "laws" in parts else []
-    return {str(one["law"]): one["reasons"] for one in told}
+    outside = out_of_range(parts["laws"]) if "laws" in parts else []
+    return {str(law["law"]): law["reasons"] for law in outside}
 
 
 def holding(parts: Parts) -> list[bool]:
@@ -250,11 +250,11 @@ def _lives(data: xr.Dataset) -> dict[str, Any]:
         return {}
     names = [str(place) for place in data["place"].values]
     rows = zip(data["law"].values, data["bearing_life"].values[:, 0], strict=True)
-    each = {
+    lives = {
         str(law): {n: float(life) for n, life in zip(names, row, strict=True) if not np.isnan(life)}
         for law, row in rows
     }
-    return {"bearing_life": without_nan(each)}
+    return {"bearing_life": without_nan(lives)}
 
 
 def error_ranges(data: xr.Dataset | None) -> Iterator[tuple[str, list[str], Any]]:

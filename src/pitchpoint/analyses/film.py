@@ -68,33 +68,33 @@ _WARM_PROFILES = {
 def pieces(built: Built) -> Iterator[Piece]:
     """Ranges of phases."""
     every = states(built)["phase"].size
-    for first in range(0, every, TOGETHER):
-        yield {"first": first, "count": min(TOGETHER, every - first)}
+    for start in range(0, every, TOGETHER):
+        yield {"first": start, "count": min(TOGETHER, every - start)}
 
 
 def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     """Films of all contacts at some phases."""
-    given = states(built)
+    cycle_states = states(built)
     taken = slice(piece["first"], piece["first"] + piece["count"])
-    some = {name: given[name][taken] for name in OF_LINES}
-    first, count = piece["first"], piece["count"]
-    done = lambda part, every: progress(first + count * part // every)  # noqa: E731
+    some = {name: cycle_states[name][taken] for name in OF_LINES}
+    start, count = piece["first"], piece["count"]
+    done = lambda part, every: progress(start + count * part // every)  # noqa: E731
     films, codes, back = films_of_lines(built, some, done)
     values = values_of_lines(films.film, some, back)
     values["minimum_lambda"] = over_rough(built, values["minimum_film"])
     for name, error in zip(GRID_ERRORS, (films.ended.grid, films.ended.grid_minimum), strict=True):
         values[name] = np.where(back < 0, np.nan, error[back])
-    profiles = _kept(films.film, given, some, back)
+    profiles = _kept(films.film, cycle_states, some, back)
     # Contacts that have no film are counted over the whole cycle.
-    told = [doubt for doubt in films.warnings if doubt.kind != UNSOLVED]
+    doubts = [doubt for doubt in films.warnings if doubt.kind != UNSOLVED]
     return dataset(
         {
-            **{name: (_OF_PIECE, one) for name, one in values.items()},
+            **{name: (_OF_PIECE, array) for name, array in values.items()},
             "film_status": (_OF_PIECE, codes),
-            **{name: (_OF_PROFILE[: one.ndim], one) for name, one in profiles.items()},
+            **{name: (_OF_PROFILE[: array.ndim], array) for name, array in profiles.items()},
         },
         {},
-        warnings=told,
+        warnings=doubts,
         residual=_largest(films.ended.reynolds, films.solved),
         iterations=int(np.max(films.ended.iterations, initial=0)),
     )
@@ -129,8 +129,8 @@ def films_of_lines(
     if not every.size:
         every = np.array([[0.0, 1.0, 0.0, 0.0, 1.0][: len(names)]])
     where, inverse = alike(every, np.max(np.abs(every), axis=0))
-    each = dict(zip(names, every[where].T, strict=True))
-    films = _films(built, each, done, film_model_of(built))
+    conditions = dict(zip(names, every[where].T, strict=True))
+    films = _films(built, conditions, done, film_model_of(built))
     back = np.full(loaded.shape, -1)
     back[loaded] = inverse[: loaded.sum()]
     codes = np.where(back < 0, int(Code.UNLOADED), np.asarray(films.ended.code)[back])
@@ -209,15 +209,17 @@ def _kept(
     pairs = _shown(states)
     highest = np.argmax(some["load"][:, pairs], axis=-1)[..., None]
     which = np.take_along_axis(back[:, pairs], highest, axis=-1)
-    found = {name: getattr(film, own) for name, own in _PROFILES.items()}
+    fields = {name: getattr(film, attribute) for name, attribute in _PROFILES.items()}
     if film.heat is not None:
-        found |= {name: getattr(film.heat, own) for name, own in _WARM_PROFILES.items()}
-    kept = {
-        name: np.where(which < 0, np.nan, np.asarray(one)[which[..., 0]])
-        for name, one in found.items()
+        fields |= {
+            name: getattr(film.heat, attribute) for name, attribute in _WARM_PROFILES.items()
+        }
+    profiles = {
+        name: np.where(which < 0, np.nan, np.asarray(profile)[which[..., 0]])
+        for name, profile in fields.items()
     }
     width = np.where(which < 0, np.nan, np.asarray(film.half_width)[which])
-    return {**kept, "profile_half_width": width[..., 0]}
+    return {**profiles, "profile_half_width": width[..., 0]}
 
 
 def _shown(states: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -225,8 +227,8 @@ def _shown(states: Mapping[str, np.ndarray]) -> np.ndarray:
     load = states["load"].sum(axis=-1)
     carried = load.T @ states["weight"]
     rounded = np.round(load.T / np.max(load, initial=LEAST), SHOWN_ALIKE)
-    _, first = np.unique(rounded, axis=0, return_index=True)
-    most = first[np.argsort(-carried[first], kind="stable")[:SHOWN]]
+    _, distinct = np.unique(rounded, axis=0, return_index=True)
+    most = distinct[np.argsort(-carried[distinct], kind="stable")[:SHOWN]]
     return np.sort(most)
 
 
@@ -235,13 +237,13 @@ def _shown(states: Mapping[str, np.ndarray]) -> np.ndarray:
 
 def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Films of the cycle, with those by film laws and friction by the laws of the case beside them."""
-    given = states(built)
-    shown = {"shown_pair": (("shown",), _shown(given))}
+    cycle_states = states(built)
+    shown = {"shown_pair": (("shown",), _shown(cycle_states))}
 
     def again(lane: tuple[int, ...], eta_beta_sigma: float) -> tuple[float, float]:
-        one = {name: given[name][lane][None] for name in _GIVEN}
+        contact = {name: cycle_states[name][lane][None] for name in _GIVEN}
         model = replace(film_model_of(built), eta_beta_sigma=eta_beta_sigma)
-        film = _films(built, one, None, model).film
+        film = _films(built, contact, None, model).film
         return float(film.asperity_share[0]), float(film.friction[0])
 
-    return whole(built, given, parts, _LANES, shown, again, title="films")
+    return whole(built, cycle_states, parts, _LANES, shown, again, title="films")

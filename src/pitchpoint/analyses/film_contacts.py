@@ -90,8 +90,8 @@ def _heaviest(built: Built, model: FilmModel) -> float:
     if built.design.mesh.shape == "ellipse":
         load = 2.0 * np.pi * (pressure / modulus) ** 2 * modulus * radius
     oil = model.fluid(built.design.lubricant, float(built.operation.temperature))
-    given = float(oil.viscosity), radius, modulus
-    return float(np.max(load_parameter(load, 0.5 * sum(speeds), *given), initial=0.0))
+    constants = float(oil.viscosity), radius, modulus
+    return float(np.max(load_parameter(load, 0.5 * sum(speeds), *constants), initial=0.0))
 
 
 def film_laws(shape: Shape) -> list[FilmThickness]:
@@ -118,9 +118,9 @@ def states(built: Built) -> dict[str, np.ndarray]:
     Forces are those of the first friction law; what a law says, with an axis for all laws in front, stands
     under its own forces.
     """
-    each = [_under(built, known(built), models) for models in built.models]
-    pairs, cycle = each[0]
-    pairs |= {name: np.stack([one[name] for one, _ in each]) for name in _OF_LAW}
+    by_law = [_under(built, known(built), models) for models in built.models]
+    pairs, cycle = by_law[0]
+    pairs |= {name: np.stack([contacts[name] for contacts, _ in by_law]) for name in _OF_LAW}
     loaded = pairs["active"] & (pairs["line_load"] > LEAST * pairs["line_load"].max())
     return {**pairs, **cycle, "loaded": loaded}
 
@@ -131,19 +131,21 @@ _OF_LAW = ("friction", "sliding_loss", "rolling_loss", "load_by_law")
 @lru_cache(maxsize=2)
 def known(built: Built) -> Engagement:
     """Contacts and shares over the cycle."""
-    given, nodes = (built.design, built.operation), _nodes(built)
-    found = engaged(*given, built.models[0], nodes)
+    loaded_design, nodes = (built.design, built.operation), _nodes(built)
+    engagement = engaged(*loaded_design, built.models[0], nodes)
     alone = built.models[0].without_friction
-    return found or one_engagement(built.design, built.operation.load, alone, nodes)
+    return engagement or one_engagement(built.design, built.operation.load, alone, nodes)
 
 
 def _under(
     built: Built, engagement: Engagement, models: Models
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Contacts and cycle in balance under one friction law."""
-    given = built.design, built.operation
-    found, _ = balance_under(*given, engagement, models)
-    lanes, cycle = jax.device_get(_computed(*given, replace(engagement, body=None), found))
+    loaded_design = built.design, built.operation
+    balance, _ = balance_under(*loaded_design, engagement, models)
+    lanes, cycle = jax.device_get(
+        _computed(*loaded_design, replace(engagement, body=None), balance)
+    )
     return {name: by_pairs(built, values) for name, values in lanes.items()}, cycle
 
 
@@ -175,8 +177,8 @@ def _computed(
         "film_by_law": jnp.stack([evaluate(law, at) for law in film_laws(contacts.shape)]),
     }
     shape = contacts.active.shape
-    whole = {"drag_loss": state.drag_loss, "output_power": state.output_power}
-    courses = {name: jnp.broadcast_to(v, cycle.phase.shape) for name, v in whole.items()}
+    of_mesh = {"drag_loss": state.drag_loss, "output_power": state.output_power}
+    courses = {name: jnp.broadcast_to(v, cycle.phase.shape) for name, v in of_mesh.items()}
     courses |= {"phase": cycle.phase, "weight": cycle.weight}
     return {name: _spread(values, shape) for name, values in lanes.items()}, courses
 
@@ -191,7 +193,7 @@ def _of_load(at: Conditions, contacts: Contacts) -> dict[str, Array]:
         "speed_a": at.speed_a,
         "speed_b": at.speed_b,
     }
-    return {name: jnp.where(contacts.active, one, 0.0) for name, one in values.items()}
+    return {name: jnp.where(contacts.active, lane, 0.0) for name, lane in values.items()}
 
 
 def _spread(values: Array, shape: tuple[int, ...]) -> Array:

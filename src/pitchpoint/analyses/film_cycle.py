@@ -64,13 +64,16 @@ def whole(
         again: solves the contact of a lane with another set of summits.
         attributes: of the dataset.
     """
-    found = xr.concat(parts, "point", combine_attrs="drop").rename(point="phase")
-    loaded, codes = states["loaded"], found["film_status"].values
-    solved = {str(name): (tuple(map(str, one.dims)), one.values) for name, one in found.items()}
+    films = xr.concat(parts, "point", combine_attrs="drop").rename(point="phase")
+    loaded, codes = states["loaded"], films["film_status"].values
+    solved = {
+        str(name): (tuple(map(str, variable.dims)), variable.values)
+        for name, variable in films.items()
+    }
     figures = _figures(built, states, {name: values for name, (_, values) in solved.items()})
-    told = codes[loaded] if loaded.any() else np.array([int(Code.UNLOADED)])
+    outcomes = codes[loaded] if loaded.any() else np.array([int(Code.UNLOADED)])
     laws = film_laws(built.design.mesh.shape)
-    spread = _by_summits(built, found, again)
+    spread = _by_summits(built, films, again)
     steps = np.array([int(part.attrs["iterations"]) for part in parts])
     data = dataset(
         {
@@ -91,10 +94,10 @@ def whole(
         warnings=[
             *_lost(codes[loaded]),
             *_of_pieces(parts),
-            *_about(built, states, found),
+            *_about(built, states, films),
             *_of_summits(spread),
         ],
-        solve=told_of(told, _residuals(parts, told), steps),
+        solve=told_of(outcomes, _residuals(parts, outcomes), steps),
         film_titles=[law.title for law in laws],
         film_places=[law.place for law in laws],
         choices=_choices(built),
@@ -119,8 +122,8 @@ def _figure_dims(
         "law_loss": ("law", "phase"),
     }
     return {
-        name: (axes.get(name, ("law",)[: np.ndim(one)]), np.asarray(one))
-        for name, one in figures.items()
+        name: (axes.get(name, ("law",)[: np.ndim(figure)]), np.asarray(figure))
+        for name, figure in figures.items()
     }
 
 
@@ -131,14 +134,14 @@ def _beside(
     loaded = states["loaded"]
     values = {name: np.where(loaded, states[name], np.nan) for name in _MASKED}
     axes = {"friction": ("law",), "film_by_law": ("film_law",)}
-    given = {name: states[name] for name in ("load", "radius", "path")}
-    given |= {
+    conditions = {name: states[name] for name in ("load", "radius", "path")}
+    conditions |= {
         "entrainment": np.abs(states["speed_a"] + states["speed_b"]) / 2.0,
         "sliding_velocity": states["speed_a"] - states["speed_b"],
         "active": states["active"],
     }
-    every = {**given, **values}
-    return {name: ((*axes.get(name, ()), *lanes), one) for name, one in every.items()}
+    every = {**conditions, **values}
+    return {name: ((*axes.get(name, ()), *lanes), array) for name, array in every.items()}
 
 
 def _figures(
@@ -146,8 +149,8 @@ def _figures(
 ) -> dict[str, np.ndarray]:
     """Figures of the cycle; what needs all loaded contacts is withheld if one of them is missing."""
     loaded, weight = states["loaded"], states["weight"]
-    known = loaded & (found["film_status"] == Code.SOLVED)
-    whole = np.where(np.array_equal(known, loaded) and loaded.any(), 1.0, np.nan)
+    solved = loaded & (found["film_status"] == Code.SOLVED)
+    complete = np.where(np.array_equal(solved, loaded) and loaded.any(), 1.0, np.nan)
     load = np.where(loaded, states["load"], 0.0)
 
     def mean(values: np.ndarray) -> np.ndarray:
@@ -156,26 +159,28 @@ def _figures(
         return np.asarray(sums @ weight)
 
     total = mean(load) if loaded.any() else np.nan
-    own = states["load_by_law"]
-    sliding, rolling = (mean(found[f"film_{kind}_loss"]) * whole for kind in ("sliding", "rolling"))
+    law_load = states["load_by_law"]
+    sliding, rolling = (
+        mean(found[f"film_{kind}_loss"]) * complete for kind in ("sliding", "rolling")
+    )
     by_law = states["sliding_loss"] + states["rolling_loss"]
     figures = {
         **_extremes(found),
-        "mean_film_friction": mean(load * found["film_friction"]) / total * whole,
-        "mean_boundary_part": mean(load * found["boundary_part"]) / total * whole,
-        "mean_law_friction": mean(own * states["friction"]) / mean(own)
+        "mean_film_friction": mean(load * found["film_friction"]) / total * complete,
+        "mean_boundary_part": mean(load * found["boundary_part"]) / total * complete,
+        "mean_law_friction": mean(law_load * states["friction"]) / mean(law_load)
         if loaded.any()
-        else own[:, 0, 0, 0] * np.nan,
+        else law_load[:, 0, 0, 0] * np.nan,
         "mean_film_sliding_loss": sliding,
         "mean_film_rolling_loss": rolling,
         "mean_film_loss": sliding + rolling,
         "mean_law_loss": mean(by_law),
         "mean_law_rolling_loss": mean(states["rolling_loss"]),
-        "film_loss": _course(found, loaded, known),
+        "film_loss": _course(found, loaded, solved),
         "law_loss": np.sum(np.where(loaded, by_law, 0.0), axis=(-2, -1)),
         "loaded_contacts": np.sum(loaded),
-        "solved_contacts": np.sum(known),
-        **_deviations(built, states["film_by_law"], found, known),
+        "solved_contacts": np.sum(solved),
+        **_deviations(built, states["film_by_law"], found, solved),
     }
     figures |= _efficiencies(states, figures)
     return figures | series_figures(built, states, found) if asked(built).in_series else figures
@@ -192,14 +197,14 @@ def _extremes(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         "largest_film_rise": "film_rise",
         "largest_flash_rise": "flash_rise",
     }
-    high = {name: own for name, own in high.items() if own in found}
+    high = {name: variable for name, variable in high.items() if variable in found}
 
     def end(name: str, reduce: Any) -> Any:
         some = found[name][~np.isnan(found[name])]
         return reduce(some) if some.size else np.nan
 
-    return {name: end(own, np.min) for name, own in low.items()} | {
-        name: end(own, np.max) for name, own in high.items()
+    return {name: end(variable, np.min) for name, variable in low.items()} | {
+        name: end(variable, np.max) for name, variable in high.items()
     }
 
 
@@ -222,13 +227,18 @@ def _deviations(
     least = "row_film" if "row_film" in found else "minimum_film"
     solved = {"minimum": found[least], "central": found["central_film"]}
     apart = {place: known & (film > 0.0) for place, film in solved.items()}
-    each = [
+    deviations = [
         law_film[apart[law.place]] / solved[law.place][apart[law.place]] - 1.0
         for law, law_film in zip(film_laws(built.design.mesh.shape), by_law, strict=True)
     ]
-    largest = [one[np.argmax(np.abs(one))] if one.size else np.nan for one in each]
+    largest = [
+        deviation[np.argmax(np.abs(deviation))] if deviation.size else np.nan
+        for deviation in deviations
+    ]
     return {
-        "film_deviation": np.array([one.mean() if one.size else np.nan for one in each]),
+        "film_deviation": np.array(
+            [deviation.mean() if deviation.size else np.nan for deviation in deviations]
+        ),
         "largest_film_deviation": np.array(largest),
     }
 
@@ -270,7 +280,7 @@ def _of_pieces(parts: Sequence[xr.Dataset]) -> list[str]:
         where = f", phases {ends[k] + 1} to {ends[k + 1]} of {ends[-1]}" if len(parts) > 1 else ""
         for doubt in doubts_of(part.attrs):
             kinds.setdefault(doubt.kind, []).append((doubt, where))
-    return [_worst(told) for told in kinds.values()]
+    return [_worst(doubts) for doubts in kinds.values()]
 
 
 def _worst(told: Sequence[tuple[Doubt, str]]) -> Doubt:
@@ -312,7 +322,7 @@ def _moving(states: States, found: xr.Dataset) -> dict[str, np.ndarray]:
 
 def _other_rolling(built: Built) -> str:
     """Why a law that solves films has another loss than its films; empty where it has not."""
-    solved = [one.law.title for one in built.models if one.law.films is not None]
+    solved = [models.law.title for models in built.models if models.law.films is not None]
     model = built.models[0].rolling
     if not solved or model.name == "none":
         return ""
@@ -346,11 +356,11 @@ def _by_summits(built: Built, found: xr.Dataset, again: Again) -> dict[str, np.n
         asked(built).set_of_summits.name,
         (share[lane], found["film_friction"].values[lane]),
     )
-    each = [
-        solved if one.name == chosen else again(lane, one.eta_beta_sigma)
-        for one in SUMMITS.values()
+    shares_and_frictions = [
+        solved if summits.name == chosen else again(lane, summits.eta_beta_sigma)
+        for summits in SUMMITS.values()
     ]
-    shares, frictions = np.array(each, float).T
+    shares, frictions = np.array(shares_and_frictions, float).T
     return {"summits_share": shares, "summits_friction": frictions}
 
 
@@ -361,12 +371,12 @@ def _of_summits(spread: Mapping[str, np.ndarray]) -> Iterator[Doubt]:
     shares, frictions = spread["summits_share"], spread["summits_friction"]
     if not (np.max(shares) > COUNTS and np.max(shares) > APART * np.min(shares)):
         return
-    each = (
-        f"{in_percent(share)} of the load and friction is {friction:.2g} with the {one.title}"
-        for one, share, friction in zip(SUMMITS.values(), shares, frictions, strict=True)
+    texts = (
+        f"{in_percent(share)} of the load and friction is {friction:.2g} with the {summits.title}"
+        for summits, share, friction in zip(SUMMITS.values(), shares, frictions, strict=True)
     )
     yield Doubt(
-        f"Films: where asperities carry most, they carry {', and '.join(each)}; both sets are assumed, and "
+        f"Films: where asperities carry most, they carry {', and '.join(texts)}; both sets are assumed, and "
         "friction and wear lie between them unless `eta_beta_sigma` is that of the measured surfaces.",
         moves=max(REMARKED, 1.0 - np.min(frictions) / np.max(frictions)),
         brief=f"Films: friction is {np.min(frictions):.2g} to {np.max(frictions):.2g} by assumed summits.",

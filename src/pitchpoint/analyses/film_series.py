@@ -56,9 +56,9 @@ def series_figures(
     compliance = np.sum(yields, axis=(-2, -1)) / torque**2
     (wound,), _ = wound_ups(built, known(built), np.array([torque]))
     dry, weight = np.asarray(wound.stiffness), states["weight"]
-    whole = np.nan if missing else 1.0
+    complete = np.nan if missing else 1.0
     return {
-        "film_torsional_stiffness": np.asarray(whole / (compliance @ weight)),
+        "film_torsional_stiffness": np.asarray(complete / (compliance @ weight)),
         "stiffness_without_films": np.asarray(1.0 / (1.0 / dry @ weight)),
-        "stiffness_with_films": np.asarray(whole / ((1.0 / dry + compliance) @ weight)),
+        "stiffness_with_films": np.asarray(complete / ((1.0 / dry + compliance) @ weight)),
     }

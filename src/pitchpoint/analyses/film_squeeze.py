@@ -76,10 +76,10 @@ def squeeze_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
 
 def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
     """Films of the moments after those of the last piece; None at the end."""
-    first = int(last.attrs["first"]) + last.sizes["point"]
-    if first >= course_of(built).times.size:
+    start = int(last.attrs["first"]) + last.sizes["point"]
+    if start >= course_of(built).times.size:
         return None
-    return _some(built, first, _state_of(last), progress, lost=bool(last.attrs["lost"]))
+    return _some(built, start, _state_of(last), progress, lost=bool(last.attrs["lost"]))
 
 
 def _some(
@@ -90,13 +90,13 @@ def _some(
     Steady films go on where the film with squeeze was lost.
     """
     count = min(TOGETHER, course_of(built).times.size - first)
-    told: list[str] = []
-    marched = [] if lost else _marched(built, first, after, progress, told)
-    found = [one for one in marched if one.solved]
-    stands = found[-1].course if found else after
+    notes: list[str] = []
+    marched = [] if lost else _marched(built, first, after, progress, notes)
+    solved = [one for one in marched if one.solved]
+    stands = solved[-1].course if solved else after
     course = course_of(built)
     contacts = placed(course.contacts, course.times)[first : first + count]
-    each = [*found, *[None] * (count - len(found))]
+    moments = [*solved, *[None] * (count - len(solved))]
     steady = [
         steady_beside(
             contact,
@@ -105,21 +105,21 @@ def _some(
                 built, first + count, f"steady film of moment {first + k + 1}", progress
             ),
         )
-        for k, (contact, one) in enumerate(zip(contacts, each, strict=True))
+        for k, (contact, one) in enumerate(zip(contacts, moments, strict=True))
         if stands is not None
     ]
     ended = [_why_lost(one.ended.code) for one in marched if not one.solved]
-    values = _values(count, found, marched, steady)
+    values = _values(count, solved, marched, steady)
     return dataset(
         {
             **{name: (("point",), one) for name, one in values.items()},
-            **_kept(built, first, found),
+            **_kept(built, first, solved),
             **({} if stands is None else _state(stands)),
         },
         {},
         first=first,
-        lost=int(len(found) < count),
-        warnings=[*told, *ended, *_doubts([*found, *steady])],
+        lost=int(len(solved) < count),
+        warnings=[*notes, *ended, *_doubts([*solved, *steady])],
         grid=json.dumps(course_grid(asked(built))),
     )
 
@@ -131,10 +131,10 @@ def _marched(
     course = course_of(built)
     nodes, cells = course_grid(asked(built))
     count = min(TOGETHER, course.times.size - first)
-    found: list[PatchMoment] = []
+    moments: list[PatchMoment] = []
 
     def step(number: int, residual: float) -> None:
-        done = first + len(found)
+        done = first + len(moments)
         _heard(built, done, f"moment {done + 1}", progress)(number, residual)
 
     try:
@@ -148,14 +148,14 @@ def _marched(
             after=after,
             progress=step,
         )
-        for one in islice(march, count):
-            found.append(one)
-            progress(first + len(found))
+        for moment in islice(march, count):
+            moments.append(moment)
+            progress(first + len(moments))
     except InputError as error:
-        if after is None and not found:  # wrong from the start: no film to show
+        if after is None and not moments:  # wrong from the start: no film to show
             raise InputError(error.message, key=KEY) from None
         told.append(f"the engagement was not taken: {error.message}")
-    return found
+    return moments
 
 
 def _heard(built: Built, done: int, what: str, progress: Progress) -> Any:
@@ -202,20 +202,20 @@ def _values(
         return every
 
     codes = np.full(count, int(Code.FILM_LOST))
-    codes[: len(marched)] = [int(one.ended.code) for one in marched]
+    codes[: len(marched)] = [int(moment.ended.code) for moment in marched]
     return {
         **{
-            name: filled([getattr(one.film, own) for one in found])
-            for name, own in _OF_FILM.items()
+            name: filled([getattr(moment.film, quantity) for moment in found])
+            for name, quantity in _OF_FILM.items()
         },
         **{
-            name: filled([getattr(one.film, _OF_FILM[own]) for one in steady])
-            for own, name in _STEADY.items()
+            name: filled([getattr(moment.film, _OF_FILM[quantity]) for moment in steady])
+            for quantity, name in _STEADY.items()
         },
         "film_status": codes,
-        "film_defect": filled([one.ended.reynolds for one in marched]),
-        "time_steps": filled([one.time_steps for one in marched]),
-        "newton_steps": filled([one.ended.steps for one in marched]),
+        "film_defect": filled([moment.ended.reynolds for moment in marched]),
+        "time_steps": filled([moment.time_steps for moment in marched]),
+        "newton_steps": filled([moment.ended.steps for moment in marched]),
     }
 
 
@@ -233,8 +233,8 @@ def _kept(
     if found:
         least = int(np.argmin([one.film.minimum_film for one in found]))
         film = found[least].film
-        own = {**FIELDS, "kept_x": "x", "kept_y": "y"}
-        fields = {name: np.asarray(getattr(film, one))[None] for name, one in own.items()}
+        attributes = {**FIELDS, "kept_x": "x", "kept_y": "y"}
+        fields = {name: np.asarray(getattr(film, one))[None] for name, one in attributes.items()}
         at = np.array([first + least])
     return {name: (_KEPT[name], one) for name, one in (fields | {"kept_moment": at}).items()}
 
@@ -244,7 +244,7 @@ def _thinnest(
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
     """Fields of the moment with the thinnest film of all."""
     at = [int(part["kept_moment"].values[0]) for part in parts]
-    rank = [film[one] if one >= 0 else np.inf for one in at]
+    rank = [film[moment] if moment >= 0 else np.inf for moment in at]
     part = parts[int(np.argmin(rank))]
     return {name: (dims, part[name].values) for name, dims in _KEPT.items()}
 
@@ -257,7 +257,7 @@ def _state(course: Course) -> dict[str, tuple[tuple[str, ...], Any]]:
     numbers = [np.nan if one is None else one for one in course.layout]
     step = np.nan if course.step is None else course.step
     lies = [course.lies.swapped, course.lies.along, course.lies.across]
-    given: dict[str, tuple[tuple[str, ...], Any]] = {
+    variables: dict[str, tuple[tuple[str, ...], Any]] = {
         "layout": (("of_layout",), np.array(numbers)),
         "lies": (("of_lies",), np.array(lies)),
         "pressure": (("row", "column"), course.pressure),
@@ -266,24 +266,24 @@ def _state(course: Course) -> dict[str, tuple[tuple[str, ...], Any]]:
         "masses": (("before", "row", "column"), np.stack(course.masses)),
         "step": ((), step),
     }
-    return {f"{_STATE}{name}": one for name, one in given.items()}
+    return {f"{_STATE}{name}": one for name, one in variables.items()}
 
 
 def _state_of(piece: xr.Dataset) -> Course | None:
     """The last course of which a piece has a film; None without one."""
     if f"{_STATE}layout" not in piece:
         return None
-    given = {name: piece[f"{_STATE}{name}"].values for name in Course._fields}
-    numbers = {name: float(v) for name, v in zip(Layout._fields, given["layout"], strict=True)}
+    variables = {name: piece[f"{_STATE}{name}"].values for name in Course._fields}
+    numbers = {name: float(v) for name, v in zip(Layout._fields, variables["layout"], strict=True)}
     layout = Layout(**numbers)
-    step = float(given["step"])
+    step = float(variables["step"])
     return Course(
         layout=layout._replace(end=None) if np.isnan(numbers["end"]) else layout,
-        lies=Turned(*map(bool, given["lies"])),
-        pressure=given["pressure"],
-        level=float(given["level"]),
-        times=tuple(map(float, given["times"])),
-        masses=tuple(given["masses"]),
+        lies=Turned(*map(bool, variables["lies"])),
+        pressure=variables["pressure"],
+        level=float(variables["level"]),
+        times=tuple(map(float, variables["times"])),
+        masses=tuple(variables["masses"]),
         step=None if np.isnan(step) else step,
     )
 
@@ -294,17 +294,17 @@ def _state_of(piece: xr.Dataset) -> Course | None:
 def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """The film of the engagement with squeeze, and the steady films beside it."""
     course = course_of(built)
-    names = [str(name) for name, one in parts[0].items() if one.dims == ("point",)]
+    names = [str(name) for name, variable in parts[0].items() if variable.dims == ("point",)]
     values = {name: np.concatenate([part[name].values for part in parts]) for name in names}
     values["film_change"] = _change(values["central_film"], values["steady_central_film"])
     codes, steps = values["film_status"], values["newton_steps"]
     iterations = np.nan_to_num(steps).astype(int)
     data = dataset(
         {
-            **{name: (("moment",), one) for name, one in values.items()},
+            **{name: (("moment",), variable) for name, variable in values.items()},
             **_conditions(built),
             **_thinnest(parts, values["minimum_film"]),
-            **{name: ((), one) for name, one in _figures(values).items()},
+            **{name: ((), variable) for name, variable in _figures(values).items()},
         },
         {"time": ("moment", course.times)},
         title="squeeze of films over the engagement",
@@ -332,7 +332,7 @@ def _conditions(built: Built) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
         "pair": pair,
         "line": line,
     }
-    return {name: (("moment",), one) for name, one in named.items()}
+    return {name: (("moment",), condition) for name, condition in named.items()}
 
 
 def _figures(values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -345,7 +345,7 @@ def _figures(values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         "steady_smallest_central_film": "steady_central_film",
     }
     return {
-        **{name: _least(values[own]) for name, own in least.items()},
+        **{name: _least(values[variable]) for name, variable in least.items()},
         "squeeze_change": change[np.argmax(np.abs(np.nan_to_num(change)))],
         "loaded_moments": np.array(change.size),
         "solved_moments": np.sum(values["film_status"] == int(Code.SOLVED)),
@@ -359,8 +359,8 @@ def _change(film: np.ndarray, steady: np.ndarray) -> np.ndarray:
 
 
 def _least(values: np.ndarray) -> np.ndarray:
-    known = values[np.isfinite(values)]
-    return np.array(known.min() if known.size else np.nan)
+    finite = values[np.isfinite(values)]
+    return np.array(finite.min() if finite.size else np.nan)
 
 
 def _told(parts: Sequence[xr.Dataset]) -> list[Doubt]:

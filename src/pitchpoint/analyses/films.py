@@ -55,13 +55,13 @@ _BY_FILM_LAW = ("film_deviation", "largest_film_deviation")
 
 def _dry(built: Built) -> str | None:
     """Why a case has no films of lines: it asks for finite contacts or none, or has ellipses."""
-    asked, shape = built.case.film, built.design.mesh.shape
-    if asked is not None and asked.over_patch:
+    film, shape = built.case.film, built.design.mesh.shape
+    if film is not None and film.over_patch:
         return Unasked("[film] asks for contacts of finite length")
     if shape != "line":
         touch = f"these gears touch {TOUCH[shape]}"
         return f'{touch}; solver = "elliptic" in [film] gives films of finite contacts'
-    return Unasked("the case has no [film]") if asked is None else None
+    return Unasked("the case has no [film]") if film is None else None
 
 
 def _endless(built: Built) -> str | None:
@@ -73,9 +73,9 @@ def _endless(built: Built) -> str | None:
 
 def _steady(built: Built) -> str | None:
     """Why a case has no film with squeeze: nobody asks for it."""
-    told = _endless(built)
-    if told is not None:
-        return told
+    reason = _endless(built)
+    if reason is not None:
+        return reason
     assert built.case.film is not None
     return None if built.case.film.squeezes else Unasked("[film] asks for steady films")
 
@@ -97,8 +97,8 @@ def _pieces(built: Built) -> Iterable[Piece]:
     check_series(built)
     if _endless(built) is None:
         _check_contacts(built)
-    found: Iterable[Piece] = _solver(built).pieces(built)
-    return found
+    pieces: Iterable[Piece] = _solver(built).pieces(built)
+    return pieces
 
 
 def _check_contacts(built: Built) -> None:
@@ -111,13 +111,13 @@ def _check_contacts(built: Built) -> None:
 
 
 def _compute(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
-    found: xr.Dataset = _solver(built).film_part(built, piece, progress)
-    return found
+    films: xr.Dataset = _solver(built).film_part(built, piece, progress)
+    return films
 
 
 def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    found: xr.Dataset = _solver(built).joined(built, parts)
-    return found
+    films: xr.Dataset = _solver(built).joined(built, parts)
+    return films
 
 
 def _squeeze_pieces(built: Built) -> Iterable[Piece]:
@@ -167,8 +167,10 @@ def _figures_of(data: xr.Dataset | None, names: Sequence[str]) -> dict[str, Any]
     """Figures of films, with those by laws beside them."""
     if data is None:
         return {}
-    asked = [name for name in _IN_SERIES if name in data]
-    every: dict[str, Any] = {name: numbers(_finite(data[name].values)) for name in (*names, *asked)}
+    in_series = [name for name in _IN_SERIES if name in data]
+    every: dict[str, Any] = {
+        name: numbers(_finite(data[name].values)) for name in (*names, *in_series)
+    }
     every["friction_laws"] = _each(data, "law", _BY_LAW)
     every["film_laws"] = _each(data, "film_law", _BY_FILM_LAW)
     return {**every, "notes": film_notes(data)}

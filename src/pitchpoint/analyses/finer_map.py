@@ -88,10 +88,10 @@ def _straight(nodes: np.ndarray, values: np.ndarray, places: np.ndarray) -> np.n
     """Values by a straight line between neighbours; locked or NaN where one of them is that counts."""
     low = np.clip(np.searchsorted(nodes, places, "right") - 1, 0, nodes.size - 2)
     weight = (places - nodes[low]) / (nodes[low + 1] - nodes[low])
-    first, second = values[..., low], values[..., low + 1]
-    line = first + weight * (second - first)
-    line = np.where((first < 0.0) | (second < 0.0), LOCKED, line)
-    return np.where(weight == 0.0, first, np.where(weight == 1.0, second, line))
+    left, right = values[..., low], values[..., low + 1]
+    line = left + weight * (right - left)
+    line = np.where((left < 0.0) | (right < 0.0), LOCKED, line)
+    return np.where(weight == 0.0, left, np.where(weight == 1.0, right, line))
 
 
 def _under_loads(torques: np.ndarray, lost: Values) -> tuple[np.ndarray, Values]:
@@ -102,17 +102,17 @@ def _under_loads(torques: np.ndarray, lost: Values) -> tuple[np.ndarray, Values]
     places[HALVINGS::PARTS] = loads
     turned = np.moveaxis(lost, 1, -1)
     back, idle, forth = turned[..., none::-1], turned[..., none : none + 1], turned[..., none:]
-    sides = [_one_way(np.append(0.0, loads), one, places) for one in (back, forth)]
-    found = np.concatenate([sides[0][..., ::-1], idle, sides[1]], axis=-1)
-    return np.concatenate([-places[::-1], [0.0], places]), np.moveaxis(found, -1, 1)
+    sides = [_one_way(np.append(0.0, loads), branch, places) for branch in (back, forth)]
+    losses = np.concatenate([sides[0][..., ::-1], idle, sides[1]], axis=-1)
+    return np.concatenate([-places[::-1], [0.0], places]), np.moveaxis(losses, -1, 1)
 
 
 def _one_way(loads: np.ndarray, values: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Values under loads from zero on: what a load adds to that without any, by powers of the load."""
     straight = _straight(loads, values, places)
     rise = values[..., 1:] - values[..., :1]
-    known = (values >= 0.0).all(axis=-1, keepdims=True)
-    usable = known & (rise > RISES * values[..., 1:]).all(axis=-1, keepdims=True)
+    defined = (values >= 0.0).all(axis=-1, keepdims=True)
+    usable = defined & (rise > RISES * values[..., 1:]).all(axis=-1, keepdims=True)
     if loads.size < 3:
         return straight
     nodes, at = np.log(loads[1:]), np.log(places)

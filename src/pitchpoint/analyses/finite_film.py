@@ -98,27 +98,27 @@ class Refused:
 def pieces(built: Built) -> Iterator[Piece]:
     """Ranges of phases."""
     every = wholes(built).states["phase"].size
-    for first in range(0, every, TOGETHER):
-        yield {"first": first, "count": min(TOGETHER, every - first)}
+    for start in range(0, every, TOGETHER):
+        yield {"first": start, "count": min(TOGETHER, every - start)}
 
 
 def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     """Films of all contacts at some phases."""
-    first, count = piece["first"], piece["count"]
-    taken, given = slice(first, first + count), wholes(built)
-    loaded, load = (given.states[name][taken] for name in ("loaded", "load"))
+    start, count = piece["first"], piece["count"]
+    taken, contacts = slice(start, start + count), wholes(built)
+    loaded, load = (contacts.states[name][taken] for name in ("loaded", "load"))
 
     def done(part: int, every: int, doing: str = "") -> None:
-        progress(first + count * part // every, doing)
+        progress(start + count * part // every, doing)
 
-    films, back = _solved(built, given.numbers[taken][loaded], given.scale, done)
+    films, back = _solved(built, contacts.numbers[taken][loaded], contacts.scale, done)
     lanes = np.full(loaded.shape, -1)
     lanes[loaded] = back
     values = _values(built, films, lanes)
-    lines = _as_lines(built, given, taken, values["film_inlet"])
+    lines = _as_lines(built, contacts, taken, values["film_inlet"])
     ended = [one.ended for one in films if isinstance(one, PatchFilms)]
-    found = [one for one in films if isinstance(one, PatchFilms) and one.solved]
-    errors = np.array([[one.ended.grid, one.ended.grid_minimum] for one in found]).reshape(-1, 2).T
+    solved = [one for one in films if isinstance(one, PatchFilms) and one.solved]
+    errors = np.array([[one.ended.grid, one.ended.grid_minimum] for one in solved]).reshape(-1, 2).T
     line = built.design.mesh.shape == "line"
     return dataset(
         {
@@ -128,7 +128,7 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
         },
         {},
         warnings=[*_told(films), *of_patches(errors, patch_grid_of(built), line=line)],
-        residual=max((one.ended.reynolds for one in found), default=0.0),
+        residual=max((one.ended.reynolds for one in solved), default=0.0),
         iterations=max((one.steps for one in ended), default=0),
     )
 
@@ -140,13 +140,13 @@ def _told(films: Sequence[PatchFilms | Refused]) -> list[Doubt]:
     are told of all of them together.
     """
     texts: dict[Doubt, None] = {}
-    for one in films:
-        if isinstance(one, Refused):
-            sentence = f"a contact was not taken: {one.why}"
+    for film in films:
+        if isinstance(film, Refused):
+            sentence = f"a contact was not taken: {film.why}"
             texts[Doubt(sentence, moves=WITHHELD, brief="a contact was not taken")] = None
-        elif one.solved:
+        elif film.solved:
             texts |= dict.fromkeys(
-                doubt for doubt in one.warnings if doubt.kind not in (ENDS, GRID, UNKNOWN_GRID)
+                doubt for doubt in film.warnings if doubt.kind not in (ENDS, GRID, UNKNOWN_GRID)
             )
     return [*texts]
 
@@ -159,14 +159,14 @@ def _solved(
         return [], np.zeros(0, int)
     where, back = alike(numbers, scale)
     films: list[PatchFilms | Refused] = []
-    for k, one in enumerate(numbers[where]):
+    for k, conditions in enumerate(numbers[where]):
         before = next((film for film in films[::-1] if isinstance(film, PatchFilms)), None)
         told = f"contact {k + 1} of {len(where)}"
 
         def step(number: int, residual: float, k: int = k, told: str = told) -> None:
             done(k, len(where), f"{told}, Newton step {number}, residual {residual:.0e}")
 
-        films.append(_one(built, one, patch_grid_of(built), step, before))
+        films.append(_one(built, conditions, patch_grid_of(built), step, before))
         done(k + 1, len(where))
     return films, back
 
@@ -195,31 +195,33 @@ def _values(
 ) -> dict[str, np.ndarray]:
     """What follows from the films, for every lane; not a number where there is none."""
     line = built.design.mesh.shape == "line"
-    each = [_of_film(one, line) if isinstance(one, PatchFilms) else {} for one in films]
-    codes = [int(_code(one)) for one in films]
-    defects = [one.ended.reynolds if isinstance(one, PatchFilms) else np.nan for one in films]
+    film_values = [_of_film(film, line) if isinstance(film, PatchFilms) else {} for film in films]
+    codes = [int(_code(film)) for film in films]
+    defects = [film.ended.reynolds if isinstance(film, PatchFilms) else np.nan for film in films]
 
     def lane(values: list[Any], shape: tuple[int, ...] = ()) -> np.ndarray:
         every = np.full((len(values) + 1, *shape), np.nan)
-        for k, one in enumerate(values):
-            every[k] = one
-        found: np.ndarray = every[lanes]
-        return found
+        for k, of_film in enumerate(values):
+            every[k] = of_film
+        at_lanes: np.ndarray = every[lanes]
+        return at_lanes
 
-    found = {
-        name: lane([one.get(name, np.nan) for one in each], shape)
+    quantities = {
+        name: lane([film.get(name, np.nan) for film in film_values], shape)
         for name, shape in _SHAPES.items()
         if line or name not in _ROWS
     }
     if asked(built).refractive_index is not None:
         middle = [
-            _in_the_middle(one.film) if isinstance(one, PatchFilms) else np.nan for one in films
+            _in_the_middle(film.film) if isinstance(film, PatchFilms) else np.nan for film in films
         ]
         pressure, rise = np.moveaxis(lane(middle, (2,)), -1, 0)
-        found["read_film"] = found["central_film"] * _read_over_true(built, pressure, rise)
+        quantities["read_film"] = quantities["central_film"] * _read_over_true(
+            built, pressure, rise
+        )
     status = np.array([*codes, int(Code.UNLOADED)])[lanes]
-    found["minimum_lambda"] = over_rough(built, found["minimum_film"])
-    return found | {"film_status": status, "film_defect": lane(defects)}
+    quantities["minimum_lambda"] = over_rough(built, quantities["minimum_film"])
+    return quantities | {"film_status": status, "film_defect": lane(defects)}
 
 
 def _in_the_middle(film: PatchFilm) -> np.ndarray:
@@ -286,8 +288,8 @@ _ROWS = ("row_film",)
 
 def _of_film(films: PatchFilms, line: bool) -> dict[str, Any]:
     film = films.film
-    found = {name: np.asarray(getattr(film, own)) for name, own in _NAMES.items()}
-    return found | {
+    fields = {name: np.asarray(getattr(film, attribute)) for name, attribute in _NAMES.items()}
+    return fields | {
         "rolling_resistance": np.hypot(*film.rolling),
         "film_inlet": -films.layout.inlet,
         **dict(zip(GRID_ERRORS, (films.ended.grid, films.ended.grid_minimum), strict=True)),
@@ -376,14 +378,14 @@ def _kept(
         ranks = np.where(solved, load, -np.inf), np.where(solved, -film, -np.inf)
         for k, rank in enumerate(ranks):
             at[k] = np.unravel_index(np.argmax(rank), rank.shape)
-            found = films[lanes[tuple(at[k])]]
-            assert isinstance(found, PatchFilms)
-            solved_film, heat = found.film, found.film.heat
-            for name, own in (*FIELDS.items(), ("kept_x", "x"), ("kept_y", "y")):
-                empty[name][k] = getattr(solved_film, own)
-            for name, own in _WARM_FIELDS.items() if heat is not None else ():
-                empty[name][k] = getattr(heat, own)
-    return {name: (_KEPT[name], one) for name, one in (empty | {"kept_at": at}).items()}
+            patch_films = films[lanes[tuple(at[k])]]
+            assert isinstance(patch_films, PatchFilms)
+            solved_film, heat = patch_films.film, patch_films.film.heat
+            for name, attribute in (*FIELDS.items(), ("kept_x", "x"), ("kept_y", "y")):
+                empty[name][k] = getattr(solved_film, attribute)
+            for name, attribute in _WARM_FIELDS.items() if heat is not None else ():
+                empty[name][k] = getattr(heat, attribute)
+    return {name: (_KEPT[name], field) for name, field in (empty | {"kept_at": at}).items()}
 
 
 def _kept_fields(built: Built) -> tuple[str, ...]:
@@ -399,19 +401,19 @@ def _fields(
     load = wholes(built).states["load"]
     film = whole_film["minimum_film"]
     firsts = np.cumsum([0, *(part.sizes["point"] for part in parts)])
-    found: dict[str, list[np.ndarray]] = {}
+    fields: dict[str, list[np.ndarray]] = {}
     for k, best in enumerate((load, -film)):
         ranks = []
-        for first, part in zip(firsts, parts, strict=False):
+        for start, part in zip(firsts, parts, strict=False):
             phase, pair, line = part["kept_at"].values[k]
-            ranks.append(best[first + phase, pair, line] if phase >= 0 else -np.inf)
+            ranks.append(best[start + phase, pair, line] if phase >= 0 else -np.inf)
         chosen = int(np.argmax(ranks))
         at = parts[chosen]["kept_at"].values[k].copy()
         at[0] += firsts[chosen] if at[0] >= 0 else 0
         for name in (*_kept_fields(built), "kept_x", "kept_y"):
-            found.setdefault(name, []).append(parts[chosen][name].values[k])
-        found.setdefault("kept_at", []).append(at)
-    return {name: (_KEPT[name], np.stack(one)) for name, one in found.items()}
+            fields.setdefault(name, []).append(parts[chosen][name].values[k])
+        fields.setdefault("kept_at", []).append(at)
+    return {name: (_KEPT[name], np.stack(of_contacts)) for name, of_contacts in fields.items()}
 
 
 def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
@@ -419,19 +421,21 @@ def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np
     nodes, cells = patch_grid_of(built)
     dims = {"near_ends": ("kept", "end", "distance")}
     shapes = {"near_ends": (2, END_DISTANCES.size)}
-    found = {name: np.full((len(at), *shapes.get(name, ())), np.nan) for name in _COARSE}
-    known: dict[tuple[int, ...], PatchFilms | Refused] = {}
+    coarse = {name: np.full((len(at), *shapes.get(name, ())), np.nan) for name in _COARSE}
+    films: dict[tuple[int, ...], PatchFilms | Refused] = {}
     for k, place in enumerate(map(tuple, at)):
         if min(nodes, cells + 1) <= FEWEST or place[0] < 0:
             continue
-        if place not in known:
-            given = wholes(built).numbers[place]
-            known[place] = _one(built, given, (nodes // 2 + 1, cells // 2))
-        film = known[place]
+        if place not in films:
+            numbers = wholes(built).numbers[place]
+            films[place] = _one(built, numbers, (nodes // 2 + 1, cells // 2))
+        film = films[place]
         if isinstance(film, PatchFilms):
-            for name, own in _COARSE.items():
-                found[name][k] = getattr(film.film, own)
-    return {f"coarse_{name}": (dims.get(name, ("kept",)), values) for name, values in found.items()}
+            for name, attribute in _COARSE.items():
+                coarse[name][k] = getattr(film.film, attribute)
+    return {
+        f"coarse_{name}": (dims.get(name, ("kept",)), values) for name, values in coarse.items()
+    }
 
 
 # ---- the whole
@@ -439,8 +443,8 @@ def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np
 
 def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Films of the cycle, with those of lines, and of film laws and friction laws, beside them."""
-    given = wholes(built)
-    names = [name for name, one in parts[0].items() if "point" not in one.dims]
+    contacts = wholes(built)
+    names = [name for name, variable in parts[0].items() if "point" not in variable.dims]
     lanes = [part.drop_vars(names) for part in parts]
     values = {
         name: np.concatenate([part[name].values for part in parts])
@@ -449,12 +453,12 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     }
     fields = _fields(built, parts, values)
     coarse = _coarse(built, fields["kept_at"][1])
-    more = {
+    added_variables = {
         **fields,
         **coarse,
-        **_line_figures(given.states, values),
+        **_line_figures(contacts.states, values),
         **_finite_figures(values),
-        "line_length": (_LANES, given.states["weight_of_line"]),
+        "line_length": (_LANES, contacts.states["weight_of_line"]),
         "direction": (("direction",), np.array(["x", "y"])),
         "end": (("end",), np.array(["first", "last"])),
         "distance": (("distance",), END_DISTANCES),
@@ -465,24 +469,24 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
     def again(lane: tuple[int, ...], eta_beta_sigma: float) -> tuple[float, float]:
         model = replace(film_model_of(built), eta_beta_sigma=eta_beta_sigma)
-        one = _one(built, given.numbers[lane], (nodes, cells), model=model)
-        if isinstance(one, Refused):
+        film = _one(built, contacts.numbers[lane], (nodes, cells), model=model)
+        if isinstance(film, Refused):
             return np.nan, np.nan
-        return float(one.film.asperity_share), float(one.film.friction_magnitude)
+        return float(film.film.asperity_share), float(film.film.friction_magnitude)
 
     data = whole(
         built,
-        given.states,
+        contacts.states,
         lanes,
         _LANES,
-        more,
+        added_variables,
         again,
         title="films of finite contacts",
         solver=table.solver,
         grid=json.dumps([nodes, cells]),
         ends=table.ends or "",
         end_profile=table.end_profile or "",
-        sharp=_sharp(given.states, values),
+        sharp=_sharp(contacts.states, values),
         leaning=_leaning(values),
         interferometry=_interferometry(built, values),
     )
@@ -512,11 +516,12 @@ def _finite_figures(
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
     """Smallest film in the middle of a contact, and largest pressure near an end of a line."""
     near, central = values["near_ends"][..., NEAR], values["central_film"]
-    found = {"smallest_central_film": ((), np.min(central[np.isfinite(central)], initial=np.inf))}
+    figures = {"smallest_central_film": ((), np.min(central[np.isfinite(central)], initial=np.inf))}
     if np.isfinite(near).any():
-        found["largest_end_pressure"] = ((), np.nanmax(near))
+        figures["largest_end_pressure"] = ((), np.nanmax(near))
     return {
-        name: (dims, np.where(np.isinf(one), np.nan, one)) for name, (dims, one) in found.items()
+        name: (dims, np.where(np.isinf(figure), np.nan, figure))
+        for name, (dims, figure) in figures.items()
     }
 
 
@@ -541,12 +546,12 @@ def _interferometry(built: Built, values: Mapping[str, np.ndarray]) -> str:
 
 def _leaning(values: Mapping[str, np.ndarray]) -> str:
     """That lines have no film in their middle, as nothing touches there, in words; empty where all have."""
-    found = np.isfinite(values["minimum_film"])
-    off = found & ~np.isfinite(values["central_film"])
+    with_film = np.isfinite(values["minimum_film"])
+    off = with_film & ~np.isfinite(values["central_film"])
     if not off.any():
         return ""
     return (
-        f"{off.sum()} of {found.sum()} contact lines touch at one end only: they have no film in their "
+        f"{off.sum()} of {with_film.sum()} contact lines touch at one end only: they have no film in their "
         "middle, and film laws, which stand for the middle, are not compared with them."
     )
 

@@ -90,10 +90,10 @@ Values = np.ndarray
 def pieces(built: Ready) -> list[Piece]:
     """One for each load: forwards and backwards, at the nodes of the map and half way between them."""
     return [
-        {"way": way, "between": between, "torque": float(load)}
-        for way in (FORWARDS, BACKWARDS)
+        {"way": direction, "between": between, "torque": float(load)}
+        for direction in (FORWARDS, BACKWARDS)
         for between in (False, True)
-        for load in _axes(built, way, between=between)[0]
+        for load in _axes(built, direction, between=between)[0]
     ]
 
 
@@ -106,8 +106,8 @@ def quadrant_axes(built: Ready) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         built: the case.
     """
     loads, speeds, degrees = map_axes(built)
-    asked, top = built.case.loss_map, float(speeds[-1])
-    lowest = (asked and asked.lowest_speed) or min(creeping_speed(built), SLOWEST * top)
+    loss_map, top = built.case.loss_map, float(speeds[-1])
+    lowest = (loss_map and loss_map.lowest_speed) or min(creeping_speed(built), SLOWEST * top)
     if any(law.films is not None for law in built.laws):
         lowest = max(lowest, float(speeds[1]))
     moving = np.geomspace(lowest, top, speeds.size - 1) if speeds.size > 2 else speeds[1:]
@@ -124,7 +124,7 @@ def _axes(built: Ready, way: str, *, between: bool) -> tuple[np.ndarray, ...]:
         return loads, speeds, degrees
     others = np.append(CREEPING * speeds[1], _of_ratio(speeds[1:])), _half_way(degrees)
     light = np.append(LIGHTER * loads[1], _of_ratio(loads[1:]))
-    return light, *(np.append(one, one[-1]) if one.size > 1 else one for one in others)
+    return light, *(np.append(axis, axis[-1]) if axis.size > 1 else axis for axis in others)
 
 
 def _half_way(values: np.ndarray) -> np.ndarray:
@@ -132,8 +132,8 @@ def _half_way(values: np.ndarray) -> np.ndarray:
 
 
 def _of_ratio(values: np.ndarray) -> np.ndarray:
-    found: np.ndarray = np.sqrt(values[1:] * values[:-1])
-    return found
+    between: np.ndarray = np.sqrt(values[1:] * values[:-1])
+    return between
 
 
 def _driven(built: Ready, way: str) -> Ready:
@@ -147,10 +147,10 @@ def _driven_back(built: Ready) -> Ready:
     step, back = speed_ratio(built), built.backwards
     ends = {"torque": float(loads[-1] * step), "force": None}
     ends |= {"speed": float(speeds[-1] * step), "lowest_speed": float(speeds[1] * step)}
-    asked = (back.case.loss_map or LossMap()).model_copy(
+    loss_map = (back.case.loss_map or LossMap()).model_copy(
         update={**ends, "temperatures": tuple(map(float, degrees))}
     )
-    changed: Any = back.case.model_copy(update={"loss_map": asked})
+    changed: Any = back.case.model_copy(update={"loss_map": loss_map})
     return replace(back, case=changed)
 
 
@@ -164,11 +164,11 @@ def quadrants_of(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
     way, load = str(piece["way"]), float(piece["torque"])
     driven = _driven(built, way)
     _, speeds, degrees = _axes(built, way, between=bool(piece["between"]))
-    each = []
+    outcomes = []
     for count, (loss, _, locked) in enumerate(maps(driven, load, speeds, degrees), 1):
-        each.append((loss, locked))
+        outcomes.append((loss, locked))
         progress(count * loss.size)
-    losses, locked = (np.stack(one) for one in zip(*each, strict=True))
+    losses, locked = (np.stack(of_laws) for of_laws in zip(*outcomes, strict=True))
     # Laws of friction know no rest; a map of few speeds may have none that is slow.
     creeping = creeping_speed(built) * (1.0 if way == FORWARDS else speed_ratio(built))
     slowest = min(float(quadrant_axes(driven)[1][1]), creeping)
@@ -222,14 +222,14 @@ def loss_of_output(
         ([2.0, 7.0, nan], [False, False, True])
     """
     there = _rising(driving, losses, locked)
-    known = driving[there]
+    carried = driving[there]
     # A torque lies between two loads; where one in between is missing, so is what the torque does.
     gaps = [*pairwise([-1, *there, driving.size])]
-    missing = np.array([*(last - first > 1 for first, last in gaps[:-1]), True])
-    held = np.array([bool(locked[first + 1 : last].any()) for first, last in gaps])
-    place = np.searchsorted(known * (1.0 + FALLS_SHORT), torque)
-    found = _between_loads(torque, no_load, known, losses[there])
-    return np.where(missing[place], np.nan, found), held[place]
+    missing = np.array([*(high - low > 1 for low, high in gaps[:-1]), True])
+    held = np.array([bool(locked[low + 1 : high].any()) for low, high in gaps])
+    place = np.searchsorted(carried * (1.0 + FALLS_SHORT), torque)
+    loss = _between_loads(torque, no_load, carried, losses[there])
+    return np.where(missing[place], np.nan, loss), held[place]
 
 
 Curve = tuple[float, np.ndarray, np.ndarray, np.ndarray]
@@ -260,26 +260,26 @@ def loss_beside(
         >>> loss_beside(np.array([3.0, 9.0]), usual, other)[0].tolist()
         [2.5, 2.5]
     """
-    found, held = loss_of_output(torque, *other)
-    (idle, *rest), (no_load, driving, losses, locked) = usual, other
-    carried, there = _rising(*rest), _rising(driving, losses, locked)
+    loss, held = loss_of_output(torque, *other)
+    (idle, *usual_loads), (no_load, driving, losses, locked) = usual, other
+    carried, there = _rising(*usual_loads), _rising(driving, losses, locked)
 
     def bounded(at: np.ndarray) -> np.ndarray:
-        return _between_loads(at, idle, rest[0][carried], rest[1][carried])
+        return _between_loads(at, idle, usual_loads[0][carried], usual_loads[1][carried])
 
-    known = np.append(0.0, driving[there])
+    nodes = np.append(0.0, driving[there])
     apart = np.append(no_load - idle, losses[there] - bounded(driving[there]))
-    begin = int(known.size > 1 and known[1] <= 0.0)
+    begin = int(nodes.size > 1 and nodes[1] <= 0.0)
     apart = np.clip(apart, 0.0, None) if np.nansum(apart) > 0.0 else np.clip(apart, None, 0.0)
-    beside = bounded(torque) + np.interp(torque, known[begin:], apart[begin:])
-    return np.where(np.isnan(beside) | np.isnan(found), found, beside), held
+    beside = bounded(torque) + np.interp(torque, nodes[begin:], apart[begin:])
+    return np.where(np.isnan(beside) | np.isnan(loss), loss, beside), held
 
 
 def _rising(driving: np.ndarray, losses: np.ndarray, locked: np.ndarray) -> np.ndarray:
     """Places of the loads that the output carries, each by a larger torque than those before it."""
     there = np.flatnonzero(np.isfinite(driving + losses) & ~locked)
     rising: np.ndarray = there[
-        [bool(np.all(driving[there[:k]] < driving[one])) for k, one in enumerate(there)]
+        [bool(np.all(driving[there[:k]] < driving[place])) for k, place in enumerate(there)]
     ]
     return rising
 
@@ -293,8 +293,8 @@ def _between_loads(
     if known.size < 2:
         return np.interp(torque, xs, values) if known.size else np.full(torque.shape, np.nan)
     curve = PchipInterpolator(known, losses)(np.clip(torque, known[0], known[-1]))
-    found: np.ndarray = np.where(torque < known[0], np.interp(torque, xs, values), curve)
-    return found
+    loss: np.ndarray = np.where(torque < known[0], np.interp(torque, xs, values), curve)
+    return loss
 
 
 def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
@@ -314,20 +314,20 @@ def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     loss = mirrored(np.where(moves, lost * speeds[:, None], 0.0))
     figures = _figures(loss, torques[:, None, None], both(speeds)[:, None], ratio)
     held, stuck = stuck[:, :, 0], mirrored(stuck & moves)
-    rest = {HOLDING: (lost, surely)}
+    at_rest = {HOLDING: (lost, surely)}
     if has_spread(built):
         low, high = (_over_output(built, parts, name)[0] for name in _BAND)
-        rest[_OF_BANDS] = (high, low)
+        at_rest[_OF_BANDS] = (high, low)
     unknown = np.isnan(loss) & ~stuck
-    found = dataset(
+    loss_map = dataset(
         {
             "mean_loss": (_DIMS, loss),
             **{name: (_DIMS, values) for name, values in figures.items()},
             "locked": (_DIMS, stuck),
             **{
                 name: (_HELD, values)
-                for names, each in rest.items()
-                for name, values in zip(names, _ends(each, torques, ratio), strict=True)
+                for names, bounds in at_rest.items()
+                for name, values in zip(names, _ends(bounds, torques, ratio), strict=True)
             },
             "self_locking": (_HELD, held[:, ::-1]),
             **{name: (("law",), values) for name, values in errors.items()},
@@ -342,8 +342,8 @@ def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         load=float(built.operation.load),
         degree=float(built.operation.temperature),
     )
-    found["mean_efficiency"].attrs.update(built.covers)
-    return found
+    loss_map["mean_efficiency"].attrs.update(built.covers)
+    return loss_map
 
 
 def _ends(each: Sequence[Values], torques: np.ndarray, ratio: float) -> Iterator[np.ndarray]:
@@ -386,19 +386,19 @@ def _over_output(
 ) -> tuple[Values, Values]:
     """Torque that is lost over torques of either sign and speeds from rest on, and where friction locks."""
     lost, locked, driving = {}, {}, {}
-    for way in (FORWARDS, BACKWARDS):
-        moving, stuck = _lost(built, way, parts, between=False)
-        rest = _lost_at_rest(built, way, parts, start, between=False)
+    for direction in (FORWARDS, BACKWARDS):
+        moving, stuck = _lost(built, direction, parts, between=False)
+        standstill = _lost_at_rest(built, direction, parts, start, between=False)
         formulas = np.array([law.films is None for law in built.laws])[:, None, None]
-        lost[way] = np.concatenate([rest[:, :, None], moving[:, :, 1:]], axis=2)
-        held = np.isnan(rest) & formulas
-        locked[way] = np.concatenate([held[:, :, None], stuck[:, :, 1:]], axis=2)
-        driving[way] = _ideal(built, way, between=False) + lost[way]
+        lost[direction] = np.concatenate([standstill[:, :, None], moving[:, :, 1:]], axis=2)
+        held = np.isnan(standstill) & formulas
+        locked[direction] = np.concatenate([held[:, :, None], stuck[:, :, 1:]], axis=2)
+        driving[direction] = _ideal(built, direction, between=False) + lost[direction]
     torques = quadrant_axes(built)[0][1:]
     curves = lost[FORWARDS][:, 0], driving[BACKWARDS], lost[BACKWARDS], locked[BACKWARDS]
     turned, held = _turned(torques, *curves)
     if start != _USUAL:
-        no_load, driven, back, stuck = (one[..., 0, :] for one in curves)
+        no_load, driven, back, stuck = (curve[..., 0, :] for curve in curves)
         at_rest = no_load, driven, back, stuck
         turned[:, :, 0] = _bound(torques, at_rest, _usual_at_rest(built, parts))
     loaded = (quadrant_axes(built)[0] > 0.0)[:, None, None]
@@ -416,8 +416,8 @@ def _own(
     return np.stack(
         [
             part[name].values
-            for one, part in pairs
-            if (one["way"], one["between"]) == (way, between)
+            for piece, part in pairs
+            if (piece["way"], piece["between"]) == (way, between)
         ],
         axis=1,
     )
@@ -454,12 +454,12 @@ def _turned(
 ) -> tuple[Values, Values]:
     """Torque that is lost over torques that turn the output, and where friction locks the drive."""
     shape = (lost.shape[0], torques.size, *lost.shape[2:])
-    found, held = np.zeros(shape), np.zeros(shape, bool)
+    turned, held = np.zeros(shape), np.zeros(shape, bool)
     for law, speed, degree in np.ndindex(no_load.shape):
         at = (law, slice(None), speed, degree)
         start = float(no_load[law, speed, degree])
-        found[at], held[at] = loss_of_output(torques, start, driving[at], lost[at], locked[at])
-    return found, held
+        turned[at], held[at] = loss_of_output(torques, start, driving[at], lost[at], locked[at])
+    return turned, held
 
 
 Curves = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
@@ -469,7 +469,8 @@ Curves = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 def _usual_at_rest(built: Ready, parts: Sequence[xr.Dataset]) -> Curves:
     """What the mean over the phases loses at rest, backwards under every load."""
     forth, back = (
-        _lost_at_rest(built, way, parts, _USUAL, between=False) for way in (FORWARDS, BACKWARDS)
+        _lost_at_rest(built, direction, parts, _USUAL, between=False)
+        for direction in (FORWARDS, BACKWARDS)
     )
     ideal = _ideal(built, BACKWARDS, between=False)[:, 0]
     return forth[:, 0], ideal + back, back, np.zeros(back.shape, bool)
@@ -477,30 +478,30 @@ def _usual_at_rest(built: Ready, parts: Sequence[xr.Dataset]) -> Curves:
 
 def _bound(torques: np.ndarray, bound: Curves, usual: Curves) -> Values:
     """Torque that is lost at rest by a bound over torques that turn the output [law, torque, temperature]."""
-    found = np.zeros((bound[0].shape[0], torques.size, bound[0].shape[1]))
+    lost = np.zeros((bound[0].shape[0], torques.size, bound[0].shape[1]))
     for law, degree in np.ndindex(bound[0].shape):
-        each = (_at(curves, law, degree) for curves in (usual, bound))
-        found[law, :, degree], _ = loss_beside(torques, *each)
-    return found
+        both_curves = (_at(curves, law, degree) for curves in (usual, bound))
+        lost[law, :, degree], _ = loss_beside(torques, *both_curves)
+    return lost
 
 
 def _at(curves: Curves, law: int, degree: int) -> Curve:
     start, driving, lost, locked = curves
-    each = (law, slice(None), degree)
-    return float(start[law, degree]), driving[each], lost[each], locked[each]
+    lane = (law, slice(None), degree)
+    return float(start[law, degree]), driving[lane], lost[lane], locked[lane]
 
 
 def _figures(
     loss: Values, torque: np.ndarray, speed: np.ndarray, ratio: float
 ) -> dict[str, Values]:
     """Torque of the driver and efficiency, from the balance of power; NaN where none is passed on."""
-    given = torque * speed
-    taken = given + loss
+    power = torque * speed
+    taken = power + loss
     moving = np.broadcast_to(speed != 0.0, loss.shape)
     turning = np.where(moving, taken, np.nan) / np.where(moving, speed / ratio, 1.0)
-    ways = [(given > 0.0) & (taken > 0.0), (given < 0.0) & (taken < 0.0)]
-    over = np.select(ways, [taken, np.broadcast_to(given, loss.shape)], np.nan)
-    out = np.select(ways, [np.broadcast_to(given, loss.shape), taken], np.nan)
+    ways = [(power > 0.0) & (taken > 0.0), (power < 0.0) & (taken < 0.0)]
+    over = np.select(ways, [taken, np.broadcast_to(power, loss.shape)], np.nan)
+    out = np.select(ways, [np.broadcast_to(power, loss.shape), taken], np.nan)
     return {"mean_efficiency": out / over, "mean_input_torque": turning}
 
 
@@ -508,8 +509,8 @@ def _errors(built: Ready, parts: Sequence[xr.Dataset], table: LossTable) -> dict
     """How far what the table loses is off between its nodes, and below the lowest ones [law]."""
     lightest = float(quadrant_axes(built)[0][1])
     kinds: dict[str, list[np.ndarray]] = {name: [] for name in ERRORS}
-    for way in (FORWARDS, BACKWARDS):
-        off, torque = _off_half_way(built, way, parts, table)
+    for direction in (FORWARDS, BACKWARDS):
+        off, torque = _off_half_way(built, direction, parts, table)
         creeping, between = np.arange(off.shape[2]) == CREEPS, np.abs(torque) >= lightest
         for name, where in zip(
             ERRORS,
@@ -518,11 +519,14 @@ def _errors(built: Ready, parts: Sequence[xr.Dataset], table: LossTable) -> dict
         ):
             kinds[name].append(np.where(where, off, np.nan).reshape(len(off), -1))
     errors = {
-        name: [one[np.isfinite(one)] for one in np.concatenate(each, axis=1)]
-        for name, each in kinds.items()
+        name: [row[np.isfinite(row)] for row in np.concatenate(errors_of_kind, axis=1)]
+        for name, errors_of_kind in kinds.items()
     }
     return {
-        **{name: np.array([e.max(initial=0.0) for e in each]) for name, each in errors.items()},
+        **{
+            name: np.array([e.max(initial=0.0) for e in errors_of_kind])
+            for name, errors_of_kind in errors.items()
+        },
         "mean_interpolation_error": np.array(
             [e.sum() / max(e.size, 1) for e in errors["interpolation_error"]]
         ),
@@ -536,16 +540,16 @@ def _off_half_way(
     speeds, degrees = _axes(built, way, between=True)[1:]
     speeds = np.append(0.0, speeds[: max(speeds.size - 1, 1)])
     moving, _ = _lost(built, way, parts, between=True)
-    rest = _lost_at_rest(built, way, parts, "largest_holding_torque", between=True)
-    lost = np.concatenate([rest[:, :, None], moving[:, :, : speeds.size - 1]], axis=2)
+    standstill = _lost_at_rest(built, way, parts, "largest_holding_torque", between=True)
+    lost = np.concatenate([standstill[:, :, None], moving[:, :, : speeds.size - 1]], axis=2)
     torque = _ideal(built, way, between=True)
     if way == FORWARDS:
         speeds = speeds * speed_ratio(built)
     else:
         torque = -(torque + lost)
     places = (
-        np.broadcast_to(one, lost.shape)
-        for one in (torque, speeds[:, None], degrees_celsius(degrees))
+        np.broadcast_to(coordinate, lost.shape)
+        for coordinate in (torque, speeds[:, None], degrees_celsius(degrees))
     )
     torque, speed, degree = places
     return _off(table, lost, torque, speed, degree), torque
@@ -560,8 +564,8 @@ def _off(
     for at in zip(*np.nonzero(lost > ROUNDING * torques[-1]), strict=True):
         if torques[0] <= torque[at] <= torques[-1]:
             place = float(torque[at]), float(speed[at]), float(degree[at])
-            found = table.lost(*place, [*table.loss_torques][at[0]])
-            errors[at] = np.nan if found < 0.0 else abs(found / lost[at] - 1.0)
+            loss = table.lost(*place, [*table.loss_torques][at[0]])
+            errors[at] = np.nan if loss < 0.0 else abs(loss / lost[at] - 1.0)
     return errors
 
 
@@ -579,24 +583,24 @@ def table_of(data: xr.Dataset) -> LossTable:
     stuck = held["self_locking"].values[:, ::-1]
 
     def at_rest(name: str) -> np.ndarray:
-        rest = held[name].values / ratio - data["output_torque"].values[:, None]
-        return np.where(stuck, LOCKED, np.maximum(rest, 0.0))[:, :, None]
+        holding = held[name].values / ratio - data["output_torque"].values[:, None]
+        return np.where(stuck, LOCKED, np.maximum(holding, 0.0))[:, :, None]
 
     units = [
         data[name].attrs["units"] for name in ("output_torque", "output_speed", "mean_input_torque")
     ]
-    made = _table(data, np.concatenate([at_rest("largest_holding_torque"), lost], axis=2), ratio)
-    made = made._replace(units=units)
+    table = _table(data, np.concatenate([at_rest("largest_holding_torque"), lost], axis=2), ratio)
+    table = table._replace(units=units)
     if _BAND[0] not in data:
-        return made
+        return table
     bounds = [
         _table(data, np.concatenate([at_rest(name), lost], axis=2), ratio).loss_torques
         for name in _BAND
     ]
-    return made._replace(
+    return table._replace(
         rest_bounds={
             law: [[column[0] for column in bound[law]] for bound in bounds]
-            for law in made.loss_torques
+            for law in table.loss_torques
         }
     )
 
@@ -638,7 +642,7 @@ def _told(built: Ready, stuck: Values, lost: Values, parts: Sequence[xr.Dataset]
         "friction locks the drive against its output at {} of {} points: there the driver has to turn the "
         "load along, and its torque is not known"
     )
-    found = [
+    doubts = [
         Doubt(
             f"{law.title}: {words.format(where[k].sum(), where[k].size)}.",
             brief=f"{law.name}: no torque at {where[k].sum()} of {where[k].size} points.",
@@ -647,4 +651,4 @@ def _told(built: Ready, stuck: Values, lost: Values, parts: Sequence[xr.Dataset]
         for k, law in enumerate(built.laws)
         if where[k].any()
     ]
-    return [*found, *dict.fromkeys(t for part in parts for t in doubts_of(part.attrs))]
+    return [*doubts, *dict.fromkeys(t for part in parts for t in doubts_of(part.attrs))]

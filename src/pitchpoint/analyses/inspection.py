@@ -78,11 +78,11 @@ class _Measured:
     @property
     def no_ball(self) -> str:
         """Why balls measure nothing; empty where they do."""
-        gear, told = self.toothing, f"balls of {1e3 * self.ball:.4g} mm"
+        gear, balls = self.toothing, f"balls of {1e3 * self.ball:.4g} mm"
         if not self._on_flank(gear.ball_roll(self.ball)):
-            return f"{told} do not touch its involutes"
+            return f"{balls} do not touch its involutes"
         if gear.side * (gear.ball_reach(self.ball) - self.tip) <= 0.0:
-            return f"{told} do not stand out of its spaces"
+            return f"{balls} do not stand out of its spaces"
         return ""
 
     @property
@@ -122,12 +122,12 @@ def inspection_part(built: Built) -> xr.Dataset:
     """
     table = built.case.gears
     assert isinstance(table, CylindricalGears)
-    asked = table.inspection or Inspection()
-    pair = [_measured(number, built, table, asked) for number in (0, 1)]
-    each = [one.values() for one in pair]
-    plays = _plays(pair, table, asked, float(built.dimensions["centre_distance"]))
+    inspection = table.inspection or Inspection()
+    pair = [_measured(number, built, table, inspection) for number in (0, 1)]
+    dimensions = [one.values() for one in pair]
+    plays = _plays(pair, table, inspection, float(built.dimensions["centre_distance"]))
     over = {0: ("gear",), 1: ("gear", "limit")}
-    told = [
+    jams = [
         Doubt(
             f"The least backlash by tolerances is {1e6 * one.normal:.3g} um: the teeth can jam.",
             brief=f"Least backlash by tolerances {1e6 * one.normal:.3g} um: teeth can jam.",
@@ -138,8 +138,8 @@ def inspection_part(built: Built) -> xr.Dataset:
     return dataset(
         {
             **{
-                name: (over[np.ndim(value)], [one[name] for one in each])
-                for name, value in each[0].items()
+                name: (over[np.ndim(value)], [one[name] for one in dimensions])
+                for name, value in dimensions[0].items()
             },
             "backlash_on_circle": (("case",), [one.circumferential for one in plays]),
             "backlash_along_normal": (("case",), [one.normal for one in plays]),
@@ -154,7 +154,7 @@ def inspection_part(built: Built) -> xr.Dataset:
             **({"tolerance": [*TOLERANCES]} if table.tolerance_class else {}),
         },
         title="inspection",
-        warnings=told,
+        warnings=jams,
         note=NOTE,
         unmeasured=[sentence for one in pair for sentence in one.told],
         asked=int(table.inspection is not None),
@@ -174,7 +174,7 @@ def _measured(number: int, built: Built, table: CylindricalGears, asked: Inspect
         _roll(gear, float(drawn[name][number]))
         for name in ("form_radius", "active_root_radius", "tip_radius")
     )
-    given, balls = asked.span_teeth, asked.ball_diameter
+    span_teeth, balls = asked.span_teeth, asked.ball_diameter
     limits = table.thickness_allowances or ()
     return _Measured(
         name=f"gear {number + 1}",
@@ -182,7 +182,7 @@ def _measured(number: int, built: Built, table: CylindricalGears, asked: Inspect
         usable=(min(form, end), max(form, end)),
         tip=tip,
         width=float(mesh.face_width),
-        span=int(given[number]) if given else gear.usual_span((active + end) / 2.0),
+        span=int(span_teeth[number]) if span_teeth else gear.usual_span((active + end) / 2.0),
         ball=balls[number] if balls else _usual_ball(gear, tip, active, end),
         allowances=(0.0, *(limit[number] for limit in limits)),
     )
@@ -191,7 +191,9 @@ def _measured(number: int, built: Built, table: CylindricalGears, asked: Inspect
 def _usual_ball(gear: Toothing, tip: float, active: float, end: float) -> float:
     """Diameter of a ball that touches near the middle of the active flank, further out if it sinks in [m]."""
     every = [gear.usual_ball(active + part * (end - active)) for part in OUTWARDS]
-    return next((one for one in every if gear.side * (gear.ball_reach(one) - tip) > 0.0), every[0])
+    return next(
+        (ball for ball in every if gear.side * (gear.ball_reach(ball) - tip) > 0.0), every[0]
+    )
 
 
 def _roll(gear: Toothing, radius: float) -> float:
@@ -203,7 +205,7 @@ def _plays(
     pair: list[_Measured], table: CylindricalGears, asked: Inspection, distance: float
 ) -> list[Backlash]:
     """Backlash of the nominal gears, and least, mean and largest one where tolerances are given."""
-    gears, deviation = [one.toothing for one in pair], asked.deviation(distance)
+    gears, deviation = [gear.toothing for gear in pair], asked.deviation(distance)
     nominal, allowed = backlash(gears[0], gears[1], distance), table.thickness_allowances
     if allowed is None and deviation is None:
         return [nominal]
@@ -217,12 +219,12 @@ def _plays(
 def _discs(built: Built) -> dict[str, Any]:
     """Mass and moment of inertia of both gears as discs, as a vibration takes them."""
     mesh: Any = built.design.mesh
-    drawn, found = drawing_of(built), []
+    drawn, discs = drawing_of(built), []
     teeth, rims = np.asarray(mesh.teeth), np.asarray(mesh.rim_ratio)
     for number, solid in enumerate(built.design.solids):
         ring = float(teeth[number]) < 0.0
         root, rim = float(drawn["root_radius"][number]), float(rims[number])
-        found.append(
+        discs.append(
             disc(
                 density=float(solid.density),
                 width=float(mesh.face_width),
@@ -230,7 +232,7 @@ def _discs(built: Built) -> dict[str, Any]:
                 inner=root * rim if ring else root / rim,
             )
         )
-    mass, inertia = zip(*found, strict=True)
+    mass, inertia = zip(*discs, strict=True)
     return {"disc_mass": (("gear",), mass), "disc_inertia": (("gear",), inertia)}
 
 
@@ -238,15 +240,15 @@ def _tolerances(table: CylindricalGears, pair: list[_Measured]) -> dict[str, Any
     """Limits of the flanks of both gears by their classes; nothing without them."""
     if table.tolerance_class is None:
         return {}
-    found = [
+    tolerances = [
         astuple(
             flank_tolerances(
                 tolerance_class=int(number),
-                diameter=2.0 * abs(one.toothing.reference_radius),
-                module=one.toothing.module,
-                face_width=one.width,
+                diameter=2.0 * abs(gear.toothing.reference_radius),
+                module=gear.toothing.module,
+                face_width=gear.width,
             )
         )
-        for number, one in zip(table.tolerance_class, pair, strict=True)
+        for number, gear in zip(table.tolerance_class, pair, strict=True)
     ]
-    return {"flank_tolerance": (("gear", "tolerance"), found)}
+    return {"flank_tolerance": (("gear", "tolerance"), tolerances)}

@@ -93,18 +93,20 @@ def joint_part(built: Built, progress: Progress) -> xr.Dataset:
     waves = _waves(built, torsion.ripple, progress)
     joints = [_joint(built, torsion, free) for free in (False, True)]
     stacked = jax.tree.map(lambda *values: np.stack(values), *joints)
-    own = jax.device_get(_own(stacked, array(waves.order)))
-    speeds = _speeds(built, own["critical_speed"], waves)
-    found = jax.device_get(
+    figures = jax.device_get(_own(stacked, array(waves.order)))
+    speeds = _speeds(built, figures["critical_speed"], waves)
+    amplitudes = jax.device_get(
         _against_speed(stacked, *map(array, (waves.order, waves.amplitude, speeds)))
     )
-    names, courses = _courses(built, joints[0], waves, own["critical_speed"][0, waves.strongest])
+    names, courses = _courses(
+        built, joints[0], waves, figures["critical_speed"][0, waves.strongest]
+    )
     axes = ("motor", "excitation", "speed")
     over = {1: ("motor",), 2: ("motor", "excitation")}
     return dataset(
         {
-            **{name: (over[values.ndim], values) for name, values in own.items()},
-            **{name: (axes, values) for name, values in found.items()},
+            **{name: (over[values.ndim], values) for name, values in figures.items()},
+            **{name: (axes, values) for name, values in amplitudes.items()},
             **{name: (("course",), values) for name, values in courses.items()},
             "wave_order": (("excitation",), waves.order),
             "wave_amplitude": (("excitation",), waves.amplitude),
@@ -120,7 +122,7 @@ def joint_part(built: Built, progress: Progress) -> xr.Dataset:
         travels=built.travels,
         warnings=[
             *_light_motor(built),
-            *_unloaded(built, found, speeds, waves),
+            *_unloaded(built, amplitudes, speeds, waves),
             *_unsettled(names, courses),
         ],
         note=f"{'' if any(built.deviations) else f'{ALONE} '}{LEFT_OUT}.",
@@ -131,20 +133,22 @@ def joint_part(built: Built, progress: Progress) -> xr.Dataset:
 
 def _torsion(built: Built) -> _Torsion:
     """Curve of the wind-up, friction and ripple of the drive at the operating point."""
-    known, rated = engaged_at(built), built.case.operation.load
+    engagement, rated = engaged_at(built), built.case.operation.load
     torques = TORQUES * (rated or 1.0)
-    each, body = wound_ups(built, known, torques)
-    found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
+    at_torques, body = wound_ups(built, engagement, torques)
+    wound_up: Any = jax.tree.map(lambda *values: np.stack(values), *at_torques)
     at = RATED if rated else 0
-    weight = np.asarray(known.weight)
-    ripple = np.exp(-2j * np.pi * np.asarray(known.phase)) * weight
+    weight = np.asarray(engagement.weight)
+    ripple = np.exp(-2j * np.pi * np.asarray(engagement.phase)) * weight
     ends = built.design.mesh, built.design.loaded
-    play = np.asarray(kinematic_play(*ends, known.contacts, known.phase, body)) @ weight
-    slope = 1.0 / ((1.0 / found.stiffness) @ weight)
-    turned, carried, slopes = map(array, _found(np.stack([found.wind_up @ weight, torques, slope])))
+    play = np.asarray(kinematic_play(*ends, engagement.contacts, engagement.phase, body)) @ weight
+    slope = 1.0 / ((1.0 / wound_up.stiffness) @ weight)
+    turned, carried, slopes = map(
+        array, _found(np.stack([wound_up.wind_up @ weight, torques, slope]))
+    )
     curve = WindUpCurve(turned, carried, slopes, array(max(play, 0.0)))
-    approach = (found.wind_up + found.touch)[at]
-    sliding = _sliding(built, known, found.force[at])
+    approach = (wound_up.wind_up + wound_up.touch)[at]
+    sliding = _sliding(built, engagement, wound_up.force[at])
     return _Torsion(curve, sliding, float(2.0 * np.abs(approach @ ripple)))
 
 
@@ -168,9 +172,9 @@ def _sliding(built: Built, known: Any, force: np.ndarray) -> Sliding:
     design = built.design
     slip = jax.device_get(known.contacts).slip_arm
     ways: Any = jax.device_get((design.loaded, design.motion))
-    own, nominal = (np.asarray(along(slip, way)) for way in ways)
-    held = (force * np.abs(own) * np.asarray(known.weight)).ravel()
-    rate = np.abs(nominal / np.where(own != 0.0, own, np.inf)).ravel()
+    loaded_slip, nominal = (np.asarray(along(slip, direction)) for direction in ways)
+    held = (force * np.abs(loaded_slip) * np.asarray(known.weight)).ravel()
+    rate = np.abs(nominal / np.where(loaded_slip != 0.0, loaded_slip, np.inf)).ravel()
     order = np.argsort(np.where(held > 0.0, rate, np.inf))[: max(np.count_nonzero(held), 1)]
     groups = np.array_split(order, PARTS)
     sums = np.array([held[group].sum() for group in groups])
@@ -187,8 +191,8 @@ def _mean(values: np.ndarray, weight: np.ndarray) -> float:
 def _waves(built: Built, ripple: float, progress: Progress) -> _Waves:
     """Waves of the error that are not small: those of deviations, and the ripple of the teeth."""
     every = [*_of_deviations(built, progress), _of_teeth(built, ripple)]
-    every.sort(key=lambda one: -one[2])
-    large = [one for one in every if one[2] >= LEAST * every[0][2]][:MOST_WAVES]
+    every.sort(key=lambda wave: -wave[2])
+    large = [wave for wave in every if wave[2] >= LEAST * every[0][2]][:MOST_WAVES]
     names, orders, amplitudes = zip(*large, strict=True)
     return _Waves([*names], np.array(orders), np.array(amplitudes))
 
@@ -216,23 +220,25 @@ def _of_deviations(built: Built, progress: Progress) -> list[tuple[str, float, f
 def _turns(built: Built) -> list[float]:
     """Turns of each member against what makes it carry, for one of the driver."""
     motion = built.nominal["motion"]
-    against = [motion[k] for k, one in enumerate(built.bodies) if one.member is None]
-    places = sorted((one.member, k) for k, one in enumerate(built.bodies) if one.member is not None)
+    against = [motion[k] for k, body in enumerate(built.bodies) if body.member is None]
+    places = sorted(
+        (body.member, k) for k, body in enumerate(built.bodies) if body.member is not None
+    )
     return [abs(float(motion[k] - sum(against))) for _, k in places]
 
 
 def _joint(built: Built, torsion: _Torsion, free: bool) -> Joint:
     """Motor, drive and load of a case; damping is that which gives the free joint its ratio."""
-    asked = built.case.dynamics
-    assert asked is not None
-    assert asked.inertia is not None
-    driver, load = asked.inertia
+    dynamics = built.case.dynamics
+    assert dynamics is not None
+    assert dynamics.inertia is not None
+    driver, load = dynamics.inertia
     ratio = abs(built.nominal["driver"] @ built.nominal["motion"]) / built.output_rate
     both = array([driver * ratio**2, load])
-    given = torsion.curve, array(built.case.operation.load)
+    curve_and_load = torsion.curve, array(built.case.operation.load)
     none, motor = array(0.0), both[0] if free else array(np.inf)
-    joint = Joint(*given, motor, both[1], none, array(ratio), torsion.sliding)
-    return replace(joint, damping=_damping(joint, both, array(asked.damping_ratio)))
+    joint = Joint(*curve_and_load, motor, both[1], none, array(ratio), torsion.sliding)
+    return replace(joint, damping=_damping(joint, both, array(dynamics.damping_ratio)))
 
 
 @program
@@ -246,15 +252,17 @@ def _damping(
 
 def _speeds(built: Built, critical: np.ndarray, waves: _Waves) -> np.ndarray:
     """Speeds of the driver, with all critical ones between them."""
-    asked = built.case.dynamics
-    assert asked is not None
-    if asked.speeds is not None:
-        given = np.linspace(asked.speeds.start, asked.speeds.stop, int(asked.speeds.count))
+    dynamics = built.case.dynamics
+    assert dynamics is not None
+    if dynamics.speeds is not None:
+        speeds = np.linspace(
+            dynamics.speeds.start, dynamics.speeds.stop, int(dynamics.speeds.count)
+        )
     else:
         most = 1.5 * max(built.case.operation.speed, critical[:, waves.strongest].max())
-        given = np.linspace(most / SPEEDS, most, SPEEDS)
-    inside = critical[(critical >= given[0]) & (critical <= given[-1])]
-    return np.union1d(given, inside)
+        speeds = np.linspace(most / SPEEDS, most, SPEEDS)
+    inside = critical[(critical >= speeds[0]) & (critical <= speeds[-1])]
+    return np.union1d(speeds, inside)
 
 
 @program
@@ -270,8 +278,8 @@ def _own(joints: Joint, order: Float[Array, " wave"]) -> dict[str, Array]:
             "critical_speed": joint.critical_speed(order),
         }
 
-    found: dict[str, Array] = eqx.filter_vmap(of)(joints)
-    return found
+    figures: dict[str, Array] = eqx.filter_vmap(of)(joints)
+    return figures
 
 
 @program
@@ -284,18 +292,18 @@ def _against_speed(
     """Amplitudes [motor, wave, speed] by the tangent of the curve."""
 
     def of(joint: Joint) -> dict[str, Array]:
-        found = respond(joint, order[:, None], amplitude[:, None], speed[None])
-        output = jnp.abs(found.output)
+        response = respond(joint, order[:, None], amplitude[:, None], speed[None])
+        output = jnp.abs(response.output)
         critical = 2.0 * jnp.sqrt(joint.stiffness * joint.reduced)
         return {
             "output_amplitude": output,
-            "output_speed_amplitude": found.frequency * output,
-            "torque_amplitude": jnp.abs(found.torque),
-            "flank_damping_ratio": found.friction / critical,
+            "output_speed_amplitude": response.frequency * output,
+            "torque_amplitude": jnp.abs(response.torque),
+            "flank_damping_ratio": response.friction / critical,
         }
 
-    found: dict[str, Array] = eqx.filter_vmap(of)(joints)
-    return found
+    amplitudes: dict[str, Array] = eqx.filter_vmap(of)(joints)
+    return amplitudes
 
 
 NEAR = 10.0
@@ -327,10 +335,10 @@ def _course(joint: Joint, order: Array, amplitude: Array, speed: Array) -> tuple
     """Amplitude and smallest torque, status, and the amplitude by the tangent."""
     linear = float(_linear(joint, order, amplitude, speed))
     periods = array(fading(joint, order, speed))
-    found = jax.device_get(settled(joint, order, amplitude, speed, periods))
-    code = int(found.status.code)
+    course = jax.device_get(settled(joint, order, amplitude, speed, periods))
+    code = int(course.status.code)
     torque, smallest = (
-        float(v) if Code(code).ok else np.nan for v in (found.torque, found.smallest)
+        float(v) if Code(code).ok else np.nan for v in (course.torque, course.smallest)
     )
     return torque, smallest, float(code), linear
 
@@ -346,16 +354,16 @@ def _light_motor(built: Built) -> list[str]:
     if built.family.bodies is None:
         return []
     turned, motor = int(np.argmax(built.nominal["driver"])), built.case.dynamics.inertia[0]
-    own = float(bodies_of(built, {}, silent)["body_inertia"].values[turned])
-    if not motor < own:
+    inertia = float(bodies_of(built, {}, silent)["body_inertia"].values[turned])
+    if not motor < inertia:
         return []
-    name, both = built.driver, [f"{1e4 * each:.3g} kg cm2" for each in (motor, own)]
+    name, both = built.driver, [f"{1e4 * moment:.3g} kg cm2" for moment in (motor, inertia)]
     return [
         Doubt(
             f"Torsional vibration: the motor's moment of inertia counts with the {name} that it turns, and "
             f"{both[0]} is less than that of the {name} alone, {both[1]} by its dimensions; the natural "
             "frequency on a motor that runs free is too high.",
-            moves=1.0 - motor / own,
+            moves=1.0 - motor / inertia,
             brief=f"Motor's inertia, {both[0]}, is below that of the {name}.",
         )
     ]

@@ -76,11 +76,11 @@ def kinematic_error_part(
     solved: list[np.ndarray] = []
 
     def over(own: Surfaces, count: int) -> np.ndarray:
-        done, found = sum(one.shape[1] for one in solved), []
+        done, pieces = sum(errors.shape[1] for errors in solved), []
         for piece in _pieces(design.mesh, period, own, count):
-            found.append(piece)
-            progress(done + min(len(found) * TEETH, count) * phases)
-        solved.append(np.concatenate(found, axis=1)[:, : count * phases])
+            pieces.append(piece)
+            progress(done + min(len(pieces) * TEETH, count) * phases)
+        solved.append(np.concatenate(pieces, axis=1)[:, : count * phases])
         return solved[-1]
 
     states = teeth.astype(int) * phases
@@ -90,14 +90,14 @@ def kinematic_error_part(
     order = np.arange(int(teeth.min()) + 1)
     under_load = np.concatenate([one[-1] for one in solved])
     lost = int(np.isnan(under_load).sum())
-    told = [
+    doubts = [
         Doubt(
             f"Kinematic error: no equilibrium was found in {lost} of {under_load.size} states.",
             brief=f"Kinematic error: none found in {lost} of {under_load.size} states.",
         )
     ]
     members = [one.body for one in built.bodies if one.member is not None]
-    whole = dataset(
+    error_course = dataset(
         {
             "turn_angle": (("state",), np.arange(states[most]) * 2.0 * np.pi / states[most]),
             "kinematic_error": (("curve", "state"), together),
@@ -118,12 +118,12 @@ def kinematic_error_part(
         },
         title="kinematic error",
         travels=built.travels,
-        warnings=told if lost else [],
+        warnings=doubts if lost else [],
         solve=told_of(locked_or_lost(False, np.isnan(under_load))),
         **_turns(built.family.turning, members[most]),
     )
-    whole["turn_angle"].attrs.update(long_name=whole.attrs["turn_angle"])
-    return whole
+    error_course["turn_angle"].attrs.update(long_name=error_course.attrs["turn_angle"])
+    return error_course
 
 
 def _turns(turning: Turning, most: str) -> dict[str, str]:
@@ -141,19 +141,19 @@ def _alone(over: Over, deviations: Surfaces, member: int, teeth: int, phases: in
     """Errors [curve, state] with deviations of one member alone over one turn of it."""
     if not deviations[member]:
         return np.zeros((len(CURVES), teeth * phases))
-    own = (deviations[0], ()) if member == 0 else ((), deviations[1])
-    return over(own, teeth)
+    surfaces = (deviations[0], ()) if member == 0 else ((), deviations[1])
+    return over(surfaces, teeth)
 
 
 def _together(
     over: Over, deviations: Surfaces, alone: list[np.ndarray], teeth: int, phases: int
 ) -> np.ndarray:
     """Errors [curve, state] with both over one turn of the member with the most teeth."""
-    given = [bool(one) for one in deviations]
-    if all(given):
+    deviating = [bool(surfaces) for surfaces in deviations]
+    if all(deviating):
         return over(deviations, teeth)
-    own = alone[given.index(True)]
-    return np.take(own, np.arange(teeth * phases), axis=1, mode="wrap")
+    curves = alone[deviating.index(True)]
+    return np.take(curves, np.arange(teeth * phases), axis=1, mode="wrap")
 
 
 def _pieces(mesh: Mesh, period: _Period, deviations: Surfaces, count: int) -> Iterator[np.ndarray]:
@@ -161,9 +161,9 @@ def _pieces(mesh: Mesh, period: _Period, deviations: Surfaces, count: int) -> It
     for start in range(0, count, TEETH):
         turned = start + np.arange(TEETH)[:, None] + np.arange(phases) / phases
         added = _added(mesh, period, deviations, array(turned))
-        found = jax.device_get(_errors(period, added))
-        each = (found.geometric, found.elastic_mean, found.under_load)
-        yield np.stack([values.ravel() for values in each])
+        errors = jax.device_get(_errors(period, added))
+        curves = (errors.geometric, errors.elastic_mean, errors.under_load)
+        yield np.stack([values.ravel() for values in curves])
 
 
 def _amplitudes(errors: np.ndarray, orders: int) -> np.ndarray:
@@ -222,6 +222,6 @@ def error_of(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
 
 def error_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     """Entries of `--json`."""
-    found = error_ranges(parts.get("kinematic_error"))
-    ranges = {curve: dict(zip(c, numbers(v), strict=True)) for curve, c, v in found}
+    rows = error_ranges(parts.get("kinematic_error"))
+    ranges = {curve: dict(zip(c, numbers(v), strict=True)) for curve, c, v in rows}
     return {"kinematic_error_range": ranges}

@@ -27,9 +27,11 @@ __all__ = [
 
 def rigid(built: Ready) -> str | None:
     """Why nothing is computed of how teeth yield; of a drive that of the first stage where nothing is."""
-    each = zip(built.mesh_numbers, map(_rigid, built.meshes), strict=True)
-    told = (f"stage {number}: {why}" if number else why for number, why in each if why)
-    return next(told, None)
+    numbered_reasons = zip(built.mesh_numbers, map(_rigid, built.meshes), strict=True)
+    sentences = (
+        f"stage {number}: {why}" if number else why for number, why in numbered_reasons if why
+    )
+    return next(sentences, None)
 
 
 def _rigid(built: Built) -> str | None:
@@ -72,8 +74,8 @@ def without_films(built: Ready) -> str | None:
     why_not = without_formula(built)
     if why_not is None or not all(touching(mesh.design.mesh) for mesh in built.meshes):
         return why_not
-    told = f"{why_not}, and one with a table [loss_map] has it from films at few of them"
-    return told if built.case.loss_map is None else None
+    sentence = f"{why_not}, and one with a table [loss_map] has it from films at few of them"
+    return sentence if built.case.loss_map is None else None
 
 
 def no_bodies(built: Built) -> str | None:
@@ -107,21 +109,21 @@ def without_train(built: Ready) -> str | None:
 
 def no_pins(built: Ready) -> str | None:
     """Why nothing is computed of how planets share a load; of stages where no set has it."""
-    each = {number: _no_pins(train) for number, train in built.trains.items()}
-    if not each:
+    reasons = {number: _no_pins(train) for number, train in built.trains.items()}
+    if not reasons:
         return Unasked("it has no planets")
-    if None in each.values():
+    if None in reasons.values():
         return None
-    asked = {n: why for n, why in each.items() if why and not isinstance(why, Unasked)}
-    told = (f"stage {number}: {why}" if number else why for number, why in asked.items())
-    return next(told, next(iter(each.values())))
+    lacking = {n: why for n, why in reasons.items() if why and not isinstance(why, Unasked)}
+    sentences = (f"stage {number}: {why}" if number else why for number, why in lacking.items())
+    return next(sentences, next(iter(reasons.values())))
 
 
 def _no_pins(built: BuiltTrain) -> str | None:
     """The same of one set."""
     if not _out_of_place(built):
         return Unasked("pin_errors, pin_tolerance and the like of a planetary set ask for it")
-    on_planets = [one for one in built.design.meshes if one.carrier != HOUSING]
+    on_planets = [mesh for mesh in built.design.meshes if mesh.carrier != HOUSING]
     if built.case.operation.load == 0.0:
         return "planets share no load where there is none"
     if built.planets < 2 or len(on_planets) != 2:
@@ -146,9 +148,9 @@ def no_joint(built: Built) -> str | None:
 
 def no_quadrants(built: Ready) -> str | None:
     """Why there is no map of the output."""
-    asked = built.case.loss_map
+    loss_map = built.case.loss_map
     why_not = untransmitted(built)
-    if why_not is None and (asked is None or asked.quadrants != 4):
+    if why_not is None and (loss_map is None or loss_map.quadrants != 4):
         return Unasked("loss_map.quadrants = 4 asks for it")
     return why_not or without_films(built)
 

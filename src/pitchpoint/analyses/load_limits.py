@@ -105,7 +105,7 @@ def _stresses(built: Built, limits: LoadLimits, torque: float) -> dict[str, np.n
     swinging, steady = (torque, 0.0) if reversing else (0.0, torque)
     alternating = von_mises(normal=amplitude, shear=swinging * per_torque)
     mean = von_mises(normal=bending, shear=steady * per_torque)
-    found = {
+    stresses = {
         "bending_strain": thickness / 2.0 * np.abs(bent).max(),
         "bending_amplitude": amplitude,
         "alternating_stress": alternating,
@@ -114,12 +114,12 @@ def _stresses(built: Built, limits: LoadLimits, torque: float) -> dict[str, np.n
         "mean_stress": mean,
     }
     if limits.endurance_limit is None or limits.tensile_strength is None:
-        return found
+        return stresses
     strengths = {
         "endurance_limit": limits.endurance_limit,
         "tensile_strength": limits.tensile_strength,
     }
-    return found | {
+    return stresses | {
         "goodman_safety": goodman_safety(alternating=alternating, mean=mean, **strengths),
         "goodman_torque": torque_by_goodman(
             alternating=amplitude,
@@ -133,15 +133,18 @@ def _stresses(built: Built, limits: LoadLimits, torque: float) -> dict[str, np.n
 
 def _against(limits: LoadLimits, torque: float, diameter: float) -> dict[str, np.ndarray]:
     """Torques of a maker at this size over the one on the flexspline, for each of `AGAINST`."""
-    given = (limits.ratcheting_torque, limits.buckling_torque)
-    if given == (None, None):
+    limit_torques = (limits.ratcheting_torque, limits.buckling_torque)
+    if limit_torques == (None, None):
         return {}
-    known = limits.catalogue_diameter or diameter
-    found = np.array(
-        [np.nan if one is None else of_other_size(one, size=diameter, known=known) for one in given]
+    catalogue_size = limits.catalogue_diameter or diameter
+    torques = np.array(
+        [
+            np.nan if limit is None else of_other_size(limit, size=diameter, known=catalogue_size)
+            for limit in limit_torques
+        ]
     )
     with np.errstate(divide="ignore"):
-        return {"limit_torque": found, "limit_margin": np.divide(found, torque)}
+        return {"limit_torque": torques, "limit_margin": np.divide(torques, torque)}
 
 
 def _turning(built: Built) -> float:

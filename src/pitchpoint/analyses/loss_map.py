@@ -63,23 +63,27 @@ def pieces(built: Ready) -> list[Piece]:
 def _start(built: Built) -> tuple[Engagement | None, int]:
     """What all torques have in common: contacts, where they are known beforehand, and how many there are."""
     models = built.models[0]
-    known = engaged(built.design, built.operation, models, NODES)
-    length = _line_length(built.design, models.sharing) if known is None else known.contacts.weight
-    return known, int(np.prod(length.shape))
+    engagement = engaged(built.design, built.operation, models, NODES)
+    length = (
+        _line_length(built.design, models.sharing)
+        if engagement is None
+        else engagement.contacts.weight
+    )
+    return engagement, int(np.prod(length.shape))
 
 
 def map_axes(built: Ready) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Torques [N m] or forces [N], speeds [rad/s] and temperatures [K]."""
-    asked, point = built.case.loss_map, built.case.operation
-    count = int(asked.count) if asked else 9
-    torque = (asked and (asked.torque or asked.force)) or 1.5 * point.load or 1.0
-    speed = (asked and asked.speed) or 1.5 * point.speed
+    loss_map, point = built.case.loss_map, built.case.operation
+    count = int(loss_map.count) if loss_map else 9
+    torque = (loss_map and (loss_map.torque or loss_map.force)) or 1.5 * point.load or 1.0
+    speed = (loss_map and loss_map.speed) or 1.5 * point.speed
     around = point.temperature + np.array([-20.0, 0.0, 20.0])
     degrees = np.unique(np.clip(around, *built.temperatures))
-    if asked and asked.temperatures:
-        degrees = np.unique(asked.temperatures)
-    loads = int(asked.torque_count or asked.force_count or count) if asked else count
-    speeds = int(asked.speed_count or count) if asked else count
+    if loss_map and loss_map.temperatures:
+        degrees = np.unique(loss_map.temperatures)
+    loads = int(loss_map.torque_count or loss_map.force_count or count) if loss_map else count
+    speeds = int(loss_map.speed_count or count) if loss_map else count
     return np.linspace(0.0, torque, loads), np.linspace(0.0, speed, speeds), degrees
 
 
@@ -89,36 +93,36 @@ def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     locked = data["locked"].values & (data["torque"].values > 0.0)[:, None, None]
     moving = (data["torque"] > 0.0) & (data["speed"] > 0.0)
     lost = np.isnan(data["mean_efficiency"].where(moving, 1.0).values) & ~locked
-    told = [
+    warnings = [
         f"{law.title}: {what} at {where[k].sum()} of {where[k].size} points."
         for what, where in (("friction locks the mesh", locked), ("no balance was found", lost))
         for k, law in enumerate(built.laws)
         if where[k].any()
     ]
-    told += [*dict.fromkeys(text for part in parts for text in doubts_of(part.attrs))]
-    found = dataset(
+    warnings += [*dict.fromkeys(text for part in parts for text in doubts_of(part.attrs))]
+    loss_map = dataset(
         {name: (_DIMS, data[name].values) for name in _NAMES},
         {name: (name, data[name].values) for name in _DIMS},
         title="loss map",
         travels=built.travels,
-        warnings=told,
+        warnings=warnings,
         solve=told_of(locked_or_lost(locked, lost)),
         note="efficiency is undefined (NaN) at zero torque and at zero speed; no power is transmitted",
     )
-    found["mean_efficiency"].attrs.update(built.covers)
-    return found
+    loss_map["mean_efficiency"].attrs.update(built.covers)
+    return loss_map
 
 
 def at_torque(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
     """The map at one torque."""
     torque, (speeds, degrees) = float(piece["torque"]), map_axes(built)[1:]
     runs = []
-    for count, one in enumerate(maps(built, torque, speeds, degrees), 1):
-        runs.append(one)
+    for count, of_law in enumerate(maps(built, torque, speeds, degrees), 1):
+        runs.append(of_law)
         progress(count * speeds.size * degrees.size)
-    found = [np.stack(each)[:, None] for each in zip(*runs, strict=True)]
+    fields = [np.stack(of_laws)[:, None] for of_laws in zip(*runs, strict=True)]
     return dataset(
-        {name: (_DIMS, values) for name, values in zip(_NAMES, found, strict=True)},
+        {name: (_DIMS, values) for name, values in zip(_NAMES, fields, strict=True)},
         {
             "law": built.law_names,
             "torque": ("torque", [torque]),
@@ -150,23 +154,23 @@ def maps(built: Ready, torque: float, speeds: np.ndarray, degrees: np.ndarray) -
     """
     moving = np.where(speeds > 0.0, speeds, 1.0)
     if built.numbers:
-        found = _of_drive(built, torque, moving, degrees)
+        by_law = _of_drive(built, torque, moving, degrees)
     else:
-        found = _of_mesh(built.meshes[0], torque, moving, degrees)
+        by_law = _of_mesh(built.meshes[0], torque, moving, degrees)
     turns = (speeds > 0.0)[:, None]
-    for loss, efficiency, locked in found:
+    for loss, efficiency, locked in by_law:
         yield np.where(turns, loss, 0.0), np.where(turns, efficiency, np.nan), locked
 
 
 def _of_mesh(built: Built, torque: float, speeds: np.ndarray, degrees: np.ndarray) -> Iterator[Map]:
     point = replace(built.operation, load=array(torque))
     like, lanes = _start(built)
-    known = engaged(built.design, point, built.models[0], NODES, like)
-    known = known and known.loaded()
+    engagement = engaged(built.design, point, built.models[0], NODES, like)
+    engagement = engagement and engagement.loaded()
     together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
     for models in built.models:
         if models.law.films is None:
-            yield _map(built.design, torque, speeds, degrees, models, known, together)
+            yield _map(built.design, torque, speeds, degrees, models, engagement, together)
         else:
             yield _of_films(built, torque, speeds, degrees, models)
 
@@ -176,7 +180,7 @@ def _of_films(
 ) -> Map:
     """The map at one torque with the friction of films that were solved at few points of the whole map."""
     films, _ = _solved_films(built, models.law)
-    known, load = _known(built, torque), array(torque)
+    engagement, load = _known(built, torque), array(torque)
     if films is None:
         nothing = np.full((speeds.size, degrees.size), np.nan)
         return nothing, nothing, np.zeros(nothing.shape, bool)
@@ -184,9 +188,9 @@ def _of_films(
     for speed in speeds:
         there = films.at(torque, np.array([speed]), degrees)
         held = models.holding(*map(array, there))
-        found = _figures(built.design, load, array(speed[None]), array(degrees), held, known)
-        parts.append(jax.device_get(found))
-    loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
+        figures = _figures(built.design, load, array(speed[None]), array(degrees), held, engagement)
+        parts.append(jax.device_get(figures))
+    loss, efficiency, locked = (np.concatenate(by_speed) for by_speed in zip(*parts, strict=True))
     return loss, efficiency, locked
 
 
@@ -199,10 +203,10 @@ def _known(built: Built, torque: float) -> Engagement:
 def _solved_films(built: Built, law: FrictionLaw) -> tuple[FilmMap | None, str]:
     """Friction of films over the map, and what there is to say about it."""
     models = next(one for one in built.models if one.law is law)
-    known = lru_cache(lambda load: _known(built, load))
+    engagement_under = lru_cache(lambda load: _known(built, load))
     axes = map_axes(built)
     try:
-        films = film_map(built.design, models, *axes, known)
+        films = film_map(built.design, models, *axes, engagement_under)
         errors = [_off(built, models, films, point) for point in films.between]
     except ConvergenceError as error:
         sentence = f"{law.title}: {error}; its part of the map is withheld."
@@ -219,15 +223,15 @@ def _solved_films(built: Built, law: FrictionLaw) -> tuple[FilmMap | None, str]:
 def _off(built: Built, models: Models, films: FilmMap, point: tuple[float, float, float]) -> float:
     """Relative error of the mean loss in the teeth with interpolated friction at a point."""
     load, speed, degree = point
-    known, design = _known(built, load), replace(built.design, drag=())
+    engagement, design = _known(built, load), replace(built.design, drag=())
     operation = Operation(*map(array, point))
-    solved = in_turns(design, operation, models, known)
+    solved = in_turns(design, operation, models, engagement)
     if solved.lost:
         raise ConvergenceError(solved.lost)
     there = films.at(load, np.array([speed]), np.array([degree]))
-    held = models.holding(*(array(one[:, :, 0, 0]) for one in there))
-    loss = _loss(design, operation, held, known)
-    return abs(float(loss / _loss_of(design, operation, known, solved.balance)) - 1.0)
+    held = models.holding(*(array(condition[:, :, 0, 0]) for condition in there))
+    loss = _loss(design, operation, held, engagement)
+    return abs(float(loss / _loss_of(design, operation, engagement, solved.balance)) - 1.0)
 
 
 @program
@@ -248,8 +252,8 @@ def _of_drive(built: Any, torque: float, speeds: np.ndarray, degrees: np.ndarray
         for degree in degrees
     ]
     for models in built.models:
-        found = built.figures_of(points, models)
-        loss, efficiency, locked = (found[n].reshape(speeds.size, degrees.size) for n in _NAMES)
+        figures = built.figures_of(points, models)
+        loss, efficiency, locked = (figures[n].reshape(speeds.size, degrees.size) for n in _NAMES)
         yield loss, efficiency, locked
 
 
@@ -275,9 +279,9 @@ def _map(
         for start in range(0, speeds.size, together):
             part = speeds[start : start + together]
             filled = np.concatenate([part, np.full(together - part.size, part[-1])])
-            found = compute(array(filled), array(degrees), models, known)
-            parts.append([np.asarray(each)[: part.size] for each in jax.device_get(found)])
-        loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
+            figures = compute(array(filled), array(degrees), models, known)
+            parts.append([np.asarray(figure)[: part.size] for figure in jax.device_get(figures)])
+        loss, efficiency, locked = (np.concatenate(figure) for figure in zip(*parts, strict=True))
     return loss, efficiency, locked
 
 
@@ -287,8 +291,8 @@ def _by_point(
     """Loss, efficiency and locking by the program of operating points, which other parts ask for anyway."""
     speed, degree = (values.ravel() for values in np.meshgrid(speeds, degrees, indexing="ij"))
     points = Operation(*map(array, (np.full(speed.size, torque), speed, degree)))
-    found = at_points(design, points, models)
-    return [found[name].reshape(speeds.size, degrees.size) for name in _NAMES]
+    figures = at_points(design, points, models)
+    return [figures[name].reshape(speeds.size, degrees.size) for name in _NAMES]
 
 
 @program
@@ -308,8 +312,8 @@ def _figures(
 ) -> tuple[Array, Array, Array]:
     speed, degree = jnp.meshgrid(speeds, degrees, indexing="ij")
     points = Operation(jnp.full(speed.shape, torque), speed, degree)
-    found = cycle(design, points, models, NODES, known)
-    return found.mean_loss, found.mean_efficiency, found.locked
+    run = cycle(design, points, models, NODES, known)
+    return run.mean_loss, run.mean_efficiency, run.locked
 
 
 _figures_of_many = fast_program(_figures.function)

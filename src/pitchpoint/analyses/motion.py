@@ -85,14 +85,14 @@ def moving_of(built: Built) -> tuple[Moving, Modes]:
     Raises:
         InputError: the table of the pair's stiffness cannot be.
     """
-    asked, design = _asked(built), replace(built.design, drag=())
+    motion, design = _asked(built), replace(built.design, drag=())
     curve = None
-    if asked.pair_stiffness:
-        curve = tabulated(asked.pair_path, asked.pair_stiffness)
-    way = passage(design, built.operation, built.terms, curve)
+    if motion.pair_stiffness:
+        curve = tabulated(motion.pair_path, motion.pair_stiffness)
+    pair_passage = passage(design, built.operation, built.terms, curve)
     vibrating = vibrating_of(built)
     inertia = np.array(vibrating.inertia, float)
-    if asked.prescribed_speed:
+    if motion.prescribed_speed:
         inertia[_ends(built)[0]] = np.inf
     moving = Moving(
         design=design,
@@ -103,14 +103,14 @@ def moving_of(built: Built) -> tuple[Moving, Modes]:
         phase=array(0.0),
         creep=array(1.0),
         relaxation=array(0.0),
-        passage=way,
+        passage=pair_passage,
         law=CONTACT_LAWS[built.case.models.tooth_contact],
         backlash=vibrating.backlash,
         error=Waves(vibrating.error, array([*map(float, vibrating.orders)]), vibrating.error_phase),
     )
     damping, fastest = _mean(moving, vibrating.damping_ratio)
-    if asked.mesh_damping is not None:
-        damping = array(asked.mesh_damping)
+    if motion.mesh_damping is not None:
+        damping = array(motion.mesh_damping)
     ready = replace(moving, mesh_damping=damping, creep=CREEP * fastest)
     return ready, jax.device_get(_modes(ready))
 
@@ -131,9 +131,9 @@ def _mean(moving: Moving, ratio: Array) -> tuple[Array, Array]:
     """Damping along the line of action, and the fastest sliding for a unit speed."""
     assert moving.passage is not None
     mesh = moving.design.mesh
-    whole, line = mean_stiffness(moving), line_of_action(mesh)
+    stiffness, line = mean_stiffness(moving), line_of_action(mesh)
     mass = reduced_mass(jnp.stack([body.inertia for body in moving.bodies]), line)
-    spring = along_action(whole, line)
+    spring = along_action(stiffness, line)
     damping = modal_damping(mass[None, None], spring[None, None], ratio)[0, 0]
     contacts, _ = jax.vmap(moving.passage.at)(moving.passage.edges[:-1])
     sliding = jax.vmap(lambda one: along(one.slip_arm, moving.design.motion))(contacts)
@@ -148,32 +148,32 @@ def _modes(moving: Moving) -> Modes:
 
 def _bodies(built: Built, inertia: np.ndarray) -> Iterator[Body]:
     """Driver and loaded body with their torques, each on its bearings."""
-    asked, nominal = _asked(built), built.nominal
+    motion, nominal = _asked(built), built.nominal
     driver, loaded = _ends(built)
-    for number, (each, rate) in enumerate(zip(inertia, nominal["motion"], strict=True)):
-        body = Body(array(each))
+    for number, (moment, rate) in enumerate(zip(inertia, nominal["motion"], strict=True)):
+        body = Body(array(moment))
         if number == loaded:
-            body = Body(array(each), array([-np.sign(rate) * built.case.operation.load]))
-        if number == driver and asked.stall_torque is not None:
-            assert asked.no_load_speed is not None
+            body = Body(array(moment), array([-np.sign(rate) * built.case.operation.load]))
+        if number == driver and motion.stall_torque is not None:
+            assert motion.no_load_speed is not None
             body = motor(
-                stall_torque=float(np.sign(rate)) * asked.stall_torque,
-                no_load_speed=asked.no_load_speed,
-                inertia=float(each),
+                stall_torque=float(np.sign(rate)) * motion.stall_torque,
+                no_load_speed=motion.no_load_speed,
+                inertia=float(moment),
             )
         yield replace(body, support=_support(built, number))
 
 
 def _support(built: Built, number: int) -> Support | None:
     """Bearings that yield along the line of action and across it, in the plane of the gears."""
-    asked = _asked(built)
-    if asked.bearing_stiffness is None or asked.mass is None:
+    motion = _asked(built)
+    if motion.bearing_stiffness is None or motion.mass is None:
         return None
     assert built.case.dynamics is not None
-    stiffness, mass = asked.bearing_stiffness[number], asked.mass[number]
+    stiffness, mass = motion.bearing_stiffness[number], motion.mass[number]
     damping = 2.0 * built.case.dynamics.damping_ratio * np.sqrt(stiffness * mass)
-    if asked.bearing_damping is not None:
-        damping = asked.bearing_damping[number]
+    if motion.bearing_damping is not None:
+        damping = motion.bearing_damping[number]
     return replace(across(mass, stiffness, float(damping)), ways=array(_ways(built)))
 
 
@@ -205,7 +205,7 @@ def _grid(built: Built, own: Modes, slowest: float, key: str) -> Grid:
             f"resolved up to {MOST_RATIO:g} times",
             key=key,
         )
-    orders = [float(one.order) for one in built.case.dynamics.profile_error]
+    orders = [float(error.order) for error in built.case.dynamics.profile_error]
     return Grid.resolving(2.0 * max(ratio, *orders, 0.0))
 
 
@@ -222,10 +222,10 @@ def _steady(
     cycles: int,
 ) -> dict[str, Array]:
     """Everything that is kept of a steady motion, by name."""
-    own = replace(moving, creep=moving.creep * speed)
-    found = periodic_motion(own, speed, grid, cycles, start)
-    figures = {"mean_input_torque": found.power_in / speed}
-    return {**_courses(own, found, law), **_figures(own, found, cycles), **figures}
+    scaled = replace(moving, creep=moving.creep * speed)
+    motion = periodic_motion(scaled, speed, grid, cycles, start)
+    figures = {"mean_input_torque": motion.power_in / speed}
+    return {**_courses(scaled, motion, law), **_figures(scaled, motion, cycles), **figures}
 
 
 def _courses(moving: Moving, found: Motion, law: FilmThickness) -> dict[str, Array]:
@@ -265,7 +265,7 @@ def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
     pairs = found.bearing[size:].reshape(-1, 2, *error.shape)
     bearing = jnp.sqrt(jnp.sum(pairs**2, axis=1))
     orders = range(ORDERS[-1] * cycles + 1)
-    own = {
+    figures = {
         "mean_efficiency": found.efficiency,
         "mean_transmission_error": found.mean(error),
         "transmission_error_rms": found.rms(error),
@@ -288,7 +288,7 @@ def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
         "error": energy.error,
         "put_in": energy.put_in - energy.drag,
     }
-    return own | parts | {f"work_{name}": work[-1] for name, work in brought.items()}
+    return figures | parts | {f"work_{name}": work[-1] for name, work in brought.items()}
 
 
 def _order(built: Built) -> tuple[str, np.ndarray]:
@@ -302,40 +302,40 @@ def quasi_static(built: Built, speeds: Sequence[float] | np.ndarray) -> np.ndarr
     design = replace(built.design, drag=())
     models = replace(built.models[0], sharing=LOAD_SHARING["from_stiffness"])
     points = [(design, replace(built.operation, speed=array(speed))) for speed in speeds]
-    found = summarise(points, models)
-    return np.where(found["locked"], np.nan, found["mean_efficiency"])
+    figures = summarise(points, models)
+    return np.where(figures["locked"], np.nan, figures["mean_efficiency"])
 
 
 def motion_part(built: Built) -> xr.Dataset:
     """Steady motion at the operating point."""
-    moving, own = moving_of(built)
-    asked, speed = _asked(built), built.case.operation.speed
-    grid, cycles = _grid(built, own, speed, "operation.speed"), int(asked.cycles)
+    moving, natural_modes = moving_of(built)
+    motion, speed = _asked(built), built.case.operation.speed
+    grid, cycles = _grid(built, natural_modes, speed, "operation.speed"), int(motion.cycles)
     start = jnp.full(2 * moving.mass.shape[0], jnp.nan)
-    given = moving, array(speed), start, built.film, grid, cycles
-    found = jax.device_get(_steady(*given))
-    found.pop("state")
-    data = {name: (_dims(name, values), values) for name, values in found.items()}
-    code = Code(int(found["vibration_status"]))
+    inputs = moving, array(speed), start, built.film, grid, cycles
+    figures = jax.device_get(_steady(*inputs))
+    figures.pop("state")
+    data = {name: (_dims(name, values), values) for name, values in figures.items()}
+    code = Code(int(figures["vibration_status"]))
     still = quasi_static(built, [speed])[0]
     return dataset(
         {
             **data,
-            **_of_modes(own),
+            **_of_modes(natural_modes),
             "mesh_frequency": ((), speed / float(built.nominal["period"])),
             "quasi_static_efficiency": ((), still),
-            "efficiency_difference": ((), still - float(found["mean_efficiency"])),
+            "efficiency_difference": ((), still - float(figures["mean_efficiency"])),
             "mesh_damping": ((), float(moving.mesh_damping)),
         },
-        {**_labels(built), **_mode_names(built, own), "order": _order(built)},
+        {**_labels(built), **_mode_names(built, natural_modes), "order": _order(built)},
         title="motion with friction",
         travels=built.travels,
         warnings=[
             *_told(built, np.array([code]), "Motion with friction: {sentence}."),
-            *_motor_words(built, float(found["mean_input_torque"])),
+            *_motor_words(built, float(figures["mean_input_torque"])),
         ],
         sentence=code.sentence,
-        solve=told_of(np.array(int(code)), np.asarray(found["energy_closure"])),
+        solve=told_of(np.array(int(code)), np.asarray(figures["energy_closure"])),
         law=built.laws[0].title,
         contact=CONTACT_LAWS[built.case.models.tooth_contact].title,
         film_law=built.case.models.film_thickness,
@@ -344,8 +344,8 @@ def motion_part(built: Built) -> xr.Dataset:
 
 def _labels(built: Built) -> dict[str, Any]:
     """Bodies that move, and their bearings where these yield."""
-    names = [one.body for one in built.bodies]
-    ways = [f"{name}, {way}" for name in names for way in WAYS]
+    names = [body.body for body in built.bodies]
+    ways = [f"{name}, {direction}" for name in names for direction in WAYS]
     yields = _asked(built).bearing_stiffness is not None
     return {"body": names} | ({"bearing": ways} if yields else {})
 
@@ -365,8 +365,12 @@ def _of_modes(own: Modes) -> dict[str, Any]:
 def _mode_names(built: Built, own: Modes) -> dict[str, list[str]]:
     """What yields in every mode that vibrates: where most of its elastic energy is."""
     places = ["teeth"]
-    places += [f"bearings of {one.body} {way}" for one in built.bodies for way in (WAYS[0], ACROSS)]
-    return {"mode": [_mode_name(places, each) for each in own.share[own.frequency > 0.0]]}
+    places += [
+        f"bearings of {body.body} {direction}"
+        for body in built.bodies
+        for direction in (WAYS[0], ACROSS)
+    ]
+    return {"mode": [_mode_name(places, shares) for shares in own.share[own.frequency > 0.0]]}
 
 
 def _mode_name(places: Sequence[str], share: np.ndarray) -> str:
@@ -402,16 +406,16 @@ def _told(built: Built, codes: np.ndarray, sentence: str) -> list[str]:
 
 def _motor_words(built: Built, needed: float) -> list[str]:
     """What the motor of a case gives at the operating speed, beside what the mesh asks for."""
-    asked, speed = _asked(built), built.case.operation.speed
-    if asked.stall_torque is None or not np.isfinite(needed):
+    motion, speed = _asked(built), built.case.operation.speed
+    if motion.stall_torque is None or not np.isfinite(needed):
         return []
-    assert asked.no_load_speed is not None
-    given = asked.stall_torque * (1.0 - speed / asked.no_load_speed)
+    assert motion.no_load_speed is not None
+    offer = motion.stall_torque * (1.0 - speed / motion.no_load_speed)
     return [
         Doubt(
-            f"Motion with friction: the motor gives {given:.4g} N m at the operating speed and the mesh asks "
+            f"Motion with friction: the motor gives {offer:.4g} N m at the operating speed and the mesh asks "
             f"for {needed:.4g} N m; a constant torque beside it holds the mean speed.",
-            brief=f"Motion: the motor gives {given:.4g} N m, the mesh asks for {needed:.4g} N m.",
+            brief=f"Motion: the motor gives {offer:.4g} N m, the mesh asks for {needed:.4g} N m.",
         )
     ]
 
@@ -421,8 +425,8 @@ def _motor_words(built: Built, needed: float) -> list[str]:
 
 def next_speeds(built: Built, last: xr.Dataset, progress: Any) -> xr.Dataset | None:
     """Motions at the speeds after those of the last piece, each begun from its neighbour; None at the end."""
-    done, whole = int(last.attrs["done"]), _course_of_speeds(built)
-    if done >= whole[1].size:
+    done, course = int(last.attrs["done"]), _course_of_speeds(built)
+    if done >= course[1].size:
         return None
     return _piece(built, done, last["state"].values, progress)
 
@@ -435,9 +439,9 @@ def against_speed_part(built: Built, progress: Any) -> xr.Dataset:
 def _course_of_speeds(built: Built) -> tuple[np.ndarray, np.ndarray]:
     """Directions and speeds in turn: rising, and falling where flanks may part."""
     assert built.case.dynamics is not None
-    asked = built.case.dynamics.speeds
-    assert asked is not None
-    rising = np.linspace(asked.start, asked.stop, int(asked.count))
+    sweep = built.case.dynamics.speeds
+    assert sweep is not None
+    rising = np.linspace(sweep.start, sweep.stop, int(sweep.count))
     both = not CONTACT_LAWS[built.case.models.tooth_contact].linear
     speeds = [rising, rising[::-1]] if both else [rising]
     return np.repeat(np.arange(len(speeds)), rising.size), np.concatenate(speeds)
@@ -460,19 +464,19 @@ KEPT = (
 
 def _piece(built: Built, done: int, state: np.ndarray | None, progress: Any) -> xr.Dataset:
     """Motions at a few speeds from one of them on."""
-    moving, own = moving_of(built)
+    moving, natural_modes = moving_of(built)
     _, speeds = _course_of_speeds(built)
     slowest, cycles = float(speeds.min()), int(_asked(built).cycles)
-    grid = _grid(built, own, slowest, "dynamics.speeds.start")
+    grid = _grid(built, natural_modes, slowest, "dynamics.speeds.start")
     if state is None:
         state = np.full(2 * moving.mass.shape[0], np.nan)
     rows = []
     taken = range(done, min(done + FEW, speeds.size))
     for count, number in enumerate(taken, 1):
-        given = moving, array(speeds[number]), array(state), built.film, grid, cycles
-        found = jax.device_get(_steady(*given))
-        state = found["state"]
-        rows.append({name: found[name] for name in KEPT})
+        inputs = moving, array(speeds[number]), array(state), built.film, grid, cycles
+        figures = jax.device_get(_steady(*inputs))
+        state = figures["state"]
+        rows.append({name: figures[name] for name in KEPT})
         progress(count)
     data = {name: np.stack([row[name] for row in rows]) for name in KEPT}
     return dataset(
@@ -480,9 +484,9 @@ def _piece(built: Built, done: int, state: np.ndarray | None, progress: Any) -> 
             **{name: (("step", "order")[: values.ndim], values) for name, values in data.items()},
             "speed": (("step",), speeds[taken.start : taken.stop]),
             "state": (("coordinate",), state),
-            **_of_modes(own),
+            **_of_modes(natural_modes),
         },
-        {**_mode_names(built, own), "order": _order(built)},
+        {**_mode_names(built, natural_modes), "order": _order(built)},
         travels=built.travels,
         done=taken.stop,
         warnings=[],
@@ -502,26 +506,26 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
     dims = ("direction", "speed", "order")
     data = {name: both(name) for name in KEPT}
-    codes, first = data["vibration_status"], parts[0]
-    critical = _critical(built, first, rising)
+    codes, piece = data["vibration_status"], parts[0]
+    critical = _critical(built, piece, rising)
     return dataset(
         {
             **{name: (dims[: values.ndim], values) for name, values in data.items()},
             "quasi_static_efficiency": (("speed",), quasi_static(built, rising)),
-            **{name: (("mode",), first[name].values) for name in OF_MODES},
+            **{name: (("mode",), piece[name].values) for name in OF_MODES},
             **{name: (("crossing",), values) for name, values in critical.items()},
         },
         {
             "direction": ["rising", "falling"][: directions[-1] + 1],
             "speed": ("speed", rising),
-            "order": ("order", first["order"].values),
-            "mode": first["mode"].values,
+            "order": ("order", piece["order"].values),
+            "mode": piece["mode"].values,
         },
         title="motion with friction against speed",
         travels=built.travels,
         warnings=[
             *_told(built, codes, "Motion with friction against speed: at {points} {sentence}."),
-            *_coarse(rising, critical, first, data["spectrum"]),
+            *_coarse(rising, critical, piece, data["spectrum"]),
         ],
         sentences=[code.sentence for code in Code],
         solve=told_of(codes.astype(int)),
@@ -542,17 +546,19 @@ def _critical(built: Built, own: xr.Dataset, speeds: np.ndarray) -> dict[str, np
     """
     natural, ratio = (own[name].values for name in OF_MODES)
     orders = np.arange(1, CAMPBELL + 1)
-    mode, order = (one.ravel() for one in np.meshgrid(range(natural.size), orders, indexing="ij"))
+    mode, order = (
+        numbers.ravel() for numbers in np.meshgrid(range(natural.size), orders, indexing="ij")
+    )
     speed = natural[mode] * float(built.nominal["period"]) / order
     inside = np.flatnonzero((speed >= speeds[0]) & (speed <= speeds[-1]))
-    kept = inside[np.argsort(speed[inside])]
-    found = {
+    by_speed = inside[np.argsort(speed[inside])]
+    crossings = {
         "critical_speed": speed,
         "critical_order": order.astype(float),
         "critical_mode": mode.astype(float),
         "half_power_width": 2.0 * ratio[mode] * speed,
     }
-    return {name: values[kept] for name, values in found.items()}
+    return {name: values[by_speed] for name, values in crossings.items()}
 
 
 def _coarse(
@@ -567,16 +573,16 @@ def _coarse(
     apart = float(np.max(np.diff(speeds), initial=0.0))
     if not width.size or not apart > width.min():
         return []
-    one = int(np.argmin(width))
+    peak = int(np.argmin(width))
     step, at, wide = (
         float(units.convert(value, "rpm", "rotational speed"))
-        for value in (apart, critical["critical_speed"][one], width[one])
+        for value in (apart, critical["critical_speed"][peak], width[peak])
     )
-    mode = own["mode"].values[int(critical["critical_mode"][one])]
+    mode = own["mode"].values[int(critical["critical_mode"][peak])]
     return [
         Doubt(
             f"Motion with friction against speed: the speeds are {step:.4g} rpm apart, and the peak at "
-            f"{at:.4g} rpm (order {critical['critical_order'][one]:g}, {mode}) is {wide:.3g} rpm wide at "
+            f"{at:.4g} rpm (order {critical['critical_order'][peak]:g}, {mode}) is {wide:.3g} rpm wide at "
             "half power, so that it may lie between them.",
             brief=f"Speeds {step:.4g} rpm apart may miss the peak at {at:.4g} rpm.",
         )
@@ -588,26 +594,26 @@ def _coarse(
 
 def start_up_part(built: Built) -> xr.Dataset:
     """Motion from a start under a constant torque or that of a motor, the load rising."""
-    asked = _asked(built).start_up
-    assert asked is not None
+    start_up = _asked(built).start_up
+    assert start_up is not None
     moving, _ = moving_of(built)
-    times = np.linspace(0.0, asked.duration, int(asked.count))
+    times = np.linspace(0.0, start_up.duration, int(start_up.count))
     ready, rate = _started(built, moving)
     moved = transient(ready, times, rate=rate)
     lost = np.sum(np.asarray(moved.found.lost), axis=(0, 1))
-    found = jax.device_get(moved)
-    size, rates = len(built.bodies), found.rate
+    motion = jax.device_get(moved)
+    size, rates = len(built.bodies), motion.rate
     line = np.asarray(line_of_action(ready.design.mesh))
-    act, energy = found.found, found.energy
-    code = _code_of_start(moving, found)
-    held = np.asarray(bearing_forces(ready.bodies, array(found.place), array(rates)))[size:]
+    act, energy = motion.found, motion.energy
+    code = _code_of_start(moving, motion)
+    held = np.asarray(bearing_forces(ready.bodies, array(motion.place), array(rates)))[size:]
     pressed = np.sum(act.force, axis=1)
     borne = np.sqrt(np.sum(held.reshape(-1, 2, times.size) ** 2, axis=1))
     return dataset(
         {
             "time": (("time",), times),
             **_speeds(built, rates[:size]),
-            "transmission_error": (("time",), line @ found.place[:size]),
+            "transmission_error": (("time",), line @ motion.place[:size]),
             "load": (("pair", "time"), pressed),
             "largest_mesh_force": ((), np.max(np.sum(pressed, axis=0))),
             "largest_bearing_force": ((), np.max(borne) if borne.size else np.nan),
@@ -668,19 +674,19 @@ def _speeds(built: Built, rates: np.ndarray) -> dict[str, Any]:
 
 def _started(built: Built, moving: Moving) -> tuple[Moving, np.ndarray]:
     """What moves under the torques of the start, and the rates of all coordinates there."""
-    asked = _asked(built).start_up
-    assert asked is not None
+    start_up = _asked(built).start_up
+    assert start_up is not None
     nominal = built.nominal
     driver, loaded = _ends(built)
     bodies = list(moving.bodies)
-    if asked.torque is not None:
-        torque = array([float(np.sign(nominal["motion"][driver])) * asked.torque])
+    if start_up.torque is not None:
+        torque = array([float(np.sign(nominal["motion"][driver])) * start_up.torque])
         bodies[driver] = replace(bodies[driver], torque=torque)
     knots = array([0.0])
-    if asked.rise > 0.0:
-        knots = array([0.0, asked.rise])
-        own = float(bodies[loaded].torque[0])
-        bodies[loaded] = replace(bodies[loaded], torque=array([0.0, own]))
+    if start_up.rise > 0.0:
+        knots = array([0.0, start_up.rise])
+        load = float(bodies[loaded].torque[0])
+        bodies[loaded] = replace(bodies[loaded], torque=array([0.0, load]))
     speed = built.case.operation.speed
     ready = replace(
         moving,
@@ -690,4 +696,4 @@ def _started(built: Built, moving: Moving) -> tuple[Moving, np.ndarray]:
         slowest=array(SLOWEST * speed),
     )
     still = np.zeros(moving.mass.shape[0] - len(bodies))
-    return ready, np.concatenate([asked.speed * nominal["motion"], still])
+    return ready, np.concatenate([start_up.speed * nominal["motion"], still])

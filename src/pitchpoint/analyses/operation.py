@@ -45,9 +45,11 @@ def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
 
         borne = data["bearing_load"].values[:, 0]
         lives, loads = bearing_life.bearing_lives(built, borne)
-        each = {"bearing_life": lives, "equivalent_bearing_load": loads}
-        each |= bearing_life.bearing_limits(built, borne)
-        rated = {name: (("law", "point", "place"), one[:, None]) for name, one in each.items()}
+        of_bearings = {"bearing_life": lives, "equivalent_bearing_load": loads}
+        of_bearings |= bearing_life.bearing_limits(built, borne)
+        rated = {
+            name: (("law", "point", "place"), array[:, None]) for name, array in of_bearings.items()
+        }
         data = data.assign(dataset(rated, {}, title="lives").data_vars)
     beyond = *_implausible(built), *_rated_below(built, data)
     data.attrs.update(stored([*doubts_of(data.attrs), *beyond]))
@@ -60,13 +62,13 @@ def _rated_below(built: Ready, data: xr.Dataset) -> list[str]:
     if names[0] not in data:
         return []
     laws = range(data.sizes["law"])
-    each = [built.carried_by_meshes({n: data[n].values[k, 0] for n in names}) for k in laws]
-    carried = np.fmax.reduce(each).tolist()  # under the law that asks for most
+    under_laws = [built.carried_by_meshes({n: data[n].values[k, 0] for n in names}) for k in laws]
+    carried = np.fmax.reduce(under_laws).tolist()  # under the law that asks for most
     return [
         in_stage(number, doubt)
-        for number, one, torque in zip(built.numbers, built.stages, carried, strict=True)
-        if not one.trains
-        for mesh in one.meshes
+        for number, stage, torque in zip(built.numbers, built.stages, carried, strict=True)
+        if not stage.trains
+        for mesh in stage.meshes
         if mesh.case.gears.rated
         for doubt in _above(mesh, torque)
     ]
@@ -75,14 +77,14 @@ def _rated_below(built: Ready, data: xr.Dataset) -> list[str]:
 def _above(mesh: Built, torque: float) -> Iterator[Doubt]:
     """How much stresses of a mesh are higher under this torque than under its own load."""
     rated = mesh.case.operation.load
-    more = torque / rated - 1.0 if rated > 0.0 else 0.0
-    if more > FELT:
-        roots, flanks = (f"{in_percent(part)}" for part in (more, sqrt(1.0 + more) - 1.0))
+    excess = torque / rated - 1.0 if rated > 0.0 else 0.0
+    if excess > FELT:
+        roots, flanks = (f"{in_percent(part)}" for part in (excess, sqrt(1.0 + excess) - 1.0))
         under, over = (mesh.carried.show(float(f"{load:.4g}")) for load in (rated, torque))
         yield Doubt(
             f"stresses and safeties are those for {under}, without the losses behind it; it carries {over}, "
             f"under which stresses of roots are {roots} higher and those of flanks {flanks}.",
-            moves=more,
+            moves=excess,
             about=("root_stress", "contact_stress"),
             brief=f"later losses add {flanks} (roots {roots}).",
         )
@@ -92,9 +94,9 @@ def _implausible(built: Ready) -> list[str]:
     """What cannot be in the stages of a drive; of one mesh its cycle tells it."""
     return [
         in_stage(label, text)
-        for k, (label, one) in enumerate(zip(built.mesh_labels, built.meshes, strict=True))
+        for k, (label, mesh) in enumerate(zip(built.mesh_labels, built.meshes, strict=True))
         if label
-        for text in _of_mesh(one, [models.of_meshes[k] for models in built.models])
+        for text in _of_mesh(mesh, [models.of_meshes[k] for models in built.models])
     ]
 
 
@@ -120,20 +122,20 @@ def _laws(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         {
             "law": str(data["law"].values[k]),
             "mean_efficiency": float(data["mean_efficiency"].values[k, 0]),
-            "reasons": told,
+            "reasons": why,
         }
-        for k, told in enumerate(reasons)
-        if told
+        for k, why in enumerate(reasons)
+        if why
     ]
-    within = [k for k, told in enumerate(reasons) if not told]
-    kept = [k for k in within if considered[k].law in every]
+    within = [k for k, why in enumerate(reasons) if not why]
+    holding = [k for k in within if considered[k].law in every]
     solved = [k for k in within if considered[k].law.films is not None]
-    drawn = data["mean_friction"].isel(law=[*kept, *solved], point=0)
+    drawn = data["mean_friction"].isel(law=[*holding, *solved], point=0)
     names = map(str, drawn["law"].values)
     ends = friction_apart(dict(zip(names, drawn.values.tolist(), strict=True)))
     doubts = [*doubts_of(data.attrs), *(_of_solved(ends) if solved and ends else [])]
     attributes = {"outside": json.dumps(without_nan(outside)), "friction_apart": json.dumps(ends)}
-    return data.isel(law=kept).assign_attrs(**attributes, **stored(doubts))
+    return data.isel(law=holding).assign_attrs(**attributes, **stored(doubts))
 
 
 def friction_apart(friction: Mapping[str, float]) -> list[tuple[str, float]]:
@@ -148,10 +150,10 @@ def friction_apart(friction: Mapping[str, float]) -> list[tuple[str, float]]:
         >>> friction_apart({"xu_2007": 0.06, "iso_tr_14179_2": 0.05})
         []
     """
-    known = sorted((value, name) for name, value in friction.items() if value > 0.0)
-    if not known or known[-1][0] <= DIFFERS * known[0][0]:
+    ranked = sorted((value, name) for name, value in friction.items() if value > 0.0)
+    if not ranked or ranked[-1][0] <= DIFFERS * ranked[0][0]:
         return []
-    return [(name, value) for value, name in (known[0], known[-1])]
+    return [(name, value) for value, name in (ranked[0], ranked[-1])]
 
 
 def _of_solved(ends: Sequence[tuple[str, float]]) -> list[Doubt]:
@@ -179,18 +181,20 @@ def _untried(built: Ready) -> str | None:
 
 def _why_outside(built: Ready, under: Sequence[Any]) -> list[list[str]]:
     """Why each of some laws does not hold; in a drive the stages where it acts, with their numbers."""
-    found: list[list[str]] = [[] for _ in under]
+    reasons_by_law: list[list[str]] = [[] for _ in under]
     meshes = zip(built.mesh_own_friction, built.mesh_labels, built.meshes, strict=True)
-    for k, (own, label, mesh) in enumerate(meshes):
-        if own:
+    for k, (own_friction, label, mesh) in enumerate(meshes):
+        if own_friction:
             continue
         acting, place = (
             [models.of_meshes[k] for models in under],
             f"in stage {label} " * bool(label),
         )
-        for reasons, models, run in zip(found, acting, profiles(mesh, acting), strict=True):
+        for reasons, models, run in zip(
+            reasons_by_law, acting, profiles(mesh, acting), strict=True
+        ):
             reasons += [place + reason for reason in why_outside(mesh, models.law, run)]
-    return found
+    return reasons_by_law
 
 
 def _back_driving(built: Ready, _: Piece, __: Progress) -> xr.Dataset:

@@ -66,9 +66,9 @@ def shared(built: BuiltTrain) -> Sharing:
     train, table, load = built.design, built.case.train, float(built.case.operation.load)
     assert table is not None
     count = round(table.planets)
-    meshes = [k for k, one in enumerate(train.meshes) if one.carrier != HOUSING]
+    meshes = [k for k, mesh in enumerate(train.meshes) if mesh.carrier != HOUSING]
     radius = float(built.meshes[meshes[0]].dimensions["centre_distance"])
-    links = [one.link for one in train.meshes]
+    links = [mesh.link for mesh in train.meshes]
     ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
     ideal = train_torques(links, ends, load, [1.0] * len(links))
     total = abs(sum(ideal.shares[k][table.carrier] for k in meshes)) / radius
@@ -114,22 +114,28 @@ def _drawn_errors(
     stepped = _planet_gears(built) > 1
 
     if field := table.thickness_tolerance:
-        first, *second = random.uniform(-field / 2.0, field / 2.0, size=(1 + stepped, *size))
-        drawn += alike.of_thickness(first, *second)
+        thickness, *stepped_thickness = random.uniform(
+            -field / 2.0, field / 2.0, size=(1 + stepped, *size)
+        )
+        drawn += alike.of_thickness(thickness, *stepped_thickness)
     if table.planet_runout:
         off = table.planet_runout / 2.0
         drawn += alike.of_planet(off, phases(size), phases(size) if stepped else None)
     if table.central_runout:
-        off, one = table.central_runout / 2.0, (SAMPLES, 1)
-        drawn += alike.of_sun(off, phases(one), angles) + alike.of_ring(off, phases(one), angles)
+        off, set_shape = table.central_runout / 2.0, (SAMPLES, 1)
+        drawn += alike.of_sun(off, phases(set_shape), angles) + alike.of_ring(
+            off, phases(set_shape), angles
+        )
     return drawn
 
 
 def _equivalents(built: BuiltTrain) -> PinEquivalents | None:
     """How deviations of teeth load planets between a sun and a ring; None for others."""
-    trains: list[Any] = [one for one in built.design.meshes if one.carrier != HOUSING]
-    trains.sort(key=lambda one: bool(one.link.mesh.internal))
-    meshes = [one.link.mesh for one in trains]
+    trains: list[Any] = [
+        train_mesh for train_mesh in built.design.meshes if train_mesh.carrier != HOUSING
+    ]
+    trains.sort(key=lambda train_mesh: bool(train_mesh.link.mesh.internal))
+    meshes = [train_mesh.link.mesh for train_mesh in trains]
     if [bool(mesh.internal) for mesh in meshes] != [False, True]:
         return None
     sun, ring = (
@@ -140,8 +146,8 @@ def _equivalents(built: BuiltTrain) -> PinEquivalents | None:
     base_helix = float(np.arcsin(np.sin(helix) * np.cos(normal)))
     (planet,) = built.design.planets
     at_sun, at_ring = (
-        float(np.abs(np.asarray(one.link.mesh.base_radii))[one.bodies.index(planet)])
-        for one in trains
+        float(np.abs(np.asarray(train_mesh.link.mesh.base_radii))[train_mesh.bodies.index(planet)])
+        for train_mesh in trains
     )
     return PinEquivalents(sun, ring, normal, base_helix, float(at_ring / at_sun))
 
@@ -154,10 +160,12 @@ def sharing_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
     Args:
         built: a set, or stages with sets among them.
     """
-    each: dict[Label, xr.Dataset] = {
-        number: _sharing_of_set(one) for number, one in built.trains.items() if no_pins(one) is None
+    sets: dict[Label, xr.Dataset] = {
+        number: _sharing_of_set(train)
+        for number, train in built.trains.items()
+        if no_pins(train) is None
     }
-    return each[0] if 0 in each else by_stage(each)
+    return sets[0] if 0 in sets else by_stage(sets)
 
 
 def _sharing_of_set(built: BuiltTrain) -> xr.Dataset:
@@ -206,8 +214,8 @@ def _between_suns(built: BuiltTrain) -> list[Doubt]:
 
 def _planet_gears(built: BuiltTrain) -> int:
     """Gears that a planet has."""
-    members = [one for mesh in built.member_motions for one in mesh]
-    return len({one.body for one in members if one.carrier != HOUSING})
+    members = [member for mesh in built.member_motions for member in mesh]
+    return len({member.body for member in members if member.carrier != HOUSING})
 
 
 def _lifted(forces: np.ndarray) -> list[Doubt]:

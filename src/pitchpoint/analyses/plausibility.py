@@ -156,12 +156,12 @@ def _bears(used: SolidInUse, shape: Shape) -> Iterator[tuple[float, str, str]]:
     """Largest Hertz pressures of a material, what happens there, and words before them in a brief."""
     name, hardness = used.record.name, used.record.hardness
     if (limit := used.bears) is not None:
-        told = f"{name} bears about {_pressure(limit.value)}, and that a few times only"
-        yield limit.value, told, "the material bears"
+        phrase = f"{name} bears about {_pressure(limit.value)}, and that a few times only"
+        yield limit.value, phrase, "the material bears"
     if hardness is not None:
         most = hardness.value / MEAN_PRESSURE[shape]
-        told = f"from {_pressure(most)} on its mean is more than the hardness of {name}"
-        why = f"{told}, {_pressure(hardness.value)}, by which it is indented"
+        phrase = f"from {_pressure(most)} on its mean is more than the hardness of {name}"
+        why = f"{phrase}, {_pressure(hardness.value)}, by which it is indented"
         yield most, why, "by hardness borne"
 
 
@@ -194,9 +194,9 @@ def heat(at: AtWork) -> str | None:
 
 def _toughest() -> tuple[str, float]:
     """The plastic of the catalogue that bears the highest temperature for long, and that temperature [K]."""
-    limits = {name: one.service_limit for name, one in solids.catalogue().items()}
-    known = {name: limit.value for name, limit in limits.items() if limit is not None}
-    return max(known.items(), key=lambda item: item[1])
+    limits = {name: solid.service_limit for name, solid in solids.catalogue().items()}
+    limited = {name: limit.value for name, limit in limits.items() if limit is not None}
+    return max(limited.items(), key=lambda item: item[1])
 
 
 def film_of_atoms(at: AtWork) -> str | None:
@@ -205,12 +205,12 @@ def film_of_atoms(at: AtWork) -> str | None:
     if max(thin) <= MOST:
         return None
     thinnest = min(float(run["film_thickness"][run["load"] > 0.0].min()) for run in at.runs)
-    told = f"{1e9 * thinnest:.2g} nm" if 1e12 * thinnest >= 1.0 else "less than 0.001 nm"
+    thickness = f"{1e9 * thinnest:.2g} nm" if 1e12 * thinnest >= 1.0 else "less than 0.001 nm"
     return Doubt(
-        f"the film is down to {told}, under {100.0 * max(thin):.3g} % of the load "
+        f"the film is down to {thickness}, under {100.0 * max(thin):.3g} % of the load "
         f"thinner than an atom, {1e9 * ATOM:g} nm: flanks touch, and film, Λ and what follows "
         "from them say nothing",
-        brief=f"film down to {told}, less than an atom: flanks touch",
+        brief=f"film down to {thickness}, less than an atom: flanks touch",
     )
 
 
@@ -259,8 +259,10 @@ def friction(at: AtWork) -> str | None:
     title, largest = max(mean.items(), key=lambda item: item[1], default=("", 0.0))
     if largest <= most * (1.0 + 1e-9):
         return None
-    told = "plastics have at most about {:g} even without oil" if at.plastic else _STEEL
-    sentence = f"{title}: the mean friction coefficient is {largest:.3g}; {told.format(most)}"
+    limit_words = "plastics have at most about {:g} even without oil" if at.plastic else _STEEL
+    sentence = (
+        f"{title}: the mean friction coefficient is {largest:.3g}; {limit_words.format(most)}"
+    )
     return Doubt(sentence, brief=f"mean friction {largest:.3g}; allowed about {most:g}")
 
 
@@ -298,10 +300,10 @@ def conformal_loss(at: AtWork) -> str | None:
 def rolling_twice(at: AtWork) -> str | None:
     """A law of whole losses beside a rolling resistance."""
     rolling = ROLLING_RESISTANCE[at.built.case.models.rolling_resistance]
-    whole = [(law, run) for law, run in zip(at.laws, at.runs, strict=True) if law.whole]
-    if not whole or not rolling.sources:
+    of_whole_losses = [(law, run) for law, run in zip(at.laws, at.runs, strict=True) if law.whole]
+    if not of_whole_losses or not rolling.sources:
         return None
-    law, run = whole[0]
+    law, run = of_whole_losses[0]
     return Doubt(
         f"rolling is counted twice: {law.title} was fitted to whole losses of gears, those of rolling among "
         f"them, and '{rolling.name}' adds {rolling_share(run):.2g} % of the loss once more",
@@ -334,9 +336,9 @@ def friction_laws(result: Result) -> str | None:
         return None
     names = result.parts["operation"]["law"].values
     reasons = {str(law): why_not(result.parts)[str(law)] for law in names}
-    told = "; ".join(f"{law}: {' and '.join(each)}" for law, each in reasons.items())
+    sentences = "; ".join(f"{law}: {' and '.join(why)}" for law, why in reasons.items())
     return Doubt(
-        f"no friction law holds at the operating point, efficiency and loss are extrapolations: {told}",
+        f"no friction law holds at the operating point, efficiency and loss are extrapolations: {sentences}",
         brief="no friction law holds here: efficiency and loss are guesses",
     )
 
@@ -363,7 +365,7 @@ def root_stress(result: Result) -> str | None:
     if strength is None:
         return None
     built = result.built
-    rated = [used for one in built.meshes if one.case.gears.rated for used in one.solids]
+    rated = [used for mesh in built.meshes if mesh.case.gears.rated for used in mesh.solids]
     stresses = np.ravel(strength["root_stress"].values)
     over = [
         (float(stress) / limit, float(stress), limit, why, place % 2 + 1)
@@ -430,8 +432,8 @@ def _part(values: np.ndarray, where: np.ndarray) -> float:
 
 def _over(values: np.ndarray, by: np.ndarray) -> np.ndarray:
     """Quotients; zero where there is nothing to divide by."""
-    found: np.ndarray = np.divide(values, by, out=np.zeros_like(values), where=by > 0.0)
-    return found
+    quotients: np.ndarray = np.divide(values, by, out=np.zeros_like(values), where=by > 0.0)
+    return quotients
 
 
 OF_CONTACTS: Registry[Check[AtWork]] = Registry(

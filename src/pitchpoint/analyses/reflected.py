@@ -93,8 +93,8 @@ def _bodies(built: BuiltDrive, inspected: Inspections) -> list[_Moving]:
         values = (data[f"{kind}_{what}"].values.tolist() for what in ("mass", "inertia"))
         for member, coordinate, mass, inertia in zip(members, mesh.bodies, *values, strict=True):
             body = _moving(member, mass, inertia, turns=coordinate.turns)
-            other = heaviest.setdefault(member.body, body)
-            if body.mass > other.mass:
+            heaviest_yet = heaviest.setdefault(member.body, body)
+            if body.mass > heaviest_yet.mass:
                 heaviest[member.body] = body
     return [*heaviest.values()]
 
@@ -128,11 +128,11 @@ def _backlash(
         inspected[place]["backlash_angle"].values[int(mesh.nominal["loaded"].argmax())]
         for place, mesh in enumerate(built.meshes)
     ]
-    each = [
+    turns = [
         step * np.resize(angles, len(CASES))
         for step, angles in zip(built.steps, of_loaded, strict=True)
     ]
-    return {"output_backlash": (("case",), np.sum(each, axis=0))}
+    return {"output_backlash": (("case",), np.sum(turns, axis=0))}
 
 
 def _unknown(bodies: list[_Moving]) -> list[str]:

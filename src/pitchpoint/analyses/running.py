@@ -71,9 +71,11 @@ def running_part(built: Ready) -> xr.Dataset:
         "back_driving_torque": (_AT_REST, from_rest(back, 0.0, turned, degrees)[1]),
     }
     if has_spread(built):
-        for (low, high), one, speed in zip(BANDS, (built, back), (creeping, turned), strict=True):
-            for name, way in ((low, -1.0), (high, 1.0)):
-                held = one.held_otherwise(way)
+        for (low, high), driven, speed in zip(
+            BANDS, (built, back), (creeping, turned), strict=True
+        ):
+            for name, sign in ((low, -1.0), (high, 1.0)):
+                held = driven.held_otherwise(sign)
                 data[name] = (_AT_REST, from_rest(held, 0.0, speed, degrees)[1])
     return dataset(
         data,
@@ -114,7 +116,7 @@ def from_rest(
         before. NaN where friction holds the drive whatever the torque, and under laws that solve films.
     """
     points = Operation(
-        *(array(np.broadcast_to(one, degrees.shape)) for one in (load, speed, degrees))
+        *(array(np.broadcast_to(condition, degrees.shape)) for condition in (load, speed, degrees))
     )
     mean, largest = map(np.stack, zip(*built.torques_at_rest(points), strict=True))
     return mean, largest
@@ -123,12 +125,14 @@ def from_rest(
 def has_spread(built: Ready) -> bool:
     """True if a place says by how much what holds it at rest may be more or less."""
     every: tuple[Ready, ...] = built, *built.stages
-    return any(loss.breakaway_spread > 1.0 for one in every for loss in one.case.losses.values())
+    return any(
+        loss.breakaway_spread > 1.0 for drive in every for loss in drive.case.losses.values()
+    )
 
 
 def _fitted(built: Ready) -> str:
     """Where the constants of the named sets of losses were fitted, in words; empty without any."""
-    ranges = [one.fitted for one in built.meshes if one.fitted is not None]
+    ranges = [mesh.fitted for mesh in built.meshes if mesh.fitted is not None]
     if not ranges:
         return ""
     low, high = max(low for low, _ in ranges), min(high for _, high in ranges)
@@ -184,18 +188,18 @@ def _easily_started(
     if not some.any():
         return []
     law = int(np.argmin(np.where(some, starting[:, at] - AT_REST * slow[:, at], np.inf)))
-    rest, moving = float(starting[law, at]), float(slow[law, at])
-    if rest >= AT_REST * moving:
+    at_rest, moving = float(starting[law, at]), float(slow[law, at])
+    if at_rest >= AT_REST * moving:
         return []
     kind = "force" if "driver" in built.travels else "torque"
-    told = [measured(one, "N" if kind == "force" else "N m") for one in (rest, moving)]
+    efforts = [measured(effort, "N" if kind == "force" else "N m") for effort in (at_rest, moving)]
     return [
         Doubt(
-            f"A {kind} to start of {told[0]} beside {told[1]} in slow motion is too low: "
+            f"A {kind} to start of {efforts[0]} beside {efforts[1]} in slow motion is too low: "
             "seals and greased bearings stick at rest, and measured drives take up to many times as much, "
             "either way; a breakaway model or a breakaway_torque in [losses] says what holds them.",
             about=("starting_torque", "back_driving_torque"),
-            brief=f"{told[0]} to start: too low, too little holds.",
+            brief=f"{efforts[0]} to start: too low, too little holds.",
         )
     ]
 
@@ -207,11 +211,11 @@ def running_axes(built: Ready) -> tuple[np.ndarray, np.ndarray]:
     alone. Temperatures are those of the map where the case gives them, else they go from the oil's
     lowest to a warm one, with that of a cold day where the oil reaches it.
     """
-    point, asked = built.case.operation, built.case.loss_map
+    point, loss_map = built.case.operation, built.case.loss_map
     speeds, degrees = map_axes(built)[1:]
     count = 0 if built.numbers else SPEEDS
     speeds = np.linspace(0.0, speeds[-1], count + 1)[1:]
-    if asked is None or not asked.temperatures:
+    if loss_map is None or not loss_map.temperatures:
         low, high = built.temperatures
         degrees = np.linspace(low, max(min(high, WARM), point.temperature), TEMPERATURES)
         degrees = _with(degrees, COLD) if low <= COLD else degrees
@@ -225,8 +229,8 @@ def _with(values: np.ndarray, one: float) -> np.ndarray:
 
 
 def _free(built: Ready) -> str | None:
-    told = None if built.drags else Unasked("the case has no [losses] beside its teeth")
-    return untransmitted(built) or told or without_formula(built)
+    reason = None if built.drags else Unasked("the case has no [losses] beside its teeth")
+    return untransmitted(built) or reason or without_formula(built)
 
 
 def _computed(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
@@ -241,10 +245,10 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     axes = {name: data[name].values.tolist() for name in ("speed", "temperature")}
     laws = enumerate(data["law"].values)
     names = [*TORQUES, *(name for ends in BANDS for name in ends if name in data)]
-    each = {
+    by_law = {
         str(law): {n: without_nan(data[n].values[k].tolist()) for n in names} for k, law in laws
     }
-    return {"running": {**axes, **each}}
+    return {"running": {**axes, **by_law}}
 
 
 RUNNING = Analysis(

@@ -87,19 +87,21 @@ def _unrated(built: Ready) -> str | None:
 def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """The rating of a pair, or of those stages of a drive that are pairs of cylindrical gears."""
     rated, on_sharing = _with_sharing(built)
-    each = _ratings([one for _, one in rated])
+    pair_ratings = _ratings([mesh for _, mesh in rated])
     several = bool(built.numbers)
-    values = each[0]
+    values = pair_ratings[0]
     labels: dict[str, list[Any]] = {"gear": ["gear 1", "gear 2"]}
     if several:
-        values = {name: np.stack([found[name] for found in each]) for name in each[0]}
+        values = {
+            name: np.stack([found[name] for found in pair_ratings]) for name in pair_ratings[0]
+        }
         labels = {"stage": alike_labels([label for label, _ in rated]), **labels}
     dims = {name: tuple(labels)[: np.ndim(found)] for name, found in values.items()}
-    extremes = _extremes(each)
+    extremes = _extremes(pair_ratings)
 
     def told(of: Callable[[Built, Numbers], Iterable[str]]) -> list[str]:
-        pairs = zip(rated, each, strict=True)
-        every = [(label, text) for (label, one), found in pairs for text in of(one, found)]
+        pairs = zip(rated, pair_ratings, strict=True)
+        every = [(label, text) for (label, mesh), rating in pairs for text in of(mesh, rating)]
         return [in_stage(label, text) if several else text for label, text in every]
 
     return dataset(
@@ -107,12 +109,12 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         | {name: ((), found) for name, found in extremes.items()},
         labels,
         title="strength",
-        method=_method([one for _, one in rated]),
-        assumed=told(lambda one, _: _assumed(one)),
-        withheld=told(lambda one, found: [*one.rated.withheld, *_bounds(one, found)]),
-        remarks=[*told(lambda one, _: [*_remarks(one)]), *built.on_strength, *on_sharing],
+        method=_method([mesh for _, mesh in rated]),
+        assumed=told(lambda mesh, _: _assumed(mesh)),
+        withheld=told(lambda mesh, found: [*mesh.rated.withheld, *_bounds(mesh, found)]),
+        remarks=[*told(lambda mesh, _: [*_remarks(mesh)]), *built.on_strength, *on_sharing],
         **_planets(built),
-        warnings=told(lambda one, found: [*_failing(one, found), *_doubts(one, found)]),
+        warnings=told(lambda mesh, found: [*_failing(mesh, found), *_doubts(mesh, found)]),
     )
 
 
@@ -125,7 +127,7 @@ def _planets(built: Ready) -> dict[str, Any]:
 def _rated(built: Ready) -> list[tuple[Label, Built]]:
     """Meshes that are rated with their labels, in the order of the power."""
     meshes = zip(built.mesh_labels, built.meshes, strict=True)
-    return [(label, one) for label, one in meshes if one.case.gears.rated]
+    return [(label, mesh) for label, mesh in meshes if mesh.case.gears.rated]
 
 
 def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
@@ -134,12 +136,12 @@ def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
     A factor that the case gives stays. So does that of the standard where pins alone make less of it.
     """
     shared: dict[Built, Built] = {}
-    told: list[str] = []
+    remarks: list[str] = []
     for number, train in built.trains.items():
-        more, sentences = _shared(train)
-        shared |= more
-        told += [in_stage(number, text) if number else text for text in sentences]
-    return [(label, shared.get(one, one)) for label, one in _rated(built)], told
+        by_pins, sentences = _shared(train)
+        shared |= by_pins
+        remarks += [in_stage(number, text) if number else text for text in sentences]
+    return [(label, shared.get(mesh, mesh)) for label, mesh in _rated(built)], remarks
 
 
 def _shared(built: BuiltTrain) -> tuple[dict[Built, Built], list[str]]:
@@ -152,17 +154,17 @@ def _shared(built: BuiltTrain) -> tuple[dict[Built, Built], list[str]]:
         return {}, [f"Pins out of place are not in K_γ: {lacks}."] * out_of_place
     sharing = shared(built)
     factor = sharing.rated_factor
-    more = {
-        one: _sharing_by(one, factor)
-        for number, one in _rated(built)
+    by_pins = {
+        mesh: _sharing_by(mesh, factor)
+        for number, mesh in _rated(built)
         if _open_sharing(built, number)
     }
     within = "" if sharing.drawn is None else f" in {PERCENTILES[-1]:g} % of sets by tolerance"
     bears = (
         f"By the deviations of the set a planet bears up to {factor:.3g} of an equal share{within}"
     )
-    if any(one is not before for before, one in more.items()):
-        return more, [f"{bears}: K_γ is that."]
+    if any(mesh is not before for before, mesh in by_pins.items()):
+        return by_pins, [f"{bears}: K_γ is that."]
     return {}, [
         f"{bears}; K_γ stays that of the standard or of [strength], which stand for weight, friction and "
         "what else is not among them."
@@ -172,8 +174,8 @@ def _shared(built: BuiltTrain) -> tuple[dict[Built, Built], list[str]]:
 def _open_sharing(built: BuiltTrain, number: Label) -> bool:
     """True for a mesh of planets whose K_γ the case leaves open."""
     tables = built.case.strength, built.case.stages[str(number)].strength
-    given = any(table is not None and table.mesh_load_factor is not None for table in tables)
-    return built.copies[built.numbers.index(number)] > 1 and not given
+    stated = any(table is not None and table.mesh_load_factor is not None for table in tables)
+    return built.copies[built.numbers.index(number)] > 1 and not stated
 
 
 def _sharing_by(built: Built, factor: float) -> Built:
@@ -191,7 +193,7 @@ def mesh_load_of(built: BuiltTrain) -> float:
     Args:
         built: the set.
     """
-    tables = (one.case.strength for _, one in _with_sharing(built)[0])
+    tables = (mesh.case.strength for _, mesh in _with_sharing(built)[0])
     return max((table.mesh_load_factor or 1.0 for table in tables if table), default=1.0)
 
 
@@ -201,7 +203,7 @@ def rating_inputs(built: Ready) -> list[tuple[Label, tuple[Any, ...]]]:
     Args:
         built: the drive.
     """
-    return [(label, _asked(one)) for label, one in _with_sharing(built)[0]]
+    return [(label, _asked(mesh)) for label, mesh in _with_sharing(built)[0]]
 
 
 def rated_rows(rows: Sequence[Any]) -> Numbers:
@@ -210,24 +212,28 @@ def rated_rows(rows: Sequence[Any]) -> Numbers:
     Args:
         rows: each a mesh and what is asked of it.
     """
-    return of_stacks((ratings(_bare(one[0]), *one[1:]), used) for one, used in stacks(rows, ROWS))
+    return of_stacks(
+        (ratings(_bare(stack[0]), *stack[1:]), used) for stack, used in stacks(rows, ROWS)
+    )
 
 
 def _ratings(pairs: Sequence[Built]) -> list[Numbers]:
     """Ratings of pairs, together as far as their gears are of one kind."""
-    rows = [_asked(one) for one in pairs]
+    rows = [_asked(pair) for pair in pairs]
     groups = groups_alike(rows)
-    found = whole_of([rated_rows([rows[k] for k in group]) for group in groups], groups)
-    return [{name: values[row] for name, values in found.items()} for row in range(len(pairs))]
+    all_ratings = whole_of([rated_rows([rows[k] for k in group]) for group in groups], groups)
+    return [
+        {name: values[row] for name, values in all_ratings.items()} for row in range(len(pairs))
+    ]
 
 
 def _asked(built: Built) -> tuple[Any, ...]:
     """A pair as `rated` takes it."""
-    mesh, given, table = built.design.mesh, built.rated, built.case.strength
+    mesh, rating, table = built.design.mesh, built.rated, built.case.strength
     ends = np.full(2, nan) if ends_at_tips(mesh) else jax.device_get(_path_ends(mesh))
     life = None if table is None else table.life
-    duty = given.duty(built.operation, life, built.design.driver)
-    return mesh, ends, duty, given.factors, given.strengths, given.finish
+    duty = rating.duty(built.operation, life, built.design.driver)
+    return mesh, ends, duty, rating.factors, rating.strengths, rating.finish
 
 
 @program
@@ -237,15 +243,15 @@ def _path_ends(mesh: Mesh) -> Float[Array, "2"]:
 
 def _bare(mesh: Mesh) -> Mesh:
     """Bare meshes, with an axis of pairs in front."""
-    found: Mesh = jax.vmap(bare)(mesh)
-    return found
+    meshes: Mesh = jax.vmap(bare)(mesh)
+    return meshes
 
 
 def _extremes(each: Sequence[Numbers]) -> dict[str, float]:
     """Largest stresses and least safeties of some ratings; NaN where no gear has that safety."""
     reduced = zip(RATING, _OF_GEARS, (np.fmax, np.fmax, np.fmin, np.fmin), strict=True)
     return {
-        name: float(extreme.reduce(np.ravel([found[of] for found in each])))
+        name: float(extreme.reduce(np.ravel([rating[of] for rating in each])))
         for name, of, extreme in reduced
     }
 
@@ -258,8 +264,8 @@ def ratings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     if STRENGTH.why_not(points[0]) is not None:
         return {}
     pairs = [[one for _, one in _with_sharing(point)[0]] for point in points]
-    found = iter(_ratings([one for each in pairs for one in each]))
-    extremes = [_extremes([*islice(found, len(each))]) for each in pairs]
+    pair_ratings = iter(_ratings([one for point_pairs in pairs for one in point_pairs]))
+    extremes = [_extremes([*islice(pair_ratings, len(point_pairs))]) for point_pairs in pairs]
     return {
         name: (("law", "point"), np.array([[one[name] for one in extremes]] * laws))
         for name in RATING
@@ -267,11 +273,11 @@ def ratings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
 
 
 def _method(pairs: Sequence[Built]) -> str:
-    tables = [one.rated.table for one in pairs]
+    tables = [pair.rated.table for pair in pairs]
     editions = " and ".join(dict.fromkeys(table.edition for table in tables))
     methods = " and ".join(dict.fromkeys(table.dynamic_method for table in tables))
     face = "K_Hβ by method C where the shaft is given, " if any(t.shaft for t in tables) else ""
-    plastic = any(used.plastic for one in pairs for used in one.solids)
+    plastic = any(used.plastic for pair in pairs for used in pair.solids)
     return (
         f"ISO 6336-2 and ISO 6336-3, edition of {editions}, method B; K_v by method {methods} of ISO 6336-1 "
         f"unless it is given, {face}the other load factors as given" + f"; {_PLASTIC}" * plastic
@@ -325,12 +331,12 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
         float(found["resonance_number"]),
         built.dimensions["transverse_contact_ratio"],
     )
-    given = built.case.strength is not None and built.case.strength.dynamic_factor is not None
+    stated = built.case.strength is not None and built.case.strength.dynamic_factor is not None
     steel = not any(used.plastic for used in built.solids)
     by_b = built.rated.table.dynamic_method == "B"
     if by_b:
         yield from _doubts_of_method_b(found, ratio)
-    if resonance > MOST_RESONANCE and steel and not given and not by_b:
+    if resonance > MOST_RESONANCE and steel and not stated and not by_b:
         yield Doubt(
             f"K_v by method C holds well below resonance, up to (v z_1/100) sqrt(u²/(1 + u²)) = "
             f"{MOST_RESONANCE:.2g} m/s, at which it stays; this pair is at {resonance:.3g} m/s: give "
@@ -418,7 +424,7 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 
 
 def _nested(values: np.ndarray) -> Any:
-    return [numbers(one) for one in values] if values.ndim > 1 else numbers(values)
+    return [numbers(row) for row in values] if values.ndim > 1 else numbers(values)
 
 
 STRENGTH = Analysis(

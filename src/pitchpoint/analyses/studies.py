@@ -128,8 +128,8 @@ class _Planned:
             InputError: what is wrong with the first one that cannot be built, with study and value.
         """
         return [
-            _point(one, change, self.where, self.swept)
-            for one, change in zip(self.subject.variant.built_each(changes), changes, strict=True)
+            _point(case, change, self.where, self.swept)
+            for case, change in zip(self.subject.variant.built_each(changes), changes, strict=True)
         ]
 
     def demand_ends(self) -> None:
@@ -149,15 +149,15 @@ def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     if source not in PUBLICATIONS or not meshes:
         return {}
     read, courses = PUBLICATIONS[source].read, PUBLICATIONS[source].courses
-    found = [read(_at(point)) for point in meshes]
+    readings = [read(_at(point)) for point in meshes]
 
     def variable(name: str) -> tuple[tuple[str, str], np.ndarray]:
-        values = np.array([one[name] for one in found])
+        values = np.array([reading[name] for reading in readings])
         if name in courses:
             return ("point", courses[name]), values
         return ("law", "point"), np.array([values] * laws)
 
-    return {name: variable(name) for name in found[0]}
+    return {name: variable(name) for name in readings[0]}
 
 
 def _at(point: Built) -> Point:
@@ -191,26 +191,26 @@ def _planned(subject: Subject, name: str, study: Study, where: str) -> _Planned:
     values, kind = sweep_values(study.sweep, where, variant.name, variant.document().tree)
     demand_one(variant, study.sweep, where)
     demand_films(subject.built, variant, key, where)
-    told = {
+    attributes = {
         "sweep_key": key,
         "axis_kind": kind.kind if kind else "",
         "axis_unit": kind.unit if kind else "",
     }
     changes: list[Mapping[str, Any]] = [{**fixed, key: value} for value in values]
-    return _Planned(subject, name, title, changes, key, told, where)
+    return _Planned(subject, name, title, changes, key, attributes, where)
 
 
 def _studies(subject: Subject) -> Iterator[Analysis]:
     """All studies of a case; InputError for the ends of a sweep."""
-    own, extra = subject.built.case.studies, subject.studies
-    for name in own.keys() & extra.keys():
-        told = "is a study of the case already"
-        raise InputError(told, file=subject.variant.name, key=f"studies.{name}")
-    every = [(name, study, f"studies.{name}") for name, study in own.items()]
+    of_case, extra = subject.built.case.studies, subject.studies
+    for name in of_case.keys() & extra.keys():
+        sentence = "is a study of the case already"
+        raise InputError(sentence, file=subject.variant.name, key=f"studies.{name}")
+    every = [(name, study, f"studies.{name}") for name, study in of_case.items()]
     every += [(name, study, "--sweep") for name, study in extra.items()]
     wrong = Complaints()
-    for each in every:
-        planned = wrong.tried(_sound, subject, *each)
+    for named_study in every:
+        planned = wrong.tried(_sound, subject, *named_study)
         if planned is not None:
             yield planned.analysis
     wrong.demand_none()
@@ -228,8 +228,8 @@ def _unasked(built: Ready) -> str | None:
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    found = {name.removeprefix(PREFIX): data for name, data in parts.items() if is_study(name)}
-    return {"studies": {name: by_law(data, json_figures(data)) for name, data in found.items()}}
+    studies = {name.removeprefix(PREFIX): data for name, data in parts.items() if is_study(name)}
+    return {"studies": {name: by_law(data, json_figures(data)) for name, data in studies.items()}}
 
 
 def is_study(part: str) -> bool:
@@ -243,7 +243,7 @@ def demand_one(variant: Variant, sweep: Sweep, where: str) -> None:
     for part in sweep.key.split("."):
         value = value.get(part) if isinstance(value, dict) else None
     several = isinstance(value, list | tuple) and len(set(map(str, value))) > 1
-    if several and any(not isinstance(one, list | tuple) for one in sweep.values or (0,)):
+    if several and any(not isinstance(number, list | tuple) for number in sweep.values or (0,)):
         raise InputError(
             f"{sweep.key} has different values for gear 1 and gear 2, {shown(value)}, and one number would "
             f"set both; sweep {sweep.key}.1 or {sweep.key}.2",
@@ -321,8 +321,8 @@ def _read(quantity: Quantity, value: Any) -> Any:
 
 def _number(value: Any) -> float:
     """Place on the axis of a sweep: the number itself, or that of gear 1."""
-    first = value[0] if isinstance(value, list | tuple) and value else value
-    return float(first) if isinstance(first, int | float) else np.nan
+    number = value[0] if isinstance(value, list | tuple) and value else value
+    return float(number) if isinstance(number, int | float) else np.nan
 
 
 STUDIES = Several(

@@ -74,8 +74,8 @@ _WITH_FRICTION = {
 
 def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
     """Dimensions of a figure; the last one of three is that of the places, or of the stages."""
-    last = "place" if name == "bearing_load" else "stage"
-    return ("law", "point", last)[: values.ndim]
+    axis = "place" if name == "bearing_load" else "stage"
+    return ("law", "point", axis)[: values.ndim]
 
 
 def alone(points: Sequence[Ready]) -> list[Built]:
@@ -134,8 +134,8 @@ def summaries(
         out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
     else:
         out.pop("loss_factor", None)  # of the shares of one load: no figure of the gears alone
-    told = dict.fromkeys(text for point in points for text in point.warnings)
-    warnings = few([*told]) if len(points) > 1 else [*told]
+    sentences = dict.fromkeys(text for point in points for text in point.warnings)
+    warnings = few([*sentences]) if len(points) > 1 else [*sentences]
     if "vibration_status" in extra:
         from pitchpoint.analyses.vibration import status_sentences
 
@@ -189,7 +189,7 @@ def _why_not(
         extremes: see `why_not_at`, each [law, point].
         unsure: of each law what there is to be wary of about the films that it solves [point].
     """
-    told = [
+    reasons = [
         [
             "; ".join(
                 [
@@ -203,13 +203,15 @@ def _why_not(
         ]
         for k, law in enumerate(laws)
     ]
-    return np.array(told, dtype=str)
+    return np.array(reasons, dtype=str)
 
 
 def _of_laws_in_range(efficiency: np.ndarray, holds: np.ndarray) -> dict[str, np.ndarray]:
     """Ends of the mean efficiency [law, point] by the laws that hold, the same under each; NaN by none."""
-    known = np.where(holds & ~np.isnan(efficiency), efficiency, np.nan)
-    lowest, highest = (np.broadcast_to(end(known, axis=0), known.shape) for end in (_fmin, _fmax))
+    in_range = np.where(holds & ~np.isnan(efficiency), efficiency, np.nan)
+    lowest, highest = (
+        np.broadcast_to(end(in_range, axis=0), in_range.shape) for end in (_fmin, _fmax)
+    )
     return {"lowest_efficiency_in_range": lowest, "highest_efficiency_in_range": highest}
 
 
@@ -237,15 +239,19 @@ def _turns(runs: Sequence[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
 
 def _warming(points: Sequence[Ready]) -> dict[str, Any]:
     """What became of the balances of heat, modulus and friction; nothing where no teeth warm up."""
-    found = [point.warming for point in alone(points)]
-    each = [(one.code, one.residual, one.iterations) for one in found if one is not None]
-    return {"warming": told_of(*map(np.array, zip(*each, strict=True)))} if each else {}
+    warmings = [point.warming for point in alone(points)]
+    balances = [
+        (warming.code, warming.residual, warming.iterations)
+        for warming in warmings
+        if warming is not None
+    ]
+    return {"warming": told_of(*map(np.array, zip(*balances, strict=True)))} if balances else {}
 
 
 def _balances(values: Mapping[str, Any]) -> dict[str, Any]:
     """What became of the balances behind the figures [law, point]."""
-    found = (np.asarray(values[name]) for name in ("locked", "residual", "iterations"))
-    locked, residual, iterations = found
+    arrays = (np.asarray(values[name]) for name in ("locked", "residual", "iterations"))
+    locked, residual, iterations = arrays
     lost = np.isnan(residual)
     return told_of(locked_or_lost(locked.astype(bool), lost), residual, iterations)
 
@@ -270,8 +276,8 @@ def joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
     if len(pieces) == 1:
         return pieces[0]
     data = xr.concat(pieces, "point", combine_attrs="override")
-    told = dict.fromkeys(text for piece in pieces for text in doubts_of(piece.attrs))
-    data.attrs.update(stored(few([*told])))
+    sentences = dict.fromkeys(text for piece in pieces for text in doubts_of(piece.attrs))
+    data.attrs.update(stored(few([*sentences])))
     data.attrs["solve"] = json.dumps(
         _balances({str(name): values for name, values in data.items()})
     )
@@ -280,28 +286,30 @@ def joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
 
 def few(sentences: list[str]) -> list[str]:
     """The first warnings of a sweep, and how many more there are."""
-    rest = len(sentences) - _SHOWN
-    more = [f"... and {rest} more warnings of this kind in the sweep."] if rest > 0 else []
-    return sentences[:_SHOWN] + more
+    left_out = len(sentences) - _SHOWN
+    notice = (
+        [f"... and {left_out} more warnings of this kind in the sweep."] if left_out > 0 else []
+    )
+    return sentences[:_SHOWN] + notice
 
 
 def _lock_warning(law: FrictionLaw, locked: np.ndarray) -> list[str]:
     if not locked.any():
         return []
-    told = f"{law.title}: friction locks the mesh at {locked.sum()} of {locked.size} points."
+    sentence = f"{law.title}: friction locks the mesh at {locked.sum()} of {locked.size} points."
     brief = f"{law.name}: locks at {locked.sum()} of {locked.size} points."
-    return [Doubt(told, moves=WITHHELD, brief=brief)]
+    return [Doubt(sentence, moves=WITHHELD, brief=brief)]
 
 
 def _lost_warning(law: FrictionLaw, code: np.ndarray) -> list[str]:
     return [
         Doubt(
-            f"{law.title}: at {np.sum(code == one)} of {code.size} points {Code(int(one)).sentence}; their "
+            f"{law.title}: at {np.sum(code == lost)} of {code.size} points {Code(int(lost)).sentence}; their "
             "figures are withheld.",
             moves=WITHHELD,
-            brief=f"{law.name}: no result at {np.sum(code == one)} of {code.size} points.",
+            brief=f"{law.name}: no result at {np.sum(code == lost)} of {code.size} points.",
         )
-        for one in np.unique(code[films_lost(code)])
+        for lost in np.unique(code[films_lost(code)])
     ]
 
 
@@ -314,9 +322,9 @@ def _grouped(
 
     def of(group: Sequence[int]) -> dict[str, np.ndarray]:
         kind: Any = points[group[0]]
-        each = [(points[k].design, points[k].operation) for k in group]
-        found: dict[str, np.ndarray] = kind.figures_of(each, models, progress)
-        return found
+        states = [(points[k].design, points[k].operation) for k in group]
+        figures: dict[str, np.ndarray] = kind.figures_of(states, models, progress)
+        return figures
 
     groups = groups_alike([_design(point) for point in points])
     return whole_of([*map(of, groups)], groups)
@@ -330,7 +338,7 @@ def _by_films(points: Sequence[Built], law: str, progress: Progress) -> dict[str
     """Summaries of points whose films are solved, each by the choices of its own case."""
     runs = []
     for done, point in enumerate(points, 1):
-        (models,) = (one for one in point.models if one.law.name == law)
+        (models,) = (candidate for candidate in point.models if candidate.law.name == law)
         runs.append(summarise([(point.design, point.operation)], models))
         progress(done)
     return {name: np.concatenate([run[name] for run in runs]) for name in runs[0]}
@@ -370,7 +378,7 @@ def at_contact(points: Sequence[Built], under: Sequence[Models]) -> dict[str, An
     return {
         name: (
             ("law", "point"),
-            np.array([[run[name][0, 0, 0] for run in each] for each in runs]).T,
+            np.array([[run[name][0, 0, 0] for run in of_laws] for of_laws in runs]).T,
         )
         for name in AT_CONTACT
     }
@@ -387,7 +395,9 @@ def temperatures(points: Sequence[Built], laws: int) -> dict[str, Any]:
             values.setdefault(f"flank_temperature_{gear}", []).append(flank)
             values.setdefault(f"root_temperature_{gear}", []).append(used.temperature)
             values.setdefault(f"young_{gear}", []).append(float(used.solid.young))
-    return {name: (("law", "point"), np.array([each] * laws)) for name, each in values.items()}
+    return {
+        name: (("law", "point"), np.array([by_point] * laws)) for name, by_point in values.items()
+    }
 
 
 def vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
@@ -397,5 +407,5 @@ def vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
     from pitchpoint.analyses.vibration import figures_of
 
     groups = groups_alike([_design(point) for point in points])
-    found = whole_of([figures_of([points[k] for k in group]) for group in groups], groups)
-    return {name: (("law", "point"), np.stack([values] * laws)) for name, values in found.items()}
+    figures = whole_of([figures_of([points[k] for k in group]) for group in groups], groups)
+    return {name: (("law", "point"), np.stack([values] * laws)) for name, values in figures.items()}

@@ -18,7 +18,7 @@ def _teeth(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     numbers = drawing_of(built)
     dims, labels = built.family.drawing, built.family.coordinates
     data = {name: (dims.get(name) or _dims(name, v), v) for name, v in numbers.items()}
-    used = {name for each, _ in data.values() for name in each}
+    used = {name for axes, _ in data.values() for name in axes}
     drawn = dataset(data, {k: v for k, v in labels.items() if k in used}, title="teeth")
     if "points" in drawn:
         drawn["points"].attrs.update(built.way)
@@ -27,8 +27,8 @@ def _teeth(built: Built, _: Piece, __: Progress) -> xr.Dataset:
 
 def drawing_of(built: Built) -> dict[str, np.ndarray]:
     """Arrays of a drawing of the teeth, by name; empty where there are none."""
-    found: dict[str, np.ndarray] = jax.device_get(_drawing(built.design.mesh))
-    return found
+    arrays: dict[str, np.ndarray] = jax.device_get(_drawing(built.design.mesh))
+    return arrays
 
 
 def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:

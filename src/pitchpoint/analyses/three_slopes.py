@@ -33,8 +33,8 @@ def torques_of_catalogues(rated: float, limits: tuple[float, float] | None) -> n
 
 def _ends(rated: float, limits: tuple[float, float] | None) -> np.ndarray:
     """Torques at which the three slopes end; the last one at the rated torque, or beyond T2 by half of it."""
-    first, second = limits or tuple(part * rated for part in LIMITS)
-    return np.array([first, second, rated if second < rated else 1.5 * second])
+    low, high = limits or tuple(part * rated for part in LIMITS)
+    return np.array([low, high, rated if high < rated else 1.5 * high])
 
 
 def as_in_catalogues(
@@ -62,13 +62,16 @@ def as_in_catalogues(
     Source: Harmonic Drive AG (2014), section 4.2 for the slopes, glossary for the others.
     """
     ends = _ends(rated, limits)
-    known = np.isfinite(wind_up)
-    if np.count_nonzero(known) < 2:
-        known = np.array([True, True] + [False] * (known.size - 2))  # NaN throughout
+    finite = np.isfinite(wind_up)
+    if np.count_nonzero(finite) < 2:
+        finite = np.array([True, True] + [False] * (finite.size - 2))  # NaN throughout
     # Beyond what was found there is no figure.
-    at = np.interp(ends, torque[known], wind_up[known], right=np.nan)
+    at = np.interp(ends, torque[finite], wind_up[finite], right=np.nan)
     stiffness = np.diff(ends, prepend=0.0) / np.diff(at, prepend=0.0)
-    loops = [_loop(torque[known], wind_up[known], one[known], play, rated) for one in held]
+    loops = [
+        _loop(torque[finite], wind_up[finite], held_torque[finite], play, rated)
+        for held_torque in held
+    ]
     lost, loss = np.transpose(loops)
     return {
         "slope_stiffness": (("slope",), stiffness),

@@ -70,11 +70,11 @@ def load_classes(history: LoadHistory, *, warm: bool = False) -> LoadClasses:
         warm: temperatures make classes too, as the lines of plastics hang on them.
     """
     size, speed = np.abs(history.torque), np.abs(history.speed)
-    way = history.duration * speed
-    counts = (way > 0.0) & (size > _LEAST * size.max())
-    torque, size, speed, way, time, degree = (
+    travel = history.duration * speed
+    counts = (travel > 0.0) & (size > _LEAST * size.max())
+    torque, size, speed, travel, time, degree = (
         values[counts]
-        for values in (history.torque, size, speed, way, history.duration, history.temperature)
+        for values in (history.torque, size, speed, travel, history.duration, history.temperature)
     )
     loads = np.stack([torque, speed, *[degree] * warm])
     rows, place = np.unique(loads, axis=1, return_inverse=True)
@@ -90,10 +90,12 @@ def load_classes(history: LoadHistory, *, warm: bool = False) -> LoadClasses:
     def whole(values: Floats) -> Floats:
         return np.bincount(place, values).astype(float)
 
-    ways, times = whole(way), whole(time)
-    mean = (whole(way * size**_POWER) / ways) ** (1.0 / _POWER)
+    ways, times = whole(travel), whole(time)
+    mean = (whole(travel * size**_POWER) / ways) ** (1.0 / _POWER)
     sides = np.sign(whole(torque))
-    return LoadClasses(sides * mean, whole(time * speed) / times, ways, whole(way * degree) / ways)
+    return LoadClasses(
+        sides * mean, whole(time * speed) / times, ways, whole(travel * degree) / ways
+    )
 
 
 def _class_of(values: Floats, count: int) -> NDArray[np.int_]:
@@ -202,31 +204,33 @@ def mesh_member_names(built: Ready, labels: Sequence[Label]) -> list[str]:
         labels: of the meshes.
     """
     named = dict(zip(built.mesh_labels, _bodies(built), strict=True))
-    found: list[str] = []
+    names: list[str] = []
     for label in labels:
         number, bodies = named[label]
         where = f", stage {number}" if number else ""
         if bodies:
-            found += [f"{name}{where}" for name in _parted(bodies, [b for _, b in named.values()])]
+            names += [f"{name}{where}" for name in _parted(bodies, [b for _, b in named.values()])]
         else:
-            found += [f"gear {at}{where}" for at in (1, 2)]
-    return found
+            names += [f"gear {at}{where}" for at in (1, 2)]
+    return names
 
 
 def _bodies(built: Ready) -> list[tuple[int, tuple[str, ...]]]:
     """Stage of each mesh, 0 where there is one alone, and the two bodies of a mesh of a set."""
     if built.averaging == TRAIN_PERIOD:
         return [(0, tuple(words.split(" and "))) for words in built.stage_bodies]
-    found: list[tuple[int, tuple[str, ...]]] = []
-    for number, one in zip(built.numbers or (0,), built.stages or (built,), strict=True):
-        sets = [tuple(words.split(" and ")) for words in one.stage_bodies]
-        found += [(number, bodies) for bodies in sets or [()]]
-    return found
+    numbered_bodies: list[tuple[int, tuple[str, ...]]] = []
+    for number, stage in zip(built.numbers or (0,), built.stages or (built,), strict=True):
+        sets = [tuple(words.split(" and ")) for words in stage.stage_bodies]
+        numbered_bodies += [(number, bodies) for bodies in sets or [()]]
+    return numbered_bodies
 
 
 def _parted(bodies: Sequence[str], every: Sequence[Sequence[str]]) -> list[str]:
     """Names of both, with the mate where a body has several."""
-    often = [sum(name in set(one) for one in {*map(tuple, every)}) > 1 for name in bodies]
+    often = [
+        sum(name in set(mesh_bodies) for mesh_bodies in {*map(tuple, every)}) > 1 for name in bodies
+    ]
     return [
         f"{name} on {mate}" if several else name
         for name, mate, several in zip(bodies, reversed(bodies), often, strict=True)
@@ -235,26 +239,26 @@ def _parted(bodies: Sequence[str], every: Sequence[Sequence[str]]) -> list[str]:
 
 def _curves(built: Ready, temperature: Floats) -> dict[Label, Floats]:
     """Lines of plastic roots of each mesh at temperatures of the oil, shape (4, k, 2); NaN for others."""
-    found = {}
-    for label, one in zip(built.mesh_labels, built.meshes, strict=True):
-        if not one.case.gears.rated:
+    curves = {}
+    for label, mesh in zip(built.mesh_labels, built.meshes, strict=True):
+        if not mesh.case.gears.rated:
             continue
-        given = np.asarray(one.rated.strengths.root)
+        root_strengths = np.asarray(mesh.rated.strengths.root)
         columns = [
-            _curve(used, temperature + used.temperature - float(one.operation.temperature), limit)
-            for used, limit in zip(one.solids, given, strict=True)
+            _curve(used, temperature + used.temperature - float(mesh.operation.temperature), limit)
+            for used, limit in zip(mesh.solids, root_strengths, strict=True)
         ]
-        found[label] = np.stack(columns, axis=-1)
-    return found
+        curves[label] = np.stack(columns, axis=-1)
+    return curves
 
 
 def _curve(used: SolidInUse, degrees: Floats, given: float) -> Floats:
     """Of a gear at temperatures of its teeth, shape (4, k)."""
-    known, tensile = used.record.root_strength, used.record.tensile_strength
-    if known is None or not used.plastic or not np.isnan(given):
+    strength, tensile = used.record.root_strength, used.record.tensile_strength
+    if strength is None or not used.plastic or not np.isnan(given):
         return np.full((4, degrees.size), np.nan)
     most = np.inf if tensile is None else tensile.value
-    return np.array([(*known.at(float(degree)), most) for degree in degrees]).T
+    return np.array([(*strength.at(float(degree)), most) for degree in degrees]).T
 
 
 def _damage(inputs: tuple[Any, ...], built: Ready, classes: LoadClasses, curves: Floats) -> Floats:
@@ -270,8 +274,8 @@ def _damage(inputs: tuple[Any, ...], built: Ready, classes: LoadClasses, curves:
     # Turns of the driver of this mesh for a way of the output, at the ratio of the operating point.
     turns = classes.way * float(duty.speed) / abs(output_rate) / (2.0 * np.pi)
     motion = np.asarray(nominal_motion(mesh, duty.driver, 1.0 - duty.driver))
-    own = np.abs(motion) * np.asarray(duty.engagements)
-    cycles = turns[:, None] * own
+    cycles_per_turn = np.abs(motion) * np.asarray(duty.engagements)
+    cycles = turns[:, None] * cycles_per_turn
     working = classes.torque[:, None] > 0.0
     flank = _bears(of("contact_stress"), of("contact_limit"), strengths.constants.flank)
     root = _bears(of("root_stress"), of("root_limit"), strengths.constants.root)
@@ -288,8 +292,8 @@ def _damage(inputs: tuple[Any, ...], built: Ready, classes: LoadClasses, curves:
 
 def _bears(stress: Floats, limit: Floats, constants: Any) -> Floats:
     """Load cycles that both gears bear in each class on the lines of steel, shape (k, 2)."""
-    _, few, many = np.asarray(constants)
-    places = np.stack([few, many, np.full(2, LONG)])[:, None, :]
+    _, low_cycles, high_cycles = np.asarray(constants)
+    places = np.stack([low_cycles, high_cycles, np.full(2, LONG)])[:, None, :]
     return cycles_to_failure(stress[0], np.broadcast_to(places, limit.shape), limit)
 
 

@@ -67,20 +67,24 @@ def _of_drive(built: Ready, torques: np.ndarray) -> xr.Dataset:
     same ratio. Of the phases the worst meeting counts.
     """
     steps, copies = built.steps, np.array(built.copies)
-    each, numbers = _of_meshes(built, torques), np.array(built.mesh_numbers)
+    torsions, numbers = _of_meshes(built, torques), np.array(built.mesh_numbers)
     together = [numbers == number for number in built.numbers]
 
     def at_output(name: str) -> np.ndarray:
-        return np.stack([step * found[name] for step, found in zip(steps, each, strict=True)], -1)
+        return np.stack(
+            [step * torsion[name] for step, torsion in zip(steps, torsions, strict=True)], -1
+        )
 
-    slopes = np.stack([found["tangent_torsional_stiffness"] for found in each], -1)
+    slopes = np.stack([torsion["tangent_torsional_stiffness"] for torsion in torsions], -1)
     slopes *= copies / steps**2
     slope, turned = 1.0 / np.sum(1.0 / slopes, axis=-1), at_output("wind_up")
-    slopes = np.stack([1.0 / np.sum(1.0 / slopes[:, own], axis=-1) for own in together], -1)
-    turned = np.stack([np.sum(turned[:, own], axis=-1) for own in together], -1)
-    told_parts = (one.design.mesh.body.yielding for one in built.meshes)
+    slopes = np.stack(
+        [1.0 / np.sum(1.0 / slopes[:, of_stage], axis=-1) for of_stage in together], -1
+    )
+    turned = np.stack([np.sum(turned[:, of_stage], axis=-1) for of_stage in together], -1)
+    told_parts = (mesh.design.mesh.body.yielding for mesh in built.meshes)
     yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
-    parts = _parts_of_meshes(built, steps, each)
+    parts = _parts_of_meshes(built, steps, torsions)
     assumed = proportions_words(built.meshes)
     data = dataset(
         {
@@ -110,7 +114,7 @@ def _of_drive(built: Ready, torques: np.ndarray) -> xr.Dataset:
         travels=built.travels,
         warnings=[
             *_lost(built, turned.sum(axis=-1), torques),
-            *_on_edges_of_meshes(built, torques, each),
+            *_on_edges_of_meshes(built, torques, torsions),
         ],
         note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
         brief=f"{'; '.join(rigid)} are not in it{proportions_counted(built.meshes)}",
@@ -130,14 +134,16 @@ _SLOPELESS = (
 def _of_meshes(built: Ready, torques: np.ndarray) -> list[dict[str, Any]]:
     """What winds up in one copy of each mesh under torques at the output, without friction."""
     unloaded = np.zeros(len(built.models))
-    each = zip(built.meshes, built.steps, built.copies, strict=True)
-    return [_torsion(one, torques * step / count, unloaded) for one, step, count in each]
+    stepped_meshes = zip(built.meshes, built.steps, built.copies, strict=True)
+    return [
+        _torsion(mesh, torques * step / count, unloaded) for mesh, step, count in stepped_meshes
+    ]
 
 
 def mesh_slopes(built: Ready) -> np.ndarray:
     """Torque over turn of the driven member of one copy of each mesh, the slope at its load [N m/rad]."""
     torques, load = _torques(built), built.case.operation.load
-    slopes = (one["tangent_torsional_stiffness"] for one in _of_meshes(built, torques))
+    slopes = (torsion["tangent_torsional_stiffness"] for torsion in _of_meshes(built, torques))
     return np.array([np.interp(load, torques, slope) for slope in slopes])
 
 
@@ -145,11 +151,11 @@ def _parts_of_meshes(
     built: Ready, steps: np.ndarray, each: list[dict[str, Any]]
 ) -> dict[str, np.ndarray]:
     """Parts of the wind-up at the output by stage and name [rad]; nothing where no body couples teeth."""
-    if not any(found["parts"] for found in each):
+    if not any(torsion["parts"] for torsion in each):
         return {}
     parts: dict[str, np.ndarray] = {}
-    for number, step, found in zip(built.mesh_numbers, steps, each, strict=True):
-        for name, values in (found["parts"] or {"teeth": found["wind_up"]}).items():
+    for number, step, torsion in zip(built.mesh_numbers, steps, each, strict=True):
+        for name, values in (torsion["parts"] or {"teeth": torsion["wind_up"]}).items():
             part = f"stage {number}: {name}"
             parts[part] = parts.get(part, 0.0) + step * values
     return parts
@@ -157,9 +163,9 @@ def _parts_of_meshes(
 
 def _on_edges_of_meshes(built: Ready, torques: np.ndarray, each: list[dict[str, Any]]) -> list[str]:
     return [
-        in_stage(number, told)
-        for number, found in zip(built.mesh_numbers, each, strict=True)
-        for told in _on_edges(built, torques, _edges(found))
+        in_stage(number, sentence)
+        for number, torsion in zip(built.mesh_numbers, each, strict=True)
+        for sentence in _on_edges(built, torques, _edges(torsion))
     ]
 
 
@@ -172,10 +178,10 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     friction, rated = mean_friction(built), built.case.operation.load
     limits = getattr(built.case.gears, "slopes", None)
     told_of = built.design.mesh.body.couples and rated > 0.0 and _reduces(built)
-    more = torques_of_catalogues(rated, limits) if told_of else torques[:0]
-    every = np.union1d(torques, more)
+    catalogue_torques = torques_of_catalogues(rated, limits) if told_of else torques[:0]
+    every = np.union1d(torques, catalogue_torques)
     at = np.isin(every, torques)
-    found = _torsion(built, every, friction)
+    torsion = _torsion(built, every, friction)
     dims = {
         "path": ("phase", "pair"),
         "kinematic_play": (),
@@ -187,17 +193,17 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         "loading_torque": ("law", "torque"),
         "unloading_torque": ("law", "torque"),
     }
-    phase, solve = found.pop("phase"), found.pop("solve")
-    parts = found.pop("parts")
-    data = {name: (dims.get(name, ("torque",)), values) for name, values in found.items()}
+    phase, solve = torsion.pop("phase"), torsion.pop("solve")
+    parts = torsion.pop("parts")
+    data = {name: (dims.get(name, ("torque",)), values) for name, values in torsion.items()}
     if told_of:
-        held, play = found["loading_torque"] - every, float(found["kinematic_play"])
-        data |= as_in_catalogues(every, found["wind_up"], held, play, rated, limits)
+        held, play = torsion["loading_torque"] - every, float(torsion["kinematic_play"])
+        data |= as_in_catalogues(every, torsion["wind_up"], held, play, rated, limits)
         data["wind_up_part"] = (("part", "torque"), np.stack([*parts.values()]))
     yields, rigid = built.design.mesh.body.yielding
     assumed = proportions_words([built])
-    at_rated = float(np.interp(rated, every, found["wind_up"]))
-    whole = dataset(
+    at_rated = float(np.interp(rated, every, torsion["wind_up"]))
+    at_all_torques = dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
             "law": built.law_names,
@@ -208,18 +214,18 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         title="torsion",
         travels=built.travels,
         warnings=[
-            *_lost(built, found["wind_up"][at], torques),
-            *_on_edges(built, torques, _edges(found)[at]),
+            *_lost(built, torsion["wind_up"][at], torques),
+            *_on_edges(built, torques, _edges(torsion)[at]),
             *_loopless(built, friction),
-            *(_pressed(float(found["kinematic_play"])) if _on_balls(built) else []),
+            *(_pressed(float(torsion["kinematic_play"])) if _on_balls(built) else []),
         ],
-        note=f"{yields} yield; {rigid} are not in it{assumed}{_of_balls(found, at_rated)}",
+        note=f"{yields} yield; {rigid} are not in it{assumed}{_of_balls(torsion, at_rated)}",
         brief=f"{rigid} are not in it{proportions_counted([built])}",
         solve=solve,
     )
-    whole["torsional_stiffness"].attrs.update(_covered(yields, assumed))
-    whole["path"].attrs.update(built.way)
-    return whole.isel(torque=at)
+    at_all_torques["torsional_stiffness"].attrs.update(_covered(yields, assumed))
+    at_all_torques["path"].attrs.update(built.way)
+    return at_all_torques.isel(torque=at)
 
 
 def _reduces(built: Built) -> bool:
@@ -254,15 +260,15 @@ def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
 
 def _on_edges(built: Ready, torques: np.ndarray, share: np.ndarray) -> list[str]:
     """Torques of the loaded member at which edges carry more than a little."""
-    much = share > MUCH
-    if not much.any():
+    heavy = share > MUCH
+    if not heavy.any():
         return []
     most = int(np.nanargmax(share))
     return [
         Doubt(
             f"Edges of the teeth (ends of flanks and roundings of tips) carry up to "
             f"{in_percent(share[most])} of the load, that part at {built.carried.show(torques[most])}: "
-            f"more than {100.0 * MUCH:g} % from {built.carried.show(torques[much][0])} on. Loss, stiffness "
+            f"more than {100.0 * MUCH:g} % from {built.carried.show(torques[heavy][0])} on. Loss, stiffness "
             "and pressure then hang on how those edges are made.",
             brief=f"Edges of the teeth carry up to {in_percent(share[most])} of the load.",
         )
@@ -271,7 +277,7 @@ def _on_edges(built: Ready, torques: np.ndarray, share: np.ndarray) -> list[str]
 
 def _on_balls(built: Ready) -> bool:
     """True if balls hold the body under the teeth of a mesh."""
-    return any(one.design.mesh.body.elsewhere is not None for one in built.meshes)
+    return any(mesh.design.mesh.body.elsewhere is not None for mesh in built.meshes)
 
 
 def _pressed(play: float) -> list[str]:
@@ -328,35 +334,37 @@ def mean_friction(built: Built) -> np.ndarray:
 
 def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[str, Any]:
     """Wind-up at every torque, and the load on every tooth there."""
-    design, known = built.design, engaged_at(built)
-    each, body = wound_ups(built, known, torques)
-    found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
-    loop: Any = hysteresis(found, friction[:, None, None], _at_rest(built, known.contacts, each))
-    phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
-    approach, lost = found.wind_up + found.touch, np.isnan(found.wind_up)
-    turned = found.wind_up @ weight
+    design, engaged = built.design, engaged_at(built)
+    at_torques, body = wound_ups(built, engaged, torques)
+    wind_ups: Any = jax.tree.map(lambda *values: np.stack(values), *at_torques)
+    loop: Any = hysteresis(
+        wind_ups, friction[:, None, None], _at_rest(built, engaged.contacts, at_torques)
+    )
+    phase, weight, path = map(np.asarray, (engaged.phase, engaged.weight, engaged.contacts.path))
+    approach, lost = wind_ups.wind_up + wind_ups.touch, np.isnan(wind_ups.wind_up)
+    turned = wind_ups.wind_up @ weight
     return {
         "phase": phase[::SHOWN],
-        "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
+        "solve": told(locked_or_lost(False, lost), wind_ups.residual, wind_ups.iterations),
         "kinematic_play": np.asarray(
-            kinematic_play(design.mesh, design.loaded, known.contacts, known.phase, body)
+            kinematic_play(design.mesh, design.loaded, engaged.contacts, engaged.phase, body)
         )
         @ weight,
         "angular_transmission_error": approach[:, ::SHOWN],
         "angular_transmission_error_range": np.ptp(approach, axis=-1),
-        "mesh_torsional_stiffness": found.stiffness[:, ::SHOWN],
+        "mesh_torsional_stiffness": wind_ups.stiffness[:, ::SHOWN],
         "wind_up": turned,
-        "wind_up_range": np.ptp(found.wind_up, axis=-1),
-        **_stiffness(torques, turned, found.stiffness, weight),
-        "loaded_pairs": found.loaded_pairs @ weight,
-        **_zone_load(found.inner_load @ weight),
-        **_edge_share(design.mesh, found, weight),
-        **_of_pairs(design.mesh, path, found.force),
+        "wind_up_range": np.ptp(wind_ups.wind_up, axis=-1),
+        **_stiffness(torques, turned, wind_ups.stiffness, weight),
+        "loaded_pairs": wind_ups.loaded_pairs @ weight,
+        **_zone_load(wind_ups.inner_load @ weight),
+        **_edge_share(design.mesh, wind_ups, weight),
+        **_of_pairs(design.mesh, path, wind_ups.force),
         "loading_torque": loop.loading @ weight,
         "unloading_torque": loop.unloading @ weight,
-        "parts": _parts(design, known.contacts, found, weight),
+        "parts": _parts(design, engaged.contacts, wind_ups, weight),
         **_by_balls(
-            built, known.contacts, weight, np.interp(built.case.operation.load, torques, turned)
+            built, engaged.contacts, weight, np.interp(built.case.operation.load, torques, turned)
         ),
     }
 
@@ -403,24 +411,24 @@ def wound_ups(
     mesh, solids, body = design.mesh, design.solids, known.body
     if body is None:
         body = coupling(mesh.body, solids, known.contacts)
-    given = mesh, design.loaded, solids, built.terms
-    each: list[Any] = []
+    inputs = mesh, design.loaded, solids, built.terms
+    at_torques: list[Any] = []
     for torque in torques:
-        if each and isinstance(
+        if at_torques and isinstance(
             body, OnBalls
         ):  # balls stand near where they stood for the torque before
-            body = replace(body, start=each[-1].balls)
-        at = wound_up(*given, torque, known.contacts, body)
-        each.append(jax.device_get(at))
-    return each, body
+            body = replace(body, start=at_torques[-1].balls)
+        at = wound_up(*inputs, torque, known.contacts, body)
+        at_torques.append(jax.device_get(at))
+    return at_torques, body
 
 
 def _edge_share(mesh: Mesh, found: Any, weight: np.ndarray) -> dict[str, np.ndarray]:
     """Part of the load on edges at each torque, of meshes that watch for them; none of no load."""
     if not mesh.body.couples:
         return {}
-    whole = found.force.sum(axis=(1, 2)) @ weight
-    return {"edge_share": (found.edge_load @ weight) / np.where(whole != 0.0, whole, 1.0)}
+    total = found.force.sum(axis=(1, 2)) @ weight
+    return {"edge_share": (found.edge_load @ weight) / np.where(total != 0.0, total, 1.0)}
 
 
 def _by_balls(
@@ -429,19 +437,19 @@ def _by_balls(
     """Wind-up at the operating point with the balls elsewhere less that as they stand; none without balls."""
     design = built.design
     mesh, solids = design.mesh, design.solids
-    other = mesh.body.elsewhere
-    if other is None:
+    elsewhere = mesh.body.elsewhere
+    if elsewhere is None:
         return {}
-    given = mesh, design.loaded, solids, built.terms, array(built.case.operation.load)
-    found = wound_up(*given, contacts, coupling(other, solids, contacts))
-    return {"wind_up_by_balls": np.asarray(found.wind_up) @ weight - as_they_stand}
+    inputs = mesh, design.loaded, solids, built.terms, array(built.case.operation.load)
+    wound = wound_up(*inputs, contacts, coupling(elsewhere, solids, contacts))
+    return {"wind_up_by_balls": np.asarray(wound.wind_up) @ weight - as_they_stand}
 
 
 def _of_pairs(mesh: Mesh, path: np.ndarray, force: np.ndarray) -> dict[str, np.ndarray]:
     """Way of every pair [phase, pair] and the force on it [torque, phase, pair]."""
-    way, loads = in_pairs(mesh, path, 0, like_first=True), in_pairs(mesh, force, 1)
+    pair_path, loads = in_pairs(mesh, path, 0, like_first=True), in_pairs(mesh, force, 1)
     return {
-        "path": way.mean(axis=1)[:, ::SHOWN].T,
+        "path": pair_path.mean(axis=1)[:, ::SHOWN].T,
         "tooth_force": np.moveaxis(loads.sum(axis=2), 1, 2)[:, ::SHOWN],
     }
 
@@ -464,7 +472,7 @@ def _at_rest(built: Built, contacts: Contacts, each: list[Any]) -> np.ndarray | 
     if not design.drag:
         return 0.0
     warm = built.operation.temperature
-    torques = [_drag_at_rest(design, contacts, one.force, warm) for one in each]
+    torques = [_drag_at_rest(design, contacts, wound.force, warm) for wound in each]
     return np.stack(jax.device_get(torques))
 
 
@@ -498,8 +506,8 @@ def kinematic_play(
     body: Body | None,
 ) -> Array:
     """Rotation of the loaded member between first touch of its flanks on either side [rad]."""
-    other = mesh.other_flanks
-    both = contacts, contacts if other is mesh else other.contacts(phase)
+    other_flanks = mesh.other_flanks
+    both = contacts, contacts if other_flanks is mesh else other_flanks.contacts(phase)
     return sum(
         (touch(opened(at.gap, body), jnp.abs(along(at.normal, loaded)), at.active) for at in both),
         jnp.zeros(()),
@@ -516,8 +524,8 @@ def torsion_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("torsion")
     if data is None:
         return {"torsion": {}, "kinematic_play": None}
-    told = data["torsional_stiffness"].attrs
-    of = {"stiffness_of": told.get("covers", "") + told.get("assumed", "")}
+    attributes = data["torsional_stiffness"].attrs
+    of = {"stiffness_of": attributes.get("covers", "") + attributes.get("assumed", "")}
     return {
         "torsion": by_torque(data, (*WIND_UP, *_OTHER_STIFFNESS)) | of | _slopes(data),
         "kinematic_play": float(data["kinematic_play"]),

@@ -34,9 +34,9 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
         jax.device_get(train_cycle(train, built.operation, acting.stages, NODES_OF_TRAINS))
         for acting in built.models
     ]
-    first, planets = cycles[0], max(built.copies)
+    cycle_nodes, planets = cycles[0], max(built.copies)
     turns = round(float(train.turns))
-    phase = first.phase + np.arange(turns)[:, None] / turns
+    phase = cycle_nodes.phase + np.arange(turns)[:, None] / turns
 
     def whole(values: Iterable[Any]) -> np.ndarray:
         """Values [law node] over all parts of the period, in which planets have each other's places."""
@@ -54,7 +54,7 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     return dataset(
         {
             "driver_angle": (("node",), phase.ravel() * float(train.period)),
-            "weight": (("node",), np.tile(first.weight, turns) / turns),
+            "weight": (("node",), np.tile(cycle_nodes.weight, turns) / turns),
             "input_torque": (("law", "node"), whole(np.where(solved, driven, np.nan))),
             "efficiency": (("law", "node"), whole(ratios)),
             "loss": (("law", "node"), whole(cycle.loss for cycle in cycles)),
@@ -83,8 +83,8 @@ def _over_period(train: "Train", forces: np.ndarray) -> np.ndarray:
 def _axial_loads(built: BuiltTrain) -> tuple[dict[str, float], float]:
     """Thrusts on the bodies, one planet for all, and the moment that tilts it, without losses."""
     train = built.design
-    links = [one.link for one in train.meshes]
+    links = [mesh.link for mesh in train.meshes]
     ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
     ideal = train_torques(links, ends, float(built.case.operation.load), [1.0] * len(links))
-    found = axial_loads(links, train.planets, ideal.shares, built.copies)
-    return dict(found.thrusts), found.tilting
+    axial = axial_loads(links, train.planets, ideal.shares, built.copies)
+    return dict(axial.thrusts), axial.tilting

@@ -68,20 +68,20 @@ Input = tuple[Design, Operation, Vibrating]
 
 def vibrating_of(built: Built) -> Vibrating:
     """Inertia, damping and profile error of a case; discs of the gears' materials by default."""
-    asked, mesh = built.case.dynamics, built.design.mesh
-    assert asked is not None
-    if asked.inertia is None:
+    dynamics, mesh = built.case.dynamics, built.design.mesh
+    assert dynamics is not None
+    if dynamics.inertia is None:
         densities = [float(solid.density) for solid in built.design.solids]
         inertia = _inertia(bare(mesh), array(densities))
     else:
-        inertia = array(asked.inertia)
-    errors = asked.profile_error
+        inertia = array(dynamics.inertia)
+    errors = dynamics.profile_error
     return Vibrating(
         inertia=inertia,
-        damping_ratio=array(asked.damping_ratio),
+        damping_ratio=array(dynamics.damping_ratio),
         error=array([error.amplitude for error in errors]),
         error_phase=array([error.phase for error in errors]),
-        backlash=array(np.inf if asked.backlash is None else asked.backlash),
+        backlash=array(np.inf if dynamics.backlash is None else dynamics.backlash),
         orders=tuple(int(error.order) for error in errors),
     )
 
@@ -99,13 +99,13 @@ def stiffness_part(built: Built) -> xr.Dataset:
 
     Where flanks have gaps only the springs that carry count.
     """
-    found, status = jax.device_get(_stiffness(built.design, built.operation, built.terms))
+    stiffness, status = jax.device_get(_stiffness(built.design, built.operation, built.terms))
     lanes = ("pair", "node")
     data = {
         name: (lanes if np.ndim(values) == 2 else ("node",)[: np.ndim(values)], values)
-        for name, values in found.items()
+        for name, values in stiffness.items()
     }
-    standard, told = estimate(
+    standard, remarks = estimate(
         built.design.mesh, built.design.loaded, built.design.solids, built.operation.load
     )
     data |= {name: ((), value) for name, value in standard.items()}
@@ -114,7 +114,7 @@ def stiffness_part(built: Built) -> xr.Dataset:
         data,
         {},
         title="mesh stiffness",
-        warnings=[*told, *lost],
+        warnings=[*remarks, *lost],
         solve=DIRECT if status is None else summary(status),
         model=TOOTH_COMPLIANCE[built.case.models.tooth_compliance].title,
     )
@@ -126,44 +126,44 @@ def _stiffness(
 ) -> tuple[dict[str, Array], Status | None]:
     """Values by name, and what became of the equilibrium behind them, if any."""
     mesh, load = design.mesh, operation.load
-    found = mesh_stiffness(mesh, design.loaded, design.solids, terms, load)
-    contacts = mesh.contacts(found.phase)
+    stiffness = mesh_stiffness(mesh, design.loaded, design.solids, terms, load)
+    contacts = mesh.contacts(stiffness.phase)
     length = jnp.sum(jnp.where(contacts.active, contacts.weight, 0.0), axis=1)
-    entered = found.phase + jnp.arange(found.single.shape[0])[:, None, None]
-    single, total = found.along_action, found.total
-    error = found.approach * jnp.abs(line_of_action(mesh) @ design.loaded)
-    mean = jnp.sum(total * found.weight)
+    entered = stiffness.phase + jnp.arange(stiffness.single.shape[0])[:, None, None]
+    single, total = stiffness.along_action, stiffness.total
+    error = stiffness.approach * jnp.abs(line_of_action(mesh) @ design.loaded)
+    mean = jnp.sum(total * stiffness.weight)
     lanes = {"entered": entered, "pair_stiffness": single, "line_length": length}
-    whole = {
+    of_mesh = {
         "mean_stiffness": mean,
         "stiffness_variation": (jnp.max(total) - jnp.min(total)) / mean,
     }
-    nodal = {"phase": found.phase, "weight": found.weight, "mesh_stiffness": total}
+    nodal = {"phase": stiffness.phase, "weight": stiffness.weight, "mesh_stiffness": total}
     nodal["static_transmission_error"] = error
     flat = {name: values.reshape(values.shape[0], -1) for name, values in lanes.items()}
-    values = flat | {name: values.ravel() for name, values in nodal.items()} | whole
-    return values, None if found.state is None else found.state.status
+    values = flat | {name: values.ravel() for name, values in nodal.items()} | of_mesh
+    return values, None if stiffness.state is None else stiffness.state.status
 
 
 def vibration_part(built: Built) -> xr.Dataset:
     """Steady vibration at the operating speed for every torque of the case."""
     inputs = [(built.design, point, vibrating_of(built)) for point in _loads(built)]
-    found = _solved(inputs, built, _course)
+    figures = _solved(inputs, built, _course)
     dims = {"dynamic_factor": ("torque", "pair", "node"), "spectrum": ("torque", "order")}
     nodal = ("transmission_error", "static_transmission_error", "mesh_dynamic_factor")
-    data: dict[str, Any] = {"phase": (("node",), found.pop("phase")[0])}
-    for name, values in found.items():
-        own = ("torque", "node") if name in nodal else ("torque",)
-        data[name] = (dims.get(name, own), values)
-    told = [Code(int(code)) for code in found["vibration_status"]]
+    data: dict[str, Any] = {"phase": (("node",), figures.pop("phase")[0])}
+    for name, values in figures.items():
+        axes = ("torque", "node") if name in nodal else ("torque",)
+        data[name] = (dims.get(name, axes), values)
+    statuses = [Code(int(code)) for code in figures["vibration_status"]]
     return dataset(
         data,
         {"torque": ("torque", _torques(built)), "order": ("order", np.array(ORDERS))},
         title="vibration",
         travels=built.travels,
-        warnings=[*_warnings(built, told), *_moduli(built)],
-        status=[status.sentence for status in told],
-        solve=told_of(found["vibration_status"].astype(int)),
+        warnings=[*_warnings(built, statuses), *_moduli(built)],
+        status=[status.sentence for status in statuses],
+        solve=told_of(figures["vibration_status"].astype(int)),
         contact=CONTACT_LAWS[built.case.models.tooth_contact].title,
     )
 
@@ -184,14 +184,17 @@ def _course(stiffness: MeshStiffness, moved: System, found: Response) -> dict[st
 def resonance_part(built: Built) -> xr.Dataset:
     """Vibration against speed, speeds rising and falling, for every torque of the case."""
     assert built.case.dynamics is not None
-    asked = built.case.dynamics.speeds
-    assert asked is not None
-    speeds = np.linspace(asked.start, asked.stop, int(asked.count))
+    sweep = built.case.dynamics.speeds
+    assert sweep is not None
+    speeds = np.linspace(sweep.start, sweep.stop, int(sweep.count))
     slowest = replace(built.operation, speed=jnp.asarray(speeds[0]))
     points = [replace(slowest, load=load.load) for load in _loads(built)]
-    own = vibrating_of(built)
-    parts = [(*_excited(built.design, point, built.terms, own), own.backlash) for point in points]
-    grid = _grid(parts, own.orders, "dynamics.speeds.start")
+    vibrating = vibrating_of(built)
+    parts = [
+        (*_excited(built.design, point, built.terms, vibrating), vibrating.backlash)
+        for point in points
+    ]
+    grid = _grid(parts, vibrating.orders, "dynamics.speeds.start")
     periods = built.design.period / jnp.asarray(speeds)
     runs = [
         [jax.device_get(_sweep(*part, order, grid, separating(built))) for part in parts]
@@ -237,15 +240,15 @@ def _sweep(
     def alone(period: Float[Array, ""]) -> dict[str, Array]:
         return figures(steady(replace(moved, period=period), driven, grid))
 
-    found: dict[str, Array]
+    by_speed: dict[str, Array]
     if parting:
-        found = eqx.filter_vmap(figures)(
+        by_speed = eqx.filter_vmap(figures)(
             speed_sweep(moved, driven, periods, grid, backlash=backlash)
         )
     else:
         # A few at a time: the slowest speed needs a fine grid, and all would not fit into memory.
-        found = jax.lax.map(alone, periods, batch_size=4)
-    return found
+        by_speed = jax.lax.map(alone, periods, batch_size=4)
+    return by_speed
 
 
 def figures_of(points: Sequence[Built]) -> dict[str, np.ndarray]:
@@ -261,11 +264,14 @@ Excited = tuple[MeshStiffness, System, Excitation, Array]
 def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str, np.ndarray]:
     """What is read from the steady vibration of every input, solved in chunks of one size."""
     terms = built.terms
-    parts = [(*_excited(design, point, terms, own), own.backlash) for design, point, own in inputs]
+    parts = [
+        (*_excited(design, point, terms, vibrating), vibrating.backlash)
+        for design, point, vibrating in inputs
+    ]
     grid = _grid(parts, inputs[0][2].orders)
     parting = separating(built)
     return of_stacks(
-        (_read(one, grid, parting, reading), used) for one, used in stacks(parts, TOGETHER)
+        (_read(part, grid, parting, reading), used) for part, used in stacks(parts, TOGETHER)
     )
 
 
@@ -274,11 +280,11 @@ def _read(parts: Excited, grid: Grid, parting: bool, reading: Reading) -> dict[s
     def one(
         stiffness: MeshStiffness, moved: System, driven: Excitation, backlash: Array
     ) -> dict[str, Array]:
-        found = steady(moved, driven, grid, separating=parting, backlash=backlash)
-        return reading(stiffness, moved, found)
+        response = steady(moved, driven, grid, separating=parting, backlash=backlash)
+        return reading(stiffness, moved, response)
 
-    found: dict[str, Array] = eqx.filter_vmap(one)(*parts)
-    return found
+    readings: dict[str, Array] = eqx.filter_vmap(one)(*parts)
+    return readings
 
 
 _excited = program(excited)
@@ -291,8 +297,8 @@ def _loads(built: Built) -> list[Operation]:
 
 def _torques(built: Built) -> list[float]:
     assert built.case.dynamics is not None
-    asked = built.case.dynamics
-    return list(asked.torques or asked.forces or (built.case.operation.load,))
+    dynamics = built.case.dynamics
+    return list(dynamics.torques or dynamics.forces or (built.case.operation.load,))
 
 
 def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation.speed") -> Grid:
@@ -317,10 +323,10 @@ def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation
 
 def _moduli(built: Built) -> list[str]:
     """Where moduli that depend on the operating point are used beside it."""
-    asked = built.case.dynamics
-    if built.case.models.tooth_temperature == "isothermal" or asked is None:
+    dynamics = built.case.dynamics
+    if built.case.models.tooth_temperature == "isothermal" or dynamics is None:
         return []
-    if asked.speeds is None and set(_torques(built)) <= {built.case.operation.load}:
+    if dynamics.speeds is None and set(_torques(built)) <= {built.case.operation.load}:
         return []
     return [
         Doubt(

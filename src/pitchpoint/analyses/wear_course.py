@@ -91,8 +91,8 @@ def _rate(built: Built, depth: np.ndarray, *, coarser: bool = False) -> Rate:
     seen = depth if asked(built).profile == "updated" else np.zeros_like(depth)
     if coarser:
         cells, seen = cells.coarser, cells.merged(seen)
-    given = built.design, built.operation, built.models[0], model, cells, start
-    return Rate.of(one_turn(*given, array(seen)))
+    inputs = built.design, built.operation, built.models[0], model, cells, start
+    return Rate.of(one_turn(*inputs, array(seen)))
 
 
 def wear_part(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
@@ -118,7 +118,9 @@ def _check_tips(built: Built) -> None:
 
 def _bodies(built: Built) -> list[str]:
     """Names of the bodies whose flanks touch."""
-    return [next(one.body for one in built.bodies if one.member == member) for member in range(2)]
+    return [
+        next(body.body for body in built.bodies if body.member == member) for member in range(2)
+    ]
 
 
 def _limit(built: Built) -> Limit:
@@ -136,8 +138,10 @@ def _limit(built: Built) -> Limit:
 
 def _hardness(built: Built) -> float:
     """That of the softer flank [Pa]; infinite where neither is known."""
-    known = asked(built).hardness or tuple(float(one.hardness) for one in built.design.solids)
-    return float(np.nanmin([*known, np.inf]))
+    hardnesses = asked(built).hardness or tuple(
+        float(solid.hardness) for solid in built.design.solids
+    )
+    return float(np.nanmin([*hardnesses, np.inf]))
 
 
 def _play(built: Built, depth: np.ndarray, *, pitch_line: bool = False) -> float:
@@ -190,7 +194,7 @@ def _piece(reached: Reached, start: float | None) -> xr.Dataset:
         "next_step": (("step",), reached.step),
     }
     return dataset(
-        {name: (dims, np.asarray(one)[None]) for name, (dims, one) in values.items()},
+        {name: (dims, np.asarray(numbers)[None]) for name, (dims, numbers) in values.items()},
         {},
         end=reached.end,
         lost=int(reached.rate.lost),
@@ -200,21 +204,21 @@ def _piece(reached: Reached, start: float | None) -> xr.Dataset:
 
 def _reached(piece: xr.Dataset) -> Reached:
     """The state that a piece holds, to the last bit."""
-    given = {name: piece[name].values[0] for name in piece.data_vars}
+    variables = {name: piece[name].values[0] for name in piece.data_vars}
     end: End = piece.attrs["end"]
     rate = Rate(
-        depth=given["depth_per_turn"],
-        pressure=float(given["wear_pressure"]),
-        conforming=bool(given["conforming"]),
-        outgrown=bool(given["outgrown"]),
+        depth=variables["depth_per_turn"],
+        pressure=float(variables["wear_pressure"]),
+        conforming=bool(variables["conforming"]),
+        outgrown=bool(variables["outgrown"]),
         lost=bool(piece.attrs["lost"]),
     )
     return Reached(
-        turns=float(given["cycles"]),
-        depth=given["worn_depth"],
+        turns=float(variables["cycles"]),
+        depth=variables["worn_depth"],
         rate=rate,
-        error=given["wear_error"],
-        step=float(given["next_step"]),
+        error=variables["wear_error"],
+        step=float(variables["next_step"]),
         end=end,
     )
 
@@ -229,18 +233,18 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         parts = parts[:-1]  # the state before, from which no step was found
     names = [str(name) for name in parts[0].data_vars if name != "next_step"]
     values = {name: np.concatenate([part[name].values for part in parts]) for name in names}
-    flank, across = (np.asarray(one) for one in course.cells.middles)
+    flank, across = (np.asarray(numbers) for numbers in course.cells.middles)
     dims = {name: tuple(map(str, parts[0][name].dims)) for name in names}
     depth, per_turn = values["worn_depth"], values["depth_per_turn"]
     rows = course.cells.deepest
-    deepest, fastest = (one[:, :, rows].max(axis=(2, 3)) for one in (depth, per_turn))
+    deepest, fastest = (numbers[:, :, rows].max(axis=(2, 3)) for numbers in (depth, per_turn))
     if end == "depth" and deepest[-1].max() >= (1.0 - 1e-9) * _deepest(built):
         end = "module"
-    merged = np.stack([course.cells.merged(one) for one in depth])
+    merged = np.stack([course.cells.merged(numbers) for numbers in depth])
     of_cells = np.abs(deepest - merged[:, :, rows].max(axis=(2, 3)))
     values["wear_error"] += np.maximum(of_cells, _of_grid(built) * deepest)
     values["wear_error"] += (_of_slices(course.start) + _of_films(built, depth)) * deepest
-    volumes = [np.asarray(course.cells.volumes(array(one))) for one in depth]
+    volumes = [np.asarray(course.cells.volumes(array(numbers))) for numbers in depth]
     sensitivities = _sensitivities(built, values)
     inner = course.cells.count
     values |= {"worn_depth": depth[:, :, :inner], "depth_per_turn": per_turn[:, :, :inner]}
@@ -265,10 +269,10 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         codes[-1] = int(Code.NOT_CONVERGED)
     return dataset(
         {
-            **{name: (dims[name], one) for name, one in values.items()},
+            **{name: (dims[name], numbers) for name, numbers in values.items()},
             **added,
             **teeth,
-            **{name: ((), one) for name, one in figures.items()},
+            **{name: ((), numbers) for name, numbers in figures.items()},
         },
         {},
         title="wear",
@@ -332,16 +336,22 @@ def _of_films(built: Built, depth: np.ndarray) -> float:
     if course.model.films is None:
         return 0.0
     half = fewer(course.model.films.nodes)
-    other, part = (half, OF_HALF_NODES) if half else (2 * course.model.films.nodes - 1, 1.0)
-    models = course.model, replace(course.model, films=replace(course.model.films, nodes=other))
+    nodes, part = (half, OF_HALF_NODES) if half else (2 * course.model.films.nodes - 1, 1.0)
+    models = course.model, replace(course.model, films=replace(course.model.films, nodes=nodes))
     ends = [np.zeros_like(depth[-1])] + [depth[-1]] * (asked(built).profile == "updated")
     rates = np.array(
         [
             one_turn(
-                design, operation, built.models[0], model, course.cells, course.start, array(one)
+                design,
+                operation,
+                built.models[0],
+                model,
+                course.cells,
+                course.start,
+                array(end_depth),
             ).depth
             for model in models
-            for one in ends
+            for end_depth in ends
         ]
     )
     usual, varied = rates[:, :, course.cells.deepest].max(axis=(2, 3)).reshape(2, -1)
@@ -376,18 +386,18 @@ def _where(built: Built, depth: np.ndarray) -> dict[str, Any]:
     deepest = flank.reshape(2, -1)[np.arange(2), most]
     radii = _radii(built, deepest.T).T
     turns = not np.isnan(radii).all()
-    found = {
+    places = {
         "deepest_radius" if turns else "deepest_place": (
             ("step", "member"),
             np.where(depth.any(axis=(2, 3)), radii if turns else deepest, np.nan),
         )
     }
     if start.places is None:
-        return found
+        return places
     if cells.strips > 1:
-        return found | _largest_in_cells(built, flank, depth)
+        return places | _largest_in_cells(built, flank, depth)
     order = _along_flank(flank[..., 0])[:, : int(np.isfinite(flank[0]).sum())]
-    return found | {
+    return places | {
         "profile_radius": (
             ("member", "place"),
             _radii(built, np.take_along_axis(flank[..., 0], order, axis=1)),
@@ -432,14 +442,17 @@ def _of_teeth(built: Built, depth: np.ndarray, error: np.ndarray) -> dict[str, A
         return {}
     new = half_teeth(built.design.mesh, _course(built).cells)
     grown, least = (
-        np.array([_play(built, one, pitch_line=crossed) for one in depth])
+        np.array([_play(built, step_depth, pitch_line=crossed) for step_depth in depth])
         for crossed in (False, True)
     )
     return {
         "flank_half_thickness": (("member", "cell"), new.half),
         "flank_height": (("member", "cell"), new.height),
         "flank_angle": (("member", "cell"), new.angle),
-        "worn_tip_land": (("step", "member"), np.stack([tips.left(one) for one in depth])),
+        "worn_tip_land": (
+            ("step", "member"),
+            np.stack([tips.left(step_depth) for step_depth in depth]),
+        ),
         "backlash_growth": (("step",), grown),
         "backlash_growth_error": (("step",), error.sum(axis=1) + grown - least),
     }
@@ -455,7 +468,7 @@ def _figures(
     course = fastest[:, most]
     moves = bool(np.all(course > 0.0))
     by = asked(built).severe_by
-    told = course if by == "rate" else pressure
+    severity = course if by == "rate" else pressure
     return {
         "final_cycles": cycles[-1],
         "final_depth": deepest[-1].max(),
@@ -464,7 +477,7 @@ def _figures(
         "life_hours": cycles[-1] * 2.0 * np.pi / speed,
         "pressure_change": pressure[-1] / pressure[0] - 1.0 if pressure[0] > 0.0 else np.nan,
         "run_in_cycles": run_in_end(cycles, course) if moves else np.nan,
-        "severe_cycles": severe_start(cycles, told, by) if moves else np.nan,
+        "severe_cycles": severe_start(cycles, severity, by) if moves else np.nan,
         "wear_steps": cycles.size - 1,
     }
 
@@ -475,11 +488,11 @@ def _sensitivities(built: Built, values: Mapping[str, np.ndarray]) -> dict[str, 
     if not _sensitive(built):
         return {}
     inputs = built.design, built.operation, course.model
-    given = models, course.cells, int(asked(built).phases)
+    choices = models, course.cells, int(asked(built).phases)
     steps = values["cycles"], values["worn_depth"]
     updated = asked(built).profile == "updated"
-    found = march_sensitivities(inputs, *given, *steps, updated=updated)
-    return {name: one._asdict() for name, one in found.items()}
+    sensitivities = march_sensitivities(inputs, *choices, *steps, updated=updated)
+    return {name: derivatives._asdict() for name, derivatives in sensitivities.items()}
 
 
 def _sensitive(built: Built) -> bool:
@@ -498,17 +511,17 @@ def _films(built: Built) -> bool:
 def _warnings(
     built: Built, values: Mapping[str, np.ndarray], deepest: np.ndarray, end: str
 ) -> list[str]:
-    told = told_of_wear(built.case, _course(built).model)
+    doubts = told_of_wear(built.case, _course(built).model)
     error = float(np.max(values["wear_error"][-1] / np.maximum(deepest[-1].max(), FIRST)))
     films = _course(built).model.films
-    more = "" if films is None else f"more film.nodes (of {films.nodes}), "
+    finer = "" if films is None else f"more film.nodes (of {films.nodes}), "
     if error > TOLD:
-        told.append(
+        doubts.append(
             Doubt(
                 f"Wear: the largest depth may be {in_percent(error)} off by the grid on the flanks"
                 f"{'' if films is None else ', that of the films'} and the "
                 f"steps of the march; more wear.cells (of {int(asked(built).cells)}) and wear.phases (of "
-                f"{int(asked(built).phases)}), {more}and a smaller wear.tolerance, tell.",
+                f"{int(asked(built).phases)}), {finer}and a smaller wear.tolerance, tell.",
                 "wear grid",
                 error,
                 moves=error,
@@ -517,7 +530,7 @@ def _warnings(
             )
         )
     if end == "lost":
-        told.append(
+        doubts.append(
             Doubt(
                 f"Wear: {_lost(built)} of flanks that are worn so far were not found, and the march ends "
                 "there.",
@@ -525,14 +538,14 @@ def _warnings(
             )
         )
     if end == "no wear":
-        told.append(
+        doubts.append(
             Doubt(
                 "Wear: nothing slides under load, or the law wears nothing off: depths stay zero.",
                 brief="Wear: nothing slides under load, or nothing wears off: depths are 0.",
             )
         )
     if asked(built).sensitivities is None and not _sensitive(built) and not _films(built):
-        told.append(
+        doubts.append(
             Doubt(
                 "Wear: what the life depends on is not told; its derivatives take minutes for teeth that a "
                 "ring couples. Ask for them by wear.sensitivities = true.",
@@ -541,16 +554,16 @@ def _warnings(
         )
     line = built.design.mesh.shape == "line"
     if np.any(values["conforming"]) and not line:
-        first = float(values["cycles"][int(np.argmax(values["conforming"]))])
-        told.append(
+        turns = float(values["cycles"][int(np.argmax(values["conforming"]))])
+        doubts.append(
             Doubt(
-                f"Wear: from {first:.3g} turns on worn flanks conform; their contacts are taken to keep a "
+                f"Wear: from {turns:.3g} turns on worn flanks conform; their contacts are taken to keep a "
                 "tenth of the relative curvature they had, and pressures there are a guess.",
-                brief=f"Wear: from {first:.3g} turns on flanks conform: pressures are a guess.",
+                brief=f"Wear: from {turns:.3g} turns on flanks conform: pressures are a guess.",
             )
         )
     if end == "module":
-        told.append(
+        doubts.append(
             Doubt(
                 f"Wear: the march ends at {HOLDS:g} modules, beyond which flanks no longer touch where they "
                 "did as new.",
@@ -558,7 +571,7 @@ def _warnings(
             )
         )
     if np.isinf(_hardness(built)):
-        told.append(
+        doubts.append(
             Doubt(
                 "Wear: the hardness of neither flank is known, so that nothing ends the march where a "
                 "surface would yield; give wear.hardness, or that of the materials.",
@@ -566,7 +579,7 @@ def _warnings(
             )
         )
     if end == "hardness":
-        told.append(
+        doubts.append(
             Doubt(
                 f"Wear: the march ends where the largest pressure on worn flanks reaches the hardness of the "
                 f"softer one, {HARDNESS.show(_hardness(built))}: beyond it the surface yields, which no law "
@@ -577,7 +590,7 @@ def _warnings(
     cells = _course(built).cells
     longest, span = float(np.max(np.asarray(cells.lengths))), float(cells.span[0])
     if line and span < BRIDGED * longest:
-        told.append(
+        doubts.append(
             Doubt(
                 f"Wear: pressures on worn flanks depend on wear.cells; contacts reach {1e6 * span:.2g} um to "
                 f"each side on average, less than {BRIDGED:g} cells of {1e6 * longest:.3g} um, over which "
@@ -586,7 +599,7 @@ def _warnings(
             )
         )
     if line and (widest := _widest(built)) > WIDEST:
-        told.append(
+        doubts.append(
             Doubt(
                 f"Wear: contacts of flanks as new are up to {widest:.2g} of the radius of the sharper flank "
                 f"wide to each side, and both are half spaces up to {WIDEST:g}: pressures there are a guess, "
@@ -595,7 +608,7 @@ def _warnings(
             )
         )
     if end == "outgrown" and line:
-        told.append(
+        doubts.append(
             Doubt(
                 f"Wear: the march ends where a contact would grow wider to each side than {WIDEST:g} of the "
                 "radius of the sharper flank as new, or than a flank is long: worn flanks conform there, and "
@@ -604,14 +617,14 @@ def _warnings(
             )
         )
     elif end == "outgrown":
-        told.append(
+        doubts.append(
             Doubt(
                 f"Wear: the march ends where contacts have grown to {ROOM:g} times the width that they had: "
                 "they conform, and Hertz's theory ends.",
                 brief=f"Wear: the march ends at {ROOM:g} times the width of contacts as new.",
             )
         )
-    return told
+    return doubts
 
 
 def _of_play(built: Built, teeth: Mapping[str, Any]) -> list[str]:
@@ -623,13 +636,13 @@ def _of_play(built: Built, teeth: Mapping[str, Any]) -> list[str]:
         return []
     off = min(error / grown, 1.0) if grown > 0.0 else 1.0
     slices = _course(built).start.contacts.active.shape[1]
-    why, more = "the grid on the flanks and the steps of the march", "wear.cells and wear.phases"
+    why, keys = "the grid on the flanks and the steps of the march", "wear.cells and wear.phases"
     if slices > 1:
         why += f", and by the {slices} slices of lines that do not wear at their pitch line"
-        more += f", and more models.slices (of {slices})"
+        keys += f", and more models.slices (of {slices})"
     return [
         Doubt(
-            f"Wear: the backlash that it adds may be {100.0 * off:.3g} % off by {why}; more {more}, tell.",
+            f"Wear: the backlash that it adds may be {100.0 * off:.3g} % off by {why}; more {keys}, tell.",
             moves=off,
             about=("backlash_growth",),
             brief=f"Wear: the backlash it adds may be {100.0 * off:.3g} % off.",
@@ -652,11 +665,11 @@ def _radii(built: Built, flank: np.ndarray) -> np.ndarray:
     """Radius of places of each flank about the axis of its member; not a number where it travels."""
     mesh = built.design.mesh
     contacts: Contacts = contacts_at(mesh, _course(built).start.phase)
-    found = np.full(flank.shape, np.nan)
+    radii = np.full(flank.shape, np.nan)
     for body in mesh.coordinates:
         if body.member is not None and body.turns:
-            found[body.member] = _radius(mesh, body, contacts, flank[body.member])
-    return found
+            radii[body.member] = _radius(mesh, body, contacts, flank[body.member])
+    return radii
 
 
 def _radius(mesh: Mesh, body: Coordinate, contacts: Contacts, flank: np.ndarray) -> np.ndarray:

@@ -75,25 +75,27 @@ def wholes(built: Built) -> Wholes:
     Raises:
         InputError: a profile of the ends of contact lines that come and go, or that does not fit.
     """
-    given, shapes = states(built), _shaped(built)
+    cycle_states, shapes = states(built), _shaped(built)
     joined = bool(np.any(np.ptp(shapes["width"], axis=-1) > 0.0))
     parts = {
         name: _grouped(values, joined)
-        for name, values in {**given, **shapes}.items()
+        for name, values in {**cycle_states, **shapes}.items()
         if values.ndim > 2
     }
     middles = _middles(parts)
-    found = _summed(given, parts, middles)
+    contacts = _summed(cycle_states, parts, middles)
     if built.design.mesh.shape == "ellipse":
-        numbers = np.stack([found["load"], *(parts[name][..., 0] for name in _OF_ELLIPSE)], axis=-1)
+        numbers = np.stack(
+            [contacts["load"], *(parts[name][..., 0] for name in _OF_ELLIPSE)], axis=-1
+        )
         scale = _scale(numbers, [1] * numbers.shape[-1])
-        return Wholes(found, numbers, scale, joined, middles, ())
+        return Wholes(contacts, numbers, scale, joined, middles, ())
     courses = _courses(built, parts, middles)
     numbers = np.concatenate(
-        [found["load"][..., None], found["weight_of_line"][..., None], *courses], axis=-1
+        [contacts["load"][..., None], contacts["weight_of_line"][..., None], *courses], axis=-1
     )
     scale = _scale(numbers, [1, 1, *(len(PLACES) for _ in courses)])
-    return Wholes(found, numbers, scale, joined, middles, _profile(built, found))
+    return Wholes(contacts, numbers, scale, joined, middles, _profile(built, contacts))
 
 
 _OF_ELLIPSE = ("radius", "transverse_radius", "speed_a", "speed_b")
@@ -108,11 +110,11 @@ def _scale(numbers: np.ndarray, sizes: list[int]) -> np.ndarray:
 
 def _middles(parts: dict[str, np.ndarray]) -> np.ndarray:
     weight = np.where(parts["active"], parts["weight_of_line"], 0.0)
-    whole = np.sum(weight, axis=-1, keepdims=True)
-    found: np.ndarray = (np.cumsum(weight, axis=-1) - 0.5 * weight) / np.where(
-        whole > 0.0, whole, 1.0
+    length = np.sum(weight, axis=-1, keepdims=True)
+    middles: np.ndarray = (np.cumsum(weight, axis=-1) - 0.5 * weight) / np.where(
+        length > 0.0, length, 1.0
     )
-    return found
+    return middles
 
 
 def in_the_middle(middles: np.ndarray, parts: np.ndarray) -> np.ndarray:
@@ -123,8 +125,8 @@ def in_the_middle(middles: np.ndarray, parts: np.ndarray) -> np.ndarray:
         parts: values.
     """
     several = parts.reshape(-1, *middles.shape)
-    found = np.asarray(_placed(array(middles), array(several)))[..., len(PLACES) // 2]
-    return found.reshape(parts.shape[:-1])
+    centred = np.asarray(_placed(array(middles), array(several)))[..., len(PLACES) // 2]
+    return centred.reshape(parts.shape[:-1])
 
 
 def _summed(
@@ -141,22 +143,23 @@ def _summed(
         where = np.broadcast_to(most, (*values.shape[:-1], 1))
         return np.take_along_axis(values, where, axis=-1)[..., 0]
 
-    found = {name: values for name, values in given.items() if values.ndim < 3}
-    found |= {name: np.sum(parts[name], axis=-1) for name in _SUMS}
-    found |= {name: at_most(parts[name]) for name in _PICKED}
+    contacts = {name: values for name, values in given.items() if values.ndim < 3}
+    contacts |= {name: np.sum(parts[name], axis=-1) for name in _SUMS}
+    contacts |= {name: at_most(parts[name]) for name in _PICKED}
     length = np.sum(np.where(active, parts["weight_of_line"], 0.0), axis=-1)
-    carried = np.where(found["load_by_law"] > 0.0, found["load_by_law"], 1.0)
+    carried = np.where(contacts["load_by_law"] > 0.0, contacts["load_by_law"], 1.0)
     across = np.sum(np.where(active, parts["weight_of_line"] * parts["width"], 0.0), axis=-1)
     rubbed = np.sum(parts["friction"] * parts["load_by_law"], axis=-1)
-    return found | {
+    return contacts | {
         "active": np.any(active, axis=-1),
         # Lines that just come or go have next to no length, whatever they carry for it.
-        "loaded": np.any(parts["loaded"], axis=-1) & (found["load"] > LEAST * found["load"].max()),
+        "loaded": np.any(parts["loaded"], axis=-1)
+        & (contacts["load"] > LEAST * contacts["load"].max()),
         "weight_of_line": length,
         "across": across / np.where(length > 0.0, length, 1.0),
-        "line_load": found["load"] / np.where(length > 0.0, length, 1.0),
+        "line_load": contacts["load"] / np.where(length > 0.0, length, 1.0),
         "film_by_law": in_the_middle(middles, parts["film_by_law"]),
-        "friction": np.where(found["load_by_law"] > 0.0, rubbed / carried, np.nan),
+        "friction": np.where(contacts["load_by_law"] > 0.0, rubbed / carried, np.nan),
     }
 
 
@@ -227,9 +230,9 @@ def _profile(built: Built, found: dict[str, np.ndarray]) -> tuple[Surface, ...]:
 
 def _courses(built: Built, parts: dict[str, np.ndarray], middles: np.ndarray) -> list[np.ndarray]:
     """Radius, speeds and relief of every line at its places, [phase, pair, line, place]."""
-    own = parts["gap"] + parts["bends"] * parts["line_load"]
+    loaded_gap = parts["gap"] + parts["bends"] * parts["line_load"]
     names = ("radius", "speed_a", "speed_b")
-    values = np.stack([*(parts[name] for name in names), own])
+    values = np.stack([*(parts[name] for name in names), loaded_gap])
     radius, speed_a, speed_b, relief = np.asarray(_placed(array(middles), array(values)))
     if any(built.design.mesh.surfaces):
         relief = relief + _missing_there(built, middles, parts)
@@ -252,8 +255,8 @@ def _placed(
         return jnp.where(places < at[0], low, jnp.where(places > at[-1], high, inside))
 
     lanes = jnp.broadcast_to(middles, values.shape).reshape(-1, values.shape[-1])
-    found = jax.vmap(placed)(lanes, values.reshape(lanes.shape))
-    return found.reshape(*values.shape[:-1], places.size)
+    at_places = jax.vmap(placed)(lanes, values.reshape(lanes.shape))
+    return at_places.reshape(*values.shape[:-1], places.size)
 
 
 def _slope(at: Array, values: Array) -> Array:
@@ -265,9 +268,9 @@ def _missing_there(built: Built, middles: np.ndarray, parts: dict[str, np.ndarra
     """Height that surfaces of both members miss at the places of each line."""
     spots = []
     for member in range(2):
-        given = {name: parts[f"{name}_{member}"] for name in _SPOT}
-        every = np.asarray(_placed(array(middles), array(np.stack([*given.values()]))))
-        places = dict(zip(given, every, strict=True))
+        spot_arrays = {name: parts[f"{name}_{member}"] for name in _SPOT}
+        every = np.asarray(_placed(array(middles), array(np.stack([*spot_arrays.values()]))))
+        places = dict(zip(spot_arrays, every, strict=True))
         places["tooth"] = np.round(places["tooth"]).astype(int)
         spots.append(Spot(**places))
     return np.asarray(_missing(built.design.mesh.surfaces, (spots[0], spots[1])))
@@ -275,8 +278,10 @@ def _missing_there(built: Built, middles: np.ndarray, parts: dict[str, np.ndarra
 
 def _missing_of(surfaces: Surfaces, spots: tuple[Spot, Spot]) -> Array:
     """Height that surfaces of both members miss."""
-    first, second = (missing(own, spot) for own, spot in zip(surfaces, spots, strict=True))
-    return first + second
+    height_a, height_b = (
+        missing(surface, spot) for surface, spot in zip(surfaces, spots, strict=True)
+    )
+    return height_a + height_b
 
 
 _missing = program(_missing_of)
@@ -298,16 +303,16 @@ def _shaped(built: Built) -> dict[str, np.ndarray]:
 def _shapes(design: Design, engagement: Engagement, terms: Terms | None) -> dict[str, Array]:
     mesh, contacts = design.mesh, engagement.contacts
     lanes = contacts.active.shape
-    gap, found = contacts.gap, {"width": contacts.width}
+    gap, shapes = contacts.gap, {"width": contacts.width}
     if contacts.shape == "ellipse":
-        found["transverse_radius"] = 1.0 / contacts.relative_curvature[1]
+        shapes["transverse_radius"] = 1.0 / contacts.relative_curvature[1]
     if any(mesh.surfaces):
         spots = mesh.spots(contacts, engagement.phase)
         gap = gap - _missing_of(mesh.surfaces, spots)
         for member, spot in enumerate(spots):
-            found |= {f"{name}_{member}": 1.0 * getattr(spot, name) for name in _SPOT}
+            shapes |= {f"{name}_{member}": 1.0 * getattr(spot, name) for name in _SPOT}
     # Shares by stiffness know how far teeth bend; others take them as rigid.
-    found |= {"gap": gap, "bends": jnp.zeros(lanes)}
+    shapes |= {"gap": gap, "bends": jnp.zeros(lanes)}
     if terms is not None and has(mesh, tooth_sections) and lanes[1] > 1:
-        found["bends"] = bending(contacts, tooth_sections(mesh), design.solids, terms)
-    return {name: jnp.broadcast_to(one, lanes) for name, one in found.items()}
+        shapes["bends"] = bending(contacts, tooth_sections(mesh), design.solids, terms)
+    return {name: jnp.broadcast_to(lane_values, lanes) for name, lane_values in shapes.items()}

@@ -83,8 +83,10 @@ def evaluator(outcome: Outcome, folder: Path) -> list[Path]:
         TypeError,
         ValueError,
     ):  # of another version, or another's hand
-        told = f"the {FOUR_QUADRANTS.title} is not as this version writes it; run the case again"
-        raise InputError(told, key="--evaluator") from None
+        sentence = (
+            f"the {FOUR_QUADRANTS.title} is not as this version writes it; run the case again"
+        )
+        raise InputError(sentence, key="--evaluator") from None
     demand_room(table, "--evaluator")
     for name, text in texts.items():
         write_text(folder / name, text)
@@ -128,7 +130,10 @@ def module(outcome: Outcome, table: LossTable) -> str:
 
 def module_head(paragraphs: Iterable[str]) -> str:
     """Docstring of a module that is exported; those that are indented are lines as they stand."""
-    wrapped = (one if one.startswith(" ") else "\n".join(wrap(one, 100)) for one in paragraphs)
+    wrapped = (
+        paragraph if paragraph.startswith(" ") else "\n".join(wrap(paragraph, 100))
+        for paragraph in paragraphs
+    )
     return '"""' + "\n\n".join(wrapped) + '\n"""\n'
 
 
@@ -145,7 +150,7 @@ def map_code(outcome: Outcome, table: LossTable, names: Sequence[str]) -> str:
     public = "".join(f'"{name}", ' for name in names).removesuffix(", ")
     code = re.sub(r"^__all__ = .*$", f"__all__ = [{public}]", code, count=1, flags=re.M)
     about = ", ".join(f"{key!a}: {text!a}" for key, text in _origin(outcome).items())
-    fields = "".join(f"    {key}={_literal(one)},\n" for key, one in table._asdict().items())
+    fields = "".join(f"    {key}={_literal(field)},\n" for key, field in table._asdict().items())
     return (
         f"{code}\n\n"
         f"ABOUT = {{{about}}}\n"
@@ -157,8 +162,8 @@ def map_code(outcome: Outcome, table: LossTable, names: Sequence[str]) -> str:
 
 def behind(source: str, count: int) -> str:
     """Source behind so many of its first statements."""
-    last = ast.parse(source).body[count - 1].end_lineno
-    return "".join(source.splitlines(keepends=True)[last:])
+    end_line = ast.parse(source).body[count - 1].end_lineno
+    return "".join(source.splitlines(keepends=True)[end_line:])
 
 
 def header(outcome: Outcome, table: LossTable) -> str:
@@ -256,9 +261,11 @@ def _origin(outcome: Outcome) -> dict[str, str]:
 def _literal(value: Any) -> str:
     """A value of the table as Python has it, without names beside `float`."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{key!a}: {_literal(one)}" for key, one in value.items()) + "}"
+        return (
+            "{" + ", ".join(f"{key!a}: {_literal(element)}" for key, element in value.items()) + "}"
+        )
     if isinstance(value, Sequence) and not isinstance(value, str):
-        return "(" + "".join(f"{_literal(one)},{_apart(value)}" for one in value) + ")"
+        return "(" + "".join(f"{_literal(element)},{_apart(value)}" for element in value) + ")"
     if isinstance(value, float) and not math.isfinite(value):
         return {"nan": "math.nan", "inf": "math.inf"}.get(str(value), "-math.inf")
     return ascii(value)

@@ -75,18 +75,18 @@ def _exported(
     outcomes: Mapping[str, Outcome], folder: Path, formats: list[str], *, si: bool
 ) -> list[Path]:
     if not formats:
-        told = ", ".join(f"--{name}" for name in (*FORMATS, EVALUATOR))
-        raise InputError(f"no format was given; give one or several of {told}")
+        options = ", ".join(f"--{name}" for name in (*FORMATS, EVALUATOR))
+        raise InputError(f"no format was given; give one or several of {options}")
     written: list[Path] = []
     for name, outcome in outcomes.items():
         place = folder / name if len(outcomes) > 1 else folder
         make_folder(place)
         if EVALUATOR in formats:
             written += evaluator(outcome, place)
-        if wanted := [one for one in formats if one != EVALUATOR]:
+        if wanted := [format_name for format_name in formats if format_name != EVALUATOR]:
             tables = list(sheets(outcome, si=si))
-            for one in wanted:
-                written += FORMATS[one](outcome, tables, place, si)
+            for format_name in wanted:
+                written += FORMATS[format_name](outcome, tables, place, si)
             write_text(place / README, _readme(outcome, tables, si))
             written.append(place / README)
     return written
@@ -120,16 +120,20 @@ def _xlsx(outcome: Outcome, tables: list[Sheet], folder: Path, si: bool) -> list
     try:
         import openpyxl  # noqa: F401  # pandas writes through it
     except ImportError:
-        told = "needs the package openpyxl, which is not installed; install pitchpoint[xlsx]"
-        raise InputError(told, key="--xlsx") from None
+        sentence = "needs the package openpyxl, which is not installed; install pitchpoint[xlsx]"
+        raise InputError(sentence, key="--xlsx") from None
     for table in tables:
         if len(table.frame) > MOST_ROWS:
-            told = f"{table.name} has {len(table.frame)} rows, more than a sheet holds; take --csv"
-            raise InputError(told, key="--xlsx")
+            sentence = (
+                f"{table.name} has {len(table.frame)} rows, more than a sheet holds; take --csv"
+            )
+            raise InputError(sentence, key="--xlsx")
     image = io.BytesIO()
     readme = pd.DataFrame({README: _readme(outcome, tables, si).splitlines()})
     with pd.ExcelWriter(image, engine="openpyxl") as writer:
-        for name, frame in _named({"README": readme, **{one.name: one.frame for one in tables}}):
+        for name, frame in _named(
+            {"README": readme, **{sheet.name: sheet.frame for sheet in tables}}
+        ):
             held = _texts_changed(frame, _of_xml)
             held.to_excel(writer, sheet_name=name, index=False, freeze_panes=(1, 0))
             for row in writer.sheets[name].iter_rows():
@@ -150,7 +154,7 @@ def _named(frames: Mapping[str, pd.DataFrame]) -> list[tuple[str, pd.DataFrame]]
     taken: dict[str, pd.DataFrame] = {}
     for name, frame in frames.items():
         short, number = name[:LONGEST_NAME], 1
-        while short.lower() in {one.lower() for one in taken}:
+        while short.lower() in {used_name.lower() for used_name in taken}:
             number += 1
             short = f"{name[: LONGEST_NAME - 1 - len(str(number))]}~{number}"
         taken[short] = frame
@@ -163,7 +167,7 @@ def _json(outcome: Outcome, tables: list[Sheet], folder: Path, si: bool) -> list
     content = {
         "manifest": outcome.manifest,
         "parts": {
-            name: {str(one): _array(data, str(one)) for one in data.variables}
+            name: {str(variable): _array(data, str(variable)) for variable in data.variables}
             for name, data in parts.items()
         },
     }
@@ -173,12 +177,12 @@ def _json(outcome: Outcome, tables: list[Sheet], folder: Path, si: bool) -> list
 
 
 def _array(data: xr.Dataset, name: str) -> dict[str, Any]:
-    one = data[name]
+    variable = data[name]
     return {
-        "long_name": one.attrs["long_name"],
-        "unit": one.attrs["units"],
-        "dims": [str(dim) for dim in one.dims],
-        "values": one.values.tolist(),
+        "long_name": variable.attrs["long_name"],
+        "unit": variable.attrs["units"],
+        "dims": [str(dim) for dim in variable.dims],
+        "values": variable.values.tolist(),
     }
 
 
@@ -225,7 +229,7 @@ def _readme(outcome: Outcome, tables: list[Sheet], si: bool) -> str:
     for table in tables:
         rows = len(table.frame)
         lines += ["", f"{table.name}: {rows} row{'s' * (rows != 1)}"]
-        lines += [f"  {one.head}: {one.words}" for one in table.columns]
+        lines += [f"  {column.head}: {column.words}" for column in table.columns]
     return "\n".join(lines) + "\n"
 
 

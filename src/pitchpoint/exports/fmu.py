@@ -153,7 +153,7 @@ def _zipped(content: dict[str, bytes]) -> bytes:
 
 def _guid(given: Simulated, unit: SimulationUnit) -> str:
     joint = given.joint
-    told = repr(
+    identity = repr(
         (
             joint.digest,
             joint.law,
@@ -164,7 +164,7 @@ def _guid(given: Simulated, unit: SimulationUnit) -> str:
             unit.numbers,
         )
     )
-    return "{" + str(UUID(bytes=sha256(told.encode()).digest()[:16])) + "}"
+    return "{" + str(UUID(bytes=sha256(identity.encode()).digest()[:16])) + "}"
 
 
 def _sources(given: Simulated, unit: SimulationUnit) -> dict[str, str]:
@@ -172,7 +172,10 @@ def _sources(given: Simulated, unit: SimulationUnit) -> dict[str, str]:
     law = [*joint.table.loss_torques].index(joint.law)
     code = files("pitchpoint.exports")
     return {
-        **{one: code.joinpath(one).read_text("utf-8") for one in ("joint_fmu.c", unit.model)},
+        **{
+            file_name: code.joinpath(file_name).read_text("utf-8")
+            for file_name in ("joint_fmu.c", unit.model)
+        },
         "joint_of.h": (
             f'#define JOINT_LAW {law}\n#define JOINT_GUID "{_guid(given, unit)}"\n'
             f"#define JOINT_TEMPERATURE {float(given.temperature)!r}\n{unit.numbers}"
@@ -189,15 +192,15 @@ def _binary(unit: SimulationUnit, sources: dict[str, str]) -> dict[str, bytes]:
     if compiler is None or place is None:
         return {}
     folder, ending = place
-    with tempfile.TemporaryDirectory() as made:
+    with tempfile.TemporaryDirectory() as build:
         for name, text in sources.items():
-            (Path(made) / name).write_text(text, "utf-8")
+            (Path(build) / name).write_text(text, "utf-8")
         library = f"{unit.name}.{ending}"
         command = [compiler, *FLAGS, "joint_fmu.c", "-o", library, "-lm"]
-        done = subprocess.run(command, cwd=made, capture_output=True, check=False, timeout=120)
+        done = subprocess.run(command, cwd=build, capture_output=True, check=False, timeout=120)
         if done.returncode:
             return {}
-        return {f"binaries/{folder}/{library}": (Path(made) / library).read_bytes()}
+        return {f"binaries/{folder}/{library}": (Path(build) / library).read_bytes()}
 
 
 def _platform() -> tuple[str, str] | None:
@@ -229,23 +232,25 @@ def _variables(given: Simulated) -> list[UnitVariable]:
 
 
 def _description(given: Simulated, unit: SimulationUnit, lost: list[str]) -> str:
-    used = dict.fromkeys(one.unit for one in unit.variables if one.unit)
+    used = dict.fromkeys(variable.unit for variable in unit.variables if variable.unit)
     units = "".join(
         f"    <Unit name={quoteattr(name)}><BaseUnit {_UNITS[name]}/></Unit>\n".replace(" />", "/>")
         for name in used
     )
     takes = [
-        n for n, one in enumerate(unit.variables, 1) if one.start is not None and not one.parameter
+        n
+        for n, variable in enumerate(unit.variables, 1)
+        if variable.start is not None and not variable.parameter
     ]
     outputs = "".join(
         f'      <Unknown index="{number}"{{}}/>\n'
-        for number, one in enumerate(unit.variables, 1)
-        if one.start is None
+        for number, variable in enumerate(unit.variables, 1)
+        if variable.start is None
     )
     depends = f' dependencies="{" ".join(map(str, takes))}"'
     at_once = outputs.replace("{}", depends)
     from_all = outputs.replace(
-        "{}", "" if any(one.parameter for one in unit.variables) else depends
+        "{}", "" if any(variable.parameter for variable in unit.variables) else depends
     )
     name, title = unit.name, quoteattr(visible(given.joint.title))
     tool = quoteattr(visible(f"Pitchpoint {given.joint.version}"))

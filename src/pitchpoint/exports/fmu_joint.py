@@ -156,7 +156,7 @@ def _knots(curve: WindUpTable) -> np.ndarray:
 
 def _lacks(joint: JointModel) -> list[str]:
     """What the result has not, of which the unit has none then."""
-    told = {
+    sentences = {
         "wind_up": "The drive is rigid and has no play in it",
         "backlash": "It has no play",
         "kinematic_error": "It has no error over the angle",
@@ -168,7 +168,7 @@ def _lacks(joint: JointModel) -> list[str]:
     )
     moves = [still] if not joint.armature > 0.0 else []
     return moves + [
-        f"{words}: {joint.lacks[name]}." for name, words in told.items() if name in joint.lacks
+        f"{words}: {joint.lacks[name]}." for name, words in sentences.items() if name in joint.lacks
     ]
 
 

@@ -89,14 +89,14 @@ def _line(
     torque: np.ndarray, lost: np.ndarray, there: np.ndarray, most: float
 ) -> tuple[float, float]:
     """Slope and start of a line of loss; the steepest where there are no two points."""
-    known = there & np.isfinite(lost)
-    if known.sum() < 2:
+    usable = there & np.isfinite(lost)
+    if usable.sum() < 2:
         return most, 0.0
-    columns = np.stack([torque[known], np.ones(known.sum())], axis=-1)
+    columns = np.stack([torque[usable], np.ones(usable.sum())], axis=-1)
     size = np.abs(columns).max(axis=0)
     bounds = [NEAREST * size[0], 0.0], [most * size[0], np.inf]
-    found = lsq_linear(columns / size, lost[known], bounds, method="bvls", tol=1e-15).x / size
-    return float(found[0]), float(found[1])
+    line = lsq_linear(columns / size, lost[usable], bounds, method="bvls", tol=1e-15).x / size
+    return float(line[0]), float(line[1])
 
 
 def least_line_error(place: np.ndarray, value: np.ndarray) -> float:
@@ -129,11 +129,11 @@ def _least_bend_error(place: np.ndarray, value: np.ndarray) -> float:
     low, high = 0, place.size
     while low < high:
         middle = (low + high) // 2
-        first, second = (
+        below, above = (
             least_line_error(place[part], value[part])
             for part in (slice(middle + 1), slice(middle + 1, None))
         )
-        low, high = (low, middle) if first >= second else (middle + 1, high)
+        low, high = (low, middle) if below >= above else (middle + 1, high)
     return min(
         max(least_line_error(place[:at], value[:at]), least_line_error(place[at:], value[at:]))
         for at in (low, low + 1)
@@ -165,12 +165,12 @@ def lossy_torque(rows: list[LossyRow], torque: np.ndarray, speed: np.ndarray) ->
     Of both lines the one with the larger loss holds, which they cross where the model changes between them.
     """
     speeds, *columns = np.array(rows).T
-    eta1, eta2, alone, held = (np.interp(speed, speeds, one) for one in columns)
+    eta1, eta2, alone, held = (np.interp(speed, speeds, column) for column in columns)
     crossing = (alone - held) / (eta1 - 1.0 / eta2)
-    found: np.ndarray = np.where(
+    driver_torque: np.ndarray = np.where(
         torque >= eta1 * crossing - alone, (torque + alone) / eta1, eta2 * (torque + held)
     )
-    return found
+    return driver_torque
 
 
 def write_modelica(given: Simulated, folder: Path) -> HandedOver:
@@ -184,12 +184,12 @@ def write_modelica(given: Simulated, folder: Path) -> HandedOver:
     degrees = sorted({*table.temperatures[::3], given.temperature})
     tables = {degree: lossy_rows(table, degree, joint.law) for degree in degrees}
 
-    whole = map_tables(given)
-    near = max(one.largest for one in joint.errors(partial(map_lost, whole)))
+    of_map = map_tables(given)
+    near = max(error.largest for error in joint.errors(partial(map_lost, of_map)))
     least = _least_error(table, given.temperature, joint.law)
     lost = lost_lines(given, partial(_lost, table, joint.law), _beside(given, least, near))
     path = folder / f"{_name(given)}.mo"
-    write_text(path, _package(given, tables, whole, lost))
+    write_text(path, _package(given, tables, of_map, lost))
     return HandedOver([path], lost)
 
 
@@ -198,8 +198,8 @@ def _lost(
 ) -> np.ndarray:
     """Torque of the output that LossyGear loses, with a table of each temperature."""
     lost = np.full(torque.shape, np.nan)
-    for one in np.unique(degree):
-        at, rows = degree == one, lossy_rows(table, float(one), law)
+    for temperature in np.unique(degree):
+        at, rows = degree == temperature, lossy_rows(table, float(temperature), law)
         driving = lossy_torque(rows, torque[at] * table.speed_ratio, speed[at] / table.speed_ratio)
         lost[at] = driving / table.speed_ratio - torque[at]
     return lost
@@ -234,7 +234,7 @@ def _package(
     )
     locks = joint.holding_band(given.load, given.kelvins).locked
     paragraphs = [*heading(given, what), *([LOCKS] if locks else []), "\n".join(lost)]
-    remark = "\n".join(f"// {line}" for one in paragraphs for line in _lines(one))
+    remark = "\n".join(f"// {line}" for paragraph in paragraphs for line in _lines(paragraph))
     gears = "".join(_gear(given, degree, rows) for degree, rows in tables.items())
     map_words = (
         "Torque that is lost by the loss map: bilinear over torque and logarithm of the speed, linear over "
@@ -257,7 +257,8 @@ def _annotation(*paragraphs: str) -> str:
 def _documentation(paragraphs: Iterable[str]) -> str:
     """Paragraphs as a page; those of several lines as they stand."""
     pages = (
-        f"<pre>{_page(one)}</pre>" if "\n" in one else f"<p>{_page(one)}</p>" for one in paragraphs
+        f"<pre>{_page(paragraph)}</pre>" if "\n" in paragraph else f"<p>{_page(paragraph)}</p>"
+        for paragraph in paragraphs
     )
     return f'Documentation(info = "<html>{"".join(pages)}</html>")'
 

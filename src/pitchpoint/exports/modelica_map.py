@@ -47,8 +47,8 @@ def map_tables(given: Simulated) -> MapTables:
 
 def _rounded(values: np.ndarray) -> np.ndarray:
     """Numbers as they come back from a file."""
-    found: np.ndarray = np.vectorize(lambda one: float(f"{one:.10g}"))(values)
-    return found
+    rounded: np.ndarray = np.vectorize(lambda one: float(f"{one:.10g}"))(values)
+    return rounded
 
 
 def map_lost(
@@ -65,22 +65,24 @@ def map_lost(
     Source: bilinear tables of the Modelica Standard Library (CombiTable2Ds with LinearSegments and
     HoldLastPoint), weighted by how near their temperatures are.
     """
-    few, more = _cell(tables.torque, torque)
+    row, row_share = _cell(tables.torque, torque)
     slow, faster = _cell(tables.log_speed, np.log(speed))
-    lost = np.zeros(np.broadcast_shapes(few.shape, slow.shape))
-    many, fast = (
+    lost = np.zeros(np.broadcast_shapes(row.shape, slow.shape))
+    next_row, fast = (
         np.minimum(low + 1, count - 1)
-        for low, count in zip((few, slow), tables.moving.shape[1:], strict=True)
+        for low, count in zip((row, slow), tables.moving.shape[1:], strict=True)
     )
     for values, share in zip(tables.moving, _shares(tables.degree, degree), strict=True):
-        first, second = (_between(values[few, n], values[many, n], more) for n in (slow, fast))
-        lost = lost + share * _between(first, second, faster)
+        at_slow, at_fast = (
+            _between(values[row, n], values[next_row, n], row_share) for n in (slow, fast)
+        )
+        lost = lost + share * _between(at_slow, at_fast, faster)
     return lost
 
 
 def _between(first: np.ndarray, second: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    found: np.ndarray = first + weight * (second - first)
-    return found
+    between: np.ndarray = first + weight * (second - first)
+    return between
 
 
 def _cell(axis: np.ndarray, value: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -118,20 +120,20 @@ def map_gear(given: Simulated, tables: MapTables) -> str:
     ratio, travel = (1.0, abs(joint.ratio)) if joint.slides else (joint.ratio, 1.0)
     below, above = _widths(tables.degree)
     moving = ",\n      ".join(
-        _matrix(tables.torque, tables.log_speed, one) for one in tables.moving
+        _matrix(tables.torque, tables.log_speed, lost) for lost in tables.moving
     )
-    rest = _matrix(tables.torque, tables.degree, tables.starts)
+    holding = _matrix(tables.torque, tables.degree, tables.starts)
     unit = joint.units
     return _MAP_GEAR.format(
         name=MAP_GEAR, ratio=f"{ratio:.12g}", travel=f"{travel:.12g}", count=tables.degree.size,
         degrees=_vector(tables.degree), below=_vector(below), above=_vector(above),
-        slowest=f"{joint.table.speeds[1]:.10g}", moving=moving, rest=rest,
+        slowest=f"{joint.table.speeds[1]:.10g}", moving=moving, rest=holding,
         torque_unit=unit["torque"], speed_unit=unit["speed"],
     )  # fmt: skip
 
 
 def _vector(values: np.ndarray) -> str:
-    return ", ".join(f"{one:.10g}" for one in values)
+    return ", ".join(f"{number:.10g}" for number in values)
 
 
 def _matrix(rows: np.ndarray, columns: np.ndarray, values: np.ndarray) -> str:
@@ -139,7 +141,7 @@ def _matrix(rows: np.ndarray, columns: np.ndarray, values: np.ndarray) -> str:
     if columns.size == 1:
         columns, values = np.append(columns, columns + 1.0), np.repeat(values, 2, axis=1)
     lines = [_vector(np.append(0.0, columns))]
-    lines += [_vector(np.append(at, one)) for at, one in zip(rows, values, strict=True)]
+    lines += [_vector(np.append(at, row)) for at, row in zip(rows, values, strict=True)]
     return "[" + ";\n      ".join(lines) + "]"
 
 

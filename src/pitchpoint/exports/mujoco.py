@@ -83,7 +83,7 @@ def _fragment(given: Simulated, fit: FrictionFit, lost: list[str]) -> str:
 
 
 def _solver() -> str:
-    ref, imp = (" ".join(f"{one:g}" for one in values) for values in HOLDS)
+    ref, imp = (" ".join(f"{number:g}" for number in values) for values in HOLDS)
     return f'solreffriction="{ref}" solimpfriction="{imp}"'
 
 

@@ -105,8 +105,8 @@ class LoadFriction:
         return lost if lost >= 0.0 else self._locked(load, abs(speed))
 
     def _at_rest(self, motor: float, load: float) -> float:
-        rest = self.table.at_rest(load, self.temperature, self.law)
-        bound = rest.highest if motor >= load else rest.lowest
+        band = self.table.at_rest(load, self.temperature, self.law)
+        bound = band.highest if motor >= load else band.lowest
         held = abs(bound / self.table.speed_ratio - load)
         return held if held >= 0.0 else self._locked(load, 0.0)
 
@@ -144,8 +144,8 @@ def show_arm(
             mujoco.mj_step(model, data)
         here, motor = float(data.qvel[0]), float(data.actuator_force[0])  # within ctrlrange
         load = friction.load(model, data)
-        point, rest = table.at(load, here, temperature, law), table.at_rest(load, temperature, law)
+        point, band = table.at(load, here, temperature, law), table.at_rest(load, temperature, law)
         beside = (
-            f"{point.input_torque:.6g}" if sought else f"{rest.lowest:.4g} to {rest.highest:.4g}"
+            f"{point.input_torque:.6g}" if sought else f"{band.lowest:.4g} to {band.highest:.4g}"
         )
         print(f"{what:8}{here:+11.3e}{load:+17.6g}{motor:23.6g}{beside:>18}")

@@ -47,7 +47,9 @@ def write_simscape(given: Simulated, folder: Path) -> HandedOver:
     write_bytes(folder / "joint.mat", image.getvalue())
     what = "Loss map of a drive in joint.mat, as a lookup for MATLAB; this script was not run by its makers."
     head = "\n".join(
-        f"% {line}" for one in (*heading(given, what), *lost) for line in one.splitlines()
+        f"% {line}"
+        for paragraph in (*heading(given, what), *lost)
+        for line in paragraph.splitlines()
     )
     write_text(folder / "load_joint.m", f"{head}\n{_SCRIPT}")
     return HandedOver([folder / "joint.mat", folder / "load_joint.m"], lost)
@@ -61,24 +63,26 @@ def filled(values: np.ndarray) -> np.ndarray:
         >>> filled(np.array([[1.0, np.nan], [3.0, 4.0]])).tolist()
         [[1.0, 1.0], [3.0, 4.0]]
     """
-    known = np.isfinite(values)
-    if known.all() or not known.any():
+    finite = np.isfinite(values)
+    if finite.all() or not finite.any():
         return values
-    near = NearestNDInterpolator(np.argwhere(known), values[known])
-    found: np.ndarray = np.where(
-        known,
+    near = NearestNDInterpolator(np.argwhere(finite), values[finite])
+    complete: np.ndarray = np.where(
+        finite,
         values,
         near(np.indices(values.shape).reshape(values.ndim, -1).T).reshape(values.shape),
     )
-    return found
+    return complete
 
 
 def _content(given: Simulated) -> dict[str, Any]:
     joint, table = given.joint, given.joint.table
-    axes = (np.asarray(one) for one in (table.torques, table.speeds[1:], table.temperatures))
+    axes = (np.asarray(axis) for axis in (table.torques, table.speeds[1:], table.temperatures))
     torque, speed, degree = np.meshgrid(*axes, indexing="ij")
     point = table.at_many(torque, speed, degree, joint.law)
-    rest = [[table.at_rest(t, d, joint.law)[:2] for d in table.temperatures] for t in table.torques]
+    holding = [
+        [table.at_rest(t, d, joint.law)[:2] for d in table.temperatures] for t in table.torques
+    ]
     return {
         "torque": np.array(table.torques),
         "speed": np.array(table.speeds[1:]),
@@ -88,8 +92,8 @@ def _content(given: Simulated) -> dict[str, Any]:
         "loss_power": filled(np.asarray(point.loss)),
         "efficiency": filled(np.asarray(point.efficiency)),
         "locked": np.asarray(point.locked).astype(float),
-        "lowest_holding_torque": np.array(rest)[..., 0],
-        "highest_holding_torque": np.array(rest)[..., 1],
+        "lowest_holding_torque": np.array(holding)[..., 0],
+        "highest_holding_torque": np.array(holding)[..., 1],
         "ratio": joint.ratio,
         "speed_ratio": table.speed_ratio,
         "armature": joint.armature,

@@ -151,16 +151,16 @@ def hand_over(
         several = len(outcomes) > 1
         for target in targets:
             place = (folder / name if several else folder) / target
-            given = _simulated(outcome, asked or Asked(), "--" + target.replace("_", "-"))
+            simulated = _simulated(outcome, asked or Asked(), "--" + target.replace("_", "-"))
             make_folder(place)
-            written[f"{name}: {target}" if several else target] = _writer(target)(given, place)
+            written[f"{name}: {target}" if several else target] = _writer(target)(simulated, place)
     return written
 
 
 def _writer(target: str) -> Writer:
     module, _, name = TARGETS[target].partition(":")
-    found: Writer = getattr(import_module(module), name)
-    return found
+    writer: Writer = getattr(import_module(module), name)
+    return writer
 
 
 _OF_OTHERS = "the loss map of the output is not as this version writes it; run the case again"
@@ -232,15 +232,15 @@ def lost_lines(given: Simulated, law: LossLaw, beside: str) -> list[str]:
         beside: what else the target leaves out, in a sentence.
     """
     joint, unit = given.joint, given.joint.units["driver"]
-    rows: list[tuple[str, LawError]] = [("the map", one) for one in joint.errors(law)]
+    rows: list[tuple[str, LawError]] = [("the map", error) for error in joint.errors(law)]
     if given.within is not None:
-        rows += [("range", one) for one in joint.errors(law, given.within)]
+        rows += [("range", error) for error in joint.errors(law, given.within)]
     lines = [f"What is lost: torque of the driver, this file against the loss map [{unit}]"]
     lines.append(f"{'in':8}{'quadrants':26}{'largest':>11}{'mean':>11}{'of most':>11}{'points':>8}")
-    lines += [_row(place, one) for place, one in rows]
+    lines += [_row(place, error) for place, error in rows]
     if given.within is not None:
         lines.append(_range_words(given))
-    locked = sum(one.locked for place, one in rows if place == "the map")
+    locked = sum(error.locked for place, error in rows if place == "the map")
     if locked:
         lines.append(
             f"Friction locks the drive at {locked} more points, where the map has no torque."
@@ -254,8 +254,8 @@ def nothing_lost(beside: str) -> list[str]:
     Args:
         beside: what the target leaves out, in a sentence.
     """
-    told = "What is lost: nothing of the torque of the driver, by construction: the map itself is in it."
-    return wrap(f"{told} {beside}", 78)
+    sentence = "What is lost: nothing of the torque of the driver, by construction: the map itself is in it."
+    return wrap(f"{sentence} {beside}", 78)
 
 
 def lost_without_load(given: Simulated, fit: FrictionFit, beside: str) -> list[str]:
@@ -264,11 +264,11 @@ def lost_without_load(given: Simulated, fit: FrictionFit, beside: str) -> list[s
 
 
 def _row(place: str, error: LawError) -> str:
-    way = f"{error.quadrants} ({WAYS[error.quadrants]})"
+    quadrants = f"{error.quadrants} ({WAYS[error.quadrants]})"
     if not error.points:
-        return f"{place:8}{way:26}{'none: friction locks the drive':>39}"
+        return f"{place:8}{quadrants:26}{'none: friction locks the drive':>39}"
     numbers = f"{error.largest:>11.4g}{error.mean:>11.4g}{100.0 * error.share:>9.3g} %"
-    return f"{place:8}{way:26}{numbers}{error.points:>8}"
+    return f"{place:8}{quadrants:26}{numbers}{error.points:>8}"
 
 
 def _range_words(given: Simulated) -> str:
@@ -310,11 +310,11 @@ def holding_friction(given: Simulated, moving: float) -> float:
         moving: friction in motion, below which it is not, as simulators ask.
     """
     joint, ratio = given.joint, given.joint.table.speed_ratio
-    rest = joint.holding_band(given.load, given.kelvins)
-    both = [rest.highest / ratio - given.load, given.load - rest.lowest / ratio]
-    known = [one for one in both if math.isfinite(one)]
-    stuck = [LOCKED_SHARE * given.load] if len(known) < 2 else []
-    return max(moving, sum(known) / max(len(known), 1), *stuck)
+    band = joint.holding_band(given.load, given.kelvins)
+    both = [band.highest / ratio - given.load, given.load - band.lowest / ratio]
+    finite = [friction for friction in both if math.isfinite(friction)]
+    stuck = [LOCKED_SHARE * given.load] if len(finite) < 2 else []
+    return max(moving, sum(finite) / max(len(finite), 1), *stuck)
 
 
 def limit_words(given: Simulated) -> str:
@@ -337,6 +337,9 @@ def most_torque(given: Simulated) -> float:
 
 def xml_comment(paragraphs: Iterable[str]) -> str:
     """Paragraphs as a comment of XML, in which two hyphens may not stand side by side."""
-    lines = (one if "\n" in one else fill(one, 100, break_long_words=False) for one in paragraphs)
+    lines = (
+        paragraph if "\n" in paragraph else fill(paragraph, 100, break_long_words=False)
+        for paragraph in paragraphs
+    )
     text = "\n\n".join(lines).translate({38: "and", 60: "(", 62: ")"})
     return "<!--\n" + re.sub(r"-(?=-)", "- ", text).rstrip("-") + "\n-->\n"

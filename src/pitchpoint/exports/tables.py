@@ -64,24 +64,24 @@ def exported(data: xr.Dataset, *, si: bool = False) -> xr.Dataset:
         The part without what only pictures need; values are NaN where no pair touches, and each variable
         has attributes `units` and `long_name`.
     """
-    kept = data.drop_vars([name for name in data.variables if str(name).startswith(_DRAWING)])
-    given = {str(name): _given(kept, str(name), si) for name in kept.variables}
-    coordinates = {name: one for name, one in given.items() if name in kept.coords}
-    others = {name: one for name, one in given.items() if name not in coordinates}
-    return xr.Dataset(others, coordinates, kept.attrs)
+    undrawn = data.drop_vars([name for name in data.variables if str(name).startswith(_DRAWING)])
+    variables = {str(name): _given(undrawn, str(name), si) for name in undrawn.variables}
+    coordinates = {name: variable for name, variable in variables.items() if name in undrawn.coords}
+    others = {name: variable for name, variable in variables.items() if name not in coordinates}
+    return xr.Dataset(others, coordinates, undrawn.attrs)
 
 
 def _given(data: xr.Dataset, name: str, si: bool) -> xr.Variable:
     """A variable in the unit in which it is given, NaN where no pair touches."""
-    array, told = data[name].variable, _described(data, name)
-    words = {"long_name": told.long_name, "units": _unit(told, si)}
+    array, description = data[name].variable, _described(data, name)
+    words = {"long_name": description.long_name, "units": _unit(description, si)}
     if array.dtype.kind != "f":
         return xr.Variable(array.dims, array.values, words)
     values = np.asarray(array.values)
     if "active" in data and set(data["active"].dims) <= set(array.dims):
         values = data[name].where(data["active"]).transpose(*array.dims).values
     if not si:
-        values = _shown(values, told)
+        values = _shown(values, description)
     return xr.Variable(array.dims, values, words)
 
 
@@ -125,11 +125,11 @@ def sheets(outcome: Outcome, *, si: bool = False) -> Iterator[Sheet]:
     """
     yield table_of_inputs(outcome)
     for part, data in outcome.parts.items():
-        given = exported(data, si=si)
-        groups = _by_dimensions(given)
+        converted = exported(data, si=si)
+        groups = _by_dimensions(converted)
         for dims, names in groups.items():
             name = part if len(groups) == 1 else "_".join((part, *dims)) if dims else part
-            yield _sheet(name, given, dims, names)
+            yield _sheet(name, converted, dims, names)
 
 
 def table_of_inputs(outcome: Outcome) -> Sheet:
@@ -163,26 +163,26 @@ def _sheet(name: str, data: xr.Dataset, dims: tuple[str, ...], names: list[str])
     if not dims:
         return _of_single_values(name, data, names)
     places = [
-        str(one)
-        for one, array in data.data_vars.items()
+        str(variable)
+        for variable, array in data.data_vars.items()
         if len(array.dims) == 1 and array.dims[0] in dims and array.dims[0] not in data.coords
     ]
-    heads = {one: _head(data, one) for one in (*dims, *places, *names)}
+    heads = {variable: _head(data, variable) for variable in (*dims, *places, *names)}
     frame = data[[*dict.fromkeys((*places, *names))]].to_dataframe(dim_order=[*dims]).reset_index()
     frame = frame[[*heads]].rename(columns=heads)
-    columns = (Column(heads[one], one, _words(data, one)) for one in heads)
+    columns = (Column(heads[variable], variable, _words(data, variable)) for variable in heads)
     return Sheet(name, frame, tuple(columns))
 
 
 def _of_single_values(name: str, data: xr.Dataset, names: list[str]) -> Sheet:
     rows = [
         {
-            "variable": one,
-            "value": data[one].values.item(),
-            "unit": data[one].attrs["units"],
-            "meaning": _words(data, one),
+            "variable": variable,
+            "value": data[variable].values.item(),
+            "unit": data[variable].attrs["units"],
+            "meaning": _words(data, variable),
         }
-        for one in names
+        for variable in names
     ]
     words = {"variable": "its name", "value": "in its unit", "unit": "of the value"}
     frame = pd.DataFrame(rows)
@@ -194,9 +194,9 @@ def _of_single_values(name: str, data: xr.Dataset, names: list[str]) -> Sheet:
 
 
 def _head(data: xr.Dataset, name: str) -> str:
-    told: Mapping[str, str] = data[name].attrs if name in data.variables else {}
-    words = told["long_name"] if name == "axis" and "sweep_key" in data.attrs else name
-    return f"{words} [{told['units']}]" if told.get("units") else words
+    attributes: Mapping[str, str] = data[name].attrs if name in data.variables else {}
+    words = attributes["long_name"] if name == "axis" and "sweep_key" in data.attrs else name
+    return f"{words} [{attributes['units']}]" if attributes.get("units") else words
 
 
 def _words(data: xr.Dataset, name: str) -> str:
