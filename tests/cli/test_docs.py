@@ -33,6 +33,7 @@ from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs import run
 from pitchpoint.runs.designs import wanted
 from pitchpoint.runs.jobs import jobs
+from pitchpoint.runs.layouts import layout_of
 from pitchpoint.sizing.task import Task
 
 PAIR, VARIANTS = blocks("README.md", "toml")
@@ -357,10 +358,11 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 COMPARED = [line for line in SHELL if " compare " in line]
 """Designs beside each other, computed by tests of their own."""
 EXPLORED = [line for line in SHELL if " explore " in line]
+STUDIED = [line for line in SHELL if " study " in line]
 SIZED = [line for line in SHELL if " size " in line]
 
 
-@pytest.mark.parametrize("line", sorted({*SHELL} - {*SET_UP, *COMPARED, *EXPLORED, *SIZED}))
+@pytest.mark.parametrize("line", sorted({*SHELL} - {*SET_UP, *COMPARED, *EXPLORED, *STUDIED, *SIZED}))
 def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Parsed and laid out as far as the computation itself."""
     laid_out = []
@@ -381,6 +383,25 @@ def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
         cli.main()
     assert caught.value.code == 0
     assert laid_out[0]["title"] == "First stage of a robot joint"
+
+
+@pytest.mark.parametrize("line", STUDIED)
+def test_designs_that_are_studied(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    laid_out = []
+
+    def prepare(
+        case: pitchpoint.Case, over: Mapping[str, Any], how: str, *, n: int, seed: int, **_: Any
+    ) -> None:
+        values = {case.key(key): ends for key, ends in over.items()}
+        laid_out.append(layout_of(case.held[0], values, how, n, seed))
+        raise SystemExit(0)
+
+    monkeypatch.setattr("pitchpoint.runs.study.study", prepare)
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", *shlex.split(line)[1:]])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert caught.value.code == 0
+    assert [len(layout.changes(0, layout.count)) for layout in laid_out] == [64]
 
 
 @pytest.mark.parametrize("line", COMPARED)

@@ -1,6 +1,7 @@
 """Designs in pieces: a file for each range of them, read as one dataset whose values stay on disk."""
 
 import json
+import re
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -98,7 +99,8 @@ class Summary:
         warnings: each once, in their order.
         codes: how many balances ended how.
         residual, iterations: largest.
-        reasons: how many designs have no figures by reason under the first law, the most frequent first.
+        reasons: how many designs have no figures under the first law by the first sentence of its kind, the
+            most frequent first; sentences that differ in numbers alone are of one kind.
     """
 
     variables: Mapping[str, xr.Variable]
@@ -123,13 +125,15 @@ def summary_of(pieces: Pieces, codes_of: Callable[[xr.Dataset], np.ndarray]) -> 
     attributes: dict[str, Any] = {}
     warnings: dict[Any, None] = {}
     codes: Counter[int] = Counter()
-    reasons: Counter[str] = Counter()
+    reasons, first_of = Counter[str](), dict[str, str]()
     solves: list[dict[str, Any]] = []
     for piece in map(pieces.read, range(len(pieces))):
         for name, variable in piece.variables.items():
             kinds.setdefault(str(name), []).append(variable.dtype)
             variables.setdefault(str(name), _head(variable))
-        reasons.update(text for text in map(str, piece["reason"].values[0]) if text)
+        for text in filter(None, map(str, piece["reason"].values[0])):
+            kind = _NUMBER.sub("0", text)
+            reasons[first_of.setdefault(kind, text)] += 1
         if "solve" in piece.attrs:
             attributes = attributes or dict(piece.attrs)
             warnings |= dict.fromkeys(doubts_of(piece.attrs))
@@ -146,6 +150,9 @@ def summary_of(pieces: Pieces, codes_of: Callable[[xr.Dataset], np.ndarray]) -> 
         max((solve["iterations"] for solve in solves), default=0),
         dict(reasons.most_common()),
     )
+
+
+_NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
 
 
 def _head(variable: xr.Variable) -> xr.Variable:

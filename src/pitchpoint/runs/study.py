@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from time import monotonic
 from typing import Any
@@ -199,9 +199,11 @@ def _compute(
             pieces.keep(number, asked.computed(*pieces.range(number), pace.within))
             pace.landed(number)
     elif missing:
-        for number, image in pieces_of_workers(asked, pieces, missing, workers, scheduler):
-            pieces.keep(number, image)
-            pace.landed(number)
+        # Closed before an error goes on: its processes end with it.
+        with closing(pieces_of_workers(asked, pieces, missing, workers, scheduler)) as landing:
+            for number, image in landing:
+                pieces.keep(number, image)
+                pace.landed(number)
 
 
 class Pace:

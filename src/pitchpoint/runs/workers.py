@@ -3,10 +3,10 @@
 import socket
 import subprocess
 import sys
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from itertools import islice
-from time import sleep
+from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
 
 from pitchpoint.errors import InputError, PitchpointError, shorten
@@ -38,7 +38,7 @@ def pieces_of_workers(
     missing: Sequence[int],
     workers: int | None,
     scheduler: str | None,
-) -> Iterator[tuple[int, bytes]]:
+) -> Generator[tuple[int, bytes], None, None]:
     """Numbers and files of pieces in the order in which they are computed.
 
     Args:
@@ -186,12 +186,19 @@ _OF_WORKERS = (
 
 def _landing(
     client: "Client", study: StudyDescription, pieces: Pieces, missing: Sequence[int]
-) -> Iterator[tuple[int, bytes]]:
+) -> Generator[tuple[int, bytes], None, None]:
     """Pieces as they come; no more are asked for than keep the workers busy."""
     left, asked = iter(missing), dict[Any, int]()
+    seen = monotonic()
     while True:
         with _reachable():
-            room = AHEAD * max(sum(client.nthreads().values()), 1) - len(asked)
+            threads = sum(client.nthreads().values())
+            seen = monotonic() if threads else seen
+            if monotonic() - seen > START:
+                raise PitchpointError(
+                    f"the scheduler has had no worker for {START:.0f} s; {GOES_ON}"
+                )
+            room = AHEAD * max(threads, 1) - len(asked)
             for number in islice(left, max(room, 0)):
                 asked[_submitted(client, study, pieces, number)] = number
         if not asked:
