@@ -39,22 +39,25 @@ def asperity_share(
     Raises:
         InputError: the oil is not known at this temperature.
     """
-    asked, carries = jax.device_get(_asked(at))
-    loaded = carries & (asked["line_load"] > LEAST * np.max(asked["line_load"] * carries))
-    found = np.zeros(loaded.shape)
+    conditions, carries = jax.device_get(_asked(at))
+    loaded = carries & (conditions["line_load"] > LEAST * np.max(conditions["line_load"] * carries))
+    shares = np.zeros(loaded.shape)
     if loaded.any():
-        given = {name: np.broadcast_to(one, loaded.shape)[loaded] for name, one in asked.items()}
+        of_films = {
+            name: np.broadcast_to(values, loaded.shape)[loaded]
+            for name, values in conditions.items()
+        }
         # Zones of engagement repeat each other but for rounding: each film is solved once.
-        rounded = [np.array([f"{x:.9e}" for x in one]) for one in given.values()]
-        _, first, same = np.unique(
+        rounded = [np.array([f"{x:.9e}" for x in values]) for values in of_films.values()]
+        _, distinct, film_of_contact = np.unique(
             np.stack(rounded, axis=1), axis=0, return_index=True, return_inverse=True
         )
-        once = {name: one[first] for name, one in given.items()}
+        once = {name: values[distinct] for name, values in of_films.items()}
         contacts = model.contacts(**once, oil=oil, temperature=temperature)
         films = solve_lines(contacts, nodes=model.nodes, profiles=False)
         share = np.where(films.solved, np.asarray(films.film.asperity_share), np.nan)
-        found[loaded] = share[same.ravel()]
-    return found
+        shares[loaded] = share[film_of_contact.ravel()]
+    return shares
 
 
 @program

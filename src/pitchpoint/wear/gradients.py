@@ -37,8 +37,8 @@ class Sensitivity(NamedTuple):
 def varied(inputs: Inputs) -> list[str]:
     """Names of the inputs that can be changed by a part of themselves: finite ones that are not zero."""
     named = _named(inputs)
-    known = jax.device_get(named)
-    return [name for name in named if np.isfinite(known[name]) and known[name] != 0.0]
+    values = jax.device_get(named)
+    return [name for name in named if np.isfinite(values[name]) and values[name] != 0.0]
 
 
 def changed(inputs: Inputs, names: Sequence[str], part: Float[Array, " input"] | Values) -> Inputs:
@@ -49,20 +49,23 @@ def changed(inputs: Inputs, names: Sequence[str], part: Float[Array, " input"] |
         names: as `varied` has them.
         part: of each; temperatures count from absolute zero.
     """
-    own = _named(inputs)
-    values = {name: own[name] * (1.0 + part[k]) for k, name in enumerate(names)}
+    inputs_by_name = _named(inputs)
+    values = {name: inputs_by_name[name] * (1.0 + part[k]) for k, name in enumerate(names)}
     design, operation, wear = inputs
     solids = [
-        replace(one, young=values.get(f"Young's modulus {k}", one.young))
-        for k, one in enumerate(design.solids, 1)
+        replace(solid, young=values.get(f"Young's modulus {k}", solid.young))
+        for k, solid in enumerate(design.solids, 1)
     ]
     rq_1, rq_2 = (values.get(f"Rq {k}", getattr(design.roughness, f"rq_{k}")) for k in (1, 2))
     constants = [
-        {name: values.get(f"{_words(name)} {k}", one) for name, one in each.items()}
-        for k, each in enumerate(wear.own, 1)
+        {
+            name: values.get(f"{_words(name)} {k}", constant)
+            for name, constant in law_constants.items()
+        }
+        for k, law_constants in enumerate(wear.own, 1)
     ]
     defect = wear.defect and {
-        name: values.get(_words(name), one) for name, one in wear.defect.items()
+        name: values.get(_words(name), constant) for name, constant in wear.defect.items()
     }
     return (
         replace(
@@ -85,15 +88,15 @@ def _named(inputs: Inputs) -> dict[str, Array]:
     rough = design.roughness
     return {
         **{name: getattr(operation, key) for key, name in _POINT.items()},
-        **{name: one for name, _, _, one in _of_mesh(design.mesh)},
-        **{f"Young's modulus {k}": one.young for k, one in enumerate(design.solids, 1)},
-        **{f"Rq {k}": one for k, one in enumerate((rough.rq_1, rough.rq_2), 1)},
+        **{name: number for name, _, _, number in _of_mesh(design.mesh)},
+        **{f"Young's modulus {k}": solid.young for k, solid in enumerate(design.solids, 1)},
+        **{f"Rq {k}": rq for k, rq in enumerate((rough.rq_1, rough.rq_2), 1)},
         **{
-            f"{_words(name)} {k}": one
-            for k, own in enumerate(wear.own, 1)
-            for name, one in own.items()
+            f"{_words(name)} {k}": constant
+            for k, law_constants in enumerate(wear.own, 1)
+            for name, constant in law_constants.items()
         },
-        **{_words(name): one for name, one in (wear.defect or {}).items()},
+        **{_words(name): constant for name, constant in (wear.defect or {}).items()},
     }
 
 
@@ -114,13 +117,13 @@ def _of_mesh(mesh: Mesh) -> Iterator[tuple[str, str, int | None, Array]]:
 
 def _fields(mesh: Mesh, values: Mapping[str, Array]) -> dict[str, Array]:
     """Fields of a mesh with some of its numbers changed."""
-    found: dict[str, Array] = {}
+    fields: dict[str, Array] = {}
     for name, field, member, _ in _of_mesh(mesh):
         if name in values and member is None:
-            found[field] = values[name]
+            fields[field] = values[name]
         elif name in values:
-            found[field] = found.get(field, getattr(mesh, field)).at[member].set(values[name])
-    return found
+            fields[field] = fields.get(field, getattr(mesh, field)).at[member].set(values[name])
+    return fields
 
 
 # ---- along the steps of a march
@@ -159,25 +162,25 @@ def march_sensitivities(
     felt = float(updated)
 
     def rate(depth: Values, moved: Values) -> tuple[Values, Values]:
-        found: tuple[Values, Values] = jax.device_get(
+        rates: tuple[Values, Values] = jax.device_get(
             _rate(inputs, models, cells, parts, names, array(felt * depth), array(felt * moved))
         )
-        return found
+        return rates
 
-    here, slope = first = rate(depth[0], moved)
+    here, slope = rates_as_new = rate(depth[0], moved)
     for step, at, after in zip(np.diff(turns), depth, depth[1:], strict=False):
-        one, two = slope, rate(at + 0.5 * step * here, moved + 0.5 * step * slope)
-        three = rate(at + 0.75 * step * two[0], moved + 0.75 * step * two[1])
-        moved = moved + step * (2.0 * one + 3.0 * two[1] + 4.0 * three[1]) / 9.0
+        start_slope, middle = slope, rate(at + 0.5 * step * here, moved + 0.5 * step * slope)
+        late = rate(at + 0.75 * step * middle[0], moved + 0.75 * step * middle[1])
+        moved = moved + step * (2.0 * start_slope + 3.0 * middle[1] + 4.0 * late[1]) / 9.0
         here, slope = rate(after, moved)
     rows = cells.deepest
-    new, new_slope = first[0][:, rows], first[1][:, :, rows]
-    last, here, moved = depth[-1][:, rows], here[:, rows], moved[:, :, rows]
+    new, new_slope = rates_as_new[0][:, rows], rates_as_new[1][:, :, rows]
+    worn_depth, here, moved = depth[-1][:, rows], here[:, rows], moved[:, :, rows]
     if not float(new.max()) > 0.0:
         return {}
     start = np.unravel_index(int(np.argmax(new)), new.shape)
-    place = np.unravel_index(int(np.argmax(last)), last.shape)
-    deepest, fast = float(last[place]), float(here[place])
+    place = np.unravel_index(int(np.argmax(worn_depth)), worn_depth.shape)
+    deepest, fast = float(worn_depth[place]), float(here[place])
     return {
         name: Sensitivity(
             rate=float(new_slope[k][start] / new[start]),
@@ -206,8 +209,8 @@ def _rate(
         share = models.share(design, start.contacts, operation.load, start.body, start.teeth)
         # Cells follow the flanks.
         flank, across, span = reached(*travelled(design, operation, models, start.engaged(share)))
-        own = replace(cells, flank=flank, across=across, span=span)
-        return turn_alone(design, operation, models, wear, own, start, depth).depth
+        moved_cells = replace(cells, flank=flank, across=across, span=span)
+        return turn_alone(design, operation, models, wear, moved_cells, start, depth).depth
 
     value, slope = jax.linearize(turn, jnp.zeros(len(names)), depth)
     return value, jax.vmap(slope)(jnp.eye(len(names)), moved)

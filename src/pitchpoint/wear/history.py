@@ -154,16 +154,19 @@ class Cells(eqx.Module):
 
     def surfaces(self, depth: Depths) -> tuple[Worn, Worn]:
         """Both members' flanks with so much gone."""
-        first, second = (
+        worn_flank, worn_mate = (
             Worn(depth[k, : self.count], self.flank[k], self.across, self.span) for k in range(2)
         )
-        return first, second
+        return worn_flank, worn_mate
 
     def worn(self, mesh: Mesh, depth: Depths) -> Mesh:
         """The same mesh with flanks, beside the surfaces that they have, of which so much is gone."""
-        first, second = zip(mesh.surfaces, self.surfaces(depth), strict=True)
-        made: Any = mesh  # surfaces are a field of every family, a property of `Mesh`
-        changed: Mesh = replace(made, surfaces=((*first[0], first[1]), (*second[0], second[1])))
+        on_flank, on_mate = zip(mesh.surfaces, self.surfaces(depth), strict=True)
+        family_mesh: Any = mesh  # surfaces are a field of every family, a property of `Mesh`
+        changed: Mesh = replace(
+            family_mesh,
+            surfaces=((*on_flank[0], on_flank[1]), (*on_mate[0], on_mate[1])),
+        )
         return changed
 
 
@@ -216,21 +219,22 @@ class WearModel(eqx.Module):
         """
         wanted = inspect.signature(self.law).parameters
         if "hardness" in wanted:
-            softer = jnp.minimum(*(own["hardness"] for own in self.own))
+            softer = jnp.minimum(*(constants["hardness"] for constants in self.own))
             at = replace(at, hardness=jnp.asarray(softer))
-        found = {name: getattr(at, name) for name in wanted if name in UNITS}
+        arguments = {name: getattr(at, name) for name in wanted if name in UNITS}
         if "asperity_share" in wanted and self.share is not None:
-            found["asperity_share"] = self.share
+            arguments["asperity_share"] = self.share
         elif "asperity_share" in wanted and self.asperities is not None:
-            found["asperity_share"] = evaluate(self.asperities, at)
+            arguments["asperity_share"] = evaluate(self.asperities, at)
         if "film_defect" in wanted and self.defect is not None:
             warm = temperature + self._flash(at, friction)
-            given = {"sliding": as_array(at.sliding), "temperature": warm}
-            found["film_defect"] = fractional_film_defect(**given, **self.defect)
-        first, second = (
-            jnp.broadcast_to(self.law(**{**found, **own}), at.load.shape) for own in self.own
+            of_defect = {"sliding": as_array(at.sliding), "temperature": warm}
+            arguments["film_defect"] = fractional_film_defect(**of_defect, **self.defect)
+        flank_rate, mate_rate = (
+            jnp.broadcast_to(self.law(**{**arguments, **constants}), at.load.shape)
+            for constants in self.own
         )
-        return first, second
+        return flank_rate, mate_rate
 
     def _flash(self, at: Conditions, friction: Lanes) -> Lanes:
         """Largest rise of the temperature of both flanks in the contact [K]; see `shared_flash`."""
@@ -333,8 +337,8 @@ class Start(eqx.Module):
         phase, weight = midpoints(mesh.events(), parts)
         contacts = mesh.contacts(phase)
         if models.sharing.by_stiffness:
-            given = tooth_sections(mesh), design.solids, models.compliance
-            teeth = teeth_at(contacts, *given)
+            tooth_inputs = tooth_sections(mesh), design.solids, models.compliance
+            teeth = teeth_at(contacts, *tooth_inputs)
             body = mesh.body.compliance(contacts, design.solids) if mesh.body.couples else None
         spots, places, gap = mesh.spots(contacts, phase), None, None
         if has(mesh, line_of_action) and contacts.shape == "line":  # an ellipse covers many strips
@@ -357,8 +361,8 @@ class Start(eqx.Module):
         """
         if cells.strips > 1 or cells.count < 4:
             return self
-        first, second = cells.surfaces(jnp.zeros((2, cells.count, 1)))
-        felt = WornAt.of(first, self.spots[0]), WornAt.of(second, self.spots[1])
+        flank, mate = cells.surfaces(jnp.zeros((2, cells.count, 1)))
+        felt = WornAt.of(flank, self.spots[0]), WornAt.of(mate, self.spots[1])
         return replace(self, felt=felt)
 
     def worn(self, cells: Cells, depth: Depths) -> Surfaces:
@@ -369,10 +373,12 @@ class Start(eqx.Module):
             depth: worn off so far [m].
         """
         if self.felt is None:
-            first, second = cells.surfaces(depth)
-            return (first,), (second,)
-        one, other = (felt.at(depth[k, : cells.count, 0]) for k, felt in enumerate(self.felt))
-        return (one,), (other,)
+            flank, mate = cells.surfaces(depth)
+            return (flank,), (mate,)
+        on_flank, on_mate = (
+            felt.at(depth[k, : cells.count, 0]) for k, felt in enumerate(self.felt)
+        )
+        return (on_flank,), (on_mate,)
 
     def engaged(self, share: Lanes, contacts: Contacts | None = None) -> Engagement:
         """Contacts over the period, as new or as they are worn, and what they carry.
@@ -475,7 +481,10 @@ def reached(
         low = jnp.min(jnp.where(active, places - half, jnp.inf))
         return jnp.stack([low, jnp.max(jnp.where(active, places + half, -jnp.inf))])
 
-    flanks = [ends(own, 0.5 * way) for own, way in zip(contacts.flank, ways, strict=True)]
+    flanks = [
+        ends(places_on_flank, 0.5 * path)
+        for places_on_flank, path in zip(contacts.flank, ways, strict=True)
+    ]
     across = ends(contacts.width, reach)
     carried = jnp.where(active, at.load, 0.0)
 
@@ -526,16 +535,16 @@ def one_turn(
     contacts, flat = worn_contacts(cells, start, depth)
     worn = replace(design, mesh=cells.worn(design.mesh, depth))
     share = shares_at(worn, contacts, operation.load, models, start.body)
-    known = start.engaged(share, contacts if contacts.shape == "ellipse" else None)
-    known = known.loaded() if design.mesh.body.couples else known
-    known, wide = felt_over_width(design, operation, models, cells, known, depth)
+    engagement = start.engaged(share, contacts if contacts.shape == "ellipse" else None)
+    engagement = engagement.loaded() if design.mesh.body.couples else engagement
+    engagement, wide = felt_over_width(design, operation, models, cells, engagement, depth)
     if wear.films is not None:
-        at, _ = travelled(design, operation, models, known)
+        at, _ = travelled(design, operation, models, engagement)
         wear = wear.solved(at, design.lubricant, operation.temperature)
-    found = wear_of(design, operation, models, wear, cells, known)
+    turn = wear_of(design, operation, models, wear, cells, engagement)
     conforming = np.any(np.asarray(flat) & (np.asarray(share) > 0.0))
-    outgrown = found.outgrown | np.any(np.asarray(wide))
-    return replace(found, conforming=array(conforming), outgrown=array(outgrown))
+    outgrown = turn.outgrown | np.any(np.asarray(wide))
+    return replace(turn, conforming=array(conforming), outgrown=array(outgrown))
 
 
 def turn_alone(
@@ -554,11 +563,11 @@ def turn_alone(
     contacts, flat = worn_contacts(cells, start, depth)
     worn = replace(design, mesh=cells.worn(design.mesh, depth))
     share = models.share(worn, contacts, operation.load, start.body, start.teeth)
-    known = start.engaged(share, contacts if contacts.shape == "ellipse" else None)
-    known, wide = felt_over_width(design, operation, models, cells, known, depth)
-    found = wear_of(design, operation, models, wear, cells, known)
-    outgrown = found.outgrown | jnp.any(wide)
-    return replace(found, conforming=jnp.any(flat & (share > 0.0)), outgrown=outgrown)
+    engagement = start.engaged(share, contacts if contacts.shape == "ellipse" else None)
+    engagement, wide = felt_over_width(design, operation, models, cells, engagement, depth)
+    turn = wear_of(design, operation, models, wear, cells, engagement)
+    outgrown = turn.outgrown | jnp.any(wide)
+    return replace(turn, conforming=jnp.any(flat & (share > 0.0)), outgrown=outgrown)
 
 
 _turn_alone = program(turn_alone)
@@ -642,7 +651,7 @@ def wear_of(
     slid = jnp.where(carries, at.load * as_array(at.sliding), 0.0) * lasts
     turns = wear.mates * periods / flanks_in_turn(design.mesh)
     gone = jnp.stack([turns[k] * rate * slid for k, rate in enumerate(rates)])
-    along = jnp.stack([_spread(at, way, known.weight) for way in ways])
+    along = jnp.stack([_spread(at, path, known.weight) for path in ways])
     depths = _laid(cells, at, along, gone)
     if cells.nearest is not None:
         # In a period, all that wears a flank at a contact is its force times sliding over the way there.
@@ -715,10 +724,10 @@ def _laid(
     inner = jnp.arange(1, cells.count) / cells.count
 
     def of(member: tuple[Array, ...]) -> Float[Array, "cell strip"]:
-        ends, length, place, way, volume = member
-        each = 1.0 / jnp.maximum(way, _SHORT * length)
+        ends, length, place, path, volume = member
+        per_path = 1.0 / jnp.maximum(path, _SHORT * length)
         edge = ends[0] + (ends[1] - ends[0]) * inner
-        along = jnp.clip(edge * each[..., None] + (0.5 - place * each)[..., None], 0.0, 1.0)
+        along = jnp.clip(edge * per_path[..., None] + (0.5 - place * per_path)[..., None], 0.0, 1.0)
         before = jnp.einsum("...,...c,...s->sc", volume, along, reaches)
         total = jnp.einsum("...,...s->s", volume, reaches)[:, None]
         passed = jnp.concatenate([jnp.zeros_like(total), before, total], axis=1)
@@ -726,8 +735,8 @@ def _laid(
         return jnp.where(volumes < 0.0, 0.0, volumes) / (length * cells.width)
 
     # By a loop over the members: fused with what made them, ways would be computed again for every cell.
-    found: Depths = jax.lax.map(of, (cells.flank, cells.lengths, flank, ways, gone))
-    return found
+    depths: Depths = jax.lax.map(of, (cells.flank, cells.lengths, flank, ways, gone))
+    return depths
 
 
 def _at_places(
@@ -737,22 +746,22 @@ def _at_places(
     apart = values.reshape(*values.shape[:-1], -1, parts)
     ends = jnp.stack([apart[..., :3] @ nearest, apart[..., :-4:-1] @ nearest], axis=-1)
     if ends.shape[-3] >= _SLICED:
-        first, last = (
+        at_start, at_end = (
             jnp.einsum("k,...kse->...se", nearest, side)
             for side in (ends[..., :3, :, :], ends[..., :-4:-1, :, :])
         )
-        ends = ends.at[..., 0, :, :].set(first).at[..., -1, :, :].set(last)
-    rows = [jnp.moveaxis(one, -2, -1) for one in (values, ends.reshape(*ends.shape[:-2], -1))]
+        ends = ends.at[..., 0, :, :].set(at_start).at[..., -1, :, :].set(at_end)
+    rows = [jnp.moveaxis(lanes, -2, -1) for lanes in (values, ends.reshape(*ends.shape[:-2], -1))]
     return jnp.concatenate(
-        [one.reshape(*one.shape[:-3], -1, one.shape[-1]) for one in rows], axis=-2
+        [lanes.reshape(*lanes.shape[:-3], -1, lanes.shape[-1]) for lanes in rows], axis=-2
     )
 
 
 def _of_places(values: Float[Array, "4 2 place strip"]) -> Depths:
     """Depth per turn from line load times rate, sliding, and the way past a place or over what is covered."""
     rubbed, slid, passed, held = jnp.maximum(values, 0.0)
-    way = passed + held
-    return jnp.asarray(rubbed * slid / jnp.where(way > 0.0, way, 1.0))
+    path = passed + held
+    return jnp.asarray(rubbed * slid / jnp.where(path > 0.0, path, 1.0))
 
 
 def _under(contacts: Contacts, places: Float[Array, "2 place strip"]) -> Lanes:

@@ -106,8 +106,8 @@ class Reached:
     @property
     def deepest(self) -> Values:
         """Largest depth of each member [m]."""
-        found: Values = self.depth.max(axis=(1, 2))
-        return found
+        largest: Values = self.depth.max(axis=(1, 2))
+        return largest
 
 
 def as_new(rate: Callable[[Values], Rate], shape: tuple[int, int, int]) -> Reached:
@@ -118,11 +118,11 @@ def as_new(rate: Callable[[Values], Rate], shape: tuple[int, int, int]) -> Reach
         shape: of depths.
     """
     none = np.zeros(shape)
-    first = rate(none)
-    largest = float(first.depth.max())
-    end: End = "lost" if first.lost else "" if largest > 0.0 else "no wear"
+    rate_as_new = rate(none)
+    largest = float(rate_as_new.depth.max())
+    end: End = "lost" if rate_as_new.lost else "" if largest > 0.0 else "no wear"
     step = FIRST / largest if largest > 0.0 else inf
-    return Reached(0.0, none, first, np.zeros(2), step, end)
+    return Reached(0.0, none, rate_as_new, np.zeros(2), step, end)
 
 
 def after(
@@ -153,10 +153,10 @@ def after(
     def seen_at(depth: Values) -> Rate:
         key = depth.tobytes()
         if key not in seen:
-            found = rate(depth.reshape(shape))
-            if found.lost:
+            state_rate = rate(depth.reshape(shape))
+            if state_rate.lost:
                 raise _LostError
-            seen[key] = found
+            seen[key] = state_rate
         return seen[key]
 
     deepest = max(float(before.depth.max()), FIRST)
@@ -176,11 +176,11 @@ def after(
         turns, end = _ends(march, limit, seen_at, start, shape)
         depth = march.y if turns == march.t else march.dense_output()(turns)
         depth = np.maximum(depth, before.depth.ravel())  # a polynomial between two states may fall
-        found = seen_at(depth)
+        end_rate = seen_at(depth)
         apart = (
             np.zeros(2)
             if coarser is None
-            else _of_grid(depth.reshape(shape), limit.deepest, found, coarser)
+            else _of_grid(depth.reshape(shape), limit.deepest, end_rate, coarser)
         )
     except _LostError:
         return replace(before, end="lost")
@@ -191,19 +191,19 @@ def after(
     return Reached(
         turns=turns,
         depth=depth,
-        rate=found,
+        rate=end_rate,
         error=before.error + np.maximum(estimated, allowed) + (turns - before.turns) * apart,
         step=march.h_abs,
-        end="outgrown" if found.outgrown and not end else end,
+        end="outgrown" if end_rate.outgrown and not end else end,
     )
 
 
 def _of_grid(depth: Values, rows: slice, found: Rate, coarser: Callable[[Values], Rate]) -> Values:
     """What a coarser grid changes of a turn's wear where each member is deepest [m]."""
-    other = coarser(depth)
-    if other.lost:
+    coarse_rate = coarser(depth)
+    if coarse_rate.lost:
         raise _LostError
-    apart = np.abs(other.depth - found.depth)[:, rows].reshape(2, -1)
+    apart = np.abs(coarse_rate.depth - found.depth)[:, rows].reshape(2, -1)
     return np.asarray(apart[np.arange(2), depth[:, rows].reshape(2, -1).argmax(axis=1)])
 
 
@@ -236,18 +236,18 @@ def _ends(
     def beyond(measure: Callable[[Values], float]) -> Callable[[float], float]:
         return lambda turns: measure(inside(turns).reshape(shape))
 
-    found: list[tuple[float, End]] = []
+    ends: list[tuple[float, End]] = []
     if beyond_depth(march.t) >= 0.0:
-        found.append((brentq(beyond_depth, march.t_old, march.t), "depth"))
+        ends.append((brentq(beyond_depth, march.t_old, march.t), "depth"))
     if beyond_pressure(march.t) >= 0.0:
-        found.append((_first(beyond_pressure, march.t_old, march.t), "pressure"))
+        ends.append((_first(beyond_pressure, march.t_old, march.t), "pressure"))
     if beyond_hardness(march.t) >= 0.0:
-        found.append((_first(beyond_hardness, march.t_old, march.t), "hardness"))
-    for end, own in limit.teeth:
-        if (measure := beyond(own))(march.t) >= 0.0:
-            found.append((_first(measure, march.t_old, march.t), end))
-    if found:
-        return min(found)
+        ends.append((_first(beyond_hardness, march.t_old, march.t), "hardness"))
+    for end, gap_of_teeth in limit.teeth:
+        if (measure := beyond(gap_of_teeth))(march.t) >= 0.0:
+            ends.append((_first(measure, march.t_old, march.t), end))
+    if ends:
+        return min(ends)
     return march.t, "turns" if march.status == "finished" else ""
 
 

@@ -46,11 +46,11 @@ def severe_start(cycles: Course, course: Course, by: str = "rate") -> float:
         course: of what tells it, positive, shape (step,).
         by: what that is, a name of `SEVERE_BY`.
     """
-    first = 0 if by == "pressure" else int(np.argmin(course))
-    beyond = course[first:] - SEVERE * course[first]
+    start = 0 if by == "pressure" else int(np.argmin(course))
+    beyond = course[start:] - SEVERE * course[start]
     if beyond.max() < 0.0:
         return float("nan")
-    return _crossing(cycles[first:], -beyond)
+    return _crossing(cycles[start:], -beyond)
 
 
 def _crossing(cycles: Course, values: Course) -> float:

@@ -74,13 +74,13 @@ def half_teeth(mesh: Mesh, cells: Cells) -> HalfTeeth:
         mesh: with flanks as new.
         cells: on both flanks.
     """
-    each = [
+    by_member = [
         _at_cells(nodes, middles)
         for nodes, middles in zip(
             jax.device_get(_tips(mesh)), np.asarray(cells.middles[0]), strict=True
         )
     ]
-    half, height, angle = np.stack(each, axis=1)
+    half, height, angle = np.stack(by_member, axis=1)
     return HalfTeeth(half, height - height.min(axis=1, keepdims=True), angle)
 
 
@@ -122,7 +122,7 @@ def tips_of(mesh: Mesh, cells: Cells, start: Start) -> Tips:
 @program
 def _tips(mesh: Mesh) -> list[tuple[Array, Array, Array, Array]]:
     """Half thickness, height and angle along the flanks of both members, and the ends of these."""
-    return [(*one.flank, one.load_angle, one.reach) for one in tooth_sections(mesh)]
+    return [(*section.flank, section.load_angle, section.reach) for section in tooth_sections(mesh)]
 
 
 def backlash_growth(
@@ -189,5 +189,5 @@ def _least_gap(mesh: Mesh, start: Start) -> Float[np.ndarray, " node"]:
     contacts = contacts_at(mesh, start.phase)
     gap, active = jax.device_get((contacts.gap, contacts.active))
     open_gap = np.where(active, np.broadcast_to(gap, active.shape), np.inf)
-    found: Values = open_gap.min(axis=(0, 1))
-    return found
+    least_gap: Values = open_gap.min(axis=(0, 1))
+    return least_gap
