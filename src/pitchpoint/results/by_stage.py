@@ -46,7 +46,7 @@ def as_label(text: str) -> Label:
 
 def alike_labels(labels: Sequence[Label]) -> list[Any]:
     """Labels of stages as a coordinate: numbers, or texts where one of them is."""
-    return [*labels] if all(isinstance(one, int) for one in labels) else [*map(str, labels)]
+    return [*labels] if all(isinstance(label, int) for label in labels) else [*map(str, labels)]
 
 
 def by_stage(each: Mapping[Label, xr.Dataset]) -> xr.Dataset:
@@ -60,7 +60,7 @@ def by_stage(each: Mapping[Label, xr.Dataset]) -> xr.Dataset:
     stages have the same ones. What a stage has less is not a number, no text or false.
     """
     stages = [*each.values()]
-    labels, apart, own_texts = _texts(stages), _apart(stages), [_texts([one]) for one in stages]
+    labels, apart, own_texts = _texts(stages), _apart(stages), [_texts([stage]) for stage in stages]
     sizes = _sizes(stages, labels)
     names = dict.fromkeys(name for data in stages for name in data.variables if name not in labels)
     indices = [name for name in names if name in sizes and name not in apart]
@@ -70,7 +70,7 @@ def by_stage(each: Mapping[Label, xr.Dataset]) -> xr.Dataset:
         if name not in indices
     }
     renamed = {dim: _COUNTED.format(dim) for dim in apart}
-    whole = xr.Dataset(
+    joined = xr.Dataset(
         {
             name: ((STAGE, *(renamed.get(dim, dim) for dim in dims)), values, attributes)
             for name, (dims, values, attributes) in stacked.items()
@@ -84,13 +84,13 @@ def by_stage(each: Mapping[Label, xr.Dataset]) -> xr.Dataset:
     sentences = [
         in_stage(label, text) for label, data in each.items() for text in doubts_of(data.attrs)
     ]
-    own = {str(label): _of_its_own(data) for label, data in each.items()}
-    return whole.assign_attrs(
+    of_stages = {str(label): _of_its_own(data) for label, data in each.items()}
+    return joined.assign_attrs(
         title=stages[0].attrs["title"],
         version=stages[0].attrs["version"],
         solve=json.dumps(_worst([json.loads(data.attrs["solve"]) for data in stages])),
         **stored(sentences),
-        **{OF_STAGES: json.dumps(own, default=lambda value: value.item())},
+        **{OF_STAGES: json.dumps(of_stages, default=lambda value: value.item())},
     )
 
 
@@ -107,19 +107,19 @@ def of_stage(data: xr.Dataset, label: Label) -> xr.Dataset:
         label: of the stage.
     """
     every = json.loads(data.attrs[OF_STAGES])
-    own, row = every[str(label)], [*every].index(str(label))
-    labels = {dim: data[dim].values.tolist() for dim in own["texts"]}
+    record, row = every[str(label)], [*every].index(str(label))
+    labels = {dim: data[dim].values.tolist() for dim in record["texts"]}
     variables = {}
-    for name, (dims, kind, attributes) in own["variables"].items():
-        if name in own["texts"]:
-            variables[name] = xr.Variable(dims, own["texts"][name], attributes)
+    for name, (dims, kind, attributes) in record["variables"].items():
+        if name in record["texts"]:
+            variables[name] = xr.Variable(dims, record["texts"][name], attributes)
             continue
         values = data.variables[name].values
         values = values[row] if data.variables[name].dims[:1] == (STAGE,) else values
-        places = [_places(dim, own["sizes"][dim], own["texts"], labels) for dim in dims]
+        places = [_places(dim, record["sizes"][dim], record["texts"], labels) for dim in dims]
         there = values[np.ix_(*places)] if dims else values
         variables[name] = xr.Variable(dims, np.asarray(there).astype(kind), attributes)
-    return xr.Dataset(variables, attrs=own["attributes"]).set_coords(own["coordinates"])
+    return xr.Dataset(variables, attrs=record["attributes"]).set_coords(record["coordinates"])
 
 
 def _of_its_own(data: xr.Dataset) -> dict[str, Any]:
@@ -142,12 +142,12 @@ def _of_its_own(data: xr.Dataset) -> dict[str, Any]:
 
 def _texts(stages: Sequence[xr.Dataset]) -> dict[Hashable, list[str]]:
     """Texts along dimensions, of all stages."""
-    found: dict[Hashable, list[str]] = {}
+    texts: dict[Hashable, list[str]] = {}
     for data in stages:
         for dim in data.sizes:
             if dim in data.coords and data[dim].dtype.kind in "UO":
-                found[dim] = [*dict.fromkeys([*found.get(dim, []), *map(str, data[dim].values)])]
-    return found
+                texts[dim] = [*dict.fromkeys([*texts.get(dim, []), *map(str, data[dim].values)])]
+    return texts
 
 
 def _apart(stages: Sequence[xr.Dataset]) -> list[Hashable]:

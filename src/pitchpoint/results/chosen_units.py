@@ -61,19 +61,21 @@ def unit_choice(given: Any) -> dict[str, str]:
         {'angle': 'arcmin', 'torsional stiffness': 'N m/arcmin'}
     """
     pairs = [*given.items()] if isinstance(given, Mapping) else _pairs(given)
-    made: dict[str, str] = {}
+    units_by_kind: dict[str, str] = {}
     for name, unit in pairs:
         kind = known_as(str(name), choosable())
         if kind is None:
-            ending = [one for one in choosable() if one.endswith(f" {name}")]
+            ending = [
+                kind_listed for kind_listed in choosable() if kind_listed.endswith(f" {name}")
+            ]
             near = nearest(str(name), ending or choosable())
             raise InputError(f"{shown(name)} is no kind of quantity with units{near}", value=name)
-        if kind in made:
+        if kind in units_by_kind:
             raise InputError(f"the unit of {kind} was given twice", value=unit)
         if not isinstance(unit, str):
             raise InputError(f"{shown(unit)} was given where a unit of {kind} belongs", value=unit)
-        made[kind] = units.spelled(unit, _whole(kind))
-    return made
+        units_by_kind[kind] = units.spelled(unit, _whole(kind))
+    return units_by_kind
 
 
 @contextmanager
@@ -105,8 +107,8 @@ def _pairs(text: Any) -> list[tuple[str, str]]:
     pairs = [part.partition("=") for part in text.split(",")]
     for kind, equals, unit in pairs:
         if not (equals and kind.strip() and unit.strip()):
-            told = "is not KIND=UNIT, for example angle=arcmin"
-            raise InputError(f"{shown(text)} {told}", value=text)
+            refusal = "is not KIND=UNIT, for example angle=arcmin"
+            raise InputError(f"{shown(text)} {refusal}", value=text)
     return [(kind.strip(), unit.strip()) for kind, _, unit in pairs]
 
 

@@ -191,7 +191,7 @@ def film_dataset(films: Films, dims: Sequence[str] | None = None) -> xr.Dataset:
     """
     axes = _axes(np.ndim(films.ended.code), dims)
     values = {
-        name: ((*axes, "node") if name in _NODES else axes, one) for name, one in _values(films)
+        name: ((*axes, "node") if name in _NODES else axes, field) for name, field in _values(films)
     }
     code = np.asarray(films.ended.code)
     data = dataset(
@@ -203,8 +203,8 @@ def film_dataset(films: Films, dims: Sequence[str] | None = None) -> xr.Dataset:
         solve=told_of(code, np.asarray(films.ended.reynolds), np.asarray(films.ended.iterations)),
     )
     describe(data, _OWN)
-    found = {int(one): Code(int(one)).sentence for one in np.unique(code)}
-    data["ended_code"].attrs["sentences"] = json.dumps(found)
+    sentences = {int(field): Code(int(field)).sentence for field in np.unique(code)}
+    data["ended_code"].attrs["sentences"] = json.dumps(sentences)
     return data.set_coords("x")
 
 
@@ -237,11 +237,11 @@ def march_dataset(moments: Sequence[PatchMoment]) -> xr.Dataset:
     """
     if not moments:
         raise InputError("a dataset of a march takes at least one of its moments", key="moments")
-    times = {"time": ("time", np.array([one.time for one in moments]))}
+    times = {"time": ("time", np.array([moment.time for moment in moments]))}
     data = _over_patch(moments, ("time",), times, "films over a patch at several times")
     counts = {
-        "time_steps": [one.time_steps for one in moments],
-        "newton_steps": [one.ended.steps for one in moments],
+        "time_steps": [moment.time_steps for moment in moments],
+        "newton_steps": [moment.ended.steps for moment in moments],
     }
     data = data.assign({name: ("time", np.array(values)) for name, values in counts.items()})
     describe(data, _MARCH)
@@ -256,29 +256,31 @@ def _over_patch(
 ) -> xr.Dataset:
     """Films on one grid, one without axes of their own or several along one."""
     names = [name for name in _PATCH if name not in ("x", "y")]
-    first = films[0].film
+    leading_film = films[0].film
 
     def values(name: str) -> Any:
-        found = [np.asarray(_of_patch(one.film, name)) for one in films]
-        return np.stack(found) if dims else found[0]
+        by_film = [np.asarray(_of_patch(patch.film, name)) for patch in films]
+        return np.stack(by_film) if dims else by_film[0]
 
-    if first.heat is not None:
+    if leading_film.heat is not None:
         names += _PATCH_HEAT
     data = dataset(
         {name: ((*dims, *_patch_dims(name)), values(name)) for name in names},
         {
             **coordinates,
-            "x": ("x", np.asarray(first.x)),
-            "y": ("y", np.asarray(first.y)),
+            "x": ("x", np.asarray(leading_film.x)),
+            "y": ("y", np.asarray(leading_film.y)),
             "direction": ["x", "y"],
             "end": ["first", "last"],
             "distance": ("distance", END_DISTANCES),
         },
         title=title,
-        warnings=list(dict.fromkeys(told for one in films for told in one.warnings)),
+        warnings=list(
+            dict.fromkeys(warning for patch_film in films for warning in patch_film.warnings)
+        ),
         solve=told_of(
             *(
-                np.array([getattr(one.ended, name) for one in films])
+                np.array([getattr(patch_film.ended, name) for patch_film in films])
                 for name in ("code", "reynolds", "steps")
             )
         ),

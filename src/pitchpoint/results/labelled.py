@@ -46,15 +46,15 @@ def labelled(data: xr.Dataset, unit: Units = "si") -> xr.Dataset:
     Dimensions without a coordinate take the variable that runs along them (`phase` along the nodes of a
     cycle), else count from 1; a single operating point is no dimension.
     """
-    made = _off_contact(data)
-    if made.sizes.get("point") == 1:
-        made = made.squeeze("point", drop=True)
-    for name in [*made.dims]:
-        if name not in made.coords:
-            made = _labelled(made, str(name))
-    made = made.copy()
-    made.attrs = flat_attributes(data)
-    return in_units(made, unit)
+    table = _off_contact(data)
+    if table.sizes.get("point") == 1:
+        table = table.squeeze("point", drop=True)
+    for name in [*table.dims]:
+        if name not in table.coords:
+            table = _labelled(table, str(name))
+    table = table.copy()
+    table.attrs = flat_attributes(data)
+    return in_units(table, unit)
 
 
 def attributes(data: xr.Dataset) -> dict[str, Any]:
@@ -78,12 +78,12 @@ def flat_attributes(data: xr.Dataset) -> dict[str, Any]:
     """
     nested = attributes(data)
     if _DOUBTS in nested:
-        nested[_DOUBTS] = [dict(zip(DOUBT_FIELDS, one, strict=True)) for one in nested[_DOUBTS]]
+        nested[_DOUBTS] = [dict(zip(DOUBT_FIELDS, doubt, strict=True)) for doubt in nested[_DOUBTS]]
     return {
         name: value
-        for whole, inside in nested.items()
-        if whole != OF_STAGES
-        for name, value in _flat(whole, inside)
+        for attribute, inside in nested.items()
+        if attribute != OF_STAGES
+        for name, value in _flat(attribute, inside)
     }
 
 
@@ -95,9 +95,11 @@ def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
         for key, inside in value.items():
             yield from _flat(f"{name}_{key}", inside)
     elif isinstance(value, list) and value and isinstance(value[0], Mapping | list):
-        every = [one if isinstance(one, Mapping) else dict(enumerate(one, 1)) for one in value]
-        for key in dict.fromkeys(key for one in every for key in one):
-            yield f"{name}_{key}", [_plain(one.get(key)) for one in every]
+        every = [
+            entry if isinstance(entry, Mapping) else dict(enumerate(entry, 1)) for entry in value
+        ]
+        for key in dict.fromkeys(key for entry in every for key in entry):
+            yield f"{name}_{key}", [_plain(entry.get(key)) for entry in every]
     else:
         yield name, [*map(_plain, value)] if isinstance(value, list) else _plain(value)
 
@@ -134,13 +136,13 @@ def showing(unit: Units) -> AbstractContextManager[None]:
 
 
 def _displayed(data: xr.Dataset) -> xr.Dataset:
-    made = data.copy()
+    displayed = data.copy()
     for name in [*map(str, data.variables)]:
         if (name in VARIABLES or name == SWEEP_AXIS) and data[name].dtype.kind == "f":
-            known = variable_of(data, name)
-            if known.display != known.unit:
-                made[name] = _as_shown(data, name, known)
-    return made
+            quantity = variable_of(data, name)
+            if quantity.display != quantity.unit:
+                displayed[name] = _as_shown(data, name, quantity)
+    return displayed
 
 
 def _as_shown(data: xr.Dataset, name: str, known: Variable) -> Any:
@@ -156,9 +158,9 @@ def _off_contact(data: xr.Dataset) -> xr.Dataset:
         return data
     active = data[_ACTIVE].astype(bool)
     lanes = {
-        name: one.where(active).transpose(*one.dims).assign_attrs(one.attrs)
-        for name, one in data.data_vars.items()
-        if set(active.dims) <= set(one.dims) and one.dtype.kind == "f"
+        name: values.where(active).transpose(*values.dims).assign_attrs(values.attrs)
+        for name, values in data.data_vars.items()
+        if set(active.dims) <= set(values.dims) and values.dtype.kind == "f"
     }
     return data.assign(lanes)
 

@@ -32,8 +32,8 @@ def encode(data: xr.Dataset) -> bytes:
             or numbers.
     """
     with h5py.File.in_memory(track_order=True) as file:
-        made = f"version=2,pitchpoint={_version()},hdf5={h5py.version.hdf5_version}"
-        file.attrs["_NCProperties"] = np.bytes_(made)
+        stored_variable = f"version=2,pitchpoint={_version()},hdf5={h5py.version.hdf5_version}"
+        file.attrs["_NCProperties"] = np.bytes_(stored_variable)
         sizes, variables, coords = dict(data.sizes), dict(data.variables), set(data.coords)
         others = {str(name): set(variables[name].dims) for name in coords - sizes.keys()}
         numbers = {name: number for number, name in enumerate(sizes)}
@@ -43,10 +43,10 @@ def encode(data: xr.Dataset) -> bytes:
         ]
         for name, variable in variables.items():
             if name not in sizes:
-                made = _variable(file, str(name), variable)
-                _attach(made, [numbers[dim] for dim in variable.dims], scales)
+                stored_variable = _variable(file, str(name), variable)
+                _attach(stored_variable, [numbers[dim] for dim in variable.dims], scales)
                 if name not in coords:
-                    _describe(made, _beside(others, variable))
+                    _describe(stored_variable, _beside(others, variable))
         _describe(file, data.attrs)
         file.flush()
         return bytes(file.id.get_file_image())
@@ -74,10 +74,14 @@ def decode(image: bytes, only: Collection[str] | None = None) -> xr.Dataset:
         items = dict(file.items())
         scales = [name for name, item in items.items() if _NUMBER in item.attrs]
         order = [*(name for name in items if name not in scales), *scales]  # as xarray has them
-        asked = order if only is None else [name for name in order if name in only]
-        kept = {name: items[name] for name in asked if not _bare(items[name])}
-        variables = {name: _read(name, item, scales) for name, item in kept.items()}
-        beside = {one for item in kept.values() for one in item.attrs.get(_COORDINATES, "").split()}
+        chosen = order if only is None else [name for name in order if name in only]
+        stored = {name: items[name] for name in chosen if not _bare(items[name])}
+        variables = {name: _read(name, item, scales) for name, item in stored.items()}
+        beside = {
+            coordinate
+            for item in stored.values()
+            for coordinate in item.attrs.get(_COORDINATES, "").split()
+        }
         return xr.Dataset(variables, attrs=_described(file)).set_coords(beside & variables.keys())
 
 
@@ -100,14 +104,14 @@ def _variable(file: h5py.File, name: str, variable: xr.Variable) -> h5py.Dataset
     if values.dtype.kind == "b":
         values, attributes["dtype"] = values.astype("i1"), "bool"
     if values.dtype.kind in "OU":
-        made = _array(file, name, data=values.astype(object), dtype=_TEXT)
+        stored_variable = _array(file, name, data=values.astype(object), dtype=_TEXT)
     elif values.dtype.kind == "f":
         attributes["_FillValue"] = values.dtype.type(np.nan)
-        made = _array(file, name, data=values, fillvalue=np.nan)
+        stored_variable = _array(file, name, data=values, fillvalue=np.nan)
     else:
-        made = _array(file, name, data=values)
-    _describe(made, attributes)
-    return made
+        stored_variable = _array(file, name, data=values)
+    _describe(stored_variable, attributes)
+    return stored_variable
 
 
 def _array(file: h5py.File, name: str, **what: Any) -> h5py.Dataset:
@@ -135,8 +139,8 @@ def _put(item: h5py.File | h5py.Dataset, name: str, value: Any) -> None:
     """A new attribute, as `item.attrs` writes it; that takes three times as long to find out its type."""
     values = np.asarray(value, _TEXT if isinstance(value, str) else None)
     kind, held = _kinds(values.dtype)
-    made = h5py.h5a.create(item.id, name.encode(), kind, _space(values.shape))
-    made.write(values, mtype=held)
+    attribute = h5py.h5a.create(item.id, name.encode(), kind, _space(values.shape))
+    attribute.write(values, mtype=held)
 
 
 @cache
@@ -147,8 +151,8 @@ def _space(shape: tuple[int, ...]) -> h5py.h5s.SpaceID:
 @cache
 def _kinds(dtype: "np.dtype[Any]") -> tuple[h5py.h5t.TypeID, h5py.h5t.TypeID]:
     """Type of an attribute in the file and in memory."""
-    known = _TEXT if dtype == _TEXT else dtype
-    return h5py.h5t.py_create(known, logical=True), h5py.h5t.py_create(known)
+    element_type = _TEXT if dtype == _TEXT else dtype
+    return h5py.h5t.py_create(element_type, logical=True), h5py.h5t.py_create(element_type)
 
 
 def _read(name: str, item: h5py.Dataset, scales: list[str]) -> xr.Variable:
@@ -164,8 +168,10 @@ def _values(item: h5py.Dataset) -> np.ndarray[Any, Any]:
 
 
 def _described(item: h5py.File | h5py.Dataset) -> dict[str, Any]:
-    found = {name: item.attrs[name] for name in item.attrs if name not in _HIDDEN}
-    return {name: value if isinstance(value, str) else value[0] for name, value in found.items()}
+    attributes = {name: item.attrs[name] for name in item.attrs if name not in _HIDDEN}
+    return {
+        name: value if isinstance(value, str) else value[0] for name, value in attributes.items()
+    }
 
 
 def _bare(item: h5py.Dataset) -> bool:

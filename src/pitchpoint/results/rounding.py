@@ -17,5 +17,5 @@ def difference(high: np.ndarray, low: np.ndarray) -> np.ndarray:
         [0.0, 1.0]
     """
     scale = ROUNDING * np.maximum(np.abs(high), np.abs(low))
-    found: np.ndarray = np.where(np.abs(high - low) <= scale, 0.0, high - low)
-    return found
+    gap: np.ndarray = np.where(np.abs(high - low) <= scale, 0.0, high - low)
+    return gap

@@ -76,8 +76,8 @@ def dataset(
         {name: (dims, np.asarray(values)) for name, (dims, values) in variables.items()},
         coords=dict(coordinates),
     )
-    known = VARIABLES.keys() & data.variables.keys()
-    describe(data, {name: VARIABLES[name].where(travels) for name in known})
+    described = VARIABLES.keys() & data.variables.keys()
+    describe(data, {name: VARIABLES[name].where(travels) for name in described})
     data.attrs.update(
         {key: _attribute(value) for key, value in {"solve": solve, **attributes}.items()},
         **({} if warnings is None else stored(warnings)),
@@ -89,9 +89,11 @@ def dataset(
 def describe(data: xr.Dataset, variables: Mapping[str, Variable]) -> None:
     """Write unit, long name and symbol to those variables of a dataset that are described."""
     for name, values in data.variables.items():
-        own = variables.get(str(name))
-        if own is not None:
-            values.attrs.update(units=own.unit, long_name=own.long_name, symbol=own.symbol)
+        quantity = variables.get(str(name))
+        if quantity is not None:
+            values.attrs.update(
+                units=quantity.unit, long_name=quantity.long_name, symbol=quantity.symbol
+            )
 
 
 @cache
@@ -155,7 +157,9 @@ def make_folder(folder: Path) -> None:
 def demand_room(folder: Path) -> None:
     """InputError if a folder cannot be made or written to: told before what takes long."""
     with _unwritable(folder):
-        there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
+        there = next(
+            ancestor for ancestor in (folder, *folder.absolute().parents) if ancestor.exists()
+        )
         tempfile.TemporaryFile(dir=there).close()
 
 
@@ -215,8 +219,8 @@ def _locked(folder: Path) -> int | None:
     except OSError as error:
         os.close(handle)
         if isinstance(error, BlockingIOError):
-            told = "another run is writing there; wait for it or give another folder"
-            raise InputError(told, file=str(folder)) from None
+            refusal = "another run is writing there; wait for it or give another folder"
+            raise InputError(refusal, file=str(folder)) from None
         return None
     return handle
 
@@ -226,8 +230,8 @@ def _whole(path: Path, content: bytes, *, lasting: bool) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         _renamed(path, content, lasting=lasting)
     except OSError as error:
-        kept = "; what was finished before is kept and found again" if lasting else ""
-        raise OSError(error.errno, f"{error.strerror}{kept}", str(path)) from None
+        assurance = "; what was finished before is kept and found again" if lasting else ""
+        raise OSError(error.errno, f"{error.strerror}{assurance}", str(path)) from None
 
 
 def _renamed(path: Path, content: bytes, *, lasting: bool) -> None:
@@ -270,8 +274,8 @@ def _unsealed(path: Path) -> bytes:
         file.seek(0)
         image = file.read(length) if seal[:8] == length.to_bytes(8, "big") else b""
     if seal != _seal(image):
-        told = "is damaged or not of pitchpoint; the same run computes it again"
-        raise InputError(told, file=str(path))
+        refusal = "is damaged or not of pitchpoint; the same run computes it again"
+        raise InputError(refusal, file=str(path))
     return image
 
 

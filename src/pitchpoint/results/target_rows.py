@@ -68,8 +68,8 @@ def _tally(rows: Sequence[Row]) -> str:
     ordered = sorted(rows, key=lambda row: ([*_VERDICTS].index(row.verdict), row.surprises))
     fitted = sum(row.verdict == "pass" and row.kind in FITTED for row in rows)
     counted = ", ".join(
-        f"{count} {told}{f' ({fitted} fitted)' if told == _MET and fitted else ''}"
-        for told, count in Counter(map(_verdict, ordered)).items()
+        f"{count} {verdict}{f' ({fitted} fitted)' if verdict == _MET and fitted else ''}"
+        for verdict, count in Counter(map(_verdict, ordered)).items()
     )
     predicted = [row.verdict == "pass" for row in rows if row.kind == "predicted"]
     return (

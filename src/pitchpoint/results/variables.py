@@ -768,12 +768,14 @@ def variable_of(data: Any, name: str) -> Variable:
     The axis of a sweep is what its key says.
     """
     if name == SWEEP_AXIS and "sweep_key" in data.attrs:
-        key, kind, shown = (str(data.attrs[one]) for one in ("sweep_key", "axis_kind", "axis_unit"))
+        key, kind, shown = (
+            str(data.attrs[attribute]) for attribute in ("sweep_key", "axis_kind", "axis_unit")
+        )
         unit = units.si_unit(kind) if kind else "1"
         return Variable(
             long_name=key, symbol="", unit=unit, shown=shown, kind=kind or "dimensionless"
         )
-    known = VARIABLES[name]
-    if known.travel is None or name not in data:
-        return known
-    return known.travel if data[name].attrs.get("units") == known.travel.unit else known
+    quantity = VARIABLES[name]
+    if quantity.travel is None or name not in data:
+        return quantity
+    return quantity.travel if data[name].attrs.get("units") == quantity.travel.unit else quantity
