@@ -196,10 +196,10 @@ class Fluid(eqx.Module):
             >>> Fluid(viscosity=0.04, pressure_viscosity=2.2e-8, density_law="tait_1888").assumed
             "the volume of this oil is not known: 'tait_1888' takes constants between those of a few others"
         """
-        known = {*self.pressure_parameters}
+        oil_constants = {*self.pressure_parameters}
         lacking: dict[tuple[str, str], list[str]] = {}
         for law in self._under_pressure:
-            if law.parameters.keys() - known:
+            if law.parameters.keys() - oil_constants:
                 lacking.setdefault(law.unknown, []).append(f"'{law.name}'")
         sentences = [
             f"{what}: {' and '.join(names)} {'takes' if len(names) == 1 else 'take'} {taken}"
@@ -218,16 +218,18 @@ class Fluid(eqx.Module):
             "a pressure of 1.6 GPa is outside the range of 'roelands_1966', up to 1 GPa"
         """
         values = {"pressure": pressure, "index": np.asarray(self.index)}
-        told = (law.outside(**values) for law in self._under_pressure)
-        return next((one for one in told if one is not None), None)
+        sentences = (law.outside(**values) for law in self._under_pressure)
+        return next((sentence for sentence in sentences if sentence is not None), None)
 
 
 def _own(given: Mapping[str, ArrayLike], *laws: RheologyLaw) -> dict[str, Float[Array, "..."]]:
     """Parameters of laws as arrays."""
-    known = [*dict.fromkeys(name for law in laws for name in law.parameters)]
-    for name in given.keys() - {*known}:
+    law_parameters = [*dict.fromkeys(name for law in laws for name in law.parameters)]
+    for name in given.keys() - {*law_parameters}:
         what = " or ".join(f"'{law.name}'" for law in laws)
-        raise InputError(f"'{shorten(name)}' is no parameter of {what}{nearest(name, known)}")
+        raise InputError(
+            f"'{shorten(name)}' is no parameter of {what}{nearest(name, law_parameters)}"
+        )
     return {name: as_array(value) for name, value in given.items()}
 
 
@@ -242,6 +244,10 @@ def _volume(
     """Free volume and equation of state of an oil at a temperature, as far as laws ask for them."""
     if oil.free_volume is None:
         return {}
-    known = oil.free_volume.parameters(temperature)
+    volume_constants = oil.free_volume.parameters(temperature)
     laws = VISCOSITY[viscosity_law], DENSITY[density_law]
-    return {name: one for law in laws for name, one in _known_to(law, known).items()}
+    return {
+        name: constant
+        for law in laws
+        for name, constant in _known_to(law, volume_constants).items()
+    }

@@ -297,7 +297,7 @@ class LubricantRecord:
         """What the viscosity at -40 degC changes at room temperature; empty where it is not known."""
         if self.nu_0 is None:
             return ""
-        with_it, without = (_viscosity(one, ROOM) for one in (self, replace(self, nu_0=None)))
+        with_it, without = (_viscosity(oil, ROOM) for oil in (self, replace(self, nu_0=None)))
         return (
             "below 40 degC the viscosity follows the line to this one: at 25 degC it is "
             f"{with_it * 1e6:.4g} mm2/s, {100.0 * (with_it / without - 1.0):+.1f} % against the line through "
@@ -312,7 +312,7 @@ class LubricantRecord:
         return {**plain, **self.free_volume}
 
     def _plain(self) -> dict[str, Datum]:
-        every = {one.name: getattr(self, one.name) for one in fields(self)}
+        every = {field.name: getattr(self, field.name) for field in fields(self)}
         return {key: value for key, value in every.items() if isinstance(value, Datum)}
 
     def build(self) -> Lubricant:
@@ -329,8 +329,8 @@ class LubricantRecord:
         """
         for key in values.keys() - {*self._plain(), "nu_0"}:
             raise InputError(f'"{key}" is not a property of an oil', allowed=self._plain())
-        given: dict[str, Any] = {key: Datum(value=value) for key, value in values.items()}
-        return replace(self, **without_free_volume(given), **given)
+        data: dict[str, Any] = {key: Datum(value=value) for key, value in values.items()}
+        return replace(self, **without_free_volume(data), **data)
 
     def thickened(self, *, thickener: str = "", consistency: str = "") -> GreaseRecord:
         """Return the grease that has this oil as its base oil.
@@ -379,10 +379,10 @@ class GreaseRecord(LubricantRecord):
     @property
     def note(self) -> str:
         """What is assumed of a grease."""
-        known = PENETRATION.get(self.consistency)
+        penetration = PENETRATION.get(self.consistency)
         worked = (
-            f" (worked penetration {known[0]} to {known[1]} tenths of a millimetre)"
-            if known
+            f" (worked penetration {penetration[0]} to {penetration[1]} tenths of a millimetre)"
+            if penetration
             else ""
         )
         graded = f" NLGI {self.consistency}{worked} is recorded." if self.consistency else ""
@@ -465,8 +465,8 @@ def _record(name: str, entry: dict[str, Any], bases: dict[str, Any]) -> Lubrican
     if "nu_minus_40_mm2_s" in entry:
         plain |= known_cold(read_datum(entry["nu_minus_40_mm2_s"], scale=1e-6))
     volume = {key: read_datum(value) for key, value in entry.get("free_volume", {}).items()}
-    known = {"base": entry["base"], "free_volume": volume, **values, **plain}
-    oil = LubricantRecord(name=name, title=entry["title"], **known)
+    properties = {"base": entry["base"], "free_volume": volume, **values, **plain}
+    oil = LubricantRecord(name=name, title=entry["title"], **properties)
     words = {key: str(entry[key]) for key in ("thickener", "consistency") if key in entry}
     return oil.thickened(**words) if words else oil
 
@@ -531,7 +531,7 @@ def find(name: str) -> LubricantRecord:
     Raises:
         InputError: there is no oil of this name; the message has the nearest ones.
     """
-    found = known_as(name, _records())
-    if found is None:
+    listed_name = known_as(name, _records())
+    if listed_name is None:
         raise unknown_name(name, _records(), what="a lubricant")
-    return _records()[found]
+    return _records()[listed_name]

@@ -69,7 +69,11 @@ class RheologyLaw:
     def parameters(self) -> dict[str, float]:
         """Parameters of its own with their usual values [SI]."""
         every = inspect.signature(self.function).parameters.values()
-        return {one.name: one.default for one in every if one.default is not one.empty}
+        return {
+            parameter.name: parameter.default
+            for parameter in every
+            if parameter.default is not parameter.empty
+        }
 
     def outside(self, **values: ArrayLike) -> str | None:
         """None if the law holds for these values, else why not, in one sentence without its stop.
@@ -86,9 +90,9 @@ class RheologyLaw:
         """
         for name in filter(values.__contains__, self.ranges):
             low, high = self.ranges[name]
-            given = np.asarray(values[name], dtype=float)
+            asked_values = np.asarray(values[name], dtype=float)
             some = 1e-3 * (high - low)  # what three digits would not show
-            beyond = given[~((given >= low - some) & (given <= high + some))]
+            beyond = asked_values[~((asked_values >= low - some) & (asked_values <= high + some))]
             if beyond.size:
                 return self._told(name, float(beyond[np.argmax(abs(beyond))]))
         return None

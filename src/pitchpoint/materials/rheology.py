@@ -391,8 +391,8 @@ def lorentz_lorenz_1880(*, refractive_index: Each, density_ratio: Each) -> Each:
     """
     squared = refractive_index**2
     refraction = density_ratio * (squared - 1.0) / (squared + 2.0)
-    found: Each = jnp.sqrt((1.0 + 2.0 * refraction) / (1.0 - refraction))
-    return found
+    compressed_index: Each = jnp.sqrt((1.0 + 2.0 * refraction) / (1.0 - refraction))
+    return compressed_index
 
 
 def newtonian(*, viscosity: Each, shear_rate: Each, pressure: Each, temperature_rise: Each) -> Each:

@@ -304,8 +304,8 @@ def heat_failure(record: SolidRecord, temperature: float) -> str:
 
 def _check_inside(record: SolidRecord, temperature: ArrayLike) -> None:
     low, high = record.young_at[0].temperature, record.young_at[-1].temperature
-    given = np.asarray(temperature, dtype=float)
-    outside = given[~((given >= low) & (given <= high))]
+    temperatures = np.asarray(temperature, dtype=float)
+    outside = temperatures[~((temperatures >= low) & (temperatures <= high))]
     if outside.size:
         fails = heat_failure(record, float(outside[0]))
         raise InputError(
@@ -322,10 +322,10 @@ def _check_table(record: SolidRecord) -> None:
         raise InputError("a table of moduli needs two temperatures or more", key=key)
     if not all(a.temperature < b.temperature for a, b in pairwise(points)):
         raise InputError("the temperatures must rise from one to the next", key=key)
-    known = record.young_temperature
-    if known is not None and not _on_table(record, known.value):
+    young = record.young_temperature
+    if young is not None and not _on_table(record, young.value):
         raise InputError(
-            f"the table must give the single modulus at {celsius(known.value)}", key=key
+            f"the table must give the single modulus at {celsius(young.value)}", key=key
         )
 
 
@@ -367,8 +367,8 @@ def _record(name: str, entry: dict[str, Any]) -> SolidRecord:
 def _root_strength(entry: dict[str, Any] | None) -> RootStrength | None:
     if entry is None:
         return None
-    known = {key: value for key, value in entry.items() if key != "terms"}
-    return RootStrength(tuple(entry["terms"]), read_datum({"value": 1.0, **known}))
+    datum_entry = {key: value for key, value in entry.items() if key != "terms"}
+    return RootStrength(tuple(entry["terms"]), read_datum({"value": 1.0, **datum_entry}))
 
 
 def _optional(entry: dict[str, Any], column: str, scale: float = 1.0) -> Datum | None:
@@ -401,7 +401,7 @@ def find(name: str) -> SolidRecord:
     Raises:
         InputError: there is no solid of this name; the message has the nearest ones.
     """
-    found = known_as(name, _records())
-    if found is None:
+    listed_name = known_as(name, _records())
+    if listed_name is None:
         raise unknown_name(name, _records(), what="a material")
-    return _records()[found]
+    return _records()[listed_name]

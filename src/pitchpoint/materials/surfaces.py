@@ -93,9 +93,14 @@ class Roughness(eqx.Module):
 
         From heights that are Gaussian, see `RQ_PER_RA`.
         """
-        first = as_array(rq_1)
-        second = first if rq_2 is None else as_array(rq_2)
-        return cls(ra_1=first / RQ_PER_RA, ra_2=second / RQ_PER_RA, rq_1=first, rq_2=second)
+        rq_of_flank = as_array(rq_1)
+        rq_of_mate = rq_of_flank if rq_2 is None else as_array(rq_2)
+        return cls(
+            ra_1=rq_of_flank / RQ_PER_RA,
+            ra_2=rq_of_mate / RQ_PER_RA,
+            rq_1=rq_of_flank,
+            rq_2=rq_of_mate,
+        )
 
     @classmethod
     def from_composite_rq(cls, rq: ArrayLike) -> Roughness:
