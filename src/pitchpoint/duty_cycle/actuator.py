@@ -57,12 +57,18 @@ def actuator_map(
         [0.77, nan, 0.787]
     """
     torque = np.asarray(table.torques)
-    speed = np.array(sorted({sign * one for one in table.speeds for sign in (-1.0, 1.0)}))
+    speed = np.array(
+        sorted({sign * pace_size for pace_size in table.speeds for sign in (-1.0, 1.0)})
+    )
     load, pace = torque[:, None], speed[None, :]
-    given = np.asarray(table.at_many(load, pace, temperature - ICE_POINT, law).input_torque)
+    motor_torque = np.asarray(table.at_many(load, pace, temperature - ICE_POINT, law).input_torque)
     turning = pace / table.speed_ratio + 0.0 * load
-    beyond = (np.abs(given) > motor.largest_torque) | (np.abs(turning) > motor.largest_speed)
-    power = given * turning + motor.copper_loss(given, winding) + motor.iron_losses(turning)
+    beyond = (np.abs(motor_torque) > motor.largest_torque) | (np.abs(turning) > motor.largest_speed)
+    power = (
+        motor_torque * turning
+        + motor.copper_loss(motor_torque, winding)
+        + motor.iron_losses(turning)
+    )
     power = np.where(beyond, np.nan, power)
     output = np.where(load * pace == 0.0, np.nan, load * pace)
     return ActuatorMap(torque, speed, power, actuator_efficiency(output, power))

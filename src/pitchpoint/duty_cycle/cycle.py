@@ -61,8 +61,8 @@ class Heating:
         limited = (("limits", body) for body in self.limits)
         for name, body in (("gears", self.gears), ("motor", self.winding), *limited):
             if body not in self.network.capacities:
-                known = ", ".join(self.network.bodies)
-                raise InputError(f"the network has no body {body!r}, but {known}", key=name)
+                bodies = ", ".join(self.network.bodies)
+                raise InputError(f"the network has no body {body!r}, but {bodies}", key=name)
         for body, most in self.limits.items():
             demand_kelvins(most, "limits", body)
 
@@ -187,10 +187,13 @@ def duty_dataset(
             "electrical_power": (("time",), driver.power + driver.motor_loss),
             **{name: ((), value) for name, value in numbers.items()},
             **_by_quadrant(warm.history, driver),
-            **{str(name): (tuple(map(str, one.dims)), one.values) for name, one in extra.items()},
+            **{
+                str(name): (tuple(map(str, variable.dims)), variable.values)
+                for name, variable in extra.items()
+            },
         },
         {"time": history.time, "quadrant": [*QUADRANTS]}
-        | {str(name): one.values for name, one in extra.coords.items()},
+        | {str(name): variable.values for name, variable in extra.coords.items()},
         travels=ends,
         title="duty cycle",
         members=str(extra.attrs.get("members", "[]")),
@@ -241,13 +244,13 @@ def _lives(history: LoadHistory, lives: Mapping[str, RatedLife | RatedBearing]) 
     """Of bearings and wave generators, each and together."""
     if not lives:
         return xr.Dataset()
-    each = {name: rated.life(history) for name, rated in lives.items()}
-    every = [each[name] for name, rated in lives.items() for _ in range(rated.count)]
+    life_by_part = {name: rated.life(history) for name, rated in lives.items()}
+    every = [life_by_part[name] for name, rated in lives.items() for _ in range(rated.count)]
     data = {
-        "bearing_life": (("bearing",), [*each.values()]),
+        "bearing_life": (("bearing",), [*life_by_part.values()]),
         "system_life": ((), system_life(every)),
     }
-    return xr.Dataset(data, {"bearing": [*each]})
+    return xr.Dataset(data, {"bearing": [*life_by_part]})
 
 
 def _wear(history: LoadHistory, recorded: RecordedLives | None) -> xr.Dataset:
@@ -260,11 +263,11 @@ def _wear(history: LoadHistory, recorded: RecordedLives | None) -> xr.Dataset:
     unworn = {"unworn": json.dumps([*recorded.left_out])}
     if not recorded.worn:
         return xr.Dataset(attrs=unworn)
-    times = {name: one.until_as_deep(history) for name, one in recorded.worn.items()}
+    times = {name: flank.until_as_deep(history) for name, flank in recorded.worn.items()}
     total = float(history.duration.sum())
     worn = recorded.worn.items()
-    depths = [one.depth * total / (times[name] or np.nan) for name, one in worn]
-    lives = [times[name] if one.limited else np.nan for name, one in worn]
+    depths = [flank.depth * total / (times[name] or np.nan) for name, flank in worn]
+    lives = [times[name] if flank.limited else np.nan for name, flank in worn]
     data = {"wear_life": (("worn",), lives), "cycle_wear": (("worn",), depths)}
     return xr.Dataset(data, {"worn": [*times]}, unworn)
 
@@ -272,9 +275,11 @@ def _wear(history: LoadHistory, recorded: RecordedLives | None) -> xr.Dataset:
 def _teeth(history: LoadHistory, teeth: Callable[[LoadHistory], xr.Dataset] | None) -> xr.Dataset:
     if teeth is None:
         return xr.Dataset()
-    found = teeth(history)
-    kept = {name: value for name, value in found.attrs.items() if name in ("unrated", "members")}
-    return found.drop_attrs().assign_attrs(kept)
+    rated = teeth(history)
+    attributes = {
+        name: value for name, value in rated.attrs.items() if name in ("unrated", "members")
+    }
+    return rated.drop_attrs().assign_attrs(attributes)
 
 
 def _of_actuator(table: LossTable, warm: _Warm, law: str, motor: Motor | None) -> xr.Dataset:
@@ -283,13 +288,13 @@ def _of_actuator(table: LossTable, warm: _Warm, law: str, motor: Motor | None) -
         return xr.Dataset()
     oil = _mean(warm.history.temperature, warm.history)
     hot = oil if warm.winding is None else _mean(warm.winding, warm.history)
-    found = actuator_map(table, motor, law=law, temperature=oil, winding=hot)
+    actuator = actuator_map(table, motor, law=law, temperature=oil, winding=hot)
     axes = ("map_torque", "map_speed")
     data = {
-        "map_electrical_power": (axes, found.power),
-        "map_actuator_efficiency": (axes, found.efficiency),
+        "map_electrical_power": (axes, actuator.power),
+        "map_actuator_efficiency": (axes, actuator.efficiency),
     }
-    return xr.Dataset(data, dict(zip(axes, (found.torque, found.speed), strict=True)))
+    return xr.Dataset(data, dict(zip(axes, (actuator.torque, actuator.speed), strict=True)))
 
 
 def _mean(values: Floats, history: LoadHistory) -> float:
@@ -315,15 +320,15 @@ def _by_law(
             rows.append(_sums(history, _course_of(table, warm, law, motor)))
         except (InputError, ConvergenceError):
             rows.append((np.nan, np.nan))
-    lost, given = zip(*rows, strict=True)
-    data = {"law_lost_energy": (("law",), [*lost]), "law_input_energy": (("law",), [*given])}
+    lost, drawn = zip(*rows, strict=True)
+    data = {"law_lost_energy": (("law",), [*lost]), "law_input_energy": (("law",), [*drawn])}
     return xr.Dataset(data, {"law": [*laws]})
 
 
 def _sums(history: LoadHistory, driver: DriverCourse) -> tuple[float, float]:
     """Energy that is lost, and that the driver gives [J]."""
-    given = np.maximum(driver.power, 0.0)
-    return float(history.duration @ driver.loss), float(history.duration @ given)
+    drawn = np.maximum(driver.power, 0.0)
+    return float(history.duration @ driver.loss), float(history.duration @ drawn)
 
 
 def _by_quadrant(history: LoadHistory, driver: DriverCourse) -> dict[str, Any]:

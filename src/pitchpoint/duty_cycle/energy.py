@@ -91,8 +91,8 @@ def _holding(table: LossTable, torques: Floats, degrees: Floats, law: str) -> Fl
     loads, places = np.unique(np.stack([torques, degrees]), axis=1, return_inverse=True)
     holding = []
     for load, degree in loads.T.tolist():
-        rest = table.at_rest(load, degree, law)
-        low, high = (-np.inf if np.isnan(rest.lowest) else rest.lowest), rest.highest
+        at_rest = table.at_rest(load, degree, law)
+        low, high = (-np.inf if np.isnan(at_rest.lowest) else at_rest.lowest), at_rest.highest
         holding.append(min(max(0.0, low), np.inf if np.isnan(high) else high))
     return np.array(holding)[places.ravel()] if holding else torques
 
@@ -213,7 +213,7 @@ def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
         speeds the rotor up before it, that of the actuator with it. Without a motor both are the same.
     """
     seconds = history.duration
-    out, given = history.power, driver.power
+    out, drawn = history.power, driver.power
     total = float(seconds.sum())
 
     def whole(power: Floats) -> float:
@@ -228,15 +228,15 @@ def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
     def rms(values: Floats) -> float:
         return float(np.sqrt(seconds @ values**2 / total))
 
-    electrical = given + driver.motor_loss
+    electrical = drawn + driver.motor_loss
     return {
         "duration": total,
         "output_energy": whole(np.maximum(out, 0.0)),
         "returned_energy": whole(np.maximum(-out, 0.0)),
         "lost_energy": whole(driver.loss),
-        "input_energy": whole(np.maximum(given, 0.0)),
-        "recovered_energy": whole(np.maximum(-given, 0.0)),
-        "rotor_energy": whole(given - out - driver.loss),
+        "input_energy": whole(np.maximum(drawn, 0.0)),
+        "recovered_energy": whole(np.maximum(-drawn, 0.0)),
+        "rotor_energy": whole(drawn - out - driver.loss),
         "motor_lost_energy": whole(driver.motor_loss),
         "electrical_energy": whole(np.maximum(electrical, 0.0)),
         "electrical_recovered_energy": whole(np.maximum(-electrical, 0.0)),
@@ -251,7 +251,7 @@ def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
         "mean_output_speed": whole(np.abs(history.speed)) / total,
         "rms_input_torque": rms(driver.torque),
         "peak_input_torque": float(np.abs(driver.torque).max()),
-        "peak_input_power": float(np.abs(given).max()),
+        "peak_input_power": float(np.abs(drawn).max()),
     }
 
 
@@ -267,7 +267,7 @@ def mean_load(history: LoadHistory, exponent: float) -> float:
 
     Source: ISO 281:2007 with Miner's rule; means over revolutions, not over time, in which heat goes.
     """
-    way = history.duration * np.abs(history.speed)
-    if not way.sum() > 0.0:
+    travel = history.duration * np.abs(history.speed)
+    if not travel.sum() > 0.0:
         return float("nan")
-    return float((way @ np.abs(history.torque) ** exponent / way.sum()) ** (1.0 / exponent))
+    return float((travel @ np.abs(history.torque) ** exponent / travel.sum()) ** (1.0 / exponent))

@@ -66,13 +66,13 @@ def first_failure(data: xr.Dataset, limits: Mapping[str, float] | None = None) -
         ('bearing output', 10000000.0, 2)
     """
     lives = [*_of_bodies(data, limits or {}), *part_lives(data)]
-    known = [(name, life) for name, life in lives if not np.isnan(life)]
-    unknown = len(known) < len(lives) or bool(data.attrs.get("unrated"))
+    rated = [(name, life) for name, life in lives if not np.isnan(life)]
+    unknown = len(rated) < len(lives) or bool(data.attrs.get("unrated"))
     left_out = tuple(_left_out(data, limits or {}, unknown))
-    if not known:
+    if not rated:
         return FirstFailure("", float("nan"), 0, left_out)
-    part, life = min(known, key=lambda item: item[1])
-    return FirstFailure("" if np.isinf(life) else part, life, len(known), left_out)
+    part, life = min(rated, key=lambda item: item[1])
+    return FirstFailure("" if np.isinf(life) else part, life, len(rated), left_out)
 
 
 def part_lives(data: xr.Dataset) -> list[tuple[str, float]]:

@@ -92,17 +92,19 @@ class ThermalNetwork:
                 raise InputError(
                     f"{capacity} was given for {body}; it is above 0", key="capacities"
                 )
-        for (first, second), resistance in self.resistances.items():
-            unknown = [body for body in (first, second) if body not in (*self.capacities, AMBIENT)]
-            if unknown or first == second:
-                known = ", ".join([*self.capacities, AMBIENT])
+        for (from_body, to_body), resistance in self.resistances.items():
+            unknown = [
+                body for body in (from_body, to_body) if body not in (*self.capacities, AMBIENT)
+            ]
+            if unknown or from_body == to_body:
+                bodies = ", ".join([*self.capacities, AMBIENT])
                 raise InputError(
-                    f"a resistance is between two of {known}, and {first} and {second} were given",
+                    f"a resistance is between two of {bodies}, and {from_body} and {to_body} were given",
                     key="resistances",
                 )
             if not 0.0 < resistance < np.inf:
                 raise InputError(
-                    f"{resistance} was given between {first} and {second}; it is above 0",
+                    f"{resistance} was given between {from_body} and {to_body}; it is above 0",
                     key="resistances",
                 )
         self._demand_ways()
@@ -130,8 +132,8 @@ class ThermalNetwork:
             inner = [place[end] for end in ways if end != AMBIENT]
             for at in inner:
                 matrix[at, at] += 1.0 / resistance
-            for at, other in (inner, inner[::-1]) if len(inner) == 2 else ():
-                matrix[at, other] -= 1.0 / resistance
+            for at, neighbour in (inner, inner[::-1]) if len(inner) == 2 else ():
+                matrix[at, neighbour] -= 1.0 / resistance
         return matrix
 
     @cached_property
@@ -200,7 +202,9 @@ class ThermalNetwork:
         into = np.einsum("nb,bm->mn", heat, shapes / rates)
         forced = -np.expm1(-np.outer(rates, durations)) * into
         rows = zip(begin, rates, forced, strict=True)
-        return np.stack([_decaying(first, rate * durations, adds) for first, rate, adds in rows])
+        return np.stack(
+            [_decaying(amplitude, rate * durations, adds) for amplitude, rate, adds in rows]
+        )
 
     def periodic_with(self, durations: Floats, heat: Callable[[Floats], Floats]) -> Floats:
         """Periodic temperatures under heat that depends on them, in the middle of steps, shape (n, b) [K].
@@ -254,8 +258,8 @@ class ThermalNetwork:
         return np.asarray(heat, float)
 
 
-def _decaying(first: float, exponents: Floats, adds: Floats) -> Floats:
-    """x_k = e^(-exponents_k) x_(k-1) + adds_k from x_0 = first, shape (n,).
+def _decaying(begin_value: float, exponents: Floats, adds: Floats) -> Floats:
+    """x_k = e^(-exponents_k) x_(k-1) + adds_k from x_0 = begin_value, shape (n,).
 
     Sums of adds over their decay run over pieces in which that is at least e^-30, lest it underflows.
     """
@@ -266,8 +270,8 @@ def _decaying(first: float, exponents: Floats, adds: Floats) -> Floats:
         end = max(int(np.searchsorted(passed, before + _LONGEST_DECAY, "right")), begin + 1)
         decay = np.exp(before - passed[begin:end])
         if end == begin + 1:
-            values[begin] = first * decay[0] + adds[begin]
+            values[begin] = begin_value * decay[0] + adds[begin]
         else:
-            values[begin:end] = decay * (first + np.cumsum(adds[begin:end] / decay))
-        first, begin = values[end - 1], end
+            values[begin:end] = decay * (begin_value + np.cumsum(adds[begin:end] / decay))
+        begin_value, begin = values[end - 1], end
     return values

@@ -203,8 +203,8 @@ def read_history(path: Path, temperature: float, *, travels: bool = False) -> Lo
     if not text.strip():
         heads = "time [s], torque [N m], speed [rpm]"
         raise InputError(f"is empty; its first line has heads, such as {heads}", file=str(path))
-    first = text.partition("\n")[0]
-    apart = max(",;\t", key=first.count)
+    heads_line = text.partition("\n")[0]
+    apart = max(",;\t", key=heads_line.count)
     comma = apart != "," and "." not in text
     try:
         table = pd.read_csv(

@@ -60,8 +60,8 @@ class RatedLife:
 
         Source: ISO 281:2007, L10 = (C/P)^p; the mean load over revolutions is Miner's rule with the same p.
         """
-        way = float(history.duration @ np.abs(history.speed)) / (2.0 * np.pi)
-        if not way > 0.0:
+        revolved = float(history.duration @ np.abs(history.speed)) / (2.0 * np.pi)
+        if not revolved > 0.0:
             return float("inf")
         load = mean_load(history, self.exponent)
         turns = (
@@ -69,7 +69,7 @@ class RatedLife:
             if load == 0.0
             else self.revolutions * (self.torque / load) ** self.exponent
         )
-        return turns / way * float(history.duration.sum())
+        return turns / revolved * float(history.duration.sum())
 
 
 @dataclass(frozen=True)
