@@ -134,8 +134,10 @@ class Quantity:
         if self.whole:
             return self.show(_TEETH if self.low < 0.0 else max(self.low, 2.0))
         number = units.example(self.kind).strip('"').partition(" ")[0]
-        many = plain and _MANY <= self.high < math.inf
-        written = "1e6" if many else number if self.unit == "1" else f"{number} {self.unit}"
+        reaches_millions = plain and _MANY <= self.high < math.inf
+        written = (
+            "1e6" if reaches_millions else number if self.unit == "1" else f"{number} {self.unit}"
+        )
         inside = (
             text for text in (written, *map(self.show, (self.low, self.high))) if self._reads(text)
         )
@@ -167,8 +169,8 @@ class Quantity:
         try:
             return units.parse(value, "count" if self.whole else self.kind)
         except InputError as error:
-            told = self._in_own_unit(error.message)
-            raise InputError(f"{told}; {self.allowed}", value=value) from None
+            refusal = self._in_own_unit(error.message)
+            raise InputError(f"{refusal}; {self.allowed}", value=value) from None
 
     def _in_own_unit(self, message: str) -> str:
         """A refusal whose example is in the range, and whose missing unit is the one that is shown.
@@ -186,7 +188,7 @@ class Quantity:
             return message
         if not self._reads(meant):
             # A number out of the range in the usual unit is not offered in it: 400 is no roughness in mm.
-            others = (f"{missing[1]} {one}" for one in units.units_of(self.kind))
+            others = (f"{missing[1]} {other_unit}" for other_unit in units.units_of(self.kind))
             fitting = next(filter(self._reads, others), "")
             if not fitting or self._reads(missing[0].removeprefix("write ").strip('"')):
                 return message
@@ -227,9 +229,9 @@ class Pair:
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         """What editors know of the values."""
-        each = self.each.json_schema
-        both = {"type": "array", "items": each, "minItems": 2, "maxItems": 2}
-        return {"anyOf": [each, both], "description": self.told}
+        single = self.each.json_schema
+        both = {"type": "array", "items": single, "minItems": 2, "maxItems": 2}
+        return {"anyOf": [single, both], "description": self.told}
 
     @property
     def told(self) -> str:
@@ -252,7 +254,8 @@ class Pair:
             if len(parts) != 2 or not all(map(self.each._reads, parts)):
                 raise
             plain = ", ".join(
-                one.strip() if units.plain(self.each.kind) else f'"{one.strip()}"' for one in parts
+                part.strip() if units.plain(self.each.kind) else f'"{part.strip()}"'
+                for part in parts
             )
             raise InputError(
                 f"{shown(value)} is one text; for gear 1 and gear 2 write the list [{plain}]; "
@@ -263,10 +266,12 @@ class Pair:
 
 def _with_points(value: Sequence[Any]) -> str:
     """The list of two that four whole numbers mean whose commas stand before decimals."""
-    if len(value) != 4 or not all(type(one) is int for one in value) or min(value[1::2]) < 0:
+    if len(value) != 4 or not all(type(number) is int for number in value) or min(value[1::2]) < 0:
         return ""
-    first, second = (f"{shown(one)}.{shown(part)}" for one, part in (value[:2], value[2:]))
-    return f" (decimals stand after a point: [{first}, {second}])"
+    for_gear, for_mate = (
+        f"{shown(number)}.{shown(decimals)}" for number, decimals in (value[:2], value[2:])
+    )
+    return f" (decimals stand after a point: [{for_gear}, {for_mate}])"
 
 
 def named(
@@ -285,20 +290,20 @@ def named(
             return value
         from pitchpoint.registry import known_as, listed, nearest
 
-        known = registry()
+        names = registry()
         if not isinstance(value, str):
             number = isinstance(value, int | float) and not isinstance(value, bool)
             if number and kind == "friction law":
-                told = f'write {{ name = "constant", coefficient = {shown(value)} }}'
-                raise InputError(f"{shown(value)} is not the name of a {kind}; {told}")
+                advice = f'write {{ name = "constant", coefficient = {shown(value)} }}'
+                raise InputError(f"{shown(value)} is not the name of a {kind}; {advice}")
             raise InputError(
-                f"{shown(value)} is not the name of a {kind}; known are {listed(known)}"
+                f"{shown(value)} is not the name of a {kind}; known are {listed(names)}"
             )
-        found = known_as(value, known)
-        if found is None:
-            hint = nearest(value, known)
+        name = known_as(value, names)
+        if name is None:
+            hint = nearest(value, names)
             raise InputError(f"{shown(value)} is not a known {kind}{hint}")
-        return found
+        return name
 
     read.known = registry  # type: ignore[attr-defined]  # what the schema for editors lists
     return read
@@ -308,12 +313,12 @@ def for_both(read: Callable[[Any], str]) -> Callable[[Any], tuple[str, str]]:
     """Validator of a name for gear 1 and gear 2, from one name or a list of two."""
 
     def read_both(value: Any) -> tuple[str, str]:
-        given = value if isinstance(value, list | tuple) else [value, value]
-        if len(given) != 2:
+        names = value if isinstance(value, list | tuple) else [value, value]
+        if len(names) != 2:
             raise InputError(
-                f"{shown(value)} has {count_of(given)}; give one for both gears, or a list of two"
+                f"{shown(value)} has {count_of(names)}; give one for both gears, or a list of two"
             )
-        return read(given[0]), read(given[1])
+        return read(names[0]), read(names[1])
 
     return read_both
 

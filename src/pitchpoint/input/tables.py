@@ -54,11 +54,15 @@ def by(key: str, *tables: type[Table]) -> Discriminator:
 
     The first table then says what is wrong with the value.
     """
-    known = {tag(table): table for table in tables}
+    table_by_tag = {tag(table): table for table in tables}
 
     def pick(value: Any) -> str:
-        given = value.get(key) if isinstance(value, dict) else getattr(value, key, None)
-        return given if isinstance(given, str) and given in known else next(iter(known))
+        chosen = value.get(key) if isinstance(value, dict) else getattr(value, key, None)
+        return (
+            chosen
+            if isinstance(chosen, str) and chosen in table_by_tag
+            else next(iter(table_by_tag))
+        )
 
     return Discriminator(pick)
 
@@ -88,13 +92,13 @@ def forms(annotation: Any, node: Any = None) -> list[type[BaseModel]]:
         annotation: of the field.
         node: what a case file has there; None where it is not known.
     """
-    known = alternatives(annotation)
-    if len(known) < 2 or not isinstance(node, Mapping):
-        return [*known.values()]
-    given = next((node[key] for key in DECIDING if key in node), None)
-    if isinstance(given, str) and given in known:
-        return [known[given]]
-    return [next(iter(known.values()))]
+    table_by_tag = alternatives(annotation)
+    if len(table_by_tag) < 2 or not isinstance(node, Mapping):
+        return [*table_by_tag.values()]
+    chosen = next((node[key] for key in DECIDING if key in node), None)
+    if isinstance(chosen, str) and chosen in table_by_tag:
+        return [table_by_tag[chosen]]
+    return [next(iter(table_by_tag.values()))]
 
 
 def _tables(annotation: Any) -> Iterator[type[BaseModel]]:
