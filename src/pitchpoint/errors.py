@@ -129,13 +129,13 @@ class CollectedInputError(InputError):
     """
 
     def __init__(self, errors: Sequence[InputError]) -> None:
-        first = errors[0]
+        first_error = errors[0]
         super().__init__(
-            first.message,
-            file=first.file,
-            key=first.key,
-            value=first.value,
-            allowed=first.allowed,
+            first_error.message,
+            file=first_error.file,
+            key=first_error.key,
+            value=first_error.value,
+            allowed=first_error.allowed,
         )
         self.errors = tuple(errors)
 
@@ -193,7 +193,7 @@ class Complaints:
 
     def of(self, table: str) -> bool:
         """True if anything is wrong with a table or in it."""
-        keys = [one.key or "" for one in self._told.values()]
+        keys = [error.key or "" for error in self._told.values()]
         return any(key == table or key.startswith(f"{table}.") for key in keys)
 
     def tried(self, make: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | None:
@@ -206,10 +206,10 @@ class Complaints:
 
     def add(self, error: InputError) -> None:
         """Keep an error, each one of several."""
-        for one in error.errors if isinstance(error, CollectedInputError) else (error,):
-            key = ".".join(filter(None, (self._table, one.key))) or None
-            located = one.at(file=one.file or self._file, key=key)
-            self._told.setdefault((key or one.message, str(one.value)), located)
+        for refusal in error.errors if isinstance(error, CollectedInputError) else (error,):
+            key = ".".join(filter(None, (self._table, refusal.key))) or None
+            located = refusal.at(file=refusal.file or self._file, key=key)
+            self._told.setdefault((key or refusal.message, str(refusal.value)), located)
 
     @property
     def error(self) -> InputError:
@@ -244,5 +244,5 @@ def visible(text: str) -> str:
 
 def shorten(text: str, most: int = 60) -> str:
     """Return visible text of at most so many characters."""
-    told = visible(text[: most + 1])
-    return told if len(told) <= most else f"{told[: most - 3]}..."
+    readable = visible(text[: most + 1])
+    return readable if len(readable) <= most else f"{readable[: most - 3]}..."

@@ -33,12 +33,14 @@ class Factored(eqx.Module):
     @property
     def merged(self) -> list[Numbers]:
         """Factors of one shape multiplied with each other, the smallest first."""
-        found: dict[tuple[int, ...], Any] = {}
-        for one in self.factors:
-            shape = jnp.shape(one)
-            found[shape] = one * found[shape] if shape in found else one
+        product_of_shape: dict[tuple[int, ...], Any] = {}
+        for factor in self.factors:
+            shape = jnp.shape(factor)
+            product_of_shape[shape] = (
+                factor * product_of_shape[shape] if shape in product_of_shape else factor
+            )
         # Small factors first: so most multiplications are done before the product has its full shape.
-        return sorted(found.values(), key=jnp.size)
+        return sorted(product_of_shape.values(), key=jnp.size)
 
     @property
     def value(self) -> Float[Array, "..."]:
@@ -67,24 +69,24 @@ class Factored(eqx.Module):
         return getattr(self.value, name)
 
     def __mul__(self, other: Any) -> Factored:
-        more = other.factors if isinstance(other, Factored) else (other,)
-        return Factored((*self.factors, *more))
+        factors = other.factors if isinstance(other, Factored) else (other,)
+        return Factored((*self.factors, *factors))
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Any) -> Factored:
         over: Any = other**-1.0 if isinstance(other, Factored) else 1.0 / other
-        found: Factored = self * over
-        return found
+        quotient: Factored = self * over
+        return quotient
 
     def __rtruediv__(self, other: Any) -> Factored:
-        found: Factored = self**-1.0 * other
-        return found
+        quotient: Factored = self**-1.0 * other
+        return quotient
 
     def __pow__(self, power: ArrayLike) -> Factored:
-        if any(isinstance(one, int | float) and one < 0 for one in self.factors):
+        if any(isinstance(factor, int | float) and factor < 0 for factor in self.factors):
             return Factored((self.value**power,))  # two negative factors have a positive product
-        return Factored(tuple(one**power for one in self.merged))
+        return Factored(tuple(factor**power for factor in self.merged))
 
     def __abs__(self) -> Factored:
         return Factored(tuple(map(jnp.abs, self.merged)))

@@ -12,7 +12,8 @@ __all__ = ["is_page", "names", "page", "search_pages", "title"]
 
 _PACKAGE = Path(__file__).parent
 _FOLDER = next(
-    (one for one in (_PACKAGE / "docs", _PACKAGE.parents[1] / "docs") if one.is_dir()), None
+    (folder for folder in (_PACKAGE / "docs", _PACKAGE.parents[1] / "docs") if folder.is_dir()),
+    None,
 )
 _FOR_THE_SITE = ("_", "index", "reference/api")
 """Beginnings of what says nothing outside of the site: `help` tells what a Python name is."""
@@ -27,8 +28,8 @@ def names() -> list[str]:
     """Names of the pages, by folder."""
     if _FOLDER is None:
         return []
-    found = sorted(path.relative_to(_FOLDER).with_suffix("") for path in _FOLDER.rglob("*.md"))
-    every = [path.as_posix() for path in found]
+    paths = sorted(path.relative_to(_FOLDER).with_suffix("") for path in _FOLDER.rglob("*.md"))
+    every = [path.as_posix() for path in paths]
     return [name for name in every if not name.startswith(_FOR_THE_SITE)]
 
 
@@ -45,8 +46,8 @@ def page(name: str) -> str:
     if chosen is None or _FOLDER is None:
         words = "" if "/" in name else ", nor is it on one"
         near = alike(name.removesuffix(".md"), names())
-        told = f"; did you mean {' or '.join(near)}?" if near else ", which pitchpoint docs lists"
-        raise InputError(f"'{shorten(name)}' is no page of the documentation{words}{told}")
+        advice = f"; did you mean {' or '.join(near)}?" if near else ", which pitchpoint docs lists"
+        raise InputError(f"'{shorten(name)}' is no page of the documentation{words}{advice}")
     return _HEAD.sub("", (_FOLDER / f"{chosen}.md").read_text("utf-8"))
 
 
@@ -57,9 +58,9 @@ def is_page(name: str) -> bool:
 
 def _chosen(name: str) -> str | None:
     """Whole name of a page; None for that of none, or of several."""
-    wanted, known = name.removesuffix(".md"), names()
-    ending = [one for one in known if one.rpartition("/")[2] == wanted]
-    return known_as(wanted, known) or (ending[0] if len(ending) == 1 else None)
+    wanted, page_names = name.removesuffix(".md"), names()
+    ending = [page_name for page_name in page_names if page_name.rpartition("/")[2] == wanted]
+    return known_as(wanted, page_names) or (ending[0] if len(ending) == 1 else None)
 
 
 def search_pages(words: str) -> list[dict[str, str]]:
@@ -78,30 +79,34 @@ def search_pages(words: str) -> list[dict[str, str]]:
     wanted = [word for word in words.lower().split() if any(map(str.isalnum, word))]
     if not wanted:
         return []
-    found = sorted(
+    hits = sorted(
         (_rank(line, wanted[0]), name, _plain(line))
         for name in names()
         for line in page(name).splitlines()
         if _has(line, wanted)
     ) or [(0, name, title(name)) for name in names() if _has(page(name), wanted)]
-    many: Counter[str] = Counter()
-    kept: list[dict[str, str]] = []
-    for _, name, line in found:
-        many[name] += 1
-        if many[name] <= _OF_A_PAGE and len(kept) < MOST:
-            kept.append({"page": name, "line": line})
-    return kept or _with_most(dict.fromkeys(wanted))
+    lines_of_page: Counter[str] = Counter()
+    shown_lines: list[dict[str, str]] = []
+    for _, name, line in hits:
+        lines_of_page[name] += 1
+        if lines_of_page[name] <= _OF_A_PAGE and len(shown_lines) < MOST:
+            shown_lines.append({"page": name, "line": line})
+    return shown_lines or _with_most(dict.fromkeys(wanted))
 
 
 def _with_most(wanted: Iterable[str]) -> list[dict[str, str]]:
     """Pages with most of some words, those that name these most often first; none without any."""
     texts = {name: page(name).lower() for name in names()}
     counts = {name: {word: text.count(word) for word in wanted} for name, text in texts.items()}
-    most = max((sum(map(bool, each.values())) for each in counts.values()), default=0)
+    most = max(
+        (sum(map(bool, count_of_word.values())) for count_of_word in counts.values()), default=0
+    )
     nearest = [
-        name for name, each in counts.items() if most and sum(map(bool, each.values())) == most
+        name
+        for name, count_of_word in counts.items()
+        if most and sum(map(bool, count_of_word.values())) == most
     ]
-    lacks = {name: [word for word, many in counts[name].items() if not many] for name in nearest}
+    lacks = {name: [word for word, count in counts[name].items() if not count] for name in nearest}
     nearest.sort(key=lambda name: (lacks[name], -min(filter(None, counts[name].values()))))
     return [
         {"page": name, "line": title(name), "without": ", ".join(lacks[name])}

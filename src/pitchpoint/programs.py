@@ -83,9 +83,9 @@ _UNKNOWN = re.compile(r"No such compile option: '(\w+)'")
 
 def _compiled(lowered: jax.stages.Lowered, options: Mapping[str, Any]) -> jax.stages.Compiled:
     """The compiled function; options decide how long that takes, so one that is unknown is left out."""
-    known = {name: value for name, value in options.items() if name not in _REFUSED}
+    accepted = {name: value for name, value in options.items() if name not in _REFUSED}
     try:
-        return lowered.compile(compiler_options=known)
+        return lowered.compile(compiler_options=accepted)
     except jax.errors.JaxRuntimeError as error:
         unknown = _UNKNOWN.search(str(error))
         if unknown is None or unknown[1] in _REFUSED:
@@ -144,13 +144,15 @@ class Program(Generic[P, R]):
             return self.traced(*args, **kwargs)
         pairs = [*zip(leaves, kinds, strict=True)]
         arrays = [leaf for leaf, kind in pairs if numeric[kind]]
-        told = ((leaf.shape, leaf.dtype) if numeric[kind] else (leaf, kind) for leaf, kind in pairs)
-        key = structure, tuple(told)
+        traits = (
+            (leaf.shape, leaf.dtype) if numeric[kind] else (leaf, kind) for leaf, kind in pairs
+        )
+        key = structure, tuple(traits)
         if key not in self.ready:
             self.ready[key] = self._made(leaves, structure, arrays, (args, kwargs))
         compute = self.ready[key]
-        found: R = self.traced(*args, **kwargs) if compute is None else compute(*arrays)
-        return found
+        results: R = self.traced(*args, **kwargs) if compute is None else compute(*arrays)
+        return results
 
     def _made(
         self, leaves: list[Any], structure: Any, arrays: list[Any], given: Any
@@ -160,14 +162,14 @@ class Program(Generic[P, R]):
         traced = jax.jit(flat)
         try:
             path = self._path(given)
-            kept = _read(path)
-            if kept is None:
-                kept = self._exported(flat, traced, arrays)
-                outline, blob = kept
+            stored = _read(path)
+            if stored is None:
+                stored = self._exported(flat, traced, arrays)
+                outline, blob = stored
                 write(path, json.dumps(outline).encode() + b"\n" + blob)
                 _make_room(path.parent)
-            outline, blob = kept
-            found = export.deserialize(bytearray(blob))
+            outline, blob = stored
+            exported = export.deserialize(bytearray(blob))
         except _NamelessError:
             return None
         except Exception as error:  # what is wrong with the function itself shows when it is traced
@@ -180,7 +182,7 @@ class Program(Generic[P, R]):
         # A compiled function of these shapes, since JAX compiles one anew where numbers that were plain once
         # (of a "weak" type) stand in other places.
         shapes = [jax.ShapeDtypeStruct(leaf.shape, leaf.dtype) for leaf in arrays]
-        call = _compiled(jax.jit(found.call).lower(*shapes), self.options)
+        call = _compiled(jax.jit(exported.call).lower(*shapes), self.options)
         return lambda *leaves: _rebuilt(outline, iter(call(*leaves)))
 
     def _path(self, given: Any) -> Path:
@@ -188,10 +190,12 @@ class Program(Generic[P, R]):
         folder = kept_folder()
         if folder is None:
             raise _NamelessError
-        told = json.dumps([_name(self.function), sorted(self.options.items()), _text(given)])
+        identity = json.dumps([_name(self.function), sorted(self.options.items()), _text(given)])
         # Texts among the arguments stand in quotes of their own: what matches are names from `_name`.
-        code = _sources().digest_of_reach(sorted(set(re.findall(r'"(pitchpoint[.\w]*):', told))))
-        digest = hashlib.sha256(json.dumps([_machine(), code, told]).encode()).hexdigest()
+        code = _sources().digest_of_reach(
+            sorted(set(re.findall(r'"(pitchpoint[.\w]*):', identity)))
+        )
+        digest = hashlib.sha256(json.dumps([_machine(), code, identity]).encode()).hexdigest()
         return folder / "programs" / digest[:40]
 
     def _exported(
@@ -199,8 +203,8 @@ class Program(Generic[P, R]):
     ) -> tuple[Any, bytes]:
         """Outline of the results and the portable form of what computes their arrays."""
         shapes = [jax.ShapeDtypeStruct(leaf.shape, leaf.dtype) for leaf in arrays]
-        made = export.export(traced, disabled_checks=_CUSTOM)(*shapes)
-        return flat.outline, bytes(made.serialize())
+        portable = export.export(traced, disabled_checks=_CUSTOM)(*shapes)
+        return flat.outline, bytes(portable.serialize())
 
 
 _MADE: "WeakSet[Program[..., Any]]" = WeakSet()
@@ -260,8 +264,8 @@ def _trim() -> None:
 
 def forget() -> None:
     """Give back what programs hold in memory; what is on disk stays."""
-    for one in _MADE:
-        one.ready.clear()
+    for program in _MADE:
+        program.ready.clear()
     jax.clear_caches()
     gc.collect()
     _trim()
@@ -294,12 +298,12 @@ class _Flat:
         self.__name__ = self.__qualname__ = getattr(function, "__name__", "program")
 
     def __call__(self, *arrays: Any) -> list[Any]:
-        given = iter(arrays)
-        leaves = [next(given) if held is None else held[0] for held in self.static]
+        remaining = iter(arrays)
+        leaves = [next(remaining) if held is None else held[0] for held in self.static]
         args, kwargs = jax.tree.unflatten(self.structure, leaves)
-        found: list[Any] = []
-        self.outline = _outline(self.function(*args, **kwargs), found)
-        return found
+        result_arrays: list[Any] = []
+        self.outline = _outline(self.function(*args, **kwargs), result_arrays)
+        return result_arrays
 
     def rebuilt(self, arrays: list[Any]) -> Any:
         """The result of the function from its arrays."""
@@ -326,7 +330,9 @@ def _outline(value: Any, leaves: list[Any]) -> Any:
     if isinstance(value, dict):
         return {"dict": {key: _outline(item, leaves) for key, item in value.items()}}
     if isinstance(value, eqx.Module):
-        parts = {one.name: _outline(getattr(value, one.name), leaves) for one in fields(value)}
+        parts = {
+            field.name: _outline(getattr(value, field.name), leaves) for field in fields(value)
+        }
         return {"module": _name(type(value)), "parts": parts}
     if type(value) in (list, tuple):
         return {type(value).__name__: [_outline(item, leaves) for item in value]}
@@ -344,16 +350,16 @@ def _rebuilt(outline: Any, leaves: Iterator[Any]) -> Any:
     if "module" in outline:
         return _module(outline, leaves)
     kind, items = next(iter(outline.items()))
-    found = [_rebuilt(item, leaves) for item in items]
-    return tuple(found) if kind == "tuple" else found
+    parts = [_rebuilt(item, leaves) for item in items]
+    return tuple(parts) if kind == "tuple" else parts
 
 
 def _module(outline: Any, leaves: Iterator[Any]) -> Any:
     module, _, name = outline["module"].partition(":")
-    made = object.__new__(getattr(import_module(module), name))
+    instance = object.__new__(getattr(import_module(module), name))
     for key, part in outline["parts"].items():
-        object.__setattr__(made, key, _rebuilt(part, leaves))
-    return made
+        object.__setattr__(instance, key, _rebuilt(part, leaves))
+    return instance
 
 
 def surroundings() -> dict[str, str]:
@@ -394,7 +400,7 @@ def _text(value: Any) -> Any:
     if isinstance(value, partial):
         return [_name(value.func), _text(value.args), _text(value.keywords)]
     if is_dataclass(value):
-        return [_name(type(value)), [_text(getattr(value, one.name)) for one in fields(value)]]
+        return [_name(type(value)), [_text(getattr(value, field.name)) for field in fields(value)]]
     raise _NamelessError
 
 
@@ -403,11 +409,11 @@ def _name(thing: Any) -> str:
     module, name = str(thing.__module__), thing.__qualname__
     if not module.startswith("pitchpoint."):
         raise _NamelessError
-    found: Any = sys.modules[module]
+    target: Any = sys.modules[module]
     for part in name.split("."):
-        found = getattr(found, part, None)
+        target = getattr(target, part, None)
     # A wrapper of the user's own may go by the name of what it wraps.
-    if getattr(found, "function", found) is not thing:
+    if getattr(target, "function", target) is not thing:
         raise _NamelessError
     return f"{module}:{name}"
 

@@ -48,7 +48,7 @@ class Sources:
     @cached_property
     def digest(self) -> str:
         """Digest of every file, texts and all."""
-        return _digest(f"{file}:{whole};" for file, whole in self._wholes.items())
+        return _digest(f"{file}:{content};" for file, content in self._wholes.items())
 
     def digest_of_reach(self, modules: Iterable[str]) -> str:
         """Digest of all that runs in modules of the package, and in what they reach."""
@@ -99,12 +99,12 @@ class Sources:
     def _known(self) -> dict[str, _Source]:
         """What is known of files; an earlier process may have found it."""
         content = None if self._path is None else read(self._path)
-        return {file: _Source(*found) for file, found in json.loads(content or b"{}").items()}
+        return {file: _Source(*record) for file, record in json.loads(content or b"{}").items()}
 
     def _source(self, file: str) -> _Source:
-        whole = self._wholes[file]
-        if file not in self._known or self._known[file].whole != whole:
-            self._known[file] = self._read(file, whole)
+        content = self._wholes[file]
+        if file not in self._known or self._known[file].whole != content:
+            self._known[file] = self._read(file, content)
             self._fresh = True
         return self._known[file]
 

@@ -109,14 +109,14 @@ class Registry(Mapping[str, Entry]):
 
     def __getitem__(self, name: str) -> Entry:
         """Entry of that name, see `known_as`; InputError with the nearest names if there is none."""
-        found = known_as(name, self._entries)
-        if found is None:
+        listed_name = known_as(name, self._entries)
+        if listed_name is None:
             raise InputError(
                 f"'{shorten(name)}' is not a known {self.kind}{nearest(name, self._entries)}"
             )
-        entry = self._entries[found]
+        entry = self._entries[listed_name]
         if isinstance(entry, str):
-            entry = self._entries[found] = code_at(entry)
+            entry = self._entries[listed_name] = code_at(entry)
         return entry
 
     def __contains__(self, name: object) -> bool:
@@ -147,8 +147,10 @@ def known_as(name: str, known: Collection[str]) -> str | None:
     """
     if name in known:
         return name
-    same = [one for one in known if letters(one) == letters(name)] if letters(name) else []
-    return same[0] if len(same) == 1 else None
+    spelled_alike = (
+        [entry for entry in known if letters(entry) == letters(name)] if letters(name) else []
+    )
+    return spelled_alike[0] if len(spelled_alike) == 1 else None
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -195,20 +197,25 @@ def alike(name: str, known: Iterable[str], likeness: float = 0.6) -> list[str]:
         >>> alike("Shell Omala S2 150", ["pao-vg-150", "pao-vg-100"])
         ['pao-vg-150']
     """
-    plain = {letters(one): one for one in known}
+    plain = {letters(spelling): spelling for spelling in known}
     wanted = letters(name)
     if (meant := _OTHERWISE.get(wanted)) in plain.values() and wanted not in plain:
         return [str(meant)]
     if wanted in plain:
         return [plain[wanted]]
     grade = wanted.removeprefix("iso")
-    if _GRADE.fullmatch(grade) and (of_it := [plain[one] for one in plain if grade in one]):
+    if _GRADE.fullmatch(grade) and (
+        of_it := [plain[spelling] for spelling in plain if grade in spelling]
+    ):
         return of_it[:6]
-    near = [plain[one] for one in difflib.get_close_matches(wanted, plain, n=3, cutoff=likeness)]
+    near = [
+        plain[spelling]
+        for spelling in difflib.get_close_matches(wanted, plain, n=3, cutoff=likeness)
+    ]
     viscosity = re.search("[0-9]{2,4}$", name.strip())
     if near or viscosity is None:
         return near
-    return [name for one, name in plain.items() if one.endswith(f"vg{viscosity[0]}")][:6]
+    return [name for spelling, name in plain.items() if spelling.endswith(f"vg{viscosity[0]}")][:6]
 
 
 def unknown_name(name: str, allowed: Iterable[str], *, what: str) -> InputError:
@@ -224,15 +231,15 @@ def unknown_name(name: str, allowed: Iterable[str], *, what: str) -> InputError:
         '"stel" is not a material in the catalogue; did you mean steel?'
     """
     names = sorted(allowed)
-    told = f'"{shorten(name)}" is not {what} in the catalogue{nearest(name, names)}'
-    return InputError(told, value=name, allowed=names)
+    sentence = f'"{shorten(name)}" is not {what} in the catalogue{nearest(name, names)}'
+    return InputError(sentence, value=name, allowed=names)
 
 
 def listed(names: Iterable[str]) -> str:
     """Names in a sentence, of very many the first ones."""
     every = [*names]
-    more = f" and {len(every) - _MOST} more" if len(every) > _MOST else ""
-    return ", ".join(map(shorten, every[:_MOST])) + more
+    remainder = f" and {len(every) - _MOST} more" if len(every) > _MOST else ""
+    return ", ".join(map(shorten, every[:_MOST])) + remainder
 
 
 def enumerated(names: Iterable[object]) -> str:
@@ -242,8 +249,8 @@ def enumerated(names: Iterable[object]) -> str:
         >>> enumerated([1]), enumerated([1, 2, 3])
         ('1', '1, 2 and 3')
     """
-    *first, last = map(str, names)
-    return " and ".join(filter(None, [", ".join(first), last]))
+    *beginning, ending = map(str, names)
+    return " and ".join(filter(None, [", ".join(beginning), ending]))
 
 
 def letters(name: str) -> str:

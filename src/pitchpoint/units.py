@@ -483,10 +483,10 @@ def kind_of(unit: str) -> str:
         >>> kind_of("N*m")
         'torque'
     """
-    found = _first_kind(_spelling(unit))
-    if found is None:
+    kind = _first_kind(_spelling(unit))
+    if kind is None:
         raise UnitError(f"{_quoted(unit)} is not a known unit", value=unit)
-    return found
+    return kind
 
 
 def hardness_scale(text: object) -> str:
@@ -516,10 +516,11 @@ def is_quotient(kind: str, above: str, below: str) -> bool:
         >>> is_quotient("stiffness", "force", "length")
         True
     """
-    one, over, under = (
-        _registry().Quantity(1, _kind(each).units[si_unit(each)]) for each in (kind, above, below)
+    quotient, over, under = (
+        _registry().Quantity(1, _kind(kind_name).units[si_unit(kind_name)])
+        for kind_name in (kind, above, below)
     )
-    return bool(one.check((over / under).dimensionality))
+    return bool(quotient.check((over / under).dimensionality))
 
 
 def parse(text: str | float, kind: str) -> float:
@@ -616,12 +617,12 @@ def spelled(unit: str, kind: str) -> str:
         >>> spelled("N*m/arcmin", "torsional stiffness")
         'N m/arcmin'
     """
-    found, wanted = _spelling(unit), _kind(kind)
-    if found in wanted.units:
-        return found
-    other, near = _first_kind(found), _near(found, wanted)
-    meant = f' (did you mean "{near}"?)' if near and other is None else ""
-    of = f"a unit of {_KINDS[other].noun}, not" if other is not None else "not a unit"
+    spelling, wanted = _spelling(unit), _kind(kind)
+    if spelling in wanted.units:
+        return spelling
+    other_kind, near = _first_kind(spelling), _near(spelling, wanted)
+    meant = f' (did you mean "{near}"?)' if near and other_kind is None else ""
+    of = f"a unit of {_KINDS[other_kind].noun}, not" if other_kind is not None else "not a unit"
     raise UnitError(
         f"{_quoted(unit)} is {of} of {wanted.noun}; use one of {_listed(wanted)}{meant}",
         value=unit,
@@ -653,10 +654,10 @@ def _split(text: str | float, wanted: _Kind) -> tuple[str, str]:
         raise UnitError(f"{_quoted(text)} is too large", value=text)
     if not unit and "" not in wanted.units:
         others = [f' or "{number} {unit}"' for unit in ("rad", "h") if unit in wanted.units]
-        other = "".join(others)  # what is usual for the one is not for the other
+        alternatives = "".join(others)  # what is usual for the one is not for the other
         raise UnitError(
             f'{_quoted(text)} has no unit where {wanted.noun} is needed; write "{number} '
-            f'{wanted.example.split(" ", 1)[1]}"{other} or use one of {_listed(wanted)}',
+            f'{wanted.example.split(" ", 1)[1]}"{alternatives} or use one of {_listed(wanted)}',
             value=text,
             allowed=_shown(wanted),
         )
@@ -698,8 +699,8 @@ def _meant(plain: str, wanted: _Kind) -> str:
     """
     bare = plain.strip().strip(_MARKS).strip()
     read = comma_readings(bare) or [bare]
-    whole = [_with_unit(text, wanted) for text in read if text != plain]
-    meant = [text if text[-1].isdigit() else f'"{text}"' for text in whole if text]
+    quantities = [_with_unit(text, wanted) for text in read if text != plain]
+    meant = [text if text[-1].isdigit() else f'"{text}"' for text in quantities if text]
     return " or ".join(meant) or f'{wanted.noun} like "{wanted.example}"'
 
 
@@ -729,15 +730,15 @@ def _with_unit(text: str, wanted: _Kind) -> str:
 
 
 def _refuse_unit(text: str | float, number: str, unit: str, wanted: _Kind) -> NoReturn:
-    other = _first_kind(unit)
+    other_kind = _first_kind(unit)
     if re.match(r"\d{3}\b", unit):
         reason = "has a space in its number"
-    elif other is not None:
-        reason = f"is {_KINDS[other].noun}, but {wanted.noun} is needed"
+    elif other_kind is not None:
+        reason = f"is {_KINDS[other_kind].noun}, but {wanted.noun} is needed"
     else:
         reason = f"is not {wanted.noun}{wanted.remark}"
     raise UnitError(
-        f"{_quoted(text)} {reason}; {_advice(number, unit, other, wanted)}",
+        f"{_quoted(text)} {reason}; {_advice(number, unit, other_kind, wanted)}",
         value=text,
         allowed=_shown(wanted),
     )
@@ -758,15 +759,17 @@ def _near(unit: str, wanted: _Kind) -> str | None:
             return meant
     if _SOUND.fullmatch(unit):
         return None
-    lower = {one.lower(): one for one in wanted.units}
+    lower = {listed_unit.lower(): listed_unit for listed_unit in wanted.units}
     close = difflib.get_close_matches(unit.lower(), lower, n=1, cutoff=0.6)
     return lower[close[0]] if close else None
 
 
 def _shown(wanted: _Kind) -> tuple[str, ...]:
     """Return one spelling for each unit; "Nm" goes without saying beside "N m"."""
-    first = {expression: unit for unit, expression in reversed(list(wanted.units.items())) if unit}
-    return tuple(unit for unit in wanted.units if unit in first.values())
+    unit_of_expression = {
+        expression: unit for unit, expression in reversed(list(wanted.units.items())) if unit
+    }
+    return tuple(unit for unit in wanted.units if unit in unit_of_expression.values())
 
 
 def _listed(wanted: _Kind) -> str:
@@ -809,20 +812,22 @@ def _every_factor() -> Mapping[str, Mapping[str, Sequence[str]]]:
     """Factors of all units by kind, as pint gives them; kept, because pint takes its time."""
     from importlib.metadata import version
 
-    listed = {kind: dict(each.units) for kind, each in _KINDS.items()}
+    listed = {kind: dict(quantity_kind.units) for kind, quantity_kind in _KINDS.items()}
     state = hashlib.sha256(json.dumps([version("pint"), listed]).encode()).hexdigest()[:16]
     try:
         folder = prepared(base_folder() / "units")
     except RuntimeError:
         folder = None
     path = None if folder is None else folder / state
-    kept = None if path is None else read(path)
-    if kept is not None:
-        return dict(json.loads(kept))
-    found = {kind: {unit: _by_pint(kind, unit) for unit in units} for kind, units in listed.items()}
+    stored = None if path is None else read(path)
+    if stored is not None:
+        return dict(json.loads(stored))
+    factors = {
+        kind: {unit: _by_pint(kind, unit) for unit in units} for kind, units in listed.items()
+    }
     if path is not None:
-        write(path, json.dumps(found).encode())
-    return found
+        write(path, json.dumps(factors).encode())
+    return factors
 
 
 def _by_pint(kind: str, unit: str) -> tuple[str, str]:
