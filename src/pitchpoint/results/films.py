@@ -203,7 +203,7 @@ def film_dataset(films: Films, dims: Sequence[str] | None = None) -> xr.Dataset:
         solve=told_of(code, np.asarray(films.ended.reynolds), np.asarray(films.ended.iterations)),
     )
     describe(data, _OWN)
-    sentences = {int(field): Code(int(field)).sentence for field in np.unique(code)}
+    sentences = {int(number): Code(int(number)).sentence for number in np.unique(code)}
     data["ended_code"].attrs["sentences"] = json.dumps(sentences)
     return data.set_coords("x")
 

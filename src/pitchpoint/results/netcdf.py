@@ -32,8 +32,8 @@ def encode(data: xr.Dataset) -> bytes:
             or numbers.
     """
     with h5py.File.in_memory(track_order=True) as file:
-        stored_variable = f"version=2,pitchpoint={_version()},hdf5={h5py.version.hdf5_version}"
-        file.attrs["_NCProperties"] = np.bytes_(stored_variable)
+        properties = f"version=2,pitchpoint={_version()},hdf5={h5py.version.hdf5_version}"
+        file.attrs["_NCProperties"] = np.bytes_(properties)
         sizes, variables, coords = dict(data.sizes), dict(data.variables), set(data.coords)
         others = {str(name): set(variables[name].dims) for name in coords - sizes.keys()}
         numbers = {name: number for number, name in enumerate(sizes)}
