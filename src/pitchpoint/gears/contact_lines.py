@@ -99,11 +99,11 @@ class PathOfContact(abc.ABC):
         Args:
             helical: static.
         """
-        found = [jnp.zeros_like(self.pitch_path), self.contact_ratio, self.pitch_path]
+        bounds = [jnp.zeros_like(self.pitch_path), self.contact_ratio, self.pitch_path]
         if not helical:
-            return found
+            return bounds
         overlap = self.overlap_ratio
-        return [*found, self.transverse_contact_ratio, overlap, self.pitch_path + overlap]
+        return [*bounds, self.transverse_contact_ratio, overlap, self.pitch_path + overlap]
 
     def lines(
         self, entered: Float[Array, "pair 1 *b"], *, helical: bool, slices: int
@@ -119,8 +119,8 @@ class PathOfContact(abc.ABC):
             slices: of each line; even, or one; static.
         """
         if not helical:
-            whole = jnp.zeros_like(entered)
-            return _sliced(whole, whole + 1.0, slices)
+            face_start = jnp.zeros_like(entered)
+            return _sliced(face_start, face_start + 1.0, slices)
         overlap = self.overlap_ratio
         low = jnp.clip((entered - self.transverse_contact_ratio) / overlap, 0.0, 1.0)
         high = jnp.clip(entered / overlap, 0.0, 1.0)
@@ -200,8 +200,8 @@ class InvoluteMesh(Mesh):
     @property
     def other_flanks(self) -> Self:
         """The same teeth on their other flanks, which lie back by the backlash."""
-        first, second = (other_side(own) for own in self.surfaces)
-        surfaces = ((*first, Offset(self.normal_backlash)), second)
+        of_gear, of_mate = (other_side(of_member) for of_member in self.surfaces)
+        surfaces = ((*of_gear, Offset(self.normal_backlash)), of_mate)
         return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)  # type: ignore[call-arg]
 
     @property

@@ -60,7 +60,7 @@ def number_of(member: str | int, names: tuple[str, ...]) -> int:
         >>> number_of("gear 2", ("gear 1", "gear 2"))
         1
     """
-    known: Sequence[str | int] = names if isinstance(member, str) else range(len(names))
-    if member not in known:
+    choices: Sequence[str | int] = names if isinstance(member, str) else range(len(names))
+    if member not in choices:
         raise InputError(f"{member!r} is no member of this drive; use one of {', '.join(names)}")
-    return known.index(member)
+    return choices.index(member)

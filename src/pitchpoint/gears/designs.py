@@ -79,8 +79,8 @@ class Designs(Generic[M]):
             raise self.refused[number]
         for group in self.groups:
             for place in np.flatnonzero(group.numbers == number):
-                found: M = jax.tree.map(array, rows(group.mesh, int(place)))
-                return found
+                design: M = jax.tree.map(array, rows(group.mesh, int(place)))
+                return design
         raise IndexError(f"there are {len(self)} designs, and number {number} is none of them")
 
     def __iter__(self) -> Iterator[M]:
@@ -111,8 +111,8 @@ class Designs(Generic[M]):
 
 def rows(tree: T, where: Any) -> T:
     """Some designs of a batch, as arrays of NumPy."""
-    found: T = jax.tree.map(lambda leaf: np.asarray(leaf)[where], tree)
-    return found
+    chosen: T = jax.tree.map(lambda leaf: np.asarray(leaf)[where], tree)
+    return chosen
 
 
 LEAST = 64
@@ -151,5 +151,5 @@ def check_counts(counts: Mapping[str, int]) -> None:
         counts: of values, by the names of the dimensions that were given one by one.
     """
     if len(set(counts.values())) > 1:
-        told = ", ".join(f"{count} of {key}" for key, count in sorted(counts.items()))
-        raise InputError(f"each design needs its own value of a list; given are {told}")
+        listing = ", ".join(f"{count} of {key}" for key, count in sorted(counts.items()))
+        raise InputError(f"each design needs its own value of a list; given are {listing}")

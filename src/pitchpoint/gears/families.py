@@ -58,8 +58,8 @@ else:
 
 def family_of(table: type[GearsTable]) -> "Family":
     """The family whose table this is; only now are its gears imported."""
-    found: Family = import_module(f"{_folder(table)}.family").FAMILY
-    return found
+    family: Family = import_module(f"{_folder(table)}.family").FAMILY
+    return family
 
 
 def sample_of(table: type[GearsTable]) -> Path:
@@ -87,13 +87,13 @@ def built_gears(gears: GearsTable, slices: int) -> "Made":
         InputError: gears that cannot run, with the key inside their table.
     """
     key = gears, slices
-    found = _KEPT.get(key)
-    if found is None:
-        found = family_of(type(gears)).build(gears, slices)
-        _keep({key: found})
-    if isinstance(found, InputError):
-        raise found
-    return found
+    outcome = _KEPT.get(key)
+    if outcome is None:
+        outcome = family_of(type(gears)).build(gears, slices)
+        _keep({key: outcome})
+    if isinstance(outcome, InputError):
+        raise outcome
+    return outcome
 
 
 def build_together(asked: "Iterable[tuple[GearsTable, int]]") -> None:
@@ -109,7 +109,7 @@ def build_together(asked: "Iterable[tuple[GearsTable, int]]") -> None:
     for (table, slices), gears in groups.items():
         together = family_of(table).together
         if together is not None and len(gears) > MANY:
-            keys = ((one, slices) for one in gears)
+            keys = ((gears_table, slices) for gears_table in gears)
             _keep(dict(zip(keys, together(gears, slices), strict=True)))
 
 

@@ -103,6 +103,6 @@ def waves(given: tuple[Deviation, ...]) -> tuple[Waves, ...]:
     if not given:
         return ()
     rows = np.zeros((len(fields(Waves)), ceil(len(given) / WAVES) * WAVES))
-    for row, one in zip(rows, fields(Waves), strict=True):
-        row[: len(given)] = [getattr(wave, one.name) for wave in given]
+    for row, part in zip(rows, fields(Waves), strict=True):
+        row[: len(given)] = [getattr(wave, part.name) for wave in given]
     return (Waves(*map(array, rows)),)

@@ -85,14 +85,14 @@ def usual_ring_fillet(
     slope, unwound = 2.0 * math.tan(pressure_angle), math.tan(transverse) - transverse
     space = (math.pi / 2.0 - slope * profile_shift) / abs(teeth) + unwound
     if cutter is not None:
-        own, shift = cutter
-        value = unwound - slope * (profile_shift + shift) / (abs(teeth) - own)
+        cutter_teeth, shift = cutter
+        value = unwound - slope * (profile_shift + shift) / (abs(teeth) - cutter_teeth)
         if value <= 0.0:
             return _RING_FILLET  # refused: it fits at no distance between the axes
         working = brentq(lambda angle: math.tan(angle) - angle - value, 0.0, 1.57)
-        tip -= base * (1.0 - own / abs(teeth)) / math.cos(working)
-        base *= own / abs(teeth)
-        space = (math.pi / 2.0 + slope * shift) / own + unwound
+        tip -= base * (1.0 - cutter_teeth / abs(teeth)) / math.cos(working)
+        base *= cutter_teeth / abs(teeth)
+        space = (math.pi / 2.0 + slope * shift) / cutter_teeth + unwound
 
     def land(rounding: float) -> float:
         """Angle from the middle of the space to the centre of the arc."""
@@ -150,8 +150,8 @@ def usual_depths(
 
     Source: ISO 53:1998, profile A.
     """
-    first, second = usual_dedenda(np.array(addendum), ring=ring).tolist()
-    depth = dedendum or (first, second)
+    usual_of_pinion, usual_of_wheel = usual_dedenda(np.array(addendum), ring=ring).tolist()
+    depth = dedendum or (usual_of_pinion, usual_of_wheel)
     return depth, fillet or (usual_fillet(depth[0], angle), usual_fillet(depth[1], angle))
 
 
@@ -374,8 +374,8 @@ class InvoluteGear(eqx.Module):
             [jnp.full(count, jnp.abs(self.root_radius)), half + (fillet[1, 0] - half) * unit]
         )
         side = jnp.concatenate([base, fillet, flank, tip], axis=1)
-        whole = jnp.concatenate([side * jnp.array([[1.0], [-1.0]]), jnp.flip(side, axis=1)], axis=1)
-        return jnp.stack([whole[0] * jnp.sin(whole[1]), whole[0] * jnp.cos(whole[1])], axis=-1)
+        tooth = jnp.concatenate([side * jnp.array([[1.0], [-1.0]]), jnp.flip(side, axis=1)], axis=1)
+        return jnp.stack([tooth[0] * jnp.sin(tooth[1]), tooth[0] * jnp.cos(tooth[1])], axis=-1)
 
     def _flank_place(self, length: Float[Array, " point"]) -> Float[Array, "2 point"]:
         """Half thickness and height of the involute at roll lengths [m]."""
@@ -508,8 +508,8 @@ class InvoluteGear(eqx.Module):
         # Clustered at the rack angle: a slight undercut crosses close to it.
         span = jnp.pi / 2.0 - self.pressure_angle
         scan = self.pressure_angle + span * jnp.linspace(0, 1, 200) ** 3
-        first = jnp.argmax(self._removed(scan[1:]) > 0.0)
-        guess = (scan[first] + scan[first + 1]) / 2.0 - self.pressure_angle
+        first_crossed = jnp.argmax(self._removed(scan[1:]) > 0.0)
+        guess = (scan[first_crossed] + scan[first_crossed + 1]) / 2.0 - self.pressure_angle
         beyond, _ = root(lambda x: self._removed(self.pressure_angle + x), guess, span)
         return self.pressure_angle + beyond
 

@@ -71,8 +71,8 @@ class Mesh(eqx.Module):
         if not any(self.surfaces):
             return rigid
         spots = self.spots(rigid, phase)
-        made, worn = new_and_worn(self.surfaces)
-        new = with_surfaces(rigid, made, spots)
+        as_made, worn = new_and_worn(self.surfaces)
+        new = with_surfaces(rigid, as_made, spots)
         return with_worn(new, worn, spots)[0] if any(worn) else new
 
     @abc.abstractmethod
@@ -124,8 +124,10 @@ def coordinates_of(mesh: Mesh) -> tuple[Coordinate, ...]:
 @lru_cache(maxsize=64)
 def _bodies(structure: Any, leaves: tuple[Any, ...]) -> tuple[Coordinate, ...]:
     shape = jax.tree.unflatten(structure, leaves)
-    found: tuple[Coordinate, ...] = eqx.filter_eval_shape(lambda mesh: mesh.coordinates, shape)
-    return found
+    coordinates: tuple[Coordinate, ...] = eqx.filter_eval_shape(
+        lambda mesh: mesh.coordinates, shape
+    )
+    return coordinates
 
 
 def has(mesh: Mesh, question: Any) -> bool:

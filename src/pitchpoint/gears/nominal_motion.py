@@ -136,5 +136,5 @@ def mesh_ends(
         raise InputError(MOTORS)
     if drives == takes:
         raise InputError(f"the {names[drives]} cannot drive and be loaded at once")
-    each = np.eye(len(names))
-    return array(each[drives]), array(each[takes])
+    unit_vectors = np.eye(len(names))
+    return array(unit_vectors[drives]), array(unit_vectors[takes])

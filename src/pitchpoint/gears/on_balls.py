@@ -118,6 +118,6 @@ def seated(
         return jax.lax.stop_gradient(step(approach))
 
     before = jax.lax.fori_loop(0, SEATING_STEPS, settle, start)
-    found = step(before)
-    rests = jnp.max(jnp.abs(found - before)) <= SEATED * jnp.max(jnp.abs(found))
-    return jnp.where(rests, found, jnp.nan)
+    seated_approach = step(before)
+    rests = jnp.max(jnp.abs(seated_approach - before)) <= SEATED * jnp.max(jnp.abs(seated_approach))
+    return jnp.where(rests, seated_approach, jnp.nan)

@@ -208,7 +208,7 @@ def spots_on_turning(
     lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
     number = since_entry(jnp.zeros_like(phase), contacts.path.shape[0])
     entered = jnp.broadcast_to(jnp.floor(phase) - number, lanes)
-    first, second = (
+    flank_spot, mate_spot = (
         Spot(
             flank=jnp.broadcast_to(contacts.flank[member], lanes),
             across=jnp.broadcast_to(contacts.width, lanes),
@@ -219,7 +219,7 @@ def spots_on_turning(
         )
         for member, sense in enumerate(senses)
     )
-    return first, second
+    return flank_spot, mate_spot
 
 
 @singledispatch

@@ -53,9 +53,9 @@ def apart(
         phase, weight: see `nodes`.
     """
     short = jnp.sum(weight, axis=-1) < TOGETHER
-    first = jnp.where(short, jnp.inf, phase[:, 0])
-    behind = jax.lax.cummin(first, reverse=True)
-    behind = jnp.where(jnp.isinf(behind), jnp.min(first) + 1.0, behind)
+    segment_start = jnp.where(short, jnp.inf, phase[:, 0])
+    behind = jax.lax.cummin(segment_start, reverse=True)
+    behind = jnp.where(jnp.isinf(behind), jnp.min(segment_start) + 1.0, behind)
     return jnp.where(short[:, None], behind[:, None], phase)
 
 

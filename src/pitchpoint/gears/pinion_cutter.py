@@ -66,11 +66,11 @@ class PinionCutting(eqx.Module):
         Returns:
             Distance from the middle of the tooth, along it from the axis of the ring, and radius [m].
         """
-        asked = self.half_pitch + jnp.pi / 2.0 - angle
+        wanted_direction = self.half_pitch + jnp.pi / 2.0 - angle
         turn = self._end / 2.0
         for _ in range(_STEPS):
             direction, slope = jax.jvp(self._direction, (turn,), (jnp.ones_like(turn),))
-            turn = jnp.clip(turn - (direction - asked) / slope, 0.0, self._end)
+            turn = jnp.clip(turn - (direction - wanted_direction) / slope, 0.0, self._end)
         slope = jax.jvp(self._direction, (turn,), (jnp.ones_like(turn),))[1]
         place, speed = jax.jvp(self._place, (turn,), (jnp.ones_like(turn),))
         return jnp.stack([*place, hypot(*speed) / slope])

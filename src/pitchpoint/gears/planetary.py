@@ -124,11 +124,11 @@ class OfThree(Pair):
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         """What editors know of the values."""
-        each = self.each.json_schema
-        item = {"anyOf": [each, {"const": FROM_CENTRE_DISTANCE}]} if self.follows else each
+        single = self.each.json_schema
+        item = {"anyOf": [single, {"const": FROM_CENTRE_DISTANCE}]} if self.follows else single
         least = 2 if self.follows or self.stepped else 3
         every = {"type": "array", "items": item, "minItems": least, "maxItems": 3}
-        return {"anyOf": [each, every], "description": self.told}
+        return {"anyOf": [single, every], "description": self.told}
 
     @property
     def told(self) -> str:
@@ -143,7 +143,7 @@ class OfThree(Pair):
     def read(self, value: Any) -> Any:
         """SI values of sun, planet and ring; the text where that of the ring is to follow."""
         every = list(value) if isinstance(value, list | tuple) else [value] * 3
-        if self.each is TEETH and any(isinstance(one, int | float) and one < 0 for one in every):
+        if self.each is TEETH and any(isinstance(part, int | float) and part < 0 for part in every):
             raise InputError(
                 f"{shown(value)} has numbers below zero; teeth of a set are positive, those of the ring too",
                 value=value,
@@ -174,10 +174,12 @@ class OfPlanetAndRing(Pair):
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         """What editors know of the values: shifts may be the text of what follows."""
-        each = self.each.json_schema
-        item = {"anyOf": [each, {"const": FROM_CENTRE_DISTANCE}]} if self.each is SHIFT else each
+        single = self.each.json_schema
+        item = (
+            {"anyOf": [single, {"const": FROM_CENTRE_DISTANCE}]} if self.each is SHIFT else single
+        )
         both = {"type": "array", "items": item, "minItems": 2, "maxItems": 2}
-        return {"anyOf": [each, both], "description": self.told}
+        return {"anyOf": [single, both], "description": self.told}
 
     def read(self, value: Any) -> Any:
         """SI values of both; the text where that of the ring is to follow."""
@@ -187,14 +189,14 @@ class OfPlanetAndRing(Pair):
                 f"{shown(value)} has {count_of(every)}; give those of the second gear of the planets and "
                 f"of its ring, or one for both; {self.each.allowed}"
             )
-        if self.each is TEETH and any(isinstance(one, int | float) and one < 0 for one in every):
+        if self.each is TEETH and any(isinstance(part, int | float) and part < 0 for part in every):
             raise InputError(
                 f"{shown(value)} has numbers below zero; teeth of a set are positive, those of the ring too",
                 value=value,
             )
         return tuple(
-            one if self.each is SHIFT and one == FROM_CENTRE_DISTANCE else self.each.read(one)
-            for one in every
+            part if self.each is SHIFT and part == FROM_CENTRE_DISTANCE else self.each.read(part)
+            for part in every
         )
 
 
@@ -237,10 +239,10 @@ class InspectionOfSet(Table):
 
     def of_pair(self, first: int) -> Tree:
         """Table of two neighbours among sun, planet and ring, of which this is the first."""
-        each = {key: value for key, value in self if value is not None}
+        entries = {key: value for key, value in self if value is not None}
         return {
             key: _spelt(value[first : first + 2] if isinstance(value, tuple) else value)
-            for key, value in each.items()
+            for key, value in entries.items()
         }
 
     @property
@@ -379,9 +381,9 @@ class PlanetaryGears(Table):
             value = table.get(key)
             several = isinstance(value, list | tuple)
             if several or value in _EVERY:
-                told = f"has {count_of(value)}" if several else "is more than one body"
+                complaint = f"has {count_of(value)}" if several else "is more than one body"
                 raise InputError(
-                    f"{shown(value)} {told}, and one body alone {does}; write one of "
+                    f"{shown(value)} {complaint}, and one body alone {does}; write one of "
                     f"{', '.join(get_args(Body))}",
                     key=key,
                 )
@@ -399,9 +401,9 @@ class PlanetaryGears(Table):
             return table
         of_drawing = table.get("inspection")
         inside = of_drawing if isinstance(of_drawing, Mapping) else {}
-        each = {key: table.get(key) for key in _WITHOUT_RING[1:]}
+        values_of_set = {key: table.get(key) for key in _WITHOUT_RING[1:]}
         for key, value in (
-            each | {f"inspection.{key}": one for key, one in inside.items()}
+            values_of_set | {f"inspection.{key}": entry for key, entry in inside.items()}
         ).items():
             if isinstance(value, list | tuple) and len(value) == 3:
                 raise InputError(
@@ -424,16 +426,16 @@ class PlanetaryGears(Table):
     @property
     def planet_gears(self) -> tuple[int, ...]:
         """Which gear of the planets is in each of its meshes."""
-        first = (1,) if self.stepped else (1, 1)
-        return (*first, 2) if self.second is not None else first
+        on_first_gear = (1,) if self.stepped else (1, 1)
+        return (*on_first_gear, 2) if self.second is not None else on_first_gear
 
     @model_validator(mode="after")
     def _whole(self) -> "PlanetaryGears":
-        given = {*self.model_fields_set}
+        given_keys = {*self.model_fields_set}
         self._check_lengths()
-        if self.three_k and "output" not in given:
-            return self.model_copy(update={"output": SECOND})._checked(given)
-        return self._checked(given)
+        if self.three_k and "output" not in given_keys:
+            return self.model_copy(update={"output": SECOND})._checked(given_keys)
+        return self._checked(given_keys)
 
     def _check_lengths(self) -> None:
         """InputError for values of sun and planet alone, where a ring meshes with the same planets."""
@@ -443,9 +445,10 @@ class PlanetaryGears(Table):
             values = getattr(self, key)
             if values is not None and len(values) == 2:
                 of_two = "second = { teeth = [planet, ring], face_width = ... } for stepped planets"
-                rest = of_two if key == "teeth" else "one for all"
+                alternative = of_two if key == "teeth" else "one for all"
                 raise InputError(
-                    f"the list has 2 values; give those of sun, planet and ring, or {rest}", key=key
+                    f"the list has 2 values; give those of sun, planet and ring, or {alternative}",
+                    key=key,
                 )
         for key, values in self.inspection or ():
             if isinstance(values, tuple) and len(values) == 2:
@@ -461,10 +464,10 @@ class PlanetaryGears(Table):
         missing = [body for body in ends if body not in roles.values()]
         if missing:
             wrong = [name for name in roles if name in given]
-            told = ", ".join(f"{name} = {body}" for name, body in roles.items())
+            roles_text = ", ".join(f"{name} = {body}" for name, body in roles.items())
             of_two = "; of a 3K set the carrier bears planets alone" if self.three_k else ""
             raise InputError(
-                f"{told}: input, output and held are three different ones of {', '.join(ends)}; "
+                f"{roles_text}: input, output and held are three different ones of {', '.join(ends)}; "
                 f"none of them is the {missing[0]} here{of_two}",
                 key=wrong[-1],
             )
@@ -507,7 +510,7 @@ class PlanetaryGears(Table):
 
     def _shift_of_first_ring(self, planet: float) -> float:
         """Shift of the ring around the planets with this one; InputError for one that no ring has."""
-        first, second, last = self.teeth
+        z_sun, z_planet, z_ring = self.teeth
         try:
             ring = self._follows(self.teeth[1:], self.module, planet)
             wrong = f"asks for a profile shift of {ring:.3g}"
@@ -515,10 +518,10 @@ class PlanetaryGears(Table):
             ring, wrong = SHIFT.high + 1.0, "does not go around the planets with any profile shift"
         if SHIFT.low <= ring <= SHIFT.high:
             return ring
-        nominal = second + 2.0 * self.distance * cos(self.helix_angle) / self.module
+        nominal = z_planet + 2.0 * self.distance * cos(self.helix_angle) / self.module
         raise InputError(
-            f"a ring of {last:.0f} teeth at the centre distance {1e3 * self.distance:.6g} mm of sun "
-            f"and planet {wrong}; with {first:.0f} and {second:.0f} teeth it has some {nominal:.0f}",
+            f"a ring of {z_ring:.0f} teeth at the centre distance {1e3 * self.distance:.6g} mm of sun "
+            f"and planet {wrong}; with {z_sun:.0f} and {z_planet:.0f} teeth it has some {nominal:.0f}",
             key="teeth",
         )
 
@@ -583,15 +586,15 @@ class PlanetaryGears(Table):
     def meshes(self) -> list[Tree]:
         """Tables [[stages]] of sun and planet, of planet and ring, and of a second ring."""
         sun, planet, *rings = self.teeth
-        found: list[Tree] = [{"bodies": ["sun", "planet"], "gears": self._pair(0, [sun, planet])}]
-        found += [
+        tables: list[Tree] = [{"bodies": ["sun", "planet"], "gears": self._pair(0, [sun, planet])}]
+        tables += [
             {"bodies": ["planet", "ring"], "gears": self._pair(1, [planet, -ring])}
             for ring in rings
         ]
         if self.second is not None:
             ring = "ring" if self.stepped else SECOND
-            found.append({"bodies": ["planet", ring], "gears": self._second_pair(self.second)})
-        return found
+            tables.append({"bodies": ["planet", ring], "gears": self._second_pair(self.second)})
+        return tables
 
     def _second_pair(self, second: SecondGears) -> Tree:
         """Table [gears] of the second gears and their ring, racks as those of planet and ring."""
@@ -602,15 +605,25 @@ class PlanetaryGears(Table):
         pair = {key: value for key, value in of_set.items() if key not in own_keys}
         inspection = self.inspection.of_distance if self.inspection else {}
         if second.inspection is not None:
-            given = second.inspection
-            inspection |= {key: _spelt(getattr(given, key)) for key in given.model_fields_set}
-        own = {"profile_shift": second.profile_shift, "tip_alteration": second.tip_alteration}
+            second_inspection = second.inspection
+            inspection |= {
+                key: _spelt(getattr(second_inspection, key))
+                for key in second_inspection.model_fields_set
+            }
+        second_values = {
+            "profile_shift": second.profile_shift,
+            "tip_alteration": second.tip_alteration,
+        }
         return {
             **pair,
             "module": SIValue(second.module or self.module),
             "face_width": SIValue(min(second.face_width)),
             **({"inspection": inspection} if inspection else {}),
-            **{key: [*map(SIValue, values)] for key, values in own.items() if values is not None},
+            **{
+                key: [*map(SIValue, values)]
+                for key, values in second_values.items()
+                if values is not None
+            },
         }
 
     def _pair(self, first: int, teeth: Sequence[float]) -> Tree:
@@ -620,7 +633,7 @@ class PlanetaryGears(Table):
             return [*values[first : first + 2]]
 
         pairs = {name: getattr(self, name) for name in _LISTS[1:]}
-        found: Tree = {
+        table: Tree = {
             "teeth": [*map(SIValue, teeth)],
             "face_width": SIValue(min(both(self.face_width))),
             **{
@@ -632,12 +645,12 @@ class PlanetaryGears(Table):
         of_ring = ("cutter_teeth", "cutter_profile_shift") if first else ()
         for name in (*_OF_ALL, *of_ring):
             if (value := getattr(self, name)) is not None:
-                found[name] = SIValue(value)
+                table[name] = SIValue(value)
         if self.inspection is not None:
-            found["inspection"] = self.inspection.of_pair(first)
+            table["inspection"] = self.inspection.of_pair(first)
         if self.centre_distance is not None or first:
-            found["centre_distance"] = SIValue(self.distance)
-        return found
+            table["centre_distance"] = SIValue(self.distance)
+        return table
 
 
 def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:
@@ -655,17 +668,19 @@ def in_words_of_set(error: InputError, gears: PlanetaryGears) -> InputError:
         return error.at(key=key)  # a table that all meshes have alike
     if table != "stages" or number not in ("1", "2", "3"):
         return error
-    first = int(number) - 1
-    second = first == (1 if gears.stepped else 2)
+    mesh_index = int(number) - 1
+    second = mesh_index == (1 if gears.stepped else 2)
     if second:
         words = "the second gear of the planets (gear 1) and its ring (gear 2)"
-        own = key.removeprefix("gears.").partition(".")[0] in SecondGears.model_fields
-        key = f"gears.second.{key.removeprefix('gears.')}" if own else key
+        is_second_key = key.removeprefix("gears.").partition(".")[0] in SecondGears.model_fields
+        key = f"gears.second.{key.removeprefix('gears.')}" if is_second_key else key
     else:
-        words = "{} (gear 1) and {} (gear 2)".format(*("sun", "planet", "ring")[first : first + 2])
-    told = f"in the mesh of {words}: {error.message.partition(RUNS_WITH)[0]}"
-    located = InputError(told, file=error.file, key=key or None, value=error.value)
-    cures = (_cure_of_set(cure, gears, first, second) for cure in error.cures)
+        words = "{} (gear 1) and {} (gear 2)".format(
+            *("sun", "planet", "ring")[mesh_index : mesh_index + 2]
+        )
+    sentence = f"in the mesh of {words}: {error.message.partition(RUNS_WITH)[0]}"
+    located = InputError(sentence, file=error.file, key=key or None, value=error.value)
+    cures = (_cure_of_set(cure, gears, mesh_index, second) for cure in error.cures)
     located.cures = tuple(cure for cure in cures if cure)
     return located
 
@@ -679,21 +694,25 @@ def _cure_of_set(cure: Cure, gears: PlanetaryGears, first: int, second: bool) ->
         first: which mesh of the set it is.
         second: True for the mesh of second gears and their ring.
     """
-    found: Cure = {}
+    changes: Cure = {}
     for dotted, value in cure.items():
         key = dotted.rpartition("gears.")[2]
         if second and key in SecondGears.model_fields:
-            found[f"gears.second.{key}"] = value
+            changes[f"gears.second.{key}"] = value
         elif key not in _LISTS or (gears.stepped and key in _WITHOUT_RING):
-            found[f"gears.{key}"] = value
+            changes[f"gears.{key}"] = value
         elif isinstance(value, list):
-            given = getattr(gears, key) or (value[1], *value, value[0])
-            rest = (
-                given[0] if first else FROM_CENTRE_DISTANCE if key == "profile_shift" else given[-1]
+            set_values = getattr(gears, key) or (value[1], *value, value[0])
+            third_value = (
+                set_values[0]
+                if first
+                else FROM_CENTRE_DISTANCE
+                if key == "profile_shift"
+                else set_values[-1]
             )
-            found[f"gears.{key}"] = [rest, *value] if first else [*value, rest]
+            changes[f"gears.{key}"] = [third_value, *value] if first else [*value, third_value]
         elif first and key == "profile_shift":
-            found[f"gears.{key}"] = [*gears.profile_shift[:2], value]
+            changes[f"gears.{key}"] = [*gears.profile_shift[:2], value]
         else:
             return None
-    return found
+    return changes

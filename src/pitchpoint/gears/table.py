@@ -75,8 +75,8 @@ class SmallerOfTwo(Quantity):
     @property
     def json_schema(self) -> JsonSchemaValue:
         """What editors know of the values."""
-        each = super().json_schema
-        return {"anyOf": [each, {"type": "array", "items": each, "minItems": 2, "maxItems": 2}]}
+        single = super().json_schema
+        return {"anyOf": [single, {"type": "array", "items": single, "minItems": 2, "maxItems": 2}]}
 
     @property
     def told(self) -> str:

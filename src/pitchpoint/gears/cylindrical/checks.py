@@ -187,8 +187,8 @@ def check_cylindrical(pair: CylindricalPair, *, least_backlash: float = nan) -> 
 
     Source: geometry of ISO 21771:2007; tool tip of ISO 53:1998.
     """
-    whole, gears = _measure(pair)
-    return _told(dataclasses.replace(whole, least_backlash=least_backlash), gears)
+    pair_measures, gears = _measure(pair)
+    return _told(dataclasses.replace(pair_measures, least_backlash=least_backlash), gears)
 
 
 def runs_well(pair: CylindricalPair, *, least_backlash: float = nan) -> bool:
@@ -197,15 +197,15 @@ def runs_well(pair: CylindricalPair, *, least_backlash: float = nan) -> bool:
     Args:
         pair, least_backlash: see `check_cylindrical`.
     """
-    whole, gears = _measure(pair)
+    pair_measures, gears = _measure(pair)
     try:
-        _told(dataclasses.replace(whole, least_backlash=least_backlash), gears)
+        _told(dataclasses.replace(pair_measures, least_backlash=least_backlash), gears)
     except InputError:  # of one gear, or of each of both
         return False
     clear = all(
         gear.fillet_overlap <= _TOLD_IN_FILLET and not _small_clearance(gear) for gear in gears
     )
-    return clear and bool(whole.contact_ratio >= _FAIR_RATIO)
+    return clear and bool(pair_measures.contact_ratio >= _FAIR_RATIO)
 
 
 def check_cylindrical_pairs(
@@ -232,9 +232,9 @@ def check_cylindrical_pairs(
 def _told_or_error(
     pair: CylindricalPair, numbers: Sequence[Mapping[str, Number]], least: float
 ) -> list[str] | InputError:
-    whole, gears = _records(pair, numbers)
+    pair_measures, gears = _records(pair, numbers)
     try:
-        return _told(dataclasses.replace(whole, least_backlash=least), gears)
+        return _told(dataclasses.replace(pair_measures, least_backlash=least), gears)
     except InputError as error:
         return error
 
@@ -245,8 +245,8 @@ def _told(whole: _Pair, gears: list[_Gear]) -> list[str]:
         for faults in beside:
             wrong.tried(_refuse_first, faults)
         wrong.demand_none()
-    found: list[str] = [text for gear in gears for text in _warnings(whole, gear)]
-    return found + _pair_warnings(whole)
+    warnings: list[str] = [text for gear in gears for text in _warnings(whole, gear)]
+    return warnings + _pair_warnings(whole)
 
 
 def cannot_run(pair: CylindricalPair) -> Bool[Array, ""]:
@@ -302,8 +302,8 @@ def _named(pair: CylindricalPair) -> tuple[_Pair, list[_Gear]]:
 def _records(
     pair: CylindricalPair, numbers: Sequence[Mapping[str, Number]]
 ) -> tuple[_Pair, list[_Gear]]:
-    whole, *gears = numbers
-    return _Pair(internal=pair.internal, helical=pair.helical, **whole), [
+    of_pair, *gears = numbers
+    return _Pair(internal=pair.internal, helical=pair.helical, **of_pair), [
         _Gear(
             number=i + 1,
             undercut=pair.undercut[i],
@@ -319,13 +319,13 @@ def _records(
 @program
 def _measures(pair: CylindricalPair) -> list[dict[str, Float[Array, ""]]]:
     """Measures of the pair and of each gear, under the names of their plain classes."""
-    first, second = pair.gears
+    pinion, wheel = pair.gears
     return [
         _pair_measures(pair)
         | (_ring_gaps(pair) if pair.internal else {})
-        | _cutter_measures(pair, second),
-        _gear_measures(first) | _meeting_measures(pair, first, second),
-        _gear_measures(second) | _meeting_measures(pair, second, first),
+        | _cutter_measures(pair, wheel),
+        _gear_measures(pinion) | _meeting_measures(pair, pinion, wheel),
+        _gear_measures(wheel) | _meeting_measures(pair, wheel, pinion),
     ]
 
 
@@ -435,9 +435,9 @@ def _fillet_overlap(
     centre = mate.side * pair.centre_distance
     base = jnp.abs(gear.base_radius)
     start = (base + 1j * reach) * direction - centre
-    way = jnp.linspace(0.0, 2.0, _SAMPLES) * jnp.angle(start / (-mate.side * gear.side))
-    corner = centre + start * jnp.exp(-1j * way)
-    turned = way * mate.side * jnp.abs(mate.teeth) / gear.teeth
+    mate_angle = jnp.linspace(0.0, 2.0, _SAMPLES) * jnp.angle(start / (-mate.side * gear.side))
+    corner = centre + start * jnp.exp(-1j * mate_angle)
+    turned = mate_angle * mate.side * jnp.abs(mate.teeth) / gear.teeth
     # Where the involute through the corner would begin on the base circle.
     origin = turned + reach / base - pair.working_pressure_angle
     radius = jnp.abs(corner)
@@ -578,9 +578,9 @@ def _flank_overlap(pair: _Pair) -> Number:
 
 def _overlapping(pair: _Pair) -> str:
     allowed = "allow at most" if pair.internal else "need at least"
-    known = not _unknown(pair.least_backlash)
+    has_allowances = not _unknown(pair.least_backlash)
     by_allowances = (
-        f", and their allowances leave {1e6 * pair.least_backlash:.3g} um" if known else ""
+        f", and their allowances leave {1e6 * pair.least_backlash:.3g} um" if has_allowances else ""
     )
     needed = round(float(pair.needed_shift_sum), 9) + 0.0  # zero but for rounding is zero
     return (
@@ -594,8 +594,8 @@ def _check_shift_sum(pair: _Pair) -> Faults:
     none = _unknown(pair.zero_backlash)
 
     def refused(end: str) -> NoReturn:
-        told = f"the profile shifts of gear 1 and gear 2 sum to {pair.shift_sum:.4g}"
-        _refuse("profile_shift", pair.shift_sum, f"{told}{end}")
+        sentence = f"the profile shifts of gear 1 and gear 2 sum to {pair.shift_sum:.4g}"
+        _refuse("profile_shift", pair.shift_sum, f"{sentence}{end}")
 
     yield (
         none & pair.internal & (pair.shift_sum >= pair.limit_shift_sum),
@@ -924,9 +924,9 @@ def _unknown(value: Number) -> Any:
 
 
 def _warnings(pair: _Pair, gear: _Gear) -> list[Doubt]:
-    found = []
+    doubts = []
     if gear.tip_thickness < _THIN_TIP:
-        found.append(
+        doubts.append(
             Doubt(
                 f"The teeth of {gear.name} are {gear.tip_thickness:.3g} {gear.modules} thick at the "
                 f"tip; at least {_THIN_TIP:g} {gear.modules} are usual.",
@@ -935,9 +935,9 @@ def _warnings(pair: _Pair, gear: _Gear) -> list[Doubt]:
             )
         )
     if gear.undercut:
-        found.append(_undercut_warning(pair, gear))
+        doubts.append(_undercut_warning(pair, gear))
     if _small_clearance(gear):
-        found.append(
+        doubts.append(
             Doubt(
                 f"The tip of {gear.name} clears the root of {gear.mate} by {gear.clearance:.3g} "
                 f"{gear.modules}; at least {_SMALL_CLEARANCE:g} {gear.modules} are usual.",
@@ -946,8 +946,8 @@ def _warnings(pair: _Pair, gear: _Gear) -> list[Doubt]:
             )
         )
     if gear.fillet_overlap > _TOLD_IN_FILLET:
-        found.append(_fillet_warning(pair, gear))
-    return found
+        doubts.append(_fillet_warning(pair, gear))
+    return doubts
 
 
 def _fillet_warning(pair: _Pair, gear: _Gear) -> Doubt:
@@ -966,10 +966,10 @@ def _small_clearance(gear: _Gear) -> bool:
 
 
 def _pair_warnings(pair: _Pair) -> list[Doubt]:
-    found = []
+    doubts = []
     if pair.transverse_ratio < 1.0:
         overlap = pair.contact_ratio - pair.transverse_ratio
-        found.append(
+        doubts.append(
             Doubt(
                 f"The transverse contact ratio of gear 1 and gear 2 is {pair.transverse_ratio:.3g}; "
                 f"it is the overlap ratio, {overlap:.3g}, that keeps the teeth in contact.",
@@ -978,9 +978,9 @@ def _pair_warnings(pair: _Pair) -> list[Doubt]:
             )
         )
     if _flank_overlap(pair) > _TOLD_DISTANCE * pair.module:
-        found.append(_overlap_warning(pair))
+        doubts.append(_overlap_warning(pair))
     if pair.internal and pair.radial_gap < 0.0:
-        found.append(
+        doubts.append(
             Doubt(
                 "Gear 1 must be put into gear 2 along its axis: moved in radially, the tips overlap by "
                 f"up to {-pair.radial_gap:.3g} {pair.modules}.",
@@ -990,7 +990,7 @@ def _pair_warnings(pair: _Pair) -> list[Doubt]:
             )
         )
     if pair.cutter_radial_gap < 0.0:
-        found.append(
+        doubts.append(
             Doubt(
                 f"The cutter of gear 2 with {pair.cutter_teeth:g} teeth takes off its tips while it is fed "
                 f"in radially: they overlap by up to {-pair.cutter_radial_gap:.3g} {pair.modules}, which "
@@ -999,7 +999,7 @@ def _pair_warnings(pair: _Pair) -> list[Doubt]:
                 brief=f"The cutter takes {-pair.cutter_radial_gap:.3g} {pair.modules} off tips of gear 2.",
             )
         )
-    return found
+    return doubts
 
 
 def _overlap_warning(pair: _Pair) -> Doubt:

@@ -91,28 +91,28 @@ def cures(
         high = next((count for count in coarse if changed(count) is not None), None)
         return None if high is None else changed(_least(changed, high - steps.coarse, high))
 
-    found: dict[str, Cure] = {}
+    change_by_key: dict[str, Cure] = {}
     of_both = (remedy._replace(members=(0, 1)) for remedy in remedies if len(remedy.members) == 1)
     for remedy in dict.fromkeys((*remedies, *of_both)):
-        if len(found) < MOST_CURES and remedy.key not in found:
+        if len(change_by_key) < MOST_CURES and remedy.key not in change_by_key:
             change = cure(remedy)
-            found |= {} if change is None else {remedy.key: change}
-    if not found and (several := _of_several_keys(gears, attempt)):
+            change_by_key |= {} if change is None else {remedy.key: change}
+    if not change_by_key and (several := _of_several_keys(gears, attempt)):
         return (several,)
-    return tuple(found.values())
+    return tuple(change_by_key.values())
 
 
 def _of_several_keys(gears: CylindricalGears, attempt: Attempt) -> Cure | None:
     """Usual values of as few keys as it takes, with the centre distance that follows where there was one."""
     ring = gears.teeth[1] < 0
     depths: list[Cure] = [{}]
-    for first, second in _RING_ADDENDA if ring else _ADDENDA:
+    for pinion_addendum, wheel_addendum in _RING_ADDENDA if ring else _ADDENDA:
         usual = {
-            "dedendum": (second + 0.25, first + 0.25),
+            "dedendum": (wheel_addendum + 0.25, pinion_addendum + 0.25),
             "fillet_radius": (0.2, 0.1 if ring else 0.2),
         }
-        given = {key: usual[key] for key in usual if getattr(gears, key) is not None}
-        depths.append({"addendum": (first, second), **given})
+        depths_to_change = {key: usual[key] for key in usual if getattr(gears, key) is not None}
+        depths.append({"addendum": (pinion_addendum, wheel_addendum), **depths_to_change})
     shifts = [{}, *({"profile_shift": both} for both in (_RING_SHIFTS if ring else _SHIFTS))]
     angles = [{}, {"pressure_angle": 25.0 * pi / 180.0}]
     tips = [{}, {"least_tip_thickness": 0.1}]
@@ -153,11 +153,12 @@ def _changed(
 
     if remedy.members:
         value: Any = tuple(
-            moved(one) if member in remedy.members else one for member, one in enumerate(start)
+            moved(number) if member in remedy.members else number
+            for member, number in enumerate(start)
         )
     else:
         value = moved(start)
-    if not all(steps.quantity.low <= one <= steps.quantity.high for one in _numbers(value)):
+    if not all(steps.quantity.low <= number <= steps.quantity.high for number in _numbers(value)):
         return None
     if key == "profile_shift" and gears.centre_distance is not None:
         return _at_its_distance(gears, value, attempt)

@@ -98,10 +98,10 @@ def build_cylindrical_pair(
         >>> round(float(pair.centre_distance), 6)
         0.081
     """
-    given = dict(locals())
+    arguments = dict(locals())
     helical, internal = bool(helix_angle != 0.0), bool(teeth[1] < 0)
-    ((pair, found, _),) = _grown(_opened(given, helical, internal), axes=0)
-    ratio = float(found)
+    ((pair, contact_ratio, _),) = _grown(_opened(arguments, helical, internal), axes=0)
+    ratio = float(contact_ratio)
     if not _in_reach(ratio):
         check_cylindrical(pair)  # says why, in gear words
     return dataclasses.replace(pair, lanes=lanes_for(ratio, helical=helical))
@@ -119,7 +119,7 @@ def with_bores(pair: CylindricalPair, bores: tuple[float, float] | None) -> Cyli
     """
     if bores is None:
         return pair
-    found = []
+    rim_ratios = []
     for number, (gear, bore) in enumerate(zip(pair.gears, bores, strict=True), 1):
         root = 2.0 * abs(float(gear.root_radius))
         ratio = bore / root if gear.internal else root / bore
@@ -130,8 +130,8 @@ def with_bores(pair: CylindricalPair, bores: tuple[float, float] | None) -> Cyli
                 f"its root circle, {1e3 * root:.6g} mm",
                 key="bore_diameter",
             )
-        found.append(ratio)
-    return dataclasses.replace(pair, rim_ratio=jnp.asarray(found))
+        rim_ratios.append(ratio)
+    return dataclasses.replace(pair, rim_ratio=jnp.asarray(rim_ratios))
 
 
 def build_cylindrical_pairs(**values: Any) -> Designs[CylindricalPair]:
@@ -180,8 +180,8 @@ def cylindrical_pairs_apart(
     """
     for batch, ratio, which in _groups(values):
         lanes = [
-            lanes_for(one, helical=batch.helical) if _in_reach(one) else 0
-            for one in np.asarray(ratio).tolist()
+            lanes_for(contact_ratio, helical=batch.helical) if _in_reach(contact_ratio) else 0
+            for contact_ratio in np.asarray(ratio).tolist()
         ]
         structures = {
             count: jax.tree.structure(_replaced(batch, 1, lanes=count)) for count in {*lanes} - {0}
@@ -198,10 +198,10 @@ def cylindrical_pairs_apart(
 
 def _groups(values: Values) -> Iterator[Grown]:
     """Batches of pairs of one static structure, their contact ratios, and which designs they are."""
-    given = signature(build_cylindrical_pair).bind(**values)
-    given.apply_defaults()
-    slices = given.arguments.pop("slices")
-    table = _table(given.arguments)
+    bound = signature(build_cylindrical_pair).bind(**values)
+    bound.apply_defaults()
+    slices = bound.arguments.pop("slices")
+    table = _table(bound.arguments)
     flags = np.stack([table["helix_angle"] != 0.0, table["teeth"][:, 1] < 0], axis=1)
     for kind, numbers in alike(flags):
         opened = _opened(_of(table, numbers) | {"slices": slices}, *kind)
@@ -235,13 +235,13 @@ def _table(given: Values) -> Values:
     table: Values = {
         key: None if value is None else np.asarray(value) for key, value in given.items()
     }
-    own = {key: (2,) if key in _OF_BOTH else () for key in table}
-    of_designs = {key for key, value in table.items() if np.ndim(value) > len(own[key])}
+    shapes = {key: (2,) if key in _OF_BOTH else () for key in table}
+    of_designs = {key for key, value in table.items() if np.ndim(value) > len(shapes[key])}
     counts = {key: np.shape(table[key])[0] for key in of_designs}
     check_counts(counts)
     count = max(counts.values(), default=1)
     return {
-        key: None if value is None else np.broadcast_to(value, (count, *own[key]))
+        key: None if value is None else np.broadcast_to(value, (count, *shapes[key]))
         for key, value in table.items()
     }
 
@@ -304,15 +304,15 @@ def _grown(pair: CylindricalPair, axes: int) -> Iterator[Grown]:
     least = np.asarray(pair.least_tip)[..., None] if pair.follows[1] else 0.0
     short = (least > 0.0) & (np.asarray(thickness) < least)
     flags = np.concatenate([undercut, short], axis=-1).reshape(-1, 4)
-    for (first, second, *shortened), which in alike(flags):
-        part, found = (rows((pair, ratio), which)) if axes else (pair, ratio)
-        if first or second:
-            cut = _replaced(part, axes, undercut=(first, second))
-            part, found = _over(_with_crossings, cut, axes)
+    for (pinion_undercut, wheel_undercut, *shortened), which in alike(flags):
+        part, part_ratio = (rows((pair, ratio), which)) if axes else (pair, ratio)
+        if pinion_undercut or wheel_undercut:
+            cut = _replaced(part, axes, undercut=(pinion_undercut, wheel_undercut))
+            part, part_ratio = _over(_with_crossings, cut, axes)
         if any(shortened):
             shorter = _replaced(part, axes, shortened=tuple(shortened))
-            part, found, _, _ = _over(_complete, shorter, axes)
-        yield part, found, which
+            part, part_ratio, _, _ = _over(_complete, shorter, axes)
+        yield part, part_ratio, which
 
 
 def _replaced(pair: CylindricalPair, axes: int, **static: Any) -> CylindricalPair:
@@ -327,8 +327,10 @@ def _plain(pair: CylindricalPair) -> CylindricalPair:
 
 def _with_lanes(pair: CylindricalPair, ratio: Array | np.ndarray) -> CylindricalPair:
     """A batch with places for the pairs of its largest contact ratio."""
-    known = [value for value in np.asarray(ratio).tolist() if _in_reach(value)]
-    return _replaced(pair, 1, lanes=lanes_for(max(known, default=1.0), helical=pair.helical))
+    ratios_in_reach = [value for value in np.asarray(ratio).tolist() if _in_reach(value)]
+    return _replaced(
+        pair, 1, lanes=lanes_for(max(ratios_in_reach, default=1.0), helical=pair.helical)
+    )
 
 
 def _in_reach(ratio: float) -> bool:
@@ -349,13 +351,13 @@ def _complete(
 ) -> tuple[CylindricalPair, Array, Array, Array]:
     """Pair with the dimensions that follow, contact ratio, undercut limits, tip thicknesses in modules."""
 
-    def alone(one: CylindricalPair) -> tuple[CylindricalPair, Array, Array, Array]:
-        one = one.completed()
+    def alone(design: CylindricalPair) -> tuple[CylindricalPair, Array, Array, Array]:
+        design = design.completed()
         return (
-            one,
-            one.contact_ratio,
-            jnp.stack([gear.undercut_limit for gear in one.gears]),
-            jnp.stack([gear.tip_thickness for gear in one.gears]) / one.module,
+            design,
+            design.contact_ratio,
+            jnp.stack([gear.undercut_limit for gear in design.gears]),
+            jnp.stack([gear.tip_thickness for gear in design.gears]) / design.module,
         )
 
     return each(alone, pair, pair.module.ndim)
@@ -363,9 +365,9 @@ def _complete(
 
 @program
 def _with_crossings(pair: CylindricalPair) -> tuple[CylindricalPair, Array]:
-    def alone(one: CylindricalPair) -> tuple[CylindricalPair, Array]:
-        one = _crossed(one)
-        return one, one.contact_ratio
+    def alone(design: CylindricalPair) -> tuple[CylindricalPair, Array]:
+        design = _crossed(design)
+        return design, design.contact_ratio
 
     return each(alone, pair, pair.module.ndim)
 
@@ -377,5 +379,5 @@ def _judged(pair: CylindricalPair) -> Status:
 
 def _crossed(pair: CylindricalPair) -> CylindricalPair:
     """The pair with the places where undercuts cross its flanks."""
-    found = [gear.crossing_angle() if gear.undercut else gear.crossing for gear in pair.gears]
-    return dataclasses.replace(pair, crossing=jnp.stack(found))
+    crossings = [gear.crossing_angle() if gear.undercut else gear.crossing for gear in pair.gears]
+    return dataclasses.replace(pair, crossing=jnp.stack(crossings))

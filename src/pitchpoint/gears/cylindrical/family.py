@@ -48,10 +48,10 @@ def _cylindrical(gears: CylindricalGears, slices: int) -> Made:
         pair = build_cylindrical_pair(**_given(gears), slices=slices)
         pair = with_bores(pair, gears.bore_diameter)
         _check_field(pair, gears)
-        told = check_cylindrical(pair, least_backlash=_least_backlash(gears, pair))
+        warnings = check_cylindrical(pair, least_backlash=_least_backlash(gears, pair))
     except (UnsoundPairError, CollectedInputError) as error:
         raise _with_cures(error, gears) from None
-    return _made(pair, gears, slices, told)
+    return _made(pair, gears, slices, warnings)
 
 
 def _with_cures(error: InputError, gears: CylindricalGears) -> InputError:
@@ -62,12 +62,18 @@ def _with_cures(error: InputError, gears: CylindricalGears) -> InputError:
     values["least_tip_thickness"] = values["least_tip"]
     every = error.errors if isinstance(error, CollectedInputError) else (error,)
     remedies = [
-        one for each in every if isinstance(each, UnsoundPairError) for one in each.remedies
+        remedy
+        for refusal in every
+        if isinstance(refusal, UnsoundPairError)
+        for remedy in refusal.remedies
     ]
     changes = cures(gears, remedies, values, _running)
-    told = copy(every[-1])
-    told.message, told.cures = told_with_cures(told.message, changes), changes
-    return told if len(every) == 1 else CollectedInputError([*every[:-1], told])
+    last_refusal = copy(every[-1])
+    last_refusal.message, last_refusal.cures = (
+        told_with_cures(last_refusal.message, changes),
+        changes,
+    )
+    return last_refusal if len(every) == 1 else CollectedInputError([*every[:-1], last_refusal])
 
 
 def _running(gears: CylindricalGears) -> CylindricalPair | None:
@@ -81,12 +87,12 @@ def _running(gears: CylindricalGears) -> CylindricalPair | None:
 
 def _least_backlash(gears: CylindricalGears, pair: CylindricalPair) -> float:
     """Least backlash along the normal by allowances and deviations [m]; NaN without allowances."""
-    allowed, asked = gears.thickness_allowances, gears.inspection
-    if allowed is None or asked is None:
+    allowed, inspection = gears.thickness_allowances, gears.inspection
+    if allowed is None or inspection is None:
         return nan
     distance = float(pair.centre_distance)
     try:
-        deviation = asked.deviation(distance) or 0.0
+        deviation = inspection.deviation(distance) or 0.0
     except InputError:
         deviation = 0.0  # told by _check_field
     upper, lower = allowed
@@ -100,28 +106,29 @@ def _cylindrical_together(
     tables: Sequence[CylindricalGears], slices: int
 ) -> list[Made | InputError]:
     """The same for many tables; those that leave other values open are built apart from each other."""
-    found: dict[int, Made | InputError] = {}
+    outcomes: dict[int, Made | InputError] = {}
     groups: dict[frozenset[str], list[int]] = {}
-    given = [_given(gears) for gears in tables]
-    for number, values in enumerate(given):
+    table_values = [_given(gears) for gears in tables]
+    for number, values in enumerate(table_values):
         groups.setdefault(frozenset(key for key in values if values[key] is None), []).append(
             number
         )
     for left, numbers in groups.items():
         columns = {
-            key: np.array([given[n][key] for n in numbers]) for key in given[0].keys() - left
+            key: np.array([table_values[n][key] for n in numbers])
+            for key in table_values[0].keys() - left
         }
         for group, pairs in cylindrical_pairs_apart(**columns, slices=slices):
             least = [
                 nan if pair is None else _least_backlash(tables[numbers[number]], pair)
                 for number, pair in zip(group.numbers, pairs, strict=True)
             ]
-            told = check_cylindrical_pairs(group.mesh, least)
-            each = zip(group.numbers, pairs, told, strict=True)
-            for number, pair, words in each:
+            warnings = check_cylindrical_pairs(group.mesh, least)
+            built = zip(group.numbers, pairs, warnings, strict=True)
+            for number, pair, words in built:
                 at = numbers[number]
-                found[at] = _made_or_error(pair, tables[at], slices, words)
-    return [found[number] for number in range(len(tables))]
+                outcomes[at] = _made_or_error(pair, tables[at], slices, words)
+    return [outcomes[number] for number in range(len(tables))]
 
 
 def _made_or_error(
@@ -155,9 +162,9 @@ def _made(pair: CylindricalPair, gears: CylindricalGears, slices: int, told: lis
 
 def _with_flanks(pair: CylindricalPair, gears: CylindricalGears, slices: int) -> CylindricalPair:
     """The pair with the modifications of its flanks; deviations of the lead need slices too."""
-    given = _modifications(gears)
-    if given is not None:
-        return modified(pair, given, slices)
+    modifications = _modifications(gears)
+    if modifications is not None:
+        return modified(pair, modifications, slices)
     by_class = gears.deviations is not None and gears.deviations.iso_class is not None
     return replace(pair, slices=slices) if by_class else pair
 
@@ -166,9 +173,11 @@ def _modifications(gears: CylindricalGears) -> Modifications | None:
     table, slope = gears.modifications, gears.misalignment
     if table is None or not table.amounts:
         return None if slope is None else Modifications(misalignment=slope)
-    given = {key: getattr(table, key) for key in type(table).model_fields if key != "relief_shape"}
+    amounts = {
+        key: getattr(table, key) for key in type(table).model_fields if key != "relief_shape"
+    }
     power = 2 if table.relief_shape == "parabolic" else 1
-    return Modifications(**given, relief_power=power, misalignment=slope)
+    return Modifications(**amounts, relief_power=power, misalignment=slope)
 
 
 def _check_field(pair: CylindricalPair, gears: CylindricalGears) -> None:
@@ -187,14 +196,14 @@ def _beyond_iso_1328(pair: CylindricalPair, gears: CylindricalGears) -> tuple[st
 
 
 def _gear_deviations(gears: CylindricalGears, pair: CylindricalPair) -> Surfaces:
-    asked = gears.deviations
-    if asked is None:
+    deviations = gears.deviations
+    if deviations is None:
         return (), ()
-    first, second = waves(asked.gear_1), waves(asked.gear_2)
-    if asked.iso_class is None:
-        return first, second
-    drawn = class_deviations(pair, asked.iso_class, int(asked.seed))
-    return (*first, *drawn[0]), (*second, *drawn[1])
+    pinion_waves, wheel_waves = waves(deviations.gear_1), waves(deviations.gear_2)
+    if deviations.iso_class is None:
+        return pinion_waves, wheel_waves
+    drawn = class_deviations(pair, deviations.iso_class, int(deviations.seed))
+    return (*pinion_waves, *drawn[0]), (*wheel_waves, *drawn[1])
 
 
 def _least_tip(gears: CylindricalGears) -> float:
@@ -208,10 +217,10 @@ def _shortened(pair: CylindricalPair, gears: CylindricalGears) -> list[str]:
     """What was taken off tips that nobody asked to shorten."""
     if gears.least_tip_thickness is not None:
         return []
-    kept = float(pair.clearance_keeping_tip_alteration) if any(pair.shortened) else 0.0
+    full = float(pair.clearance_keeping_tip_alteration) if any(pair.shortened) else 0.0
     return [
         f"The tip of gear {number} would be thinner than {USUAL_TIP:g} modules and is shortened by "
-        f"{kept - float(pair.tip_alteration[number - 1]):.3g} modules; least_tip_thickness sets the limit."
+        f"{full - float(pair.tip_alteration[number - 1]):.3g} modules; least_tip_thickness sets the limit."
         for number, short in enumerate(pair.shortened, 1)
         if short
     ]
@@ -268,16 +277,16 @@ _FOLLOWING = {
 
 
 def _of_pair(gears: CylindricalGears, pair: CylindricalPair) -> dict[str, Any]:
-    found = {key: getattr(pair, name) for key, name in _FOLLOWING.items()}
+    followed = {key: getattr(pair, name) for key, name in _FOLLOWING.items()}
     if any(gears.infeed):
         cut = tuple(map(sum, zip(gears.profile_shift, gears.infeed, strict=True)))
         note = "teeth thinned alike for the backlash, with the tips of nominal ones"
-        found["generating_shift"] = Followed(cut, "derived", note)
-    given = _modifications(gears)
-    if given is not None:
-        lengths = given.completed(pair)
-        found |= {f"modifications.{key}": getattr(lengths, key) for key in _LENGTHS}
-    return found
+        followed["generating_shift"] = Followed(cut, "derived", note)
+    modifications = _modifications(gears)
+    if modifications is not None:
+        lengths = modifications.completed(pair)
+        followed |= {f"modifications.{key}": getattr(lengths, key) for key in _LENGTHS}
+    return followed
 
 
 _LENGTHS = ("tip_relief_length", "root_relief_length", "end_relief_length")

@@ -109,8 +109,8 @@ class Toothing:
 
     def usual_span(self, roll: float) -> int:
         """Number of teeth whose span touches nearest to a roll length [m], two at least."""
-        first = self.span_roll(1.0)
-        return max(2, 1 + round((roll - first) / (self.span_roll(2.0) - first)))
+        single_roll = self.span_roll(1.0)
+        return max(2, 1 + round((roll - single_roll) / (self.span_roll(2.0) - single_roll)))
 
     def ball_angle(self, diameter: float) -> float:
         """Pressure angle at the centre of a ball in a tooth space [rad]; NaN where none lies.
@@ -325,10 +325,10 @@ def involute(angle: float) -> float:
 
 def inverse_involute(value: float) -> float:
     """Angle whose involute function has a value [rad]; NaN where there is none below 86 degrees."""
-    last = 1.5
-    if not 0.0 < value <= involute(last):
+    largest_angle = 1.5
+    if not 0.0 < value <= involute(largest_angle):
         return 0.0 if value == 0.0 else nan
-    angle, before = min((3.0 * value) ** (1.0 / 3.0), last), inf
+    angle, before = min((3.0 * value) ** (1.0 / 3.0), largest_angle), inf
     while angle < before:  # Newton's steps from above only fall, as the curve bends upwards
         before, angle = angle, angle - (involute(angle) - value) / tan(angle) ** 2
     return before

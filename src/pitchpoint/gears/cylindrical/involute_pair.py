@@ -136,13 +136,13 @@ class LineOfAction(PathOfContact):
     @cached_property
     def limits(self) -> Float[Array, "2"]:
         """Positions of A and E from N1 [m]: tip circle or form circle of an undercut, the nearer one."""
-        first, second = self.gears
-        start = self.tangent_length - second.side * second.tip_roll_length
-        end = first.tip_roll_length
-        if first.undercut:
-            start = jnp.maximum(start, first.form_roll_length)
-        if second.undercut:
-            end = jnp.minimum(end, self.tangent_length - second.form_roll_length)
+        pinion, wheel = self.gears
+        start = self.tangent_length - wheel.side * wheel.tip_roll_length
+        end = pinion.tip_roll_length
+        if pinion.undercut:
+            start = jnp.maximum(start, pinion.form_roll_length)
+        if wheel.undercut:
+            end = jnp.minimum(end, self.tangent_length - wheel.form_roll_length)
         return jnp.stack([start, end])
 
     @cached_property
@@ -251,13 +251,14 @@ class InvolutePair(InvoluteMesh):
         if not any(self.surfaces):
             return self.surfaces
         ends, arcs = self.active_flanks, 2.0 * jnp.abs(self.base_radii)
-        first, second = (
+        pinion, wheel = (
             tuple(
-                one.fitted(Flank(ends[k, 0], ends[k, 1], arcs[k], self.face_width)) for one in own
+                surface.fitted(Flank(ends[k, 0], ends[k, 1], arcs[k], self.face_width))
+                for surface in of_gear
             )
-            for k, own in enumerate(self.surfaces)
+            for k, of_gear in enumerate(self.surfaces)
         )
-        return first, second
+        return pinion, wheel
 
     @property
     def gears(self) -> tuple[InvoluteGear, InvoluteGear]:
@@ -410,11 +411,11 @@ class InvolutePair(InvoluteMesh):
     def coordinates(self) -> tuple[Coordinate, Coordinate]:
         """Both gears: the origin on the axis of gear 1, x towards the pitch point, z as `width`."""
         places = jnp.zeros((2, 3)).at[1, 0].set(self.line.distance)
-        first, second = (
+        pinion, wheel = (
             Coordinate(name, place, jnp.asarray(AXIAL), member)
             for member, (name, place) in enumerate(zip(MEMBERS, places, strict=True))
         )
-        return first, second
+        return pinion, wheel
 
     def events(self) -> Float[Array, " event"]:
         """Phases of entry, exit and pitch point.
@@ -423,19 +424,23 @@ class InvolutePair(InvoluteMesh):
         at which the pitch line enters and leaves it; of spur teeth those at which a relief begins.
         """
         line = self.line
-        found = line.bounds(helical=self.helical)
+        positions = line.bounds(helical=self.helical)
         if not self.helical:
-            found += self._relief_paths(line)
-        return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
+            positions += self._relief_paths(line)
+        return jnp.sort(jnp.mod(jnp.stack(positions), 1.0))
 
     def _relief_paths(self, line: LineOfAction) -> list[Array]:
         """Positions on the path at which a relief of either gear begins [base pitches]."""
         rolls = [
-            [jnp.sqrt(2.0 * jnp.abs(base) * one.start) for one in own if isinstance(one, Relief)]
-            for base, own in zip(line.base_radii, self.surfaces, strict=True)
+            [
+                jnp.sqrt(2.0 * jnp.abs(base) * surface.start)
+                for surface in of_gear
+                if isinstance(surface, Relief)
+            ]
+            for base, of_gear in zip(line.base_radii, self.surfaces, strict=True)
         ]
-        second = -1.0 if self.internal else 1.0
-        positions = [*rolls[0], *(line.tangent_length - second * roll for roll in rolls[1])]
+        sense = -1.0 if self.internal else 1.0
+        positions = [*rolls[0], *(line.tangent_length - sense * roll for roll in rolls[1])]
         return [(position - line.limits[0]) / line.base_pitch for position in positions]
 
     def contacts_at(
@@ -463,7 +468,7 @@ class InvolutePair(InvoluteMesh):
         position = jnp.where(active, line.limits[0] + path * line.base_pitch, line.pitch_position)
         rolling = jnp.stack([position, line.tangent_length - position])
         none, width = jnp.zeros_like(position), jnp.broadcast_to(width, lanes)
-        first, second = side * rolling[0], -side * rolling[1]
+        pinion_roll, wheel_roll = side * rolling[0], -side * rolling[1]
         slope, base = jnp.cos(tilt), line.base_radii
         arms = side * base * slope
         bent = across.reshape(2, *(1 for _ in lanes))
@@ -473,7 +478,7 @@ class InvolutePair(InvoluteMesh):
             width=width,
             weight=jnp.broadcast_to(weight, lanes),
             curvature=jnp.stack([slope / rolling, bent + jnp.zeros_like(rolling)], axis=1),
-            surface=jnp.stack([jnp.stack([first, none]), jnp.stack([none, second])]),
+            surface=jnp.stack([jnp.stack([pinion_roll, none]), jnp.stack([none, wheel_roll])]),
             normal=jnp.stack([jnp.broadcast_to(arm, lanes) for arm in arms]),
             gap=none,
             flank=jnp.stack([rolling[k] ** 2 / (2.0 * jnp.abs(base[k])) for k in (0, 1)]),
@@ -513,9 +518,9 @@ class InvolutePair(InvoluteMesh):
         A contact line reaches that section half of the overlap ratio after it entered.
         """
         line, side, gears = self.line, self._side, self.gears
-        first = line.base_radii[0]
+        base_radius = line.base_radii[0]
         path = DrawnPath(
-            origin=first * jnp.stack([side * line.sine, line.cosine]),
+            origin=base_radius * jnp.stack([side * line.sine, line.cosine]),
             along=jnp.stack([-side * line.cosine, line.sine]),
             limits=line.limits,
             points=self.points,
@@ -665,11 +670,11 @@ def _pitch_point(pair: InvolutePair, driver: Float[Arrays, "2"]) -> PitchPoint:
     """Values at the pitch point C."""
     line = pair.line
     speed = jnp.sum(driver * jnp.abs(line.working_radii))
-    first, second = line.pitch_position, line.tangent_length - line.pitch_position
+    pinion_roll, wheel_roll = line.pitch_position, line.tangent_length - line.pitch_position
     return PitchPoint(
         width=pair.face_width,
         line_length=pair.face_width / line.slope,
-        radius=first * second / line.tangent_length / line.slope,
+        radius=pinion_roll * wheel_roll / line.tangent_length / line.slope,
         sum_speed=2.0 * speed * line.sine,
         pitch_line_speed=speed,
     )
@@ -678,8 +683,8 @@ def _pitch_point(pair: InvolutePair, driver: Float[Arrays, "2"]) -> PitchPoint:
 @tooth_sections.register
 def _tooth_sections(pair: InvolutePair) -> tuple[ToothSection, ToothSection]:
     """Teeth of both gears in the normal section."""
-    first, second = pair.gears
-    return first.section(pair.rim_ratio[0]), second.section(pair.rim_ratio[1])
+    pinion, wheel = pair.gears
+    return pinion.section(pair.rim_ratio[0]), wheel.section(pair.rim_ratio[1])
 
 
 @plain_inertia.register

@@ -157,20 +157,23 @@ def _pitch(tolerances: FlankTolerances, wave: Teeth, scatter: Teeth) -> Teeth:
     """Cumulative pitch deviation as a mixture at both limits of pitch."""
     from scipy.optimize import brentq
 
-    asked = tolerances.single_pitch / tolerances.total_pitch
+    wanted_ratio = tolerances.single_pitch / tolerances.total_pitch
 
     def mixed(part: float) -> Teeth:
         return np.asarray((1.0 - part) * wave + part * scatter)
 
     def excess(part: float) -> float:
         values = mixed(part)
-        return float(_largest_step(values) / np.ptp(values) - asked)
+        return float(_largest_step(values) / np.ptp(values) - wanted_ratio)
 
     ends = excess(0.0), excess(1.0)
     part = brentq(excess, 0.0, 1.0, xtol=1e-15) if ends[0] < 0.0 < ends[1] else float(ends[0] < 0.0)
-    found = mixed(part)
-    limits = tolerances.total_pitch / np.ptp(found), tolerances.single_pitch / _largest_step(found)
-    return np.asarray(found * min(limits))
+    deviations = mixed(part)
+    limits = (
+        tolerances.total_pitch / np.ptp(deviations),
+        tolerances.single_pitch / _largest_step(deviations),
+    )
+    return np.asarray(deviations * min(limits))
 
 
 def _largest_step(values: Teeth) -> float:

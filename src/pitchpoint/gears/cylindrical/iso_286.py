@@ -37,8 +37,8 @@ def standard_tolerance(*, grade: int, size: float) -> float:
     if grade not in _IN_UM:
         raise InputError(f"the grade IT{grade} is not known; known are IT5 to IT9")
     length = 1e3 * size * (1.0 - 1e-9)  # the end of a range belongs to it, whatever units leave
-    found = (um for most, um in zip(_UP_TO, _IN_UM[grade], strict=True) if length <= most)
-    tolerance = next(found, None)
+    tolerances = (um for most, um in zip(_UP_TO, _IN_UM[grade], strict=True) if length <= most)
+    tolerance = next(tolerances, None)
     if tolerance is None:
         raise InputError(f"{1e3 * size:.6g} mm is longer than 500 mm, where its table ends here")
     return 1e-6 * tolerance

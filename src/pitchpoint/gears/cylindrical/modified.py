@@ -54,7 +54,9 @@ class Modifications:
     @property
     def along_lead(self) -> bool:
         """True if something changes across the face."""
-        return any(one is not None for one in (self.crowning, self.end_relief, self.misalignment))
+        return any(
+            amount is not None for amount in (self.crowning, self.end_relief, self.misalignment)
+        )
 
     def completed(self, pair: CylindricalPair) -> "Modifications":
         """The same with lengths that were left open.
@@ -96,25 +98,27 @@ def modified(pair: CylindricalPair, given: Modifications, slices: int) -> Cylind
             f"{FEWEST_SLICES} or more",
             key=_first_along_lead(given),
         )
-    first, second = (_of_gear(pair, given, flanks, member) for member in (0, 1))
+    pinion_surfaces, wheel_surfaces = (_of_gear(pair, given, flanks, member) for member in (0, 1))
     across = given.along_lead and not pair.helical
-    return replace(pair, surfaces=(first, second), slices=slices if across else pair.slices)
+    return replace(
+        pair, surfaces=(pinion_surfaces, wheel_surfaces), slices=slices if across else pair.slices
+    )
 
 
 def _of_gear(
     pair: CylindricalPair, given: Modifications, flanks: np.ndarray, member: int
 ) -> tuple[Surface, ...]:
     """Surfaces of one gear in a fixed order, so that the same keys make the same program."""
-    found: list[Surface] = [*_reliefs(pair, given, flanks, member)]
+    surfaces: list[Surface] = [*_reliefs(pair, given, flanks, member)]
     width = pair.face_width
     if given.crowning is not None:
-        found.append(Crowning(array(given.crowning[member]), width))
+        surfaces.append(Crowning(array(given.crowning[member]), width))
     if given.end_relief is not None and given.end_relief_length is not None:
         amount, length = given.end_relief[member], given.end_relief_length[member]
-        found.append(EndRelief(array(amount), array(length), width, given.relief_power))
+        surfaces.append(EndRelief(array(amount), array(length), width, given.relief_power))
     if given.misalignment is not None and member == 0:
-        found.append(LeadSlope(array(given.misalignment), width))
-    return tuple(found)
+        surfaces.append(LeadSlope(array(given.misalignment), width))
+    return tuple(surfaces)
 
 
 def _reliefs(
@@ -137,11 +141,11 @@ def _check_lengths(key: str, given: Modifications, flanks: np.ndarray) -> None:
     if getattr(given, key) is None or lengths is None:
         return
     for number, (length, (root, tip)) in enumerate(zip(lengths, flanks, strict=True), 1):
-        whole = abs(tip - root)
-        if not 0.0 < length <= whole * (1.0 + 1e-9):
+        flank_length = abs(tip - root)
+        if not 0.0 < length <= flank_length * (1.0 + 1e-9):
             raise InputError(
                 f"the {key.replace('_', ' ')} of gear {number} is {1e3 * length:.4g} mm long; its active "
-                f"flank has a roll length of {1e3 * whole:.4g} mm, which it may take at most",
+                f"flank has a roll length of {1e3 * flank_length:.4g} mm, which it may take at most",
                 key=f"modifications.{key}_length",
             )
 
@@ -188,7 +192,7 @@ def class_deviations(pair: CylindricalPair, classes: Two, seed: int) -> Surfaces
     flanks = np.asarray(_active_flanks(pair))
     normal = float(jnp.cos(pair.base_helix_angle))
     upright = normal * float(jnp.cos(pair.transverse_pressure_angle))
-    found = []
+    by_gear = []
     for member, (size, teeth) in enumerate(_sizes(pair)):
         limits = flank_tolerances(tolerance_class=int(classes[member]), **size)
         errors = gear_at_its_limits(limits, teeth, (seed, member))
@@ -203,14 +207,14 @@ def class_deviations(pair: CylindricalPair, classes: Two, seed: int) -> Surfaces
             tip=array(tip),
             width=pair.face_width,
         )
-        found.append(deviations)
-    return (found[0],), (found[1],)
+        by_gear.append(deviations)
+    return (by_gear[0],), (by_gear[1],)
 
 
 def class_warnings(pair: CylindricalPair) -> tuple[str, ...]:
     """Where the gears lie outside the ranges of ISO 1328-1."""
     helix = float(pair.helix_angle)
-    told = [
+    reasons = [
         ", ".join(out_of_scope(teeth=teeth, helix_angle=helix, **size))
         for size, teeth in _sizes(pair)
     ]
@@ -220,7 +224,7 @@ def class_warnings(pair: CylindricalPair) -> tuple[str, ...]:
             moves=GUESSED,
             brief=f"Deviations of gear {number} lie outside ISO 1328-1.",
         )
-        for number, outside in enumerate(told, 1)
+        for number, outside in enumerate(reasons, 1)
         if outside
     )
 

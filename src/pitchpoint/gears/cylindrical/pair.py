@@ -96,9 +96,11 @@ def _rated_pair(pair: CylindricalPair) -> RatedPair:
     outside = jnp.asarray([False, pair.internal])
     rim = jnp.where(outside, pair.rim_ratio - 1.0, 1.0 - 1.0 / pair.rim_ratio)
     ring = gears[1].virtual_spur_gear
-    known = pair.cutter_teeth is not None and pair.cutter_shift is not None
+    has_cutter = pair.cutter_teeth is not None and pair.cutter_shift is not None
     cutter = (
-        jnp.stack([*map(jnp.asarray, (pair.cutter_teeth, pair.cutter_shift))]) if known else None
+        jnp.stack([*map(jnp.asarray, (pair.cutter_teeth, pair.cutter_shift))])
+        if has_cutter
+        else None
     )
     return RatedPair(
         teeth=pair.teeth,

@@ -63,15 +63,15 @@ FEWEST_RING_TEETH = 10
 
 
 def _teeth(value: tuple[float, float]) -> tuple[float, float]:
-    first, second = value
-    if first < FEWEST_TEETH:
+    pinion_teeth, wheel_teeth = value
+    if pinion_teeth < FEWEST_TEETH:
         raise InputError(
-            f"gear 1 was given {first:.0f} teeth; allowed are {FEWEST_TEETH} or more, and only gear 2 "
+            f"gear 1 was given {pinion_teeth:.0f} teeth; allowed are {FEWEST_TEETH} or more, and only gear 2 "
             "may be a ring, with its number of teeth negative"
         )
-    if -FEWEST_RING_TEETH < second < FEWEST_TEETH:
+    if -FEWEST_RING_TEETH < wheel_teeth < FEWEST_TEETH:
         raise InputError(
-            f"gear 2 was given {second:.0f} teeth; allowed are {FEWEST_TEETH} or more, or for a ring "
+            f"gear 2 was given {wheel_teeth:.0f} teeth; allowed are {FEWEST_TEETH} or more, or for a ring "
             f"with internal teeth -{FEWEST_RING_TEETH} or less"
         )
     return value
@@ -105,10 +105,10 @@ class _Shifts(Pair):
         every = list(value) if isinstance(value, list | tuple) else [value, value]
         if len(every) != 2 or FROM_CENTRE_DISTANCE not in every:
             return super().read(value)
-        first, second = (
+        pinion_shift, wheel_shift = (
             nan if part == FROM_CENTRE_DISTANCE else self.each.read(part) for part in every
         )
-        return first, second
+        return pinion_shift, wheel_shift
 
 
 class FlankModifications(Table):
@@ -139,8 +139,8 @@ class FlankModifications(Table):
     @property
     def amounts(self) -> dict[str, tuple[float, float]]:
         """Amounts that are given, by key."""
-        given = {key: getattr(self, key) for key in (*_LENGTHS, "crowning")}
-        return {key: value for key, value in given.items() if value is not None}
+        by_key = {key: getattr(self, key) for key in (*_LENGTHS, "crowning")}
+        return {key: value for key, value in by_key.items() if value is not None}
 
     @model_validator(mode="after")
     def _together(self) -> "FlankModifications":
@@ -217,11 +217,11 @@ class Inspection(Table):
             diameters: of the reference circles of both gears, which a field goes by [m].
         """
         if self.thickness_field is not None:
-            first, second = (
+            pinion_limits, wheel_limits = (
                 din_3967.thickness_allowances(field=field, diameter=diameter)
                 for field, diameter in zip(self.thickness_field, diameters, strict=True)
             )
-            return (first[0], second[0]), (first[1], second[1])
+            return (pinion_limits[0], wheel_limits[0]), (pinion_limits[1], wheel_limits[1])
         upper, lower = self.upper_thickness_allowance, self.lower_thickness_allowance
         return None if upper is None or lower is None else (upper, lower)
 
@@ -239,10 +239,10 @@ class Inspection(Table):
     def _limits(self) -> "Inspection":
         upper, lower = self.upper_thickness_allowance, self.lower_thickness_allowance
         if (upper is None) != (lower is None):
-            given, missing = ("upper", "lower") if lower is None else ("lower", "upper")
+            present, missing = ("upper", "lower") if lower is None else ("lower", "upper")
             raise InputError(
                 f"was given without {missing}_thickness_allowance; a tooth thickness has both",
-                key=f"{given}_thickness_allowance",
+                key=f"{present}_thickness_allowance",
             )
         if upper is not None and self.thickness_field is not None:
             raise InputError(
@@ -341,15 +341,15 @@ class CylindricalGears(GearsTable):
     @property
     def designation(self) -> str:
         """Spur or helical, of gears or with a ring."""
-        first, second = self.tooth_numbers
+        pinion_teeth, wheel_teeth = self.tooth_numbers
         kind = "Helical" if self.helix_angle else "Spur"
-        return f"{kind} {'pair' if self.teeth[1] > 0 else 'gear in a ring'} {first:g}/{second:g}"
+        return f"{kind} {'pair' if self.teeth[1] > 0 else 'gear in a ring'} {pinion_teeth:g}/{wheel_teeth:g}"
 
     @property
     def tooth_numbers(self) -> tuple[float, float]:
         """Of both members, in magnitude."""
-        first, second = self.teeth
-        return first, abs(second)
+        pinion_teeth, wheel_teeth = self.teeth
+        return pinion_teeth, abs(wheel_teeth)
 
     @property
     def normal_module(self) -> float:
@@ -365,9 +365,11 @@ class CylindricalGears(GearsTable):
         """
         if self.inspection is None:
             return None
-        first, second = (abs(teeth) * self.module / cos(self.helix_angle) for teeth in self.teeth)
+        pinion_diameter, wheel_diameter = (
+            abs(teeth) * self.module / cos(self.helix_angle) for teeth in self.teeth
+        )
         try:
-            return self.inspection.allowances((first, second))
+            return self.inspection.allowances((pinion_diameter, wheel_diameter))
         except InputError as error:
             raise error.at(key="inspection.thickness_field") from None
 
@@ -401,11 +403,11 @@ class CylindricalGears(GearsTable):
     @model_validator(mode="after")
     def _smaller_than_teeth(self) -> "CylindricalGears":
         amounts = self.modifications.amounts if self.modifications is not None else {}
-        given = {f"modifications.{key}": max(pair) for key, pair in amounts.items()}
-        given["misalignment"] = abs(self.misalignment or 0.0)
-        given["backlash"] = self.backlash or 0.0
-        given |= _allowed(self)
-        for key, most in given.items():
+        amount_by_key = {f"modifications.{key}": max(pair) for key, pair in amounts.items()}
+        amount_by_key["misalignment"] = abs(self.misalignment or 0.0)
+        amount_by_key["backlash"] = self.backlash or 0.0
+        amount_by_key |= _allowed(self)
+        for key, most in amount_by_key.items():
             if most > self.module / 2.0:
                 raise InputError(
                     f"{RELIEF.show(most)} is more than a tooth allows; allowed is half a module, "
@@ -437,16 +439,16 @@ class CylindricalGears(GearsTable):
             centre_distance=self.centre_distance,
         )
         left = [shift for shift in shifts if not isnan(shift)]
-        rest = (total - sum(left)) / (2 - len(left))
-        first, second = (rest if isnan(shift) else shift for shift in shifts)
-        for number, shift in enumerate((first, second), 1):
+        remaining_shift = (total - sum(left)) / (2 - len(left))
+        pinion_shift, wheel_shift = (remaining_shift if isnan(shift) else shift for shift in shifts)
+        for number, shift in enumerate((pinion_shift, wheel_shift), 1):
             if not SHIFT.low <= shift <= SHIFT.high:
                 raise InputError(
                     f"the centre distance {DISTANCE.show(self.centre_distance)} asks for profile shifts that "
                     f"sum to {total:.4g}, with {shift:.4g} of gear {number}; {SHIFT.allowed}",
                     key="profile_shift",
                 )
-        return first, second
+        return pinion_shift, wheel_shift
 
     @model_validator(mode="after")
     def _shifts(self) -> "CylindricalGears":
@@ -459,8 +461,10 @@ class CylindricalGears(GearsTable):
     def toothings(self) -> tuple[Toothing, Toothing]:
         """Both gears as they are measured, without allowances."""
         common = self.module, self.pressure_angle, self.helix_angle
-        (first, second), (shift, other) = self.teeth, self.profile_shift
-        return Toothing(first, *common, shift), Toothing(second, *common, other)
+        (pinion_teeth, wheel_teeth), (pinion_shift, wheel_shift) = self.teeth, self.profile_shift
+        return Toothing(pinion_teeth, *common, pinion_shift), Toothing(
+            wheel_teeth, *common, wheel_shift
+        )
 
     @property
     def operating_distance(self) -> float:
@@ -476,20 +480,20 @@ class CylindricalGears(GearsTable):
         """
         if self.backlash is None:
             return 0.0, 0.0
-        (first, second), distance = self.toothings, self.operating_distance
-        if not distance > abs(first.base_radius + second.base_radius):
+        (pinion, wheel), distance = self.toothings, self.operating_distance
+        if not distance > abs(pinion.base_radius + wheel.base_radius):
             return 0.0, 0.0  # gears that do not mesh are refused as those without a backlash
-        allowance = allowance_for(first, second, distance, self.backlash)
+        allowance = allowance_for(pinion, wheel, distance, self.backlash)
         if allowance > _ROUNDED * self.module:
-            least = ceil(1e7 * backlash(first, second, distance).circumferential) * 1e-7
-            more = f"{DEVIATION.show(least)} or more, or " if least <= self.module / 2.0 else ""
+            least = ceil(1e7 * backlash(pinion, wheel, distance).circumferential) * 1e-7
+            advice = f"{DEVIATION.show(least)} or more, or " if least <= self.module / 2.0 else ""
             raise InputError(
                 f"was given {DEVIATION.show(self.backlash)}, and at the centre distance "
-                f"{DISTANCE.show(distance)} teeth that are not thinned have more; give {more}a centre "
-                f"distance nearer to {DISTANCE.show(distance_without_backlash(first, second))}",
+                f"{DISTANCE.show(distance)} teeth that are not thinned have more; give {advice}a centre "
+                f"distance nearer to {DISTANCE.show(distance_without_backlash(pinion, wheel))}",
                 key="backlash",
             )
-        return first.infeed(allowance), second.infeed(allowance)
+        return pinion.infeed(allowance), wheel.infeed(allowance)
 
     @model_validator(mode="after")
     def _one_thickness(self) -> "CylindricalGears":

@@ -44,11 +44,13 @@ def check_rack_and_pinion(mesh: RackAndPinion) -> list[str]:
 
     Source: geometry of ISO 21771:2007; tooth of the rack of ISO 53:1998.
     """
-    found = SimpleNamespace(**{key: float(v) for key, v in jax.device_get(_measures(mesh)).items()})
-    for bad, key, sentence in (*_teeth(found), *_meeting(found)):
+    measures = SimpleNamespace(
+        **{key: float(v) for key, v in jax.device_get(_measures(mesh)).items()}
+    )
+    for bad, key, sentence in (*_teeth(measures), *_meeting(measures)):
         if bad:
             raise InputError(sentence, key=key)
-    return [*_warnings(found)]
+    return [*_warnings(measures)]
 
 
 @program
@@ -157,19 +159,19 @@ def _meeting(at: SimpleNamespace) -> Iterator[Refusal]:
         f"the teeth reach too little into each other at the mounting distance {1e3 * at.distance:.6g} mm; "
         f"without backlash it is {1e3 * at.nearest:.6g} mm, r + x m",
     )
-    for number, first, second in ((1, "pinion", "rack"), (2, "rack", "pinion")):
+    for number, member, mate in ((1, "pinion", "rack"), (2, "rack", "pinion")):
         yield (
             getattr(at, f"clearance_{number}") < 0.0,
             "dedendum",
-            f"the tip of the {first} runs into the root of the {second}: the tip clearance is "
+            f"the tip of the {member} runs into the root of the {mate}: the tip clearance is "
             f"{getattr(at, f'clearance_{number}'):.4g} modules and must be positive",
         )
         missing = getattr(at, f"missing_{number}")
         yield (
             missing > _ROUNDED_FILLET,
             "addendum",
-            f"the tip of the {second} meets the fillet of the {first}, {missing:.3g} modules beyond its "
-            f"flank; a shorter addendum of the {second} or a larger dedendum of the {first} parts them",
+            f"the tip of the {mate} meets the fillet of the {member}, {missing:.3g} modules beyond its "
+            f"flank; a shorter addendum of the {mate} or a larger dedendum of the {member} parts them",
         )
     yield (
         not 1.0 <= at.contact_ratio < LARGEST_CONTACT_RATIO,

@@ -33,9 +33,9 @@ def _build(gears: RackAndPinionGears, slices: int) -> tuple[Mesh, tuple[str, ...
     if gears.profile_shift < float(limit):
         pinion = replace(mesh.pinion, undercut=True)
         mesh, _, ratio = _complete(replace(mesh, pinion=pinion))
-    told = check_rack_and_pinion(mesh)
+    warnings = check_rack_and_pinion(mesh)
     mesh = replace(mesh, lanes=lanes_for(float(ratio), helical=mesh.helical))
-    return _bored(mesh, gears.bore_diameter), tuple(told)
+    return _bored(mesh, gears.bore_diameter), tuple(warnings)
 
 
 def _mesh(gears: RackAndPinionGears, slices: int) -> RackAndPinion:
@@ -69,17 +69,17 @@ def _mesh(gears: RackAndPinionGears, slices: int) -> RackAndPinion:
 
 def _racks(gears: RackAndPinionGears) -> list[dict[str, jax.Array]]:
     """Addendum, dedendum and rounding of the rack that cuts the pinion, and of the rack itself."""
-    given = _depths(gears)
+    depths = _depths(gears)
     names = ("addendum", "dedendum", "fillet_radius")
     return [
-        dict(zip(names, map(array, each), strict=True))
-        for each in zip(gears.addendum, *given, strict=True)
+        dict(zip(names, map(array, sizes), strict=True))
+        for sizes in zip(gears.addendum, *depths, strict=True)
     ]
 
 
 def _depths(gears: RackAndPinionGears) -> tuple[tuple[float, float], tuple[float, float]]:
-    given = gears.addendum, gears.dedendum, gears.fillet_radius
-    return usual_depths(*given, gears.pressure_angle)
+    sizes = gears.addendum, gears.dedendum, gears.fillet_radius
+    return usual_depths(*sizes, gears.pressure_angle)
 
 
 @program
@@ -90,10 +90,10 @@ def _complete(
     pinion = mesh.pinion
     if pinion.undercut:
         pinion = replace(pinion, crossing=pinion.crossing_angle())
-    given = mesh.distance
-    distance = jnp.where(jnp.isnan(given), mesh.zero_backlash_distance, given)
-    whole = replace(mesh, pinion=pinion, distance=distance)
-    return whole, pinion.undercut_limit, whole.contact_ratio
+    set_distance = mesh.distance
+    distance = jnp.where(jnp.isnan(set_distance), mesh.zero_backlash_distance, set_distance)
+    completed_mesh = replace(mesh, pinion=pinion, distance=distance)
+    return completed_mesh, pinion.undercut_limit, completed_mesh.contact_ratio
 
 
 def _bored(mesh: RackAndPinion, bore: float | None) -> RackAndPinion:
@@ -124,12 +124,12 @@ def _bodies(
     outer = gears.teeth * gears.module / (2.0 * cos(gears.helix_angle))
     root = outer - gears.module * (float(pinion.dedendum) - gears.profile_shift)
     inner = root / float(mesh.rim_ratio)
-    made = disc(density=densities[0], width=gears.face_width, outer=outer, inner=inner)
-    told = (
+    pinion_disc = disc(density=densities[0], width=gears.face_width, outer=outer, inner=inner)
+    assumption = (
         "The pinion is a disc from its bore to its reference circle; the mass of the rack and of all that "
         "moves with it is gears.mass."
     )
-    return [made, (moved, nan)], told
+    return [pinion_disc, (moved, nan)], assumption
 
 
 FAMILY = Family(

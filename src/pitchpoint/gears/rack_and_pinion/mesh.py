@@ -165,8 +165,8 @@ class RackAndPinion(InvoluteMesh):
 
     def events(self) -> Float[Array, " event"]:
         """Phases of entry, exit and pitch point; of helical teeth also where lines grow and shrink."""
-        found = self.line.bounds(helical=self.helical)
-        return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
+        bounds = self.line.bounds(helical=self.helical)
+        return jnp.sort(jnp.mod(jnp.stack(bounds), 1.0))
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
@@ -223,11 +223,11 @@ class RackAndPinion(InvoluteMesh):
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """The line of action stands still; the pinion turns on against it, the rack travels past it."""
         teeth = jnp.stack([self.pinion.teeth] * 2)
-        first, second = spots_on_turning(contacts, phase, teeth, [-self._side] * 2)
+        pinion_spot, rack_spot = spots_on_turning(contacts, phase, teeth, [-self._side] * 2)
         # A rack has no end here, and no angle: whatever repeats on it counts in turns of the pinion.
         number = since_entry(jnp.zeros_like(phase), self.lanes)
-        passed = jnp.broadcast_to(self._side * (number - jnp.floor(phase)), second.tooth.shape)
-        return first, dataclasses.replace(second, tooth=passed.astype(int))
+        passed = jnp.broadcast_to(self._side * (number - jnp.floor(phase)), rack_spot.tooth.shape)
+        return pinion_spot, dataclasses.replace(rack_spot, tooth=passed.astype(int))
 
     def _layers(self, line: LineOfAction) -> dict[str, Float[Array, "..."]]:
         """The transverse section at the middle of the face, the rack above the pinion."""
@@ -307,8 +307,8 @@ def _drawing(mesh: RackAndPinion) -> dict[str, Float[Array, "..."]]:
         "form_radius": hypot(pinion.base_radius, pinion.form_roll_length),
         "active_root_radius": hypot(pinion.base_radius, line.limits[0]),
     }
-    own = {"tip_thickness": pinion.tip_thickness, "undercut_limit": pinion.undercut_limit}
-    alone = {"teeth": pinion.teeth, **radii, **own}
+    tooth_values = {"tip_thickness": pinion.tip_thickness, "undercut_limit": pinion.undercut_limit}
+    alone = {"teeth": pinion.teeth, **radii, **tooth_values}
     none = jnp.asarray(jnp.nan)
     named = main_dimensions(mesh)
     return {

@@ -109,8 +109,8 @@ class Rack(eqx.Module):
             jnp.concatenate([root, fillet, flank, top], axis=1)
             / jnp.stack([slope, jnp.ones(())])[:, None]
         )
-        other = side * jnp.array([[-1.0], [1.0]])
-        return jnp.concatenate([other, jnp.flip(side, axis=1)], axis=1).T
+        mirrored = side * jnp.array([[-1.0], [1.0]])
+        return jnp.concatenate([mirrored, jnp.flip(side, axis=1)], axis=1).T
 
     def _fillet(self, unit: Float[Array, "*p"]) -> Float[Array, "2 *p"]:
         """Half thickness and height of the fillet's arc, from the root at 0 to the flank at 1 [m]."""

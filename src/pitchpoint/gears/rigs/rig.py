@@ -79,7 +79,7 @@ class Rig(Mesh):
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Both bodies turn on under the contact."""
         lanes = contacts.path.shape
-        first, second = (
+        body_spot, mate_spot = (
             Spot(
                 flank=flank,
                 across=contacts.width,
@@ -89,7 +89,7 @@ class Rig(Mesh):
             )
             for flank, rate in zip(contacts.flank, self.rates[:2], strict=True)
         )
-        return first, second
+        return body_spot, mate_spot
 
     def _contacts(
         self,

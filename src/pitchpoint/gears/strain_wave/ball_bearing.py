@@ -56,10 +56,11 @@ class Balls:
         Args:
             pitch_diameter: of the flexspline [m].
         """
-        given = (self.number, self.diameter, self.race_thickness)
+        chosen_sizes = (self.number, self.diameter, self.race_thickness)
         usual = PROPORTIONS.bearing(pitch_diameter).items()
         return {
-            key: part if own is None else own for (key, part), own in zip(usual, given, strict=True)
+            key: part if chosen is None else chosen
+            for (key, part), chosen in zip(usual, chosen_sizes, strict=True)
         }
 
 
@@ -197,14 +198,14 @@ def on_balls(
     balls, free = modes.balls @ modes.balls.T, modes.lanes.shape[2:]
     across = jnp.einsum("im...,jm->ij...", modes.lanes, modes.balls)
     approach, nominal = (_seated(bearing, balls, line, x) for x in (bearing.play, jnp.zeros(())))
-    more = ball_force(bearing.stiffness, approach) - ball_force(bearing.stiffness, nominal)
+    extra_force = ball_force(bearing.stiffness, approach) - ball_force(bearing.stiffness, nominal)
     return OnBalls(
         lanes=jnp.einsum("im...,jm...->ij...", modes.lanes, modes.lanes),
         across=across,
         balls=balls,
         stiffness=bearing.stiffness,
         approach=approach,
-        shift=jnp.einsum("ij...,j->i...", across, more),
+        shift=jnp.einsum("ij...,j->i...", across, extra_force),
         start=jnp.broadcast_to(over_batch(approach, len(free)), (*approach.shape, *free)),
     )
 
@@ -240,8 +241,8 @@ def parts_on_balls(
     modes = _modes(bearing, ring, solid, loads)
     coupled = modes.balls @ modes.balls.T
     before = ball_force(bearing.stiffness, _seated(bearing, coupled, line, bearing.play))
-    more = ball_force(bearing.stiffness, balls) - over_batch(before, balls.ndim - 1)
-    of_balls = jnp.einsum("im,i...->m...", modes.balls, more)
+    extra_force = ball_force(bearing.stiffness, balls) - over_batch(before, balls.ndim - 1)
+    of_balls = jnp.einsum("im,i...->m...", modes.balls, extra_force)
     flat = force.reshape(-1, *force.shape[2:])
     amplitude = jnp.einsum("im...,i...->m...", modes.lanes, flat) + of_balls
     wall, rim = of_modes(amplitude)

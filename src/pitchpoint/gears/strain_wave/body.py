@@ -96,16 +96,16 @@ class StrainWaveBody(GearBody):
             parts = ring_parts(self.rim, solids[0], loads, force)
         else:
             parts = parts_on_balls(bearing, self.rim, self.line, solids[0], loads, force, balls)
-        found = {
+        by_part = {
             "rim of the flexspline": parts.rim,
             "wall of the cup": parts.wall,
             "bearing of the wave generator": parts.support,
         }
         if outer is None:
-            return found
+            return by_part
         around = self._on_circular_spline(contacts, outer)
         wall, rim, _ = ring_parts(outer, solids[1], around, force)
-        return found | {InSeries.parts[3]: wall + rim}
+        return by_part | {InSeries.parts[3]: wall + rim}
 
     def inner_load(self, contacts: Contacts) -> Float[Array, "2 pair slice *b"]:
         """Radial load on the wave generator's bearing: teeth press the ring onto it in both zones.

@@ -82,5 +82,5 @@ def _reach(
         return _ROUGH * (upright * (play(reach) - least) / grown - 1.0)
 
     most = jnp.stack([jnp.minimum(widest, end) for end in (along, flank.length - along)])
-    found, _ = root(missing, most / 4.0, jax.lax.stop_gradient(most))
-    return jnp.clip(found, 0.0, most)
+    reaches, _ = root(missing, most / 4.0, jax.lax.stop_gradient(most))
+    return jnp.clip(reaches, 0.0, most)

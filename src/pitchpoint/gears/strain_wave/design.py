@@ -177,20 +177,20 @@ def build_strain_waves(**values: Any) -> Designs[StrainWave]:
         >>> designs.sentence(2)[:48]
         'deflection: the wave generator deflects the flex'
     """
-    given = signature(build_strain_wave).bind(**values)
-    given.apply_defaults()
-    found: dict[int, _Built] = {}
+    bound = signature(build_strain_wave).bind(**values)
+    bound.apply_defaults()
+    built: dict[int, _Built] = {}
     refused: dict[int, InputError] = {}
-    rows = _listed(given.arguments)
+    rows = _listed(bound.arguments)
     for number, row in enumerate(rows):
         try:
-            found[number] = _built(_planned(**row), _TOGETHER)
+            built[number] = _built(_planned(**row), _TOGETHER)
         except InputError as error:
             refused[number] = error
-    kinds = groupby(sorted(found, key=lambda number: found[number].kind), lambda n: found[n].kind)
-    groups = tuple(_group(found, list(numbers)) for _, numbers in kinds)
-    residual = [found[n].overlap if n in found else inf for n in range(len(rows))]
-    code = [Code.SOLVED if n in found else Code.NO_DESIGN for n in range(len(rows))]
+    kinds = groupby(sorted(built, key=lambda number: built[number].kind), lambda n: built[n].kind)
+    groups = tuple(_group(built, list(numbers)) for _, numbers in kinds)
+    residual = [built[n].overlap if n in built else inf for n in range(len(rows))]
+    code = [Code.SOLVED if n in built else Code.NO_DESIGN for n in range(len(rows))]
     status = Status(array(code, int), array(residual), array(NEWTON_STEPS))
     return Designs(groups, status, check_strain_wave, refused)
 
@@ -241,8 +241,8 @@ class _Plan:
     @property
     def tips(self) -> Tips:
         """How tips are made."""
-        found: Tips = self.parts["tips"]
-        return found
+        tips: Tips = self.parts["tips"]
+        return tips
 
     @property
     def edge(self) -> float:
@@ -333,10 +333,10 @@ def _surveyed(
     Edges count there on given flanks, since they may not reach into each other either; swept ones let
     them through.
     """
-    given = travel, groove, backlash, module, tooth_angle
-    found = survey(*given, edges_carry)
+    drive_values = travel, groove, backlash, module, tooth_angle
+    surveyed = survey(*drive_values, edges_carry)
     plain = edges_carry or conjugate
-    return found, _touching(found if plain else survey(*given, True), module)
+    return surveyed, _touching(surveyed if plain else survey(*drive_values, True), module)
 
 
 @dataclass(frozen=True)
@@ -430,7 +430,9 @@ def _planned(
         "odd": z1 % 2 == 1,
     }
     lag = array(1.0 - z1 / z2)
-    travel, cutter = (ToothMotion(_prepared(one), line, lag) for one in (flank, flank.unrelieved))
+    travel, cutter = (
+        ToothMotion(_prepared(tooth_flank), line, lag) for tooth_flank in (flank, flank.unrelieved)
+    )
     low = neutral + w0 + rim / 2.0 + clearance * module
     if groove is None:
         low = max(low, float(_tip_height(cutter, array(disengagement))))
@@ -457,27 +459,27 @@ def _built(plan: _Plan, programs: _Programs) -> _Built:
     _check_play(plan, land)
     numbers = map(array, (plan.backlash, plan.module, 2.0 * pi / plan.splines[0]))
     edges: bool = plan.parts["edges_carry"]
-    found, touching = programs.survey(plan.travel, groove, *numbers, edges, plan.mate is None)
+    surveyed, touching = programs.survey(plan.travel, groove, *numbers, edges, plan.mate is None)
     at = _plain(touching)
     for broken, refuse in _faults(at, plan.module, plan.backlash, conjugate=plan.mate is None):
         if broken:
             refuse()
-    parts = plan.parts | {"groove": groove, "tip_height": array(low), "surveyed": found}
+    parts = plan.parts | {"groove": groove, "tip_height": array(low), "surveyed": surveyed}
     overlap = max(-float(at.least), 0.0) / plan.module
-    return _Built(parts, _held(plan.splines[0], found, plan.module), overlap)
+    return _Built(parts, _held(plan.splines[0], surveyed, plan.module), overlap)
 
 
 def _plain(at: _Contact) -> _Contact:
     """The same as plain numbers."""
-    found = jax.device_get(at)
-    return _Contact(float(found.least), float(found.angle), bool(found.rolls))
+    contact = jax.device_get(at)
+    return _Contact(float(contact.least), float(contact.angle), bool(contact.rolls))
 
 
 def _group(found: dict[int, _Built], numbers: list[int]) -> Group[StrainWave]:
     """Drives of one structure, with places for the pairs of the widest zone."""
     lanes = lanes_for(max(found[number].held for number in numbers))
-    each = [found[number](lanes) for number in numbers]
-    return Group(jax.tree.map(lambda *leaves: np.stack(leaves), *each), np.array(numbers))
+    drives = [found[number](lanes) for number in numbers]
+    return Group(jax.tree.map(lambda *leaves: np.stack(leaves), *drives), np.array(numbers))
 
 
 def _listed(given: dict[str, Any]) -> list[dict[str, Any]]:
@@ -509,31 +511,31 @@ def _one_of(value: Any) -> Any:
 
 def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
     """Sentences on what is unusual about a drive that can run."""
-    told = []
+    sentences = []
     intended, widest, land = map(float, jax.device_get(_extent(mesh)))
     cut = (float(mesh.tip_height) - intended) / float(mesh.module)
     if mesh.conjugate and cut > 0.6 and land < 1.1 * LEAST_LAND * float(mesh.module):
-        told.append(
+        sentences.append(
             f"The tips of the circular spline are cut back to {cut:.2g} modules above the flexspline's root "
             "on the long axis: the flexspline's tips pass there and would leave less than "
             f"{LEAST_LAND:g} modules of tip land."
         )
     overlap = -float(np.nanmin(np.asarray(mesh.surveyed.clearance)))
     if overlap > INTERFERENCE * float(mesh.module):
-        told.append(
+        sentences.append(
             f"Flexspline and circular spline overlap by {1e6 * overlap:.2g} um where the swept flank is "
             "known no better; the clearance there counts as zero."
         )
     if lost := int(mesh.groove.unsolved):
-        told.append(
+        sentences.append(
             f"The circular spline's flank could not be found at {lost} of {NODES} heights: curvature, "
             "pressure and film there say nothing."
         )
     if widest > 0.1 * float(mesh.line.radius):
-        told.append(
+        sentences.append(
             "The deflection is above a tenth of the radius; the ring theory here is linear."
         )
-    return tuple(told)
+    return tuple(sentences)
 
 
 def check_rim(mesh: StrainWave, young: float, tensile: float | None = None) -> tuple[str, ...]:
@@ -556,13 +558,15 @@ def check_rim(mesh: StrainWave, young: float, tensile: float | None = None) -> t
         rim_by_strain(mesh.pitch_diameter, float(line.deflection), plastic=soft)
         for soft in (plastic, False)
     )
-    told = []
+    sentences = []
     as_of_steel = plastic and isclose(thickness, of_steel)  # what a table that leaves it open has
     if as_of_steel or not 1.0 / FAR_FROM_USUAL < thickness / usual < FAR_FROM_USUAL:
-        told.append(_unusual_rim(thickness, usual, plastic))
+        sentences.append(_unusual_rim(thickness, usual, plastic))
     if per_thickness * thickness > (borne := _borne(young, tensile)[0]):
-        told.append(_strained_rim(per_thickness * thickness, borne / per_thickness, young, tensile))
-    return tuple(told)
+        sentences.append(
+            _strained_rim(per_thickness * thickness, borne / per_thickness, young, tensile)
+        )
+    return tuple(sentences)
 
 
 def _unusual_rim(thickness: float, usual: float, plastic: bool) -> Doubt:
@@ -593,15 +597,15 @@ def _borne(young: float, tensile: float | None) -> tuple[float, str]:
 def _strained_rim(strain: float, within: float, young: float, tensile: float | None) -> Doubt:
     """Sentence on a rim whose wave strains it further than its material bears."""
     borne, words = _borne(young, tensile)
-    told = (
+    sentence = (
         f"he wave strains the rim of the flexspline by {in_percent(strain)}, in Hooke's law "
         f"{strain * young / 1e6:.3g} MPa; {words.format(100.0 * borne)}: {1e3 * within:.3g} mm of rim have "
         "that."
     )
     brief = f"he rim is strained by {in_percent(strain)}, {in_percent(borne)} is borne."
     if tensile is not None and strain * young > tensile:
-        return fails(f"t{told}", f"t{brief}")
-    return Doubt(f"T{told}", brief=f"T{brief}")
+        return fails(f"t{sentence}", f"t{brief}")
+    return Doubt(f"T{sentence}", brief=f"T{brief}")
 
 
 @program
@@ -636,8 +640,8 @@ def double_arc_flank(
     Raises:
         InputError: arcs without a common tangent, or in the wrong order.
     """
-    made = (array(v * module) for v in (tip_rounding, tip_relief, relief_length, 0.0, RIDGE))
-    return _double_arc(form, module, rim_thickness, Tips(*made))
+    tip_sizes = (array(v * module) for v in (tip_rounding, tip_relief, relief_length, 0.0, RIDGE))
+    return _double_arc(form, module, rim_thickness, Tips(*tip_sizes))
 
 
 def _double_arc(
@@ -652,25 +656,25 @@ def _double_arc(
         relief_length=tips.relief_length,
         **values,
     )
-    found = jax.device_get(_arcs(flank))
-    if not np.isfinite(found["tangent"]):
-        apart, radii = found["apart"] / module, form.convex_radius + form.concave_radius
+    arcs = jax.device_get(_arcs(flank))
+    if not np.isfinite(arcs["tangent"]):
+        apart, radii = arcs["apart"] / module, form.convex_radius + form.concave_radius
         raise InputError(
             "the arcs of the double-arc tooth have no common tangent: their centres are "
             f"{apart:.4g} modules apart, less than the sum of their radii, {radii:.4g}",
             key="form",
         )
     names = ("concave arc", "tangent", "convex arc", "relief", "rounding of the tip")
-    convex, _, rounded = (float(length) / module for length in found["lengths"][2:])
+    convex, _, rounded = (float(length) / module for length in arcs["lengths"][2:])
     _check_relief(convex, rounded, tips, module)
-    for name, length in zip(names, found["lengths"], strict=True):
+    for name, length in zip(names, arcs["lengths"], strict=True):
         if not (length > 0.0 or (name == "relief" and length == 0.0)):
             raise InputError(
                 f"the double-arc tooth leaves no room for its {name}; between root and tip concave arc, "
                 "tangent, convex arc and rounding must follow each other",
                 key="form",
             )
-    _check_land(float(found["land"]), module, tips)
+    _check_land(float(arcs["land"]), module, tips)
     return flank
 
 
@@ -728,7 +732,7 @@ def _flank(
 def _involute(
     form: InvoluteForm, teeth: int, module: float, rim: float, tips: Tips | None
 ) -> InvoluteFlank:
-    made = (tips.rounding, tips.relief, tips.relief_length) if tips else (0.0, 0.0, 0.0)
+    tip_sizes = (tips.rounding, tips.relief, tips.relief_length) if tips else (0.0, 0.0, 0.0)
     root = module * (teeth / 2.0 + form.profile_shift - form.dedendum)
     return InvoluteFlank(
         *map(
@@ -741,7 +745,7 @@ def _involute(
                 form.addendum,
                 form.dedendum,
                 root - rim / 2.0,
-                *made,
+                *tip_sizes,
             ),
         )
     )

@@ -157,15 +157,17 @@ def fit_double_arc(
     tried: list[float] = []
 
     def objective(columns: np.ndarray) -> np.ndarray:
-        found = [seat.merit(*_tooth(start, one)).objective for one in np.atleast_2d(columns.T)]
-        tried.extend(found)
-        return np.array(found)
+        objectives = [
+            seat.merit(*_tooth(start, column)).objective for column in np.atleast_2d(columns.T)
+        ]
+        tried.extend(objectives)
+        return np.array(objectives)
 
     def told(best: object, convergence: float = 0.0) -> None:
         if progress is not None:
             progress(len(tried), min(tried))
 
-    found = differential_evolution(
+    evolution = differential_evolution(
         objective,
         bounds,
         x0=middle,
@@ -177,15 +179,15 @@ def fit_double_arc(
         updating="deferred",
         callback=told,
     )
-    ranked = found.population[np.argsort(found.population_energies, kind="stable")]
-    form, deflection = _first_drive(seat, [_tooth(start, one) for one in ranked])
+    ranked = evolution.population[np.argsort(evolution.population_energies, kind="stable")]
+    form, deflection = _first_drive(seat, [_tooth(start, candidate) for candidate in ranked])
     return DoubleArcFit(
         form=form,
         deflection=deflection,
         merit=seat.merit(form, deflection),
         start=seat.merit(*_tooth(start, middle)),
         evaluations=len(tried),
-        message=str(found.message),
+        message=str(evolution.message),
     )
 
 
@@ -217,12 +219,12 @@ class _Seat:
         """What a tooth is worth here."""
         values = [*(getattr(form, name) for name in SEARCHED), deflection]
         fixed = [form.addendum, form.dedendum, self.rim, self.zone, self.clearance]
-        found = _objectives(
+        figures = _objectives(
             jnp.asarray(values),
             teeth=jnp.asarray(self.teeth, dtype=float),
             fixed=jnp.asarray([*fixed, self.tip_rounding]),
         )
-        return Merit(*map(float, found))
+        return Merit(*map(float, figures))
 
     def build(self, form: DoubleArcForm, deflection: float) -> StrainWave:
         """Drive with that tooth; of what size does not matter.
@@ -326,15 +328,15 @@ def _objectives(
 
     none = jnp.zeros(())
     barred = _told(none, none, none, allowed=jnp.zeros((), bool))
-    found: Four = jax.lax.cond(free & _in_order(flank), worth, lambda: barred)
-    return found
+    scored: Four = jax.lax.cond(free & _in_order(flank), worth, lambda: barred)
+    return scored
 
 
 def _told(flank_share: Array, touching_share: Array, spread: Array, *, allowed: Array) -> Four:
     """The figures with the objective; without them where the tooth is not allowed."""
     objective = _SPREAD_WEIGHT * spread - flank_share - touching_share
     flank_share, touching_share, spread = (
-        jnp.where(allowed, one, 0.0) for one in (flank_share, touching_share, spread)
+        jnp.where(allowed, figure, 0.0) for figure in (flank_share, touching_share, spread)
     )
     return flank_share, touching_share, spread, jnp.where(allowed, objective, _BARRED)
 
@@ -343,12 +345,12 @@ def _figures(motion: ToothMotion, groove: Groove, zone: Array) -> Four:
     """Shares of flank and zone that touch, largest and least clearance of teeth that reach in."""
     length = motion.flank.length
     angle = jnp.linspace(0.0, 1.0, _STEPS) * zone
-    found = nearest_points(motion, groove, angle)
+    nearest = nearest_points(motion, groove, angle)
     reaches = jnp.real(motion.place(length, angle)) > groove.low
-    gap = jnp.where(reaches, found.clearance, 0.0)
-    rolls = (found.at.curvature + found.mate > 0.0) & ~found.held
+    gap = jnp.where(reaches, nearest.clearance, 0.0)
+    rolls = (nearest.at.curvature + nearest.mate > 0.0) & ~nearest.held
     touches = reaches & (gap < TOUCHING) & rolls
-    bins = jnp.floor(found.along / length * _BINS).astype(int)
+    bins = jnp.floor(nearest.along / length * _BINS).astype(int)
     used = jnp.zeros(_BINS).at[bins].max(touches * 1.0)
     return jnp.mean(used), jnp.mean(touches * 1.0), jnp.max(gap), jnp.min(gap)
 

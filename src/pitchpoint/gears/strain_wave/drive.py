@@ -190,9 +190,9 @@ class StrainWave(Mesh):
         if self.conjugate:
             groove = swept(self.cutter_motion, self.tip_height, self.tips)
             drive = dataclasses.replace(self, groove=groove)
-        given = drive.backlash, drive.module, drive.tooth_angle, drive.edges_carry
-        found = survey(drive.tooth_motion, drive.groove, *given)
-        return dataclasses.replace(drive, surveyed=found)
+        drive_values = drive.backlash, drive.module, drive.tooth_angle, drive.edges_carry
+        surveyed = survey(drive.tooth_motion, drive.groove, *drive_values)
+        return dataclasses.replace(drive, surveyed=surveyed)
 
     @property
     def pairs(self) -> Float[Array, ""]:
@@ -285,7 +285,7 @@ class StrainWave(Mesh):
     def angles(self, phase: Float[Array, "*b"]) -> Lanes:
         """Angle of each tooth from the end of the long axis that is nearest [rad]."""
         phase = jnp.asarray(phase)
-        zone, number = (_as_lanes(each, phase) for each in (self._zone, self._number))
+        zone, number = (_as_lanes(by_lane, phase) for by_lane in (self._zone, self._number))
         moved = jnp.mod(phase + zone * self.teeth[0] / 2.0, 1.0)
         return (self._start + number + moved) * self.tooth_angle
 
@@ -309,45 +309,45 @@ class StrainWave(Mesh):
 
     def raw_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts with the arms of rigid teeth: before the elastic part is taken out of the normal arms."""
-        given = self.angles(phase)
+        tooth_angles = self.angles(phase)
         holds = _as_lanes(self._number, jnp.asarray(phase)) < self.held
-        active = self.overlaps(given) & holds
-        angle = jnp.where(active, given, 0.0)
+        active = self.overlaps(tooth_angles) & holds
+        angle = jnp.where(active, tooth_angles, 0.0)
         motion = self.tooth_motion
         second = _as_lanes(self._second, jnp.asarray(phase))
-        found = nearest_points(
+        touching = nearest_points(
             motion, self.groove, angle, second=second, edges_carry=self.edges_carry
         )
-        active &= found.share > 0.0
-        at, none = found.at, jnp.zeros_like(angle)
+        active &= touching.share > 0.0
+        at, none = touching.at, jnp.zeros_like(angle)
         # Flanks that overlap do so by the error of the groove's table. The play comes on top of
         # that: cut off together, its derivative would be the sign of rounding where flanks touch.
         play = self.backlash / 2.0 * jnp.cos(at.direction)
-        sum_curvature = jnp.maximum(at.curvature + found.mate, 1.0 / largest_radius(self))
-        roll = (at.turning - found.mate * at.sliding) / sum_curvature
-        roll = jnp.where(found.held, 0.0, roll)
+        sum_curvature = jnp.maximum(at.curvature + touching.mate, 1.0 / largest_radius(self))
+        roll = (at.turning - touching.mate * at.sliding) / sum_curvature
+        roll = jnp.where(touching.held, 0.0, roll)
         velocity = jnp.stack([-at.shift, at.shift + at.whole, -at.whole])
         local = unit(-at.direction) * velocity
-        first = jnp.stack([roll, -roll, none])
+        flank_speed = jnp.stack([roll, -roll, none])
         mate = sum_curvature - at.curvature
         flat = self.module, largest_radius(self)
         # The space that a tooth meets lies at its angle around the circular spline.
         zone = _as_lanes(self._zone, jnp.asarray(phase))
-        turned = unit(given * self.teeth[0] / self.teeth[1] + jnp.pi * zone)
+        turned = unit(tooth_angles * self.teeth[0] / self.teeth[1] + jnp.pi * zone)
         return Contacts(
             active=active,
-            path=given / (2.0 * jnp.pi),
+            path=tooth_angles / (2.0 * jnp.pi),
             width=none,
-            weight=self.face_width * jnp.where(active, found.share, 1.0),
+            weight=self.face_width * jnp.where(active, touching.share, 1.0),
             curvature=jnp.stack([jnp.stack([at.curvature, none]), jnp.stack([mate, none])]),
-            surface=jnp.stack([first, first - jnp.real(local)]),
+            surface=jnp.stack([flank_speed, flank_speed - jnp.real(local)]),
             normal=jnp.imag(local),
-            gap=jnp.maximum(found.clearance, 0.0) + play,
-            flank=jnp.stack([found.along, self.groove.depth(jnp.real(at.place))]),
+            gap=jnp.maximum(touching.clearance, 0.0) + play,
+            flank=jnp.stack([touching.along, self.groove.depth(jnp.real(at.place))]),
             point=_vector(turned * at.place),
             direction=_vector(1j * turned * unit(at.direction)),
             tangent=_vector(turned * unit(at.direction)),
-            felt=curvature_in_contact(motion, self.groove, found.along, angle, *flat),
+            felt=curvature_in_contact(motion, self.groove, touching.along, angle, *flat),
             shape="line",
         )
 
@@ -366,8 +366,8 @@ class StrainWave(Mesh):
     @property
     def other_flanks(self) -> Self:
         """The same drive but for what the flanks that carry alone have."""
-        first, second = (other_side(own) for own in self.surfaces)
-        return dataclasses.replace(self, surfaces=(first, second))
+        of_flexspline, of_spline = (other_side(of_member) for of_member in self.surfaces)
+        return dataclasses.replace(self, surfaces=(of_flexspline, of_spline))
 
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the teeth, which stand as they are while they touch.
@@ -378,7 +378,7 @@ class StrainWave(Mesh):
         around = places(contacts, phase, self.teeth)
         across = jnp.where(contacts.active, jnp.abs(self.body.ring_loads(contacts).tangential), 0.0)
         leaning = across / jnp.max(across)
-        first, second = (
+        flexspline_spot, spline_spot = (
             Spot(
                 flank=contacts.flank[member],
                 across=contacts.width,
@@ -388,7 +388,7 @@ class StrainWave(Mesh):
             )
             for member, z in enumerate(self.teeth)
         )
-        return first, second
+        return flexspline_spot, spline_spot
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -415,8 +415,8 @@ class StrainWave(Mesh):
         ends = jnp.stack([1e-6, 1.0]) * jnp.sqrt(deepest)
         depth, rate = _stations(ends)
         heights = groove.made
-        known = groove.depth(heights)
-        radius = jnp.interp(depth, known[::-1], heights[::-1])
+        depths = groove.depth(heights)
+        radius = jnp.interp(depth, depths[::-1], heights[::-1])
         width, slope = groove.width_and_slope(radius)
         half = jnp.pi / self.teeth[1] * radius - width - self.backlash / 2.0
         return _section(
@@ -465,20 +465,20 @@ def survey(
         edges_carry: True if the rounding of the flexspline's tips may carry, static.
     """
     angle = jnp.asarray(_ALONG)
-    found = nearest_points(motion, groove, angle, backlash, edges_carry=edges_carry)
+    touching = nearest_points(motion, groove, angle, backlash, edges_carry=edges_carry)
     overlaps = _overlaps(motion, groove, angle, edges_carry)
-    upright = jnp.abs(jnp.imag(unit(-found.at.direction) * found.at.whole))
-    part = upright / jnp.abs(found.at.whole)
+    upright = jnp.abs(jnp.imag(unit(-touching.at.direction) * touching.at.whole))
+    part = upright / jnp.abs(touching.at.whole)
     reaches = overlaps & (part > 0.0)
-    play = jnp.min(jnp.where(reaches, found.clearance / jnp.where(reaches, part, 1.0), jnp.inf))
-    left = jnp.where(reaches, found.clearance - part * play, jnp.inf)
+    play = jnp.min(jnp.where(reaches, touching.clearance / jnp.where(reaches, part, 1.0), jnp.inf))
+    left = jnp.where(reaches, touching.clearance - part * play, jnp.inf)
     return Survey(
         angle=angle,
-        clearance=jnp.where(overlaps, found.clearance, jnp.nan),
+        clearance=jnp.where(overlaps, touching.clearance, jnp.nan),
         left=left,
-        rolls=~found.held & (found.at.curvature + found.mate > 0.0),
+        rolls=~touching.held & (touching.at.curvature + touching.mate > 0.0),
         pairs=2.0 * jnp.trapezoid((left < _LIGHT * module) * 1.0, angle) / tooth_angle,
-        reversal=_reversal(angle, found.at.sliding, overlaps),
+        reversal=_reversal(angle, touching.at.sliding, overlaps),
     )
 
 
@@ -540,7 +540,7 @@ def nearest_points(
     flank, angle = motion.flank, jnp.asarray(angle)
     stations = flank.stations(TRIES[0], TRIES[1] * edges_carry)
     nearest, share = _valley(motion, groove, angle, stations, second)
-    last, end = stations.shape[0] - 1, jax.lax.stop_gradient(stations[-1])
+    last_station, end = stations.shape[0] - 1, jax.lax.stop_gradient(stations[-1])
     # The bounds move with the flank, and so does a point that is held at one.
     foot, axis = motion.foot(angle)
     turned = unit(axis)
@@ -548,7 +548,7 @@ def nearest_points(
     # What lies below the tip of the mate meets nothing.
     below, above = (jnp.real(foot + turned * flank.place(along)) for along in (before, after))
     out = (groove.low - below) / jnp.where(above > below, above - below, jnp.inf)
-    first = before + jnp.clip(out, 0.0, 1.0) * (after - before)
+    begin = before + jnp.clip(out, 0.0, 1.0) * (after - before)
 
     def slope_at(along: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """Growth of the play along the flank."""
@@ -557,12 +557,12 @@ def nearest_points(
         return slope * jnp.cos(direction) - jnp.sin(direction)
 
     # Where the play grows from the station before, a ridge lies on the way, and the valley beyond the next.
-    ridge = (slope_at(first) > 0.0) & (out <= 0.0) & (nearest > 0) & (nearest < last)
-    first = jnp.where(ridge, after, first)
-    most = stations[jnp.minimum(nearest + 1, last)] - first
+    ridge = (slope_at(begin) > 0.0) & (out <= 0.0) & (nearest > 0) & (nearest < last_station)
+    begin = jnp.where(ridge, after, begin)
+    most = stations[jnp.minimum(nearest + 1, last_station)] - begin
 
     def growth(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
-        return slope_at(first + beyond)
+        return slope_at(begin + beyond)
 
     # At an end of the flank the play may still fall: then the end is nearest. Where the tip of the mate is
     # nearest it grows from there on, and teeth apart have no nearest point: none waits for those.
@@ -570,23 +570,23 @@ def nearest_points(
     apart = ~_overlaps(motion, groove, angle, edges_carry)
     ends = jnp.where((nearest == 0) | grows, 0.0, most)
     inwards = jnp.where(nearest == 0, -1.0, 1.0) * growth(ends)
-    bounded = (((nearest == 0) | (nearest == last)) & (inwards < 0.0)) | grows | apart
+    bounded = (((nearest == 0) | (nearest == last_station)) & (inwards < 0.0)) | grows | apart
 
     def widening(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
         return jnp.where(bounded, (beyond - ends) / most, growth(beyond))
 
     guess = jnp.where(bounded, ends, most / 2.0)
     beyond, _ = root(widening, guess, jax.lax.stop_gradient(most) * (1.0 + _SLACK))
-    found = first + jnp.clip(beyond, 0.0, most)
-    at = motion.at(found, angle)
+    nearest_along = begin + jnp.clip(beyond, 0.0, most)
+    at = motion.at(nearest_along, angle)
     width, _ = groove.width_and_slope(jnp.real(at.place))
     play = width + backlash / 2.0 - jnp.imag(at.place)
     return Touching(
-        along=found,
+        along=nearest_along,
         at=at,
         clearance=play * jnp.cos(at.direction),
         mate=groove.curvature_at(jnp.real(at.place)),
-        held=(found <= 0.0) | (found >= end * (1.0 - 1e-12)),
+        held=(nearest_along <= 0.0) | (nearest_along >= end * (1.0 - 1e-12)),
         share=share,
     )
 
@@ -611,11 +611,11 @@ def _valley(
     beside = jnp.pad(play, ((1, 1), *((0, 0) for _ in where.shape)), constant_values=jnp.inf)
     low = jnp.isfinite(play) & (play < beside[:-2]) & (play <= beside[2:])
     number = jnp.arange(along.shape[0]).reshape(-1, *(1 for _ in where.shape))
-    first = jnp.argmin(jnp.where(low, play, jnp.inf), axis=0)
-    others = low & (number != first)
-    other = jnp.argmin(jnp.where(others, play, jnp.inf), axis=0)
+    lowest = jnp.argmin(jnp.where(low, play, jnp.inf), axis=0)
+    others = low & (number != lowest)
+    second_lowest = jnp.argmin(jnp.where(others, play, jnp.inf), axis=0)
     two = jnp.any(others, axis=0)
-    ends = jnp.minimum(first, other), jnp.maximum(first, other)
+    ends = jnp.minimum(lowest, second_lowest), jnp.maximum(lowest, second_lowest)
     between = (number >= ends[0]) & (number <= ends[1])
     ridge = jnp.argmax(jnp.where(between, play, -jnp.inf), axis=0)
 
@@ -624,11 +624,11 @@ def _valley(
         return groove.width_and_slope(jnp.real(place))[0] - jnp.imag(place)
 
     top = play_at(ridge)
-    rises = [jnp.where(two, top - play_at(station), 1.0) for station in (first, other)]
+    rises = [jnp.where(two, top - play_at(station), 1.0) for station in (lowest, second_lowest)]
     part = jnp.where(two, rises[1] / (rises[0] + rises[1]), 0.0)
     # The place nearer to the root is the first one.
-    later = jnp.where(two, jnp.where(first < other, second, ~jnp.asarray(second)), second)
-    return jnp.where(later, other, first), jnp.where(later, part, 1.0 - part)
+    later = jnp.where(two, jnp.where(lowest < second_lowest, second, ~jnp.asarray(second)), second)
+    return jnp.where(later, second_lowest, lowest), jnp.where(later, part, 1.0 - part)
 
 
 def _reversal(
@@ -640,8 +640,8 @@ def _reversal(
     """
     turns = overlaps[:-1] & overlaps[1:] & (sliding[:-1] >= 0.0) & (sliding[1:] < 0.0)
     before = jnp.argmin(jnp.where(turns, jnp.abs(angle[:-1]), jnp.inf))
-    first, second = sliding[before], sliding[before + 1]
-    part = first / jnp.where(turns[before], first - second, 1.0)
+    sliding_before, sliding_after = sliding[before], sliding[before + 1]
+    part = sliding_before / jnp.where(turns[before], sliding_before - sliding_after, 1.0)
     at = angle[before] + part * (angle[before + 1] - angle[before])
     return jnp.where(jnp.any(turns), at, 0.0)
 
@@ -736,13 +736,15 @@ def _in_pairs(
 ) -> np.ndarray:
     """Values by pairs that are held, of two places the one nearer to the root first."""
     number, zone = _numbers(np.asarray(drive.teeth), drive.lanes, np).astype(int), drive._zone
-    (first,) = np.nonzero(~drive._second & (number < float(drive.held)))
-    same = (zone == zone[first, None]) & (number == number[first, None]) & drive._second
-    other = np.where(same.any(axis=1), same.argmax(axis=1), -1)
-    own, beside = np.take(values, first, axis), np.take(values, other, axis)
-    lone = (other < 0).reshape(-1, *(1 for _ in range(values.ndim - axis - 1)))
-    empty = own if like_first else np.zeros_like(own)
-    return np.concatenate([own, np.where(lone, empty, beside)], axis=axis + 1)
+    (root_pairs,) = np.nonzero(~drive._second & (number < float(drive.held)))
+    matches = (
+        (zone == zone[root_pairs, None]) & (number == number[root_pairs, None]) & drive._second
+    )
+    tip_pairs = np.where(matches.any(axis=1), matches.argmax(axis=1), -1)
+    root_values, beside = np.take(values, root_pairs, axis), np.take(values, tip_pairs, axis)
+    lone = (tip_pairs < 0).reshape(-1, *(1 for _ in range(values.ndim - axis - 1)))
+    empty = root_values if like_first else np.zeros_like(root_values)
+    return np.concatenate([root_values, np.where(lone, empty, beside)], axis=axis + 1)
 
 
 @on_edge.register

@@ -88,28 +88,30 @@ def _balls(table: BallBearing) -> Balls:
 
 
 def _behind(table: Yielding) -> Behind:
-    return Behind(**{one.name: getattr(table, one.name) for one in fields(Behind)})
+    return Behind(**{field.name: getattr(table, field.name) for field in fields(Behind)})
 
 
 def _form(tooth: DoubleArcTooth | InvoluteTooth) -> DoubleArcForm | InvoluteForm:
     if isinstance(tooth, InvoluteTooth):
         return _involute(tooth)
-    own = {one.name: getattr(tooth, one.name) for one in fields(DoubleArcForm)}
-    given = {name: value for name, value in own.items() if value is not None}
-    return replace(DOUBLE_ARCS[tooth.set or _USUAL_SET], **given)
+    tooth_values = {field.name: getattr(tooth, field.name) for field in fields(DoubleArcForm)}
+    chosen = {name: value for name, value in tooth_values.items() if value is not None}
+    return replace(DOUBLE_ARCS[tooth.set or _USUAL_SET], **chosen)
 
 
 _USUAL_SET = "liu"
 
 
 def _involute(table: InvoluteTooth | InvoluteGroove) -> InvoluteForm:
-    return InvoluteForm(**{one.name: getattr(table, one.name) for one in fields(InvoluteForm)})
+    return InvoluteForm(
+        **{field.name: getattr(table, field.name) for field in fields(InvoluteForm)}
+    )
 
 
 def _of_drive(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Any]:
     form = _form(gears.tooth)
     return {
-        **{f"tooth.{one.name}": getattr(form, one.name) for one in fields(form)},
+        **{f"tooth.{field.name}": getattr(form, field.name) for field in fields(form)},
         **_of_walls(gears, drive),
         **_of_parts(gears, drive),
     }
@@ -155,16 +157,16 @@ def _of_parts(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Followed]:
         gears.wave_generator.bearing,
         gears.yielding,
     )
-    found: dict[str, float] = {}
+    size_by_key: dict[str, float] = {}
     if bearing is not None:
         sizes = _balls(bearing).sizes(diameter)
-        found |= {f"wave_generator.bearing.{key}": value for key, value in sizes.items()}
+        size_by_key |= {f"wave_generator.bearing.{key}": value for key, value in sizes.items()}
     if behind is not None:
         sizes = dimensions(_behind(behind), diameter, float(drive.rim.thickness))
-        found |= {f"yielding.{key}": value for key, value in sizes.items()}
+        size_by_key |= {f"yielding.{key}": value for key, value in sizes.items()}
     return {
         key: Followed(value, "assumed", _rule(key, value / diameter))
-        for key, value in found.items()
+        for key, value in size_by_key.items()
     }
 
 
@@ -177,8 +179,8 @@ def _rule(key: str, part: float) -> str:
 
 
 def _deviations(gears: StrainWaveGears, drive: StrainWave) -> Surfaces:
-    given = gears.deviations
-    return waves(given.flexspline), waves(given.circular_spline)
+    deviations = gears.deviations
+    return waves(deviations.flexspline), waves(deviations.circular_spline)
 
 
 def _bodies(
@@ -186,7 +188,7 @@ def _bodies(
 ) -> tuple[list[MassInertia], str]:
     """Wave generator, flexspline and circular spline of rings, tubes and discs."""
     pitch, width = gears.module * gears.teeth[0], gears.face_width
-    rim, told = (
+    rim, assumption = (
         drive.rim,
         (_IN_PARTS if gears.flexspline.rim_thickness else f"{_IN_PARTS} {_USUAL}"),
     )
@@ -194,18 +196,18 @@ def _bodies(
     sizes = PROPORTIONS.behind(pitch) | {"bottom_thickness": thickness}
     if gears.yielding is not None:
         sizes |= dimensions(_behind(gears.yielding), pitch, thickness)
-    first, second = densities
+    flexspline_density, spline_density = densities
     wall, length = float(rim.wall_thickness), float(rim.cup_length)
     within = radius - thickness / 2.0
     flexspline = [
-        disc(density=first, width=width, outer=pitch / 2.0, inner=within),
-        disc(density=first, width=length, outer=within + wall, inner=within),
-        disc(density=first, width=sizes["bottom_thickness"], outer=within, inner=0.0),
+        disc(density=flexspline_density, width=width, outer=pitch / 2.0, inner=within),
+        disc(density=flexspline_density, width=length, outer=within + wall, inner=within),
+        disc(density=flexspline_density, width=sizes["bottom_thickness"], outer=within, inner=0.0),
     ]
     outer, inner = sizes["outside_diameter"] / 2.0, gears.module * gears.teeth[1] / 2.0
-    spline = disc(density=second, width=width, outer=outer, inner=inner)
-    wave = _wave_generator(gears, within, sizes["shaft_diameter"] / 2.0, first)
-    return [wave, as_one(flexspline), spline], told
+    spline = disc(density=spline_density, width=width, outer=outer, inner=inner)
+    wave = _wave_generator(gears, within, sizes["shaft_diameter"] / 2.0, flexspline_density)
+    return [wave, as_one(flexspline), spline], assumption
 
 
 def _wave_generator(

@@ -25,8 +25,8 @@ STEEPEST = 1.4
 
 def unit(angle: Along) -> Place:
     """Place on the unit circle at an angle [rad]: exp(i angle) without the exponential of nothing."""
-    found: Place = _on_circle(jnp.asarray(angle))
-    return found
+    place: Place = _on_circle(jnp.asarray(angle))
+    return place
 
 
 @partial(jax.jit, inline=True)
@@ -136,9 +136,9 @@ class ArcChain(Flank):
         lengths, bends = jnp.stack(pieces), jnp.stack(curvatures)
         starts = jnp.concatenate([jnp.zeros(1), jnp.cumsum(lengths)[:-1]])
         angles, places = [angle], [place]
-        for way, bend in zip(pieces[:-1], curvatures[:-1], strict=True):
-            places.append(places[-1] + _chord(angles[-1], bend, way))
-            angles.append(angles[-1] + bend * way)
+        for piece, bend in zip(pieces[:-1], curvatures[:-1], strict=True):
+            places.append(places[-1] + _chord(angles[-1], bend, piece))
+            angles.append(angles[-1] + bend * piece)
         return cls(
             starts=starts,
             places=jnp.stack(places),
@@ -163,13 +163,13 @@ class ArcChain(Flank):
 
     def place(self, along: Along) -> Place:
         """Place at an arc length from the root [m]."""
-        piece, way = self._piece(along)
-        return self.places[piece] + _chord(self.angles[piece], self.curvatures[piece], way)
+        piece, arc_length = self._piece(along)
+        return self.places[piece] + _chord(self.angles[piece], self.curvatures[piece], arc_length)
 
     def angle(self, along: Along) -> Along:
         """Flank angle [rad]."""
-        piece, way = self._piece(along)
-        return self.angles[piece] + self.curvatures[piece] * way
+        piece, arc_length = self._piece(along)
+        return self.angles[piece] + self.curvatures[piece] * arc_length
 
     def curvature(self, along: Along) -> Along:
         """Curvature, positive where the flank is convex [1/m]."""
@@ -366,14 +366,14 @@ class InvoluteFlank(Flank):
         """Roll angles at the root and where the rounding of the tip begins [rad]."""
         root = jnp.sqrt((self.root_radius / self.base_radius) ** 2 - 1.0)
         inner = self.tip_radius - self.tip_rounding
-        last = (self.tip_rounding + jnp.sqrt(inner**2 - self.base_radius**2)) / self.base_radius
-        return root, last
+        tip_roll = (self.tip_rounding + jnp.sqrt(inner**2 - self.base_radius**2)) / self.base_radius
+        return root, tip_roll
 
     @property
     def _rolled(self) -> Float[Array, ""]:
         """Arc length of the involute [m]."""
-        root, last = self._rolls
-        return self.base_radius * (last**2 - root**2) / 2.0 - self.relief_length
+        root, tip_roll = self._rolls
+        return self.base_radius * (tip_roll**2 - root**2) / 2.0 - self.relief_length
 
     def _roll(self, along: Along) -> Along:
         """Roll angle at an arc length on the involute [rad]."""

@@ -112,9 +112,9 @@ class Groove(eqx.Module):
         from_top = (high - jax.lax.stop_gradient(height)) / (high - low)
         place = (1.0 - jnp.sqrt(jnp.clip(from_top, 0.0, 1.0))) * (NODES - 1)
         cell = jnp.clip(jnp.floor(place), 0, NODES - 2).astype(int)
-        known = self.heights
-        step = known[cell + 1] - known[cell]
-        return cell, step, (height - known[cell]) / step
+        heights = self.heights
+        step = heights[cell + 1] - heights[cell]
+        return cell, step, (height - heights[cell]) / step
 
     def width_and_slope(self, height: Each) -> tuple[Each, Each]:
         """Half width [m] and slope at heights; beyond the ends along the tangent there."""
@@ -151,9 +151,9 @@ class Groove(eqx.Module):
     @property
     def arcs(self) -> Float[Array, " cell"]:
         """Arc lengths between the nodes [m]."""
-        made = self.made
-        grown = hypot(1.0, self.slope * self._swept(made)[1])
-        return (grown[1:] + grown[:-1]) / 2.0 * jnp.diff(made)
+        heights = self.made
+        grown = hypot(1.0, self.slope * self._swept(heights)[1])
+        return (grown[1:] + grown[:-1]) / 2.0 * jnp.diff(heights)
 
 
 def _heights(low: Float[Array, ""], high: Float[Array, ""]) -> Float[Array, " node"]:
@@ -201,8 +201,8 @@ def swept(motion: ToothMotion, low: Float[Array, ""], tips: Tips) -> Groove:
     edge = tips.rounding
     deepest = motion.place(motion.flank.length, jnp.zeros(()))
     heights = _heights(low, jnp.real(deepest))
-    found = _generated(motion, heights, *_outermost(motion, heights))
-    width, slope, curvature, lost = _farther(*found)
+    generated = _generated(motion, heights, *_outermost(motion, heights))
+    width, slope, curvature, lost = _farther(*generated)
     joint = jnp.real(motion.place(motion.flank.plain, jnp.zeros(())))
     bottom = joint, tips.bottom
     groove = Groove(low, heights[-1], width, slope, curvature, jnp.sum(lost * 1.0), *bottom)
@@ -216,10 +216,10 @@ def _blended(groove: Groove, radius: Float[Array, ""]) -> Groove:
     """The same with the ridges at which its parts meet blended by parabolas of a radius [m]."""
     heights, grown = groove.heights, hypot(1.0, groove.slope)
     across = (grown[1:] + grown[:-1]) / 2.0
-    way, turned = _ridges(groove)
+    to_ridge, turned = _ridges(groove)
     reach = jnp.where(turned > 0.0, radius * turned / 2.0 / across, 1.0)
     bend = turned * across**2 / (2.0 * reach)  # of the slope over the height
-    beside = heights[:, None] - heights[:-1] - way
+    beside = heights[:, None] - heights[:-1] - to_ridge
     within = jnp.maximum(reach - jnp.abs(beside), 0.0)
     bends = jnp.where(within > 0.0, bend, 0.0)
     width = jnp.sum(bends * within**2, axis=1) / 2.0
@@ -236,20 +236,24 @@ def _ridges(groove: Groove) -> tuple[Float[Array, " cell"], Float[Array, " cell"
     slope, step = groove.slope, jnp.diff(groove.heights)
     bend, rise = groove.curvature * hypot(1.0, slope) ** 3, jnp.diff(groove.half_width)
 
-    def sides(way: Each) -> tuple[Each, Each, Each]:
+    def sides(to_ridge: Each) -> tuple[Each, Each, Each]:
         """Slopes of both parts, and how far the second lies beyond the first [m]."""
-        back = step - way
-        first, second = bend[:-1] * way, bend[1:] * back
-        apart = rise - (slope[:-1] + first / 2.0) * way - (slope[1:] - second / 2.0) * back
-        return slope[:-1] + first, slope[1:] - second, apart
+        back = step - to_ridge
+        bend_before, bend_behind = bend[:-1] * to_ridge, bend[1:] * back
+        apart = (
+            rise
+            - (slope[:-1] + bend_before / 2.0) * to_ridge
+            - (slope[1:] - bend_behind / 2.0) * back
+        )
+        return slope[:-1] + bend_before, slope[1:] - bend_behind, apart
 
-    way = step / 2.0
-    before, after, apart = sides(way)
+    to_ridge = step / 2.0
+    before, after, apart = sides(to_ridge)
     ridge = jnp.arctan(after) - jnp.arctan(before) > _KINK
     for _ in range(2):
-        way = jnp.clip(way + apart / jnp.where(ridge, before - after, jnp.inf), 0.0, step)
-        before, after, apart = sides(way)
-    return way, jnp.where(ridge, jnp.arctan(after) - jnp.arctan(before), 0.0)
+        to_ridge = jnp.clip(to_ridge + apart / jnp.where(ridge, before - after, jnp.inf), 0.0, step)
+        before, after, apart = sides(to_ridge)
+    return to_ridge, jnp.where(ridge, jnp.arctan(after) - jnp.arctan(before), 0.0)
 
 
 def _relieved(
@@ -293,9 +297,11 @@ def tip_with_land(
     land = groove.land(tooth_angle)
     relief = jnp.where(heights < groove.low + edge, 2.0 * edge, 0.0)  # that of the edge is no cut
     narrow = jnp.where(land + relief < least, jnp.arange(NODES), -1)
-    last = jnp.max(narrow)
-    raised = jnp.where(last + 2 < NODES, heights[jnp.minimum(last + 1, NODES - 1)], jnp.inf)
-    return jnp.where(last < 0, groove.low, raised)
+    last_narrow = jnp.max(narrow)
+    raised = jnp.where(
+        last_narrow + 2 < NODES, heights[jnp.minimum(last_narrow + 1, NODES - 1)], jnp.inf
+    )
+    return jnp.where(last_narrow < 0, groove.low, raised)
 
 
 def _outermost(motion: ToothMotion, heights: Array) -> tuple[Array, Array]:
@@ -306,17 +312,19 @@ def _outermost(motion: ToothMotion, heights: Array) -> tuple[Array, Array]:
     frozen, targets = jax.lax.stop_gradient((motion, heights))
     stations = frozen.flank.stations(*_STATIONS)
     phases = jnp.asarray(_PHASES)
-    known, across = (part.T for part in frozen.passed(stations, phases))
-    after = _stations_below(known, targets)
-    far = _interpolated(targets, known, across, after)
-    far = jnp.where((targets < known[:, :1]) | (targets > known[:, -1:]), -jnp.inf, far)
+    station_heights, across = (part.T for part in frozen.passed(stations, phases))
+    after = _stations_below(station_heights, targets)
+    far = _interpolated(targets, station_heights, across, after)
+    far = jnp.where(
+        (targets < station_heights[:, :1]) | (targets > station_heights[:, -1:]), -jnp.inf, far
+    )
     beside = jnp.pad(far, ((1, 1), (0, 0)), constant_values=-jnp.inf)
     peaks = jnp.where((far >= beside[2:]) & (far >= beside[:-2]), far, -jnp.inf)
-    first = _largest(peaks)
-    others = jnp.where(jnp.abs(phases[:, None] - phases[first]) < _APART, -jnp.inf, peaks)
-    best = jnp.stack([first, _largest(others)])
+    farthest = _largest(peaks)
+    others = jnp.where(jnp.abs(phases[:, None] - phases[farthest]) < _APART, -jnp.inf, peaks)
+    best = jnp.stack([farthest, _largest(others)])
     at = jnp.take_along_axis(after, best, 0)
-    low, high = known[best, at - 1], known[best, at]
+    low, high = station_heights[best, at - 1], station_heights[best, at]
     part = jnp.clip((targets - low) / (high - low), 0.0, 1.0)
     return stations[at - 1] + part * (stations[at] - stations[at - 1]), phases[best]
 
@@ -325,8 +333,8 @@ def _largest(values: Float[Array, "phase node"]) -> Int[Array, " node"]:
     """First phase with the largest value; `jnp.argmax` takes twice as long."""
     count = values.shape[0]
     place = jnp.arange(count, dtype=jnp.int32)[:, None]
-    found = jnp.min(jnp.where(values == jnp.max(values, axis=0), place, count), axis=0)
-    return jnp.minimum(found, count - 1)
+    largest_phase = jnp.min(jnp.where(values == jnp.max(values, axis=0), place, count), axis=0)
+    return jnp.minimum(largest_phase, count - 1)
 
 
 def _stations_below(
@@ -339,12 +347,14 @@ def _stations_below(
     """
     count, low, high = targets.shape[0], targets[0], targets[-1]
     from_top = jnp.clip((high - known) / (high - low), 0.0, 1.0)
-    first = jnp.ceil((1.0 - jnp.sqrt(from_top)) * (count - 1)).astype(jnp.int32)
-    first = jnp.where(targets[first] < known, first + 1, first)
-    lower = targets[jnp.maximum(first - 1, 0)]
-    first = jnp.where((first > 0) & (lower >= known), first - 1, first)
+    target_above = jnp.ceil((1.0 - jnp.sqrt(from_top)) * (count - 1)).astype(jnp.int32)
+    target_above = jnp.where(targets[target_above] < known, target_above + 1, target_above)
+    lower = targets[jnp.maximum(target_above - 1, 0)]
+    target_above = jnp.where((target_above > 0) & (lower >= known), target_above - 1, target_above)
     rows = jnp.arange(known.shape[0], dtype=jnp.int32)[:, None]
-    passed = jnp.zeros((known.shape[0], count), jnp.int32).at[rows, first].add(1, mode="drop")
+    passed = (
+        jnp.zeros((known.shape[0], count), jnp.int32).at[rows, target_above].add(1, mode="drop")
+    )
     return jnp.clip(jnp.cumsum(passed, axis=1), 1, known.shape[1] - 1)
 
 
@@ -359,16 +369,16 @@ def _interpolated(
     def take(of: Array, at: Array) -> Array:
         return jnp.take_along_axis(of, at, 1)
 
-    low, first = take(known, after - 1), take(values, after - 1)
+    low, value_below = take(known, after - 1), take(values, after - 1)
     step = take(known, after) - low
-    rise = take(values, after) - first
-    return first + (targets - low) / jnp.where(step == 0.0, 1.0, step) * rise
+    rise = take(values, after) - value_below
+    return value_below + (targets - low) / jnp.where(step == 0.0, 1.0, step) * rise
 
 
 def _farther(smooth: Array, width: Array, *others: Array) -> tuple[Array, ...]:
     """The farther one of two peaks; the second only where it is one of the envelope."""
     second = smooth[1] & (width[1] > width[0])
-    return tuple(jnp.where(second, each[1], each[0]) for each in (width, *others))
+    return tuple(jnp.where(second, of_peaks[1], of_peaks[0]) for of_peaks in (width, *others))
 
 
 def _generated(
@@ -401,10 +411,10 @@ def _enveloping(
 
     def newton(which: ToothMotion, s: Array, p: Array, y: Array) -> tuple[Array, Array]:
         at = which.at(s, p)
-        known = jax.lax.stop_gradient(at)
+        frozen_place = jax.lax.stop_gradient(at)
         a, b = jnp.real(at.place) - y, at.closing
-        a_s, a_p = jnp.cos(known.direction), jnp.real(known.velocity)
-        b_s, b_p = known.approach, known.change
+        a_s, a_p = jnp.cos(frozen_place.direction), jnp.real(frozen_place.velocity)
+        b_s, b_p = frozen_place.approach, frozen_place.change
         scale = a_s * b_p - a_p * b_s
         scale = jnp.where(scale == 0.0, 1.0, scale)
         return (a * b_p - a_p * b) / scale, (a_s * b - a * b_s) / scale
@@ -415,10 +425,10 @@ def _enveloping(
         return jnp.clip(s, 0.0, length), at[1] - jnp.clip(by_p, -_STRIDE, _STRIDE)
 
     s, p = jax.lax.fori_loop(0, NEWTON_STEPS, bounded, (along, angle))
-    found = frozen.at(s, p)
+    reached = frozen.at(s, p)
     close = (jnp.abs(p - angle) < 0.05) & (jnp.abs(s - along) < length / 20.0)
-    solved = (jnp.abs(jnp.real(found.place) - targets) < 1e-9 * length) & (
-        jnp.abs(found.closing) < 1e-9 * frozen.line.deflection
+    solved = (jnp.abs(jnp.real(reached.place) - targets) < 1e-9 * length) & (
+        jnp.abs(reached.closing) < 1e-9 * frozen.line.deflection
     )
     by_s, by_p = newton(motion, s, p, heights)
     smooth = close & solved

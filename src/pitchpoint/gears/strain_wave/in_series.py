@@ -60,8 +60,8 @@ def bolts_in_shear(number: float, diameter: float, circle: float) -> float:
         >>> round(bolts_in_shear(8, 5e-3, 0.03) / 1e3)
         561
     """
-    each = STEEL_SHEAR_MODULUS * pi * diameter / 4.0
-    return number * each * (circle / 2.0) ** 2
+    bolt_stiffness = STEEL_SHEAR_MODULUS * pi * diameter / 4.0
+    return number * bolt_stiffness * (circle / 2.0) ** 2
 
 
 def shaft_in_torsion(diameter: float, length: float) -> float:
@@ -119,9 +119,9 @@ class InSeries(eqx.Module):
         of a wave generator that is held divides by the square of the ratio.
         """
         shear = flexspline.young / (2.0 + 2.0 * flexspline.poisson)
-        each = self.compliance.at[0].add(self.bottom / shear)
+        compliances = self.compliance.at[0].add(self.bottom / shear)
         torque = law[jnp.array(self.members)] / (law @ loaded)
-        return dict(zip(self.parts, each * torque**2, strict=True))
+        return dict(zip(self.parts, compliances * torque**2, strict=True))
 
 
 @dataclass(frozen=True)
@@ -180,10 +180,10 @@ def in_series(behind: Behind, cup: Cup) -> InSeries:
     Raises:
         InputError: a flange as wide as the cup, a circular spline without a body; the key is the name.
     """
-    given = (getattr(behind, f"{part}_stiffness") for part in DIMENSIONS)
+    stiffnesses = (getattr(behind, f"{part}_stiffness") for part in DIMENSIONS)
     modelled = {part: _modelled(behind, part) for part in DIMENSIONS}
     sizes = dimensions(behind, cup.diameter, cup.rim)
-    values = [0.0 if stiffness is None else 1.0 / stiffness for stiffness in given]
+    values = [0.0 if stiffness is None else 1.0 / stiffness for stiffness in stiffnesses]
     if modelled["flange"]:
         values[1] = 1.0 / _joint(sizes, cup)
     if modelled["wave_generator"]:
@@ -204,9 +204,14 @@ def dimensions(behind: Behind, diameter: float, rim: float) -> dict[str, float]:
         rim: thickness of its rim [m].
     """
     usual = PROPORTIONS.behind(diameter) | {"bottom_thickness": rim}
-    names = (name for part, own in DIMENSIONS.items() if _modelled(behind, part) for name in own)
-    given = {name: getattr(behind, name) for name in names}
-    return {name: usual[name] if value is None else value for name, value in given.items()}
+    names = (
+        name
+        for part, part_names in DIMENSIONS.items()
+        if _modelled(behind, part)
+        for name in part_names
+    )
+    chosen = {name: getattr(behind, name) for name in names}
+    return {name: usual[name] if value is None else value for name, value in chosen.items()}
 
 
 def _modelled(behind: Behind, part: str) -> bool:

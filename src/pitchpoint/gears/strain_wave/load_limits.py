@@ -45,8 +45,8 @@ def curvature_change(
         array([1.])
     """
     waves = 2.0 * np.arange(1, len(weights) + 1)
-    each = weights * (waves**2 - 1.0) * np.cos(np.multiply.outer(angle, waves))
-    return np.asarray(deflection / radius**2 * each.sum(axis=-1))
+    harmonics = weights * (waves**2 - 1.0) * np.cos(np.multiply.outer(angle, waves))
+    return np.asarray(deflection / radius**2 * harmonics.sum(axis=-1))
 
 
 def face_stress(*, young: float, thickness: Values, curvature: Values) -> Values:
@@ -144,8 +144,8 @@ def torque_by_goodman(
         23.094
     """
     ends = (endurance_limit, alternating), (tensile_strength, np.abs(mean_bending))
-    (strength, beside), (other, used) = ends if reversing else ends[::-1]
-    left = np.maximum(strength * (1.0 - used / other), 0.0)
+    (strength, beside), (used_strength, used) = ends if reversing else ends[::-1]
+    left = np.maximum(strength * (1.0 - used / used_strength), 0.0)
     shear = np.sqrt(np.maximum(left**2 - np.square(beside), 0.0) / 3.0)
     return np.asarray(shear / shear_per_torque)
 
@@ -164,9 +164,13 @@ def flexspline_torque(load: float, loaded: str, teeth: tuple[float, float]) -> f
         >>> round(flexspline_torque(101.0, "circular spline", (200, 202)), 9)
         100.0
     """
-    first, second = teeth
-    of = {"flexspline": first, "circular spline": second, "wave generator": second - first}
-    return load * first / of[loaded]
+    flexspline_teeth, spline_teeth = teeth
+    of = {
+        "flexspline": flexspline_teeth,
+        "circular spline": spline_teeth,
+        "wave generator": spline_teeth - flexspline_teeth,
+    }
+    return load * flexspline_teeth / of[loaded]
 
 
 def of_other_size(torque: float, *, size: float, known: float) -> float:

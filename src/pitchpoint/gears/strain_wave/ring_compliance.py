@@ -145,9 +145,9 @@ def of_modes(amplitude: Float[Array, "mode *b"]) -> tuple[Float[Array, "*b"], Fl
     Args:
         amplitude: work of the forces on each mode over its root stiffness, see `ring_modes`.
     """
-    each = amplitude**2
-    uniform = each.reshape(4, -1, *each.shape[1:])[2, 0]
-    return uniform, jnp.sum(each, axis=0) - uniform
+    work = amplitude**2
+    uniform = work.reshape(4, -1, *work.shape[1:])[2, 0]
+    return uniform, jnp.sum(work, axis=0) - uniform
 
 
 def _cup(ring: FlexibleRing, solid: Solid) -> Float[Array, ""]:

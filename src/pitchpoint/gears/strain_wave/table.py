@@ -251,9 +251,9 @@ class Yielding(Table):
             modelled = getattr(self, value) is None and getattr(self, part) != "rigid"
             for key in dimensions:
                 if getattr(self, key) is not None and not modelled:
-                    other = part if getattr(self, value) is None else value
+                    excluding = part if getattr(self, value) is None else value
                     raise InputError(
-                        f"{key} was given, but {other} leaves out what it is a dimension of",
+                        f"{key} was given, but {excluding} leaves out what it is a dimension of",
                         key=key,
                     )
         return self
@@ -305,15 +305,15 @@ class LoadLimits(Table):
         for group in (_FATIGUE, _RATED):
             missing = [key for key in group if getattr(self, key) is None]
             if 0 < len(missing) < len(group):
-                given = next(key for key in group if key not in missing)
-                raise InputError(f"was given without {' and '.join(missing)}", key=given)
+                present = next(key for key in group if key not in missing)
+                raise InputError(f"was given without {' and '.join(missing)}", key=present)
         alone = {
             "average_torque": self.rated_life,
             "average_speed": self.rated_life,
             "catalogue_diameter": self.ratcheting_torque or self.buckling_torque,
         }
-        for key, other in alone.items():
-            if getattr(self, key) is not None and other is None:
+        for key, companion in alone.items():
+            if getattr(self, key) is not None and companion is None:
                 what = "a torque of a catalogue" if key == "catalogue_diameter" else "a rated life"
                 raise InputError(f"was given without {what}, to which it belongs", key=key)
         return self
@@ -411,14 +411,14 @@ class StrainWaveGears(GearsTable):
     @property
     def designation(self) -> str:
         """With the teeth of flexspline and circular spline."""
-        first, second = self.tooth_numbers
-        return f"Strain wave gear {first:g}/{second:g}"
+        flexspline_teeth, spline_teeth = self.tooth_numbers
+        return f"Strain wave gear {flexspline_teeth:g}/{spline_teeth:g}"
 
     @property
     def tooth_numbers(self) -> tuple[float, float]:
         """Of both members, in magnitude."""
-        first, second = self.teeth
-        return first, abs(second)
+        flexspline_teeth, spline_teeth = self.teeth
+        return flexspline_teeth, abs(spline_teeth)
 
     @property
     def normal_module(self) -> float:
@@ -428,18 +428,24 @@ class StrainWaveGears(GearsTable):
     @property
     def relative_torques(self) -> dict[str, float]:
         """That of the wave generator is the difference of those of both splines."""
-        first, second = self.tooth_numbers
-        return dict(zip(self.members, (second - first, first, second), strict=True))
+        flexspline_teeth, spline_teeth = self.tooth_numbers
+        return dict(
+            zip(
+                self.members,
+                (spline_teeth - flexspline_teeth, flexspline_teeth, spline_teeth),
+                strict=True,
+            )
+        )
 
     @property
     def loss_scales(self) -> dict[str, float]:
         """Pitch diameter of the flexspline [m], its square, and the deflection on the long axis over it."""
-        first, second = self.tooth_numbers
-        deflection = self.wave_generator.deflection * (second - first) / 2.0
+        flexspline_teeth, spline_teeth = self.tooth_numbers
+        deflection = self.wave_generator.deflection * (spline_teeth - flexspline_teeth) / 2.0
         return {
-            "pitch diameter": self.module * first,
-            "square of the pitch diameter": (self.module * first) ** 2,
-            "deflection over pitch diameter": deflection / first,
+            "pitch diameter": self.module * flexspline_teeth,
+            "square of the pitch diameter": (self.module * flexspline_teeth) ** 2,
+            "deflection over pitch diameter": deflection / flexspline_teeth,
         }
 
     @property

@@ -52,10 +52,10 @@ class NeutralLine(eqx.Module):
 @partial(jax.jit, static_argnums=1, inline=True)
 def _powers(angle: Float[Array, "*b"], count: int) -> Complex[Array, "term *b"]:
     """Powers of exp(2ip): sines of all harmonics for the price of one."""
-    known = jax.lax.complex(jnp.cos(2.0 * angle), jnp.sin(2.0 * angle))[None]
-    while known.shape[0] < count:
-        known = jnp.concatenate([known, known * known[-1]])
-    return known[:count]
+    powers = jax.lax.complex(jnp.cos(2.0 * angle), jnp.sin(2.0 * angle))[None]
+    while powers.shape[0] < count:
+        powers = jnp.concatenate([powers, powers * powers[-1]])
+    return powers[:count]
 
 
 def cosine(force_angle: float, relative: float) -> np.ndarray:
@@ -68,16 +68,16 @@ def elliptical(force_angle: float, relative: float) -> np.ndarray:
     angle = np.linspace(0.0, 2.0 * np.pi, 512, endpoint=False)
     long, short = 1.0 + relative, 1.0 - relative
     radius = long * short / np.hypot(long * np.sin(angle), short * np.cos(angle))
-    found = np.fft.rfft(radius).real[2 : 2 * TERMS + 1 : 2]
-    return np.asarray(found / found.sum())
+    amplitudes = np.fft.rfft(radius).real[2 : 2 * TERMS + 1 : 2]
+    return np.asarray(amplitudes / amplitudes.sum())
 
 
 def four_forces(force_angle: float, relative: float) -> np.ndarray:
     """Ring under two pairs of equal outward forces at plus and minus an angle from the long axis."""
     orders = 2.0 * np.arange(1, TERMS + 1)
-    found = np.cos(orders * force_angle) / (orders**2 - 1.0) ** 2
+    amplitudes = np.cos(orders * force_angle) / (orders**2 - 1.0) ** 2
     # Outward forces far from the long axis pull it in; the sign tells.
-    return np.asarray(found / abs(found.sum()))
+    return np.asarray(amplitudes / abs(amplitudes.sum()))
 
 
 def two_rollers(force_angle: float, relative: float) -> np.ndarray:

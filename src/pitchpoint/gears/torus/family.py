@@ -31,12 +31,12 @@ _ROUNDED_BACKLASH = 1e-9
 
 def _build(gears: TorusGears, slices: int) -> tuple[Mesh, tuple[str, ...]]:
     middle = middle_pair(gears)
-    told = [*check_cylindrical(middle)]
+    warnings = [*check_cylindrical(middle)]
     pair = torus_pair(gears, middle)
     _check_place(gears, pair)
-    told += _jammed(pair)
-    told += [text for text in _at_the_ends(gears, pair, middle) if text not in told]
-    return pair, tuple(told)
+    warnings += _jammed(pair)
+    warnings += [text for text in _at_the_ends(gears, pair, middle) if text not in warnings]
+    return pair, tuple(warnings)
 
 
 def torus_pair(gears: TorusGears, middle: CylindricalPair) -> TorusPair:
@@ -46,13 +46,13 @@ def torus_pair(gears: TorusGears, middle: CylindricalPair) -> TorusPair:
         gears: the table.
         middle: its transverse section in the middle of the face.
     """
-    given = {one.name: getattr(middle, one.name) for one in fields(InvolutePair)}
+    middle_values = {field.name: getattr(middle, field.name) for field in fields(InvolutePair)}
     radii = [
         -radius if concave else radius
         for radius, concave in zip(gears.torus_radius, gears.concave, strict=True)
     ]
     pair = TorusPair(
-        **given,
+        **middle_values,
         torus_radii=array(radii),
         widths=array(gears.face_width),
         middle_shift=middle.profile_shift,
@@ -90,8 +90,8 @@ def middle_pair(gears: TorusGears) -> CylindricalPair:
 
 
 def _depths(gears: TorusGears) -> tuple[tuple[float, float], tuple[float, float]]:
-    given = gears.addendum, gears.dedendum, gears.fillet_radius
-    return usual_depths(*given, gears.pressure_angle)
+    sizes = gears.addendum, gears.dedendum, gears.fillet_radius
+    return usual_depths(*sizes, gears.pressure_angle)
 
 
 def _check_place(gears: TorusGears, pair: TorusPair) -> None:
@@ -130,13 +130,13 @@ def _at_the_ends(gears: TorusGears, pair: TorusPair, middle: CylindricalPair) ->
     """Warnings for the teeth at the ends of the common face; InputError where they cannot be made."""
     _check_tips(gears, pair, middle)
     ends = array(min(gears.face_width) / 2.0)
-    more = jnp.stack([face.shift(ends) for face in pair.faces]) / pair.module
-    end = replace(middle, profile_shift=middle.profile_shift + more)
+    added_shift = jnp.stack([face.shift(ends) for face in pair.faces]) / pair.module
+    end = replace(middle, profile_shift=middle.profile_shift + added_shift)
     try:
-        told = check_cylindrical(end)
+        warnings = check_cylindrical(end)
     except InputError as error:
         raise InputError(f"at the ends of the face, {error.message}", key="face_width") from None
-    for text in told:
+    for text in warnings:
         yield f"At the ends of the face: {text}"
 
 
@@ -169,21 +169,23 @@ def _following(gears: TorusGears, pair: TorusPair) -> dict[str, Any]:
 
 
 def _deviations(gears: TorusGears, pair: TorusPair) -> Surfaces:
-    asked = gears.deviations
-    return (waves(asked.gear_1), waves(asked.gear_2)) if asked is not None else ((), ())
+    deviations = gears.deviations
+    return (
+        (waves(deviations.gear_1), waves(deviations.gear_2)) if deviations is not None else ((), ())
+    )
 
 
 def _bodies(
     gears: TorusGears, pair: TorusPair, densities: Sequence[float]
 ) -> tuple[list[MassInertia], str]:
     """Discs as wide as the face of each gear, as a vibration takes them."""
-    made, shifts, depths = [], np.asarray(pair.middle_shift), np.asarray(pair.dedendum)
+    discs, shifts, depths = [], np.asarray(pair.middle_shift), np.asarray(pair.dedendum)
     for number, (teeth, width) in enumerate(zip(gears.teeth, gears.face_width, strict=True)):
         outer = teeth * gears.module / 2.0
         root = outer - gears.module * float(depths[number] - shifts[number])
         inner = root / float(np.asarray(pair.rim_ratio)[number])
-        made.append(disc(density=densities[number], width=width, outer=outer, inner=inner))
-    return made, "Discs as wide as the face of each gear, from the bore to the reference circle."
+        discs.append(disc(density=densities[number], width=width, outer=outer, inner=inner))
+    return discs, "Discs as wide as the face of each gear, from the bore to the reference circle."
 
 
 FAMILY = Family(

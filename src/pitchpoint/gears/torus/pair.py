@@ -55,22 +55,26 @@ class TorusPair(InvolutePair):
     def completed(self) -> Self:
         """The pair with what follows in the middle of the face, and its shifts where the flanks touch."""
         middle = dataclasses.replace(self, profile_shift=self.middle_shift)
-        whole = super(TorusPair, middle).completed()
-        return dataclasses.replace(whole, profile_shift=whole.contact_shift)
+        completed_middle = super(TorusPair, middle).completed()
+        return dataclasses.replace(completed_middle, profile_shift=completed_middle.contact_shift)
 
     @property
     def faces(self) -> tuple[TorusFace, TorusFace]:
         """Faces of both gears, one convex and one concave."""
-        first, second = (TorusFace(radius, self.pressure_angle) for radius in self.torus_radii)
-        return first, second
+        pinion_face, wheel_face = (
+            TorusFace(radius, self.pressure_angle) for radius in self.torus_radii
+        )
+        return pinion_face, wheel_face
 
     @property
     def contact_shift(self) -> Float[Array, "2"]:
         """Profile shift coefficients in the transverse section in which the flanks touch."""
         place = self.place
-        own = jnp.stack([place, place - self.axial_offset])
-        more = jnp.stack([face.shift(at) for face, at in zip(self.faces, own, strict=True)])
-        return self.middle_shift + more / self.module
+        contact_places = jnp.stack([place, place - self.axial_offset])
+        added_shift = jnp.stack(
+            [face.shift(at) for face, at in zip(self.faces, contact_places, strict=True)]
+        )
+        return self.middle_shift + added_shift / self.module
 
     @property
     def place(self) -> Float[Array, ""]:
@@ -86,8 +90,8 @@ class TorusPair(InvolutePair):
     def contact_room(self) -> Float[Array, ""]:
         """From the contact to the nearest end of a face [m]; negative where it has left one."""
         ends = self.widths / 2.0
-        own = jnp.abs(jnp.stack([self.place, self.place - self.axial_offset]))
-        return jnp.min(ends - own)
+        contact_places = jnp.abs(jnp.stack([self.place, self.place - self.axial_offset]))
+        return jnp.min(ends - contact_places)
 
     @property
     def transverse_radius(self) -> Float[Array, ""]:
@@ -110,8 +114,8 @@ class TorusPair(InvolutePair):
     @property
     def other_flanks(self) -> Self:
         """The same gears on their other flanks, which lean the other way and lie back by the backlash."""
-        other = dataclasses.replace(super().other_flanks, inclination=-self.inclination)
-        return other.completed()
+        opposite = dataclasses.replace(super().other_flanks, inclination=-self.inclination)
+        return opposite.completed()
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """The one contact of each pair in mesh; phase 0 is the entry of a pair at A [base pitches]."""
@@ -128,8 +132,10 @@ class TorusPair(InvolutePair):
     @property
     def _bends(self) -> Float[Array, "2"]:
         """Curvature of both flanks across the profile where they touch [1/m]."""
-        own = (self.place, self.place - self.axial_offset)
-        return jnp.stack([face.curvature(at) for face, at in zip(self.faces, own, strict=True)])
+        contact_places = (self.place, self.place - self.axial_offset)
+        return jnp.stack(
+            [face.curvature(at) for face, at in zip(self.faces, contact_places, strict=True)]
+        )
 
     def _least(self, inclination: Float[Array, ""]) -> tuple[Float[Array, ""], Float[Array, ""]]:
         return least(*self.faces, axial_offset=self.axial_offset, inclination=inclination)
@@ -166,10 +172,10 @@ def _largest_inclination(pair: TorusPair, semi_axis: Float[Array, "..."]) -> Flo
 @tooth_sections.register
 def _tooth_sections(pair: TorusPair) -> tuple[ToothSection, ToothSection]:
     """Teeth of both gears, each with the face over which it bends."""
-    first, second = tooth_sections.dispatch(InvolutePair)(pair)
+    pinion, wheel = tooth_sections.dispatch(InvolutePair)(pair)
     return (
-        dataclasses.replace(first, width=pair.widths[0]),
-        dataclasses.replace(second, width=pair.widths[1]),
+        dataclasses.replace(pinion, width=pair.widths[0]),
+        dataclasses.replace(wheel, width=pair.widths[1]),
     )
 
 

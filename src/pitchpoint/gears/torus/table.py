@@ -85,14 +85,14 @@ class TorusGears(GearsTable):
     @property
     def opposed(self) -> "TorusGears":
         """The same gears pressing their other flanks, which lean the other way."""
-        other = "right" if self.flank == "left" else "left"
-        return self.model_copy(update={"flank": other, "inclination": -self.inclination})
+        opposite_flank = "right" if self.flank == "left" else "left"
+        return self.model_copy(update={"flank": opposite_flank, "inclination": -self.inclination})
 
     @property
     def designation(self) -> str:
         """With the numbers of teeth of both gears."""
-        first, second = self.teeth
-        return f"Torus-involute pair {first:g}/{second:g}"
+        pinion_teeth, wheel_teeth = self.teeth
+        return f"Torus-involute pair {pinion_teeth:g}/{wheel_teeth:g}"
 
     @property
     def tooth_numbers(self) -> tuple[float, float]:
@@ -119,30 +119,30 @@ class TorusGears(GearsTable):
         """True for a gear whose torus has its centre beyond the reference circle."""
         if self.torus_offset is None:
             return False, True
-        first, second = self._beyond
-        return first > 0.0, second > 0.0
+        pinion_beyond, wheel_beyond = self._beyond
+        return pinion_beyond > 0.0, wheel_beyond > 0.0
 
     @property
     def middle_shift(self) -> tuple[float, float]:
         """Profile shift coefficients in the middle of the face."""
         if self.torus_offset is None:
             return self.profile_shift or (0.0, 0.0)
-        first, second = (
+        pinion_shift, wheel_shift = (
             (beyond - radius if concave else beyond + radius) / self.module
             for beyond, radius, concave in zip(
                 self._beyond, self.torus_radius, self.concave, strict=True
             )
         )
-        return first, second
+        return pinion_shift, wheel_shift
 
     @property
     def _beyond(self) -> tuple[float, float]:
         """How far the centre of each torus lies beyond the reference circle [m]."""
         offsets = self.torus_offset or (0.0, 0.0)
-        first, second = (
+        pinion_beyond, wheel_beyond = (
             offset - z * self.module / 2.0 for offset, z in zip(offsets, self.teeth, strict=True)
         )
-        return first, second
+        return pinion_beyond, wheel_beyond
 
     @model_validator(mode="after")
     def _one_of_each(self) -> "TorusGears":
@@ -162,11 +162,11 @@ class TorusGears(GearsTable):
     def _check_shifts(self) -> None:
         """Radius and offset of a torus make the shift in the middle of the face; another one is refused."""
         pairs = zip(self.middle_shift, self.profile_shift or self.middle_shift, strict=True)
-        for number, (made, given) in enumerate(pairs, 1):
-            if abs(made - given) > _ROUNDED_SHIFT:
+        for number, (shift, chosen) in enumerate(pairs, 1):
+            if abs(shift - chosen) > _ROUNDED_SHIFT:
                 raise InputError(
-                    f"radius and offset of the torus of gear {number} make a profile shift of {made:.6g} in "
-                    f"the middle of its face, and {given:.6g} was given; leave one of the two out",
+                    f"radius and offset of the torus of gear {number} make a profile shift of {shift:.6g} in "
+                    f"the middle of its face, and {chosen:.6g} was given; leave one of the two out",
                     key="profile_shift",
                 )
 
