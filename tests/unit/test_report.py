@@ -35,6 +35,7 @@ from pitchpoint.gears.nominal_motion import (
 from pitchpoint.gears.pairs import way
 from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
+from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.run import Outcome, open_result, run
@@ -865,9 +866,12 @@ def racked(driver: str = "pinion") -> Outcome:
     return drawn_teeth(mesh, RACK_FAMILY, driver, ["pinion", "rack"])
 
 
+DRAWING = program(drawing)
+
+
 def drawn_teeth(mesh: Mesh, family: Family, driver: str, members: list[str]) -> Outcome:
     """The part `teeth` of a mesh, and the record that a picture needs."""
-    numbers = {name: np.asarray(value) for name, value in drawing(mesh).items()}
+    numbers = {name: np.asarray(value) for name, value in DRAWING(mesh).items()}
     teeth = dataset(
         {n: (family.drawing.get(n, ("gear",)[: v.ndim]), v) for n, v in numbers.items()},
         dict(family.coordinates),
