@@ -1,19 +1,20 @@
 """A gear train over its period: torque of the driving body, forces of every planet in every mesh."""
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint._jax import jax
+from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.cases.built_drive import BuiltTrain
 from pitchpoint.drive.kinematics import Ends
 from pitchpoint.drive.thrusts import axial_loads
 from pitchpoint.drive.torques import train_torques
-from pitchpoint.efficiency.quasi_static import power_ratio
+from pitchpoint.efficiency.quasi_static import Models, Operation, power_ratio
 from pitchpoint.efficiency.train_cycle import NODES_OF_TRAINS, train_cycle
+from pitchpoint.gears.nominal_motion import nominal_period
+from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
@@ -30,34 +31,33 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     From `train_cycle`, whose means are those of the operating point.
     """
     train = built.design
-    cycles = [
-        jax.device_get(train_cycle(train, built.operation, acting.stages, NODES_OF_TRAINS))
+    cycles: list[dict[str, Any]] = [
+        jax.device_get(_period(train.without_names(), built.operation, tuple(acting.stages)))
         for acting in built.models
     ]
-    cycle_nodes, planets = cycles[0], max(built.copies)
-    turns = round(float(train.turns))
-    phase = cycle_nodes.phase + np.arange(turns)[:, None] / turns
+    first_cycle, planets = cycles[0], max(built.copies)
+    turns, driver_period = round(float(train.turns)), _driver_period(train)
+    phase = first_cycle["phase"] + np.arange(turns)[:, None] / turns
 
-    def whole(values: Iterable[Any]) -> np.ndarray:
+    def whole(name: str) -> np.ndarray:
         """Values [law node] over all parts of the period, in which planets have each other's places."""
-        return np.tile(np.stack([*values]), turns)
+        return np.tile(np.stack([cycle[name] for cycle in cycles]), turns)
 
     forces = np.full((len(cycles), len(built.copies), planets, phase.size), np.nan)
     for law, cycle in enumerate(cycles):
         for stage, count in enumerate(built.copies):
-            forces[law, stage, :count] = _over_period(train, cycle.meshes[stage].force[:count])
-    codes = np.stack([cycle.status.code for cycle in cycles])
-    solved = codes == Code.SOLVED
-    ratios = [power_ratio(cycle.output_power, cycle.input_power) for cycle in cycles]
-    driven = np.stack([cycle.input_torque for cycle in cycles])
+            forces[law, stage, :count] = _over_period(train, cycle["forces"][stage][:count])
+    codes, residuals = (
+        np.stack([cycle[name] for cycle in cycles]) for name in ("code", "residual")
+    )
     thrusts, tilting = _axial_loads(built)
     return dataset(
         {
-            "driver_angle": (("node",), phase.ravel() * float(train.period)),
-            "weight": (("node",), np.tile(cycle_nodes.weight, turns) / turns),
-            "input_torque": (("law", "node"), whole(np.where(solved, driven, np.nan))),
-            "efficiency": (("law", "node"), whole(ratios)),
-            "loss": (("law", "node"), whole(cycle.loss for cycle in cycles)),
+            "driver_angle": (("node",), phase.ravel() * driver_period),
+            "weight": (("node",), np.tile(first_cycle["weight"], turns) / turns),
+            "input_torque": (("law", "node"), whole("input_torque")),
+            "efficiency": (("law", "node"), whole("efficiency")),
+            "loss": (("law", "node"), whole("loss")),
             "contact_force": (("law", "stage", "planet", "node"), forces),
             "body_thrust": (("body",), [*thrusts.values()]),
             "planet_tilting_moment": ((), tilting),
@@ -69,9 +69,35 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
             "body": [*thrusts],
         },
         title="period of the train",
-        solve=told_of(codes, np.stack([cycle.status.residual for cycle in cycles])),
-        driver_period=float(train.period),
+        solve=told_of(codes, residuals),
+        driver_period=driver_period,
     )
+
+
+@program
+def _period(train: "Train", operation: Operation, laws: tuple[Models, ...]) -> dict[str, Any]:
+    """What is read of the states of a train over its period, whatever the names of its ends."""
+    cycle = train_cycle.function(train, operation, laws, NODES_OF_TRAINS)
+    solved = cycle.status.code == int(Code.SOLVED)
+    return {
+        "phase": cycle.phase,
+        "weight": cycle.weight,
+        "input_torque": jnp.where(solved, cycle.input_torque, jnp.nan),
+        "efficiency": power_ratio(cycle.output_power, cycle.input_power),
+        "loss": cycle.loss,
+        "forces": [mesh.force for mesh in cycle.meshes],
+        "code": cycle.status.code,
+        "residual": cycle.status.residual,
+    }
+
+
+def _driver_period(train: "Train") -> float:
+    """See `Train.period`; nothing is compiled for it [rad]."""
+    first = train.meshes[0]
+    rates = jax.device_get(train.rates)
+    against: Any = np.array([rates[body] - rates[first.carrier] for body in first.bodies])
+    period = nominal_period(jax.device_get(first.design.mesh), against)
+    return float(first.periods) * float(period)
 
 
 def _over_period(train: "Train", forces: np.ndarray) -> np.ndarray:
