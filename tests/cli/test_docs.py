@@ -362,7 +362,9 @@ STUDIED = [line for line in SHELL if " study " in line]
 SIZED = [line for line in SHELL if " size " in line]
 
 
-@pytest.mark.parametrize("line", sorted({*SHELL} - {*SET_UP, *COMPARED, *EXPLORED, *STUDIED, *SIZED}))
+@pytest.mark.parametrize(
+    "line", sorted({*SHELL} - {*SET_UP, *COMPARED, *EXPLORED, *STUDIED, *SIZED})
+)
 def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Parsed and laid out as far as the computation itself."""
     laid_out = []

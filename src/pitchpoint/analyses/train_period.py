@@ -93,11 +93,11 @@ def _period(train: "Train", operation: Operation, laws: tuple[Models, ...]) -> d
 
 def _driver_period(train: "Train") -> float:
     """See `Train.period`; nothing is compiled for it [rad]."""
-    first = train.meshes[0]
+    mesh = train.meshes[0]
     rates = jax.device_get(train.rates)
-    against: Any = np.array([rates[body] - rates[first.carrier] for body in first.bodies])
-    period = nominal_period(jax.device_get(first.design.mesh), against)
-    return float(first.periods) * float(period)
+    against: Any = np.array([rates[body] - rates[mesh.carrier] for body in mesh.bodies])
+    period = nominal_period(jax.device_get(mesh.design.mesh), against)
+    return float(mesh.periods) * float(period)
 
 
 def _over_period(train: "Train", forces: np.ndarray) -> np.ndarray:

@@ -653,9 +653,9 @@ _ENDS: tuple[End, ...] = ("driver", "loaded")
 
 def ends_of(case: Case, mesh: Mesh) -> tuple[float, float]:
     """Rates of the driver and of the loaded member of a mesh."""
-    ends = _ends(case, mesh)
-    motion = np.asarray(nominal_motion(mesh, *ends))
-    first, last = (float(np.asarray(end) @ motion) for end in ends)
+    ends = jax.device_get(_ends(case, mesh))
+    motion = np.asarray(nominal_motion(jax.device_get(mesh), *ends))
+    first, last = (float(end @ motion) for end in ends)
     return first, last
 
 

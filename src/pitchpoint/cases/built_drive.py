@@ -600,7 +600,8 @@ class BuiltTrain(BuiltDrive):
     @property
     def step(self) -> float:
         """Rate of the output for a radian of the input."""
-        return 1.0 / float(self.design.ratio)
+        rates = self.design.rates
+        return float(rates[self.design.loaded]) / float(rates[self.design.turned])
 
     @property
     def output_rate(self) -> float:

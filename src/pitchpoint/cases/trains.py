@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pitchpoint._jax import jax
 from pitchpoint.cases.build import Built, drags
 from pitchpoint.cases.document import STAGES
 from pitchpoint.cases.schema import (
@@ -243,12 +244,13 @@ def _mass(built: Built, member: int) -> float:
 def _reference_radius(mesh: Any, member: int) -> float:
     """Of an external gear [m]."""
     turned = float(mesh.module) / np.cos(float(mesh.helix_angle))
-    return abs(float(mesh.teeth[member])) * float(turned) / 2.0
+    return abs(float(np.asarray(mesh.teeth)[member])) * float(turned) / 2.0
 
 
 def _root_radius(mesh: Any, member: int) -> float:
     """Of an external gear [m]."""
-    cut = float(mesh.dedendum[member] - mesh.profile_shift[member] - mesh.infeed[member])
+    held = jax.device_get(mesh)
+    cut = float(held.dedendum[member] - held.profile_shift[member] - held.infeed[member])
     return _reference_radius(mesh, member) - float(mesh.module) * cut
 
 
@@ -305,7 +307,7 @@ def _check_planets(case: DriveCase, built: Sequence[Built]) -> None:
                 f'profile_shift = "{FROM_CENTRE_DISTANCE}" for the other gear',
                 key=f"{STAGES}.{number}.gears.centre_distance",
             )
-        teeth = abs(float(mesh.teeth[member]))
+        teeth = abs(float(np.asarray(mesh.teeth)[member]))
         gear = _of_gear(one, member)
         before, other = known.setdefault(link.gears[member], (number, gear))
         different = next((key for key, value in gear.items() if value != other[key]), None)
@@ -327,7 +329,10 @@ def _of_gear(built: Built, member: int) -> dict[str, Any]:
     """What a gear is, by words, of one member of a mesh."""
     mesh: Any = built.design.mesh
     rough = built.design.roughness
-    numbers = {name.replace("_", " "): float(getattr(mesh, name)[member]) for name in _OF_A_GEAR}
+    numbers = {
+        name.replace("_", " "): float(np.asarray(getattr(mesh, name))[member])
+        for name in _OF_A_GEAR
+    }
     rq = (rough.rq_1, rough.rq_2)[member]
     return {
         "material": _material(built.solids[member].record),

@@ -3,14 +3,16 @@
 from collections.abc import Sequence
 from itertools import combinations
 from math import floor, gcd, pi, sin
+from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Array, Bool, Float, Int
 
-from pitchpoint._jax import array
+from pitchpoint._jax import jnp
 from pitchpoint.drive.kinematics import Link
 from pitchpoint.errors import InputError
 from pitchpoint.gears.pairs import planet_gears
+from pitchpoint.programs import program
 
 __all__ = [
     "ROOM_BETWEEN_PLANETS",
@@ -161,7 +163,7 @@ def check_neighbours(
             continue
         number = next(k for k, body in enumerate(link.bodies) if body in planets)
         apart = 2.0 * float(mesh.centre_distance) * np.sin(closest / 2.0)
-        tips = 2.0 * abs(float(mesh.tip_radii[number]))
+        tips = 2.0 * abs(float(np.asarray(_angles_and_tips(mesh)[1])[number]))
         if apart <= tips:
             raise InputError(
                 f"the planets run into each other: {1e3 * apart:.5g} mm apart, and their tip circles measure "
@@ -235,6 +237,12 @@ def _fitted(
     return phase
 
 
+@program
+def _angles_and_tips(mesh: Any) -> tuple[Float[Array, "2 2"], Float[Array, "2"]]:
+    """Angles of teeth at the start and the end of a period [rad], and tip radii [m]; of involute teeth."""
+    return mesh.tooth_angles(jnp.array([0.0, 1.0])), mesh.tip_radii
+
+
 def _teeth(link: Link, planets: Sequence[str], angle: float) -> list[Teeth]:
     """Angle of a tooth of each body of a mesh at phase zero, and how far it turns in a period."""
     mesh = planet_gears(link.mesh)
@@ -243,7 +251,7 @@ def _teeth(link: Link, planets: Sequence[str], angle: float) -> list[Teeth]:
             f"the mesh of {' and '.join(link.bodies)} is not one of a planet and a central gear with "
             "involute teeth"
         )
-    start, end = (np.asarray(mesh.tooth_angles(array(phase))) for phase in (0.0, 1.0))
+    start, end = np.asarray(_angles_and_tips(mesh)[0]).T
     # A planet sees the pitch point towards the axis, unless its mate is a ring.
     seen = [angle + pi * (body in planets and not mesh.internal) for body in link.bodies]
     return [

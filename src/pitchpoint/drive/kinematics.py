@@ -8,9 +8,10 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Float
 
+from pitchpoint._jax import jax
 from pitchpoint.brief import brief
 from pitchpoint.errors import InputError
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import Mesh, coordinates_of
 
 __all__ = ["HOUSING", "Ends", "Link", "body_rates"]
 
@@ -42,7 +43,8 @@ class Link(eqx.Module):
         return brief(self)
 
     def __check_init__(self) -> None:
-        names = [coordinate.body for coordinate in self.mesh.coordinates]
+        coordinates = coordinates_of(self.mesh)
+        names = [coordinate.body for coordinate in coordinates]
         if len(self.bodies) != len(names):
             raise InputError(
                 f"this mesh moves {len(names)} bodies ({', '.join(names)}), and {len(self.bodies)} of the "
@@ -55,7 +57,7 @@ class Link(eqx.Module):
                 f"{twice[0]} meshes with itself or carries its own axis; each gear of a mesh is a body of "
                 "its own, and so is the carrier of their axes"
             )
-        if self.carrier != HOUSING and not all(one.turns for one in self.mesh.coordinates):
+        if self.carrier != HOUSING and not all(one.turns for one in coordinates):
             raise InputError(
                 f"a rack travels in the housing, and the {self.carrier} would carry it round"
             )
@@ -74,7 +76,8 @@ class Link(eqx.Module):
         Turning all bodies of a mesh with their carrier neither closes flanks nor slides them, so the factor
         of a carrier is minus the sum of the others.
         """
-        factors = np.asarray(self.mesh.relation, float).tolist()
+        mesh = jax.device_get(self.mesh)
+        factors = np.asarray(mesh.relation, float).tolist()
         row = {self.carrier: -sum(factors)}
         for body, factor in zip(self.bodies, factors, strict=True):
             row[body] = row.get(body, 0.0) + factor

@@ -7,7 +7,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.drag import Drag, bearing_loads
 from pitchpoint.efficiency.drive import DriveLink, LinkPlace, UnderLoad, felt, overcome
 from pitchpoint.efficiency.quasi_static import (
@@ -20,7 +20,8 @@ from pitchpoint.efficiency.quasi_static import (
     state,
 )
 from pitchpoint.efficiency.running_torque import torques_at_rest
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import Mesh, coordinates_of
+from pitchpoint.gears.nominal_motion import nominal_motion
 from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.loading.registry import LoadSharing
@@ -54,13 +55,13 @@ class MeshLink(DriveLink):
     @property
     def bodies(self) -> int:
         """See `DriveLink`."""
-        return len(self.design.mesh.coordinates)
+        return len(coordinates_of(self.design.mesh))
 
     @property
     def ends(self) -> tuple[int, int]:
         """See `DriveLink`."""
         ends = self.design.driver, self.design.loaded
-        driver, loaded = (self.shafts[int(np.argmax(on))] for on in ends)
+        driver, loaded = (self.shafts[int(np.argmax(np.asarray(on)))] for on in ends)
         return driver, loaded
 
     @property
@@ -75,8 +76,9 @@ class MeshLink(DriveLink):
 
     def senses(self, before: float) -> tuple[float, float]:
         """See `DriveLink`."""
-        ends, motion = (self.design.driver, self.design.loaded), self.design.motion
-        sense_in, sense_out = (float(jnp.sign(motion @ end)) for end in ends)
+        mesh, *ends = jax.device_get((self.design.mesh, self.design.driver, self.design.loaded))
+        motion = nominal_motion(mesh, *ends)
+        sense_in, sense_out = (float(np.sign(motion @ end)) for end in ends)
         return sense_in, sense_out
 
     def driven_backwards(self) -> "MeshLink":

@@ -4,18 +4,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import gcd, lcm, pi
+from typing import Any
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from pitchpoint._jax import array, demand_double, jnp
+from pitchpoint._jax import array, demand_double, jax, jnp
 from pitchpoint.brief import brief
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Numbers
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.nominal_motion import nominal_period, phase_sense
 from pitchpoint.gears.period import TOGETHER
@@ -153,14 +155,15 @@ class Train(eqx.Module):
 
     def motion(self, mesh: TrainMesh) -> Float[Array, " dof"]:
         """Rates of the coordinates of a mesh against their carrier for a unit speed of the train."""
-        return _motion(mesh, self.rates)
+        carrier = self.rates[mesh.carrier]
+        return jnp.stack([self.rates[body] - carrier for body in mesh.bodies])
 
-    def onward(self, mesh: TrainMesh) -> Float[Array, ""]:
+    def onward(self, mesh: TrainMesh) -> Float[Numbers, ""]:
         """Sense in which the phase of a mesh runs: one, or minus one."""
-        return _onward(mesh, self.rates)
+        return phase_sense(mesh.design.mesh, self.motion(mesh))
 
     @property
-    def period(self) -> Float[Array, ""]:
+    def period(self) -> Float[Numbers, ""]:
         """Turn of the driving body in which all meshes come together again [rad]."""
         mesh = self.meshes[0]
         return mesh.periods * nominal_period(mesh.design.mesh, self.motion(mesh))
@@ -264,7 +267,7 @@ def gear_train(
                 design,
                 array(_padded(starts, starts[0])),
                 array(float(len(starts))),
-                array(abs(float(design.loaded @ torque))),
+                array(abs(float(np.asarray(design.loaded) @ torque))),
                 array(float(periods)),
                 link.bodies,
                 link.carrier,
@@ -319,10 +322,10 @@ def _roles(
     balanced = [ends.loaded, *free]
     rows = _rows(bodies, meshes, planets)
     return Roles(
-        jnp.asarray(bodies.index(turned)),
-        jnp.asarray(bodies.index(ends.loaded)),
-        jnp.asarray([bodies.index(body) for body in balanced]),
-        jnp.asarray([k for body in balanced for k, row in enumerate(rows) if row[0] == body]),
+        array(bodies.index(turned)),
+        array(bodies.index(ends.loaded)),
+        array([bodies.index(body) for body in balanced]),
+        array([k for body in balanced for k, row in enumerate(rows) if row[0] == body]),
     )
 
 
@@ -362,14 +365,14 @@ def _exchange(
     if angles is not None and not _together(angles * count / (2.0 * pi), every):
         return None
 
+    starts = [np.broadcast_to(np.asarray(one.phases)[: one.copies], (count,)) for one in meshes]
+    turned = [_onward_on_host(one, rates) * float(one.periods) for one in meshes]
+
     def fits(step: int) -> bool:
         ahead = every * step / count
         return all(
-            _together(
-                np.broadcast_to(np.asarray(mesh.phases)[: mesh.copies], (count,)),
-                float(mesh.phases[0]) + float(_onward(mesh, rates) * mesh.periods) * ahead,
-            )
-            for mesh in meshes
+            _together(start, start[0] + periods * ahead)
+            for start, periods in zip(starts, turned, strict=True)
         )
 
     step = next((step for step in range(count) if fits(step)), None)
@@ -388,18 +391,10 @@ def _together(first: Float[np.ndarray, " _"], second: Float[np.ndarray, " _"]) -
     return bool(np.max(np.abs(apart - np.round(apart))) < TOGETHER)
 
 
-Rates = Mapping[str, float] | Mapping[str, Float[Array, ""]]
-"""Rate of each body."""
-
-
-def _motion(mesh: TrainMesh, rates: Rates) -> Float[Array, " dof"]:
-    """See `Train.motion`."""
-    return jnp.stack([jnp.asarray(rates[body] - rates[mesh.carrier]) for body in mesh.bodies])
-
-
-def _onward(mesh: TrainMesh, rates: Rates) -> Float[Array, ""]:
-    """See `Train.onward`."""
-    return phase_sense(mesh.design.mesh, _motion(mesh, rates))
+def _onward_on_host(mesh: TrainMesh, rates: Mapping[str, float]) -> float:
+    """See `Train.onward`; nothing is compiled for it."""
+    against: Any = np.array([rates[body] - rates[mesh.carrier] for body in mesh.bodies])
+    return float(phase_sense(jax.device_get(mesh.design.mesh), against))
 
 
 def presses_other_flanks(mesh: Mesh, torque: Float[np.ndarray, " dof"]) -> bool:
@@ -409,6 +404,7 @@ def presses_other_flanks(mesh: Mesh, torque: Float[np.ndarray, " dof"]) -> bool:
         mesh: any family.
         torque: on its coordinates [N m or N].
     """
+    mesh = jax.device_get(mesh)
     return float(mesh.relation @ torque) < 0.0
 
 
@@ -430,13 +426,10 @@ def _periods(links: Sequence[Link], rates: Mapping[str, float]) -> list[int]:
     """Periods of each mesh in which all come together again."""
     mesh_rates = []
     for link in links:
-        mesh = link.mesh
-        against = [rates[body] - rates[link.carrier] for body in link.bodies]
-        mesh_rates.append(1.0 / float(nominal_period(mesh, jnp.array(against))))
+        against: Any = np.array([rates[body] - rates[link.carrier] for body in link.bodies])
+        mesh_rates.append(1.0 / float(nominal_period(jax.device_get(link.mesh), against)))
     fastest = max(mesh_rates)
-    parts = [
-        Fraction(mesh_rate / fastest).limit_denominator(MOST_PERIODS) for mesh_rate in mesh_rates
-    ]
+    parts = [Fraction(rate / fastest).limit_denominator(MOST_PERIODS) for rate in mesh_rates]
     periods = lcm(*(part.denominator for part in parts))
     if periods > MOST_PERIODS or not np.allclose(
         [*map(float, parts)], np.array(mesh_rates) / fastest, 1e-9

@@ -12,7 +12,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Shape
 from pitchpoint.contact.surface import Offset, other_side
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
+from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import ACTION, way
@@ -205,8 +205,8 @@ class InvoluteMesh(Mesh):
         return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)  # type: ignore[call-arg]
 
     @property
-    def _side(self) -> Float[Array, ""]:
-        return jnp.where(self.right_flank, -1.0, 1.0)
+    def _side(self) -> Float[Numbers, ""]:
+        return 1.0 - 2.0 * self.right_flank
 
 
 way.register(InvoluteMesh, lambda _: ACTION)

@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
+from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.coordinates import number_of
 from pitchpoint.gears.mesh import Mesh, coordinates_of, has
 
@@ -25,6 +25,8 @@ __all__ = [
 ]
 
 Rates = Float[Arrays, " dof"]
+"""Of a mesh whose numbers are those of NumPy, as `jax.device_get` gives it, so are these, and nothing is
+compiled for them."""
 
 MOTORS = "bodies of a rig have motors of their own, and a load that drives none of them"
 """Why other ends are no choice there."""
@@ -41,18 +43,22 @@ def usual_ends(mesh: Any) -> tuple[int, int]:
 
 
 @singledispatch
-def turned_rates(mesh: Any, driver: Rates) -> Float[Array, " dof"]:
+def turned_rates(mesh: Any, driver: Rates) -> Rates:
     """Rates of the coordinates that are turned from outside, zero of the others.
 
     Args:
         mesh: any family; that of most turns its driver alone.
         driver: one for the coordinate that drives.
     """
-    rates: Array = driver * jnp.sign(mesh.relation @ driver)
+    rates: Rates = driver * _sign(mesh.relation @ driver)
     return rates
 
 
-def nominal_motion(mesh: Mesh, driver: Rates, loaded: Rates) -> Float[Array, " dof"]:
+def _sign(value: Float[Numbers, ""]) -> Float[Numbers, ""]:
+    return 1.0 * (value > 0.0) - 1.0 * (value < 0.0)
+
+
+def nominal_motion(mesh: Mesh, driver: Rates, loaded: Rates) -> Rates:
     """Rates of the coordinates for a unit rate of the driver, which presses the flanks.
 
     Args:
@@ -64,24 +70,24 @@ def nominal_motion(mesh: Mesh, driver: Rates, loaded: Rates) -> Float[Array, " d
     return turned - (relation @ turned) / (relation @ loaded) * loaded
 
 
-def nominal_period(mesh: Mesh, motion: Rates) -> Float[Array, ""]:
+def nominal_period(mesh: Mesh, motion: Rates) -> Float[Numbers, ""]:
     """Motion of the driver in one period [rad or m].
 
     Args:
         mesh: any family.
         motion: of its coordinates for a unit rate of the driver.
     """
-    return mesh.pitch / jnp.abs(mesh.passing @ motion)
+    return mesh.pitch / abs(mesh.passing @ motion)
 
 
-def phase_sense(mesh: Mesh, motion: Rates) -> Float[Array, ""]:
+def phase_sense(mesh: Mesh, motion: Rates) -> Float[Numbers, ""]:
     """Sense in which the phase runs while the drive turns on: one, or minus one.
 
     Args:
         mesh: any family.
         motion: of its coordinates.
     """
-    return jnp.sign(mesh.passing @ motion)
+    return _sign(mesh.passing @ motion)
 
 
 def ratio_dimension(mesh: Mesh, driver: Rates, loaded: Rates) -> dict[str, Float[Array, ""]]:

@@ -134,10 +134,10 @@ def _beyond_fit(section: ToothSection) -> float:
     """
     half_thickness, height, angle = (
         float(np.asarray(values)[values.shape[-1] // 2])
-        for values in (*section.flank, section.load_angle)
+        for values in (*np.asarray(section.flank), section.load_angle)
     )
     ratio, half_angle = float(section.rim_ratio), float(section.root_half_angle)
-    clamped = float(section.flank[1][0]) - float(np.sum(section.step))
+    clamped = np.asarray(section.flank)[1, 0] - np.sum(np.asarray(section.step))
     width = 2.0 * half_angle * float(section.root_radius)
     arm = (height - half_thickness * np.tan(angle) - clamped) / width
 

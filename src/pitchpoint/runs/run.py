@@ -822,7 +822,7 @@ def _train(number: int, train: BuiltTrain, built: Ready) -> dict[str, Any]:
         "rates": dict(zip(train.case.bodies, train.motion, strict=True)),
         "ends": [design.turned, design.loaded, *design.held],
         "planets": sorted(design.planets),
-        "angles": [float(one) for one in design.angles][: train.planets],
+        "angles": design.angles.tolist()[: train.planets],
         "meshes": [
             {
                 "label": label,

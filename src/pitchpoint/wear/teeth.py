@@ -164,7 +164,7 @@ def backlash_growth(
 def _beside_pitch_line(mesh: Mesh, start: Start) -> Bool[np.ndarray, "place slice"]:
     """Places on slices beside which the sliding turns along a line, of all positions but where paths end."""
     # The sliding turns where it does, whoever drives.
-    motion = nominal_motion(mesh, *mesh_ends(mesh))
+    motion = nominal_motion(jax.device_get(mesh), *jax.device_get(mesh_ends(mesh)))
     slip = jax.device_get(along(start.contacts.slip_arm, motion))
     turns = np.sign(slip[:, 1:]) != np.sign(slip[:, :-1])
     beside = np.zeros(slip.shape, dtype=bool)

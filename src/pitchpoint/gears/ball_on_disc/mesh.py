@@ -7,6 +7,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Surfaces
+from pitchpoint.factored import Numbers
 from pitchpoint.gears.bodies import independent
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.rigs.rig import Rig
@@ -37,7 +38,7 @@ class BallOnDisc(Rig):
     surfaces: Surfaces = ((), ())
 
     @property
-    def other_rate(self) -> Float[Array, ""]:
+    def other_rate(self) -> Float[Numbers, ""]:
         """The ball is driven to the slide-roll ratio on its own."""
         slip = self.slide_roll_ratio
         return self.track_radius / self.radius[0] * (2.0 - slip) / (2.0 + slip)

@@ -12,7 +12,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Spot, Surfaces
-from pitchpoint.factored import Arrays
+from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.bodies import completed, drawing, independent, main_dimensions, plain_inertia
 from pitchpoint.gears.contact_lines import (
     InvoluteMesh,
@@ -387,19 +387,19 @@ class InvolutePair(InvoluteMesh):
         return jnp.asarray(1.0 - rolling[..., ::-1] / rolling)
 
     @property
-    def relation(self) -> Float[Array, "2"]:
+    def relation(self) -> Float[Arrays, "2"]:
         """Teeth pass the pitch point together: z1 q1 + z2 q2 = 0, the teeth of a ring counted negative."""
         return self._side * self.teeth
 
     @property
-    def pitch(self) -> Float[Array, ""]:
+    def pitch(self) -> Float[Numbers, ""]:
         """Angle of gear 1 of one base pitch [rad]."""
         return 2.0 * jnp.pi / self.teeth[0]
 
     @property
-    def passing(self) -> Float[Array, "2"]:
+    def passing(self) -> Float[Arrays, "2"]:
         """Pairs run from A to E as gear 1 turns on."""
-        return self._side * jnp.array([1.0, 0.0])
+        return self._side * np.array([1.0, 0.0])
 
     @property
     def active_flanks(self) -> Float[Array, "2 2"]:

@@ -9,7 +9,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot, Surfaces
-from pitchpoint.factored import Arrays
+from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.bodies import drawing, main_dimensions, plain_inertia
 from pitchpoint.gears.contact_lines import (
     InvoluteMesh,
@@ -144,7 +144,7 @@ class RackAndPinion(InvoluteMesh):
         return self._side * jnp.stack([self.pinion.reference_radius, -jnp.ones(())])
 
     @property
-    def pitch(self) -> Float[Array, ""]:
+    def pitch(self) -> Float[Numbers, ""]:
         """Angle of the pinion over one pitch [rad]."""
         return 2.0 * jnp.pi / self.pinion.teeth
 

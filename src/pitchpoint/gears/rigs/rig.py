@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot
-from pitchpoint.factored import Arrays
+from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.mesh import Mesh
@@ -54,7 +54,7 @@ class Rig(Mesh):
 
     @property
     @abc.abstractmethod
-    def other_rate(self) -> Float[Array, ""]:
+    def other_rate(self) -> Float[Numbers, ""]:
         """Rate of body 1, which is turned on its own, for a unit rate of body 0."""
 
     @property

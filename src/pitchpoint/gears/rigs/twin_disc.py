@@ -7,6 +7,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Surfaces
+from pitchpoint.factored import Numbers
 from pitchpoint.gears.bodies import independent
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.rigs.rig import Rig
@@ -32,7 +33,7 @@ class TwinDisc(Rig):
     surfaces: Surfaces = ((), ())
 
     @property
-    def other_rate(self) -> Float[Array, ""]:
+    def other_rate(self) -> Float[Numbers, ""]:
         """Disc 1 turns the other way at the speed that the ratio asks for."""
         return -self.speed_ratio * self.radii[0] / self.radii[1]
 

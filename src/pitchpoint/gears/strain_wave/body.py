@@ -143,7 +143,7 @@ class StrainWaveBody(GearBody):
         )
 
 
-def left_behind(teeth: Float[Array, "2"]) -> Float[Array, "3"]:
+def left_behind(teeth: Float[Arrays, "2"]) -> Float[Array, "3"]:
     """Teeth that are left behind in a turn of each member: factors of the rates, whose sum is zero."""
     z1, z2 = teeth
     return jnp.stack([z2 - z1, z1, -z2])

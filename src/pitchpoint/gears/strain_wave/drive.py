@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float, Int, Shaped
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, Shape, along
 from pitchpoint.contact.surface import Spot, Surfaces, other_side
-from pitchpoint.factored import Arrays
+from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.bodies import completed, drawing, independent, main_dimensions
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.mesh import Mesh
@@ -218,7 +218,7 @@ class StrainWave(Mesh):
         return ToothMotion(flank.prepared(), self.line, 1.0 - self.teeth[0] / self.teeth[1])
 
     @property
-    def tooth_angle(self) -> Float[Array, ""]:
+    def tooth_angle(self) -> Float[Numbers, ""]:
         """Angle of one pitch of the flexspline [rad]."""
         return 2.0 * jnp.pi / self.teeth[0]
 
@@ -228,7 +228,7 @@ class StrainWave(Mesh):
         return left_behind(self.teeth)
 
     @property
-    def pitch(self) -> Float[Array, ""]:
+    def pitch(self) -> Float[Numbers, ""]:
         """Angle by which the wave moves on by one tooth of the flexspline [rad]."""
         return self.tooth_angle
 
