@@ -18,14 +18,14 @@ from pitchpoint.errors import InputError
 from pitchpoint.results.netcdf import encode
 from pitchpoint.results.store import load, save_image
 
-__all__ = ["ALONG", "Pieces", "Summary", "as_whole", "summary_of"]
+__all__ = ["ALONG", "StudyPieces", "Summary", "as_whole", "summary_of"]
 
 ALONG = "design"
 """Dimension along which pieces follow each other."""
 
 
 @dataclass(frozen=True)
-class Pieces:
+class StudyPieces:
     """Where pieces of a study are: in files of a folder, or in memory without one.
 
     Attributes:
@@ -113,7 +113,7 @@ class Summary:
     reasons: Mapping[str, int]
 
 
-def summary_of(pieces: Pieces, codes_of: Callable[[xr.Dataset], np.ndarray]) -> Summary:
+def summary_of(pieces: StudyPieces, codes_of: Callable[[xr.Dataset], np.ndarray]) -> Summary:
     """What all pieces have together; one of them is in memory at a time.
 
     Args:
@@ -168,7 +168,7 @@ def _holding(kinds: Sequence[np.dtype[Any]], pieces: int) -> np.dtype[Any]:
 
 
 def as_whole(
-    pieces: Pieces,
+    pieces: StudyPieces,
     summary: Summary,
     dims: Mapping[str, int],
     shown: Callable[[xr.Dataset], xr.Dataset],
@@ -192,7 +192,7 @@ def as_whole(
 
 def _whole(
     name: str,
-    pieces: Pieces,
+    pieces: StudyPieces,
     summary: Summary,
     dims: Mapping[str, int],
     shown: Callable[[xr.Dataset], xr.Dataset],
@@ -222,7 +222,7 @@ class _Values(BackendArray):
     def __init__(
         self,
         read: Callable[[int], np.ndarray | None],
-        pieces: Pieces,
+        pieces: StudyPieces,
         shapes: tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...]],
         dtype: np.dtype[Any],
     ) -> None:

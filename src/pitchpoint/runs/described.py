@@ -21,7 +21,7 @@ from pitchpoint.programs import bound_programs, surroundings
 from pitchpoint.results.netcdf import encode
 from pitchpoint.results.pieces import ALONG
 from pitchpoint.results.store import fingerprint
-from pitchpoint.runs.layouts import Layout, layout_of
+from pitchpoint.runs.layouts import StudyLayout, layout_of
 from pitchpoint.runs.run import mark_of
 
 __all__ = ["StudyDescription", "piece_elsewhere"]
@@ -76,7 +76,7 @@ class StudyDescription:
         }
 
     @cached_property
-    def layout(self) -> Layout:
+    def layout(self) -> StudyLayout:
         """Values of the designs; InputError for what cannot be."""
         return layout_of(self.variant, self.over, self.how, self.n, self.seed)
 

@@ -20,7 +20,7 @@ from pitchpoint.results.chosen_units import unit_in_use
 from pitchpoint.results.labelled import Units
 from pitchpoint.runs.case import written
 
-__all__ = ["MOST_DESIGNS", "Axis", "How", "Layout", "layout_of", "sobol_shares"]
+__all__ = ["MOST_DESIGNS", "How", "StudyAxis", "StudyLayout", "layout_of", "sobol_shares"]
 
 How = Literal["grid", "zip", "latin_hypercube", "sobol"]
 
@@ -29,7 +29,7 @@ MOST_DESIGNS = 10_000_000
 
 
 @dataclass(frozen=True)
-class Axis:
+class StudyAxis:
     """Values of one key.
 
     Attributes:
@@ -43,7 +43,7 @@ class Axis:
     values: Sequence[Any]
 
     @classmethod
-    def of(cls, variant: Variant, key: str, values: Any) -> "Axis":
+    def of(cls, variant: Variant, key: str, values: Any) -> "StudyAxis":
         """Axis of a case; InputError for a key or values that are none."""
         try:
             quantity = quantity_at(key, variant.document().tree)
@@ -111,7 +111,7 @@ def _demand_value(value: Any, quantity: Quantity | None) -> None:
 
 
 @dataclass(frozen=True)
-class Layout:
+class StudyLayout:
     """Designs of a study, of which any range is made without the others.
 
     Attributes:
@@ -121,7 +121,7 @@ class Layout:
         seed: of what is drawn.
     """
 
-    axes: Mapping[str, Axis]
+    axes: Mapping[str, StudyAxis]
     count: int
     n: int | None
     seed: int
@@ -141,7 +141,7 @@ class Layout:
         return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
-class _Grid(Layout):
+class _Grid(StudyLayout):
     @property
     def dims(self) -> dict[str, int]:
         return {key: len(axis.values) for key, axis in self.axes.items()}
@@ -154,12 +154,12 @@ class _Grid(Layout):
         }
 
 
-class _Zip(Layout):
+class _Zip(StudyLayout):
     def columns(self, first: int, stop: int) -> dict[str, list[Any]]:
         return {key: [*axis.values[first:stop]] for key, axis in self.axes.items()}
 
 
-class _Drawn(Layout):
+class _Drawn(StudyLayout):
     def shares(self, first: int, stop: int) -> Float[np.ndarray, "design key"]:
         """Shares of the ranges of a range of designs."""
         raise NotImplementedError
@@ -186,7 +186,7 @@ class _Sobol(_Drawn):
         return sobol_shares(self.count, len(self.axes), self.seed, first=first, stop=stop)
 
 
-_LAYOUTS: dict[str, type[Layout]] = {
+_LAYOUTS: dict[str, type[StudyLayout]] = {
     "grid": _Grid,
     "zip": _Zip,
     "latin_hypercube": _LatinHypercube,
@@ -196,7 +196,7 @@ _LAYOUTS: dict[str, type[Layout]] = {
 
 def layout_of(
     variant: Variant, over: Mapping[str, Any], how: str, n: int | None, seed: int
-) -> Layout:
+) -> StudyLayout:
     """Designs of a study, see there.
 
     Args:
@@ -207,7 +207,7 @@ def layout_of(
     Raises:
         InputError: no such key or way, values that a key does not take, a number of designs that cannot be.
     """
-    axes = {key: Axis.of(variant, key, values) for key, values in over.items()}
+    axes = {key: StudyAxis.of(variant, key, values) for key, values in over.items()}
     _demand_way(how)
     return _LAYOUTS[how](axes, _COUNTED[how](axes, n), n, seed)
 
@@ -218,11 +218,11 @@ def _demand_way(how: str) -> None:
         raise InputError(f"{shown(how)} is no way to lay out a study; use one of {known}")
 
 
-def _of_grid(axes: Mapping[str, Axis], _: int | None) -> int:
+def _of_grid(axes: Mapping[str, StudyAxis], _: int | None) -> int:
     return _possible(prod(len(axis.values) for axis in axes.values()))
 
 
-def _of_zip(axes: Mapping[str, Axis], _: int | None) -> int:
+def _of_zip(axes: Mapping[str, StudyAxis], _: int | None) -> int:
     lengths = {key: len(axis.values) for key, axis in axes.items()}
     if len({*lengths.values()}) > 1:
         told = ", ".join(f"{count} of {key}" for key, count in lengths.items())
@@ -230,14 +230,14 @@ def _of_zip(axes: Mapping[str, Axis], _: int | None) -> int:
     return _possible(next(iter(lengths.values())))
 
 
-def _of_latin_hypercube(axes: Mapping[str, Axis], n: int | None) -> int:
+def _of_latin_hypercube(axes: Mapping[str, StudyAxis], n: int | None) -> int:
     if n is None:
         raise InputError("a Latin hypercube needs the number of designs, n")
     _demand_ranges(axes)
     return _possible(n)
 
 
-def _of_sobol(axes: Mapping[str, Axis], n: int | None) -> int:
+def _of_sobol(axes: Mapping[str, StudyAxis], n: int | None) -> int:
     count = _power_of_two(n)
     _demand_ranges(axes)
     return count
@@ -251,7 +251,7 @@ _COUNTED = {
 }
 
 
-def _demand_ranges(axes: Mapping[str, Axis]) -> None:
+def _demand_ranges(axes: Mapping[str, StudyAxis]) -> None:
     for axis in axes.values():
         _ = axis.ends
 

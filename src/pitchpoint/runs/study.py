@@ -21,11 +21,11 @@ from pitchpoint.doubts import stored
 from pitchpoint.errors import InputError
 from pitchpoint.results.chosen_units import shown_in, unit_choice
 from pitchpoint.results.labelled import Units, demand_units, in_units, showing
-from pitchpoint.results.pieces import ALONG, Pieces, Summary, as_whole, summary_of
+from pitchpoint.results.pieces import ALONG, StudyPieces, Summary, as_whole, summary_of
 from pitchpoint.results.store import make_folder, sole_writer, sweep
 from pitchpoint.runs.case import Case, CaseLike, as_case
 from pitchpoint.runs.described import StudyDescription
-from pitchpoint.runs.layouts import Axis, How, Layout, layout_of
+from pitchpoint.runs.layouts import How, StudyAxis, StudyLayout, layout_of
 from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import FrictionChoice, Progress, own_law
 from pitchpoint.runs.workers import pieces_of_workers
@@ -110,7 +110,7 @@ def study(
     values = {key: axis.values for key, axis in layout.axes.items()}
     asked = StudyDescription(base.computed, values, how, n, seed, piece)
     where = None if folder is None else Path(folder)
-    pieces = Pieces(where, f"designs_{asked.mark[:8]}", asked.mark, layout.count, piece)
+    pieces = StudyPieces(where, f"designs_{asked.mark[:8]}", asked.mark, layout.count, piece)
     with ExitStack() as stack:
         if where is not None:
             stack.enter_context(_alone(where))
@@ -136,7 +136,7 @@ def drawn_values(
     chosen = as_case(case) if variant is None else Case(case, variant=variant)
     ranges = _whole_keys(chosen, over).items()
     return {
-        key: Axis.of(chosen.held[0], key, values).drawn(shares[:, at])
+        key: StudyAxis.of(chosen.held[0], key, values).drawn(shares[:, at])
         for at, (key, values) in enumerate(ranges)
     }
 
@@ -148,7 +148,7 @@ def _whole_keys(case: Case, over: Mapping[str, Any]) -> dict[str, Any]:
     return {case.key(name): values for name, values in over.items()}
 
 
-def _demand_meant(base: Variant, layout: Layout) -> None:
+def _demand_meant(base: Variant, layout: StudyLayout) -> None:
     """InputError where one number would stand for two different ones, or changes nothing."""
     built = base.built({})
     for key, axis in layout.axes.items():
@@ -157,7 +157,7 @@ def _demand_meant(base: Variant, layout: Layout) -> None:
 
 
 def _demand_place(
-    layout: Layout, base: Variant, folder: object, workers: int | None, scheduler: str | None
+    layout: StudyLayout, base: Variant, folder: object, workers: int | None, scheduler: str | None
 ) -> None:
     """InputError for designs that would fill the memory, and for workers that cannot do them."""
     if folder is None and layout.count > MOST_IN_MEMORY:
@@ -185,7 +185,7 @@ def _alone(folder: Path) -> Iterator[None]:
 
 def _compute(
     asked: StudyDescription,
-    pieces: Pieces,
+    pieces: StudyPieces,
     workers: int | None,
     scheduler: str | None,
     progress: Progress,
@@ -215,7 +215,7 @@ class Pace:
         progress: that is told.
     """
 
-    def __init__(self, pieces: Pieces, missing: Sequence[int], progress: Progress) -> None:
+    def __init__(self, pieces: StudyPieces, missing: Sequence[int], progress: Progress) -> None:
         self.pieces, self.progress, self.begun = pieces, progress, monotonic()
         self.left = sum(map(self._designs, missing))
         self.done = 0
@@ -254,7 +254,7 @@ def _duration(seconds: float) -> str:
 
 
 def _opened(
-    pieces: Pieces, layout: Layout, name: str, choice: Mapping[str, str], units: Units
+    pieces: StudyPieces, layout: StudyLayout, name: str, choice: Mapping[str, str], units: Units
 ) -> xr.Dataset:
     """All pieces as one dataset in some units; one piece, and what no folder keeps, in memory."""
 
@@ -276,7 +276,7 @@ def _opened(
     return data.load() if pieces.folder is None or len(pieces) == 1 else data
 
 
-def _keys_in(part: xr.Dataset, layout: Layout, units: Units) -> xr.Dataset:
+def _keys_in(part: xr.Dataset, layout: StudyLayout, units: Units) -> xr.Dataset:
     """A part of a study whose keys are in the units in which they are shown."""
     for key, axis in layout.axes.items():
         if key in part.variables and (unit := axis.unit_in(units)):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from pitchpoint.errors import InputError, PitchpointError, shorten
 from pitchpoint.input.quantities import shown
 from pitchpoint.programs import surroundings
-from pitchpoint.results.pieces import Pieces
+from pitchpoint.results.pieces import StudyPieces
 from pitchpoint.runs.described import StudyDescription, piece_elsewhere
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ GOES_ON = "pieces that are kept stay; the same command goes on from them"
 
 def pieces_of_workers(
     study: StudyDescription,
-    pieces: Pieces,
+    pieces: StudyPieces,
     missing: Sequence[int],
     workers: int | None,
     scheduler: str | None,
@@ -185,7 +185,7 @@ _OF_WORKERS = (
 
 
 def _landing(
-    client: "Client", study: StudyDescription, pieces: Pieces, missing: Sequence[int]
+    client: "Client", study: StudyDescription, pieces: StudyPieces, missing: Sequence[int]
 ) -> Generator[tuple[int, bytes], None, None]:
     """Pieces as they come; no more are asked for than keep the workers busy."""
     left, asked = iter(missing), dict[Any, int]()
@@ -222,7 +222,7 @@ def _reachable() -> Iterator[None]:
 
 
 def _submitted(
-    client: "Client", study: StudyDescription, pieces: Pieces, number: int
+    client: "Client", study: StudyDescription, pieces: StudyPieces, number: int
 ) -> "Future[Any]":
     return client.submit(
         piece_elsewhere,
