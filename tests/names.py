@@ -62,8 +62,18 @@ def generic_share(names: Counter[str]) -> float:
     return sum(names[name] for name in GENERIC) / names.total()
 
 
+COMMANDS = "cli.py"
+"""Its functions are the commands, each named as the function that it calls."""
+
+
 def _defined(kind: type[ast.ClassDef] | type[ast.FunctionDef]) -> Counter[str]:
-    return Counter(node.name for _, tree in trees() for node in tree.body if isinstance(node, kind))
+    return Counter(
+        node.name
+        for path, tree in trees()
+        if path.name != COMMANDS
+        for node in tree.body
+        if isinstance(node, kind)
+    )
 
 
 def repeated_classes() -> set[str]:

@@ -1115,7 +1115,7 @@ def size(
     load and that no other one beats, each a case file that runs.
     """
     from pitchpoint.sizing.sizing import size as sized
-    from pitchpoint.views.sizing_screen import as_json, sizing_screen
+    from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
 
     options: dict[str, Any] = {
         "ratio_tolerance": ratio_tolerance,
@@ -1135,7 +1135,7 @@ def size(
     if output is not None:
         found.write(output)
     if json_:
-        _emit(as_json(found))
+        _emit(sizing_as_json(found))
         return
     console = _console()
     for line in sizing_screen(found, console.width, output):

@@ -179,6 +179,37 @@ def test_planets_are_pulled_outwards_by_the_mass_of_their_gears():
 
 
 @pytest.mark.whole
+def test_what_starts_a_3k_either_way_is_the_braking_of_its_planets_times_their_speeds():
+    """Without friction: power of three seals at w_p - w_c; at the output the ratio times that at the sun."""
+    held = {"between": ["planet", "carrier"], "breakaway_torque": "0.01 N m"}
+    built, _ = figures(THREE_K | {"losses": {"pin": held}}, models__friction__coefficient=0.0)
+    data = ANALYSES["running"].compute(built, {}, lambda *_: None)
+    there = data.sel(temperature=built.case.operation.temperature).isel(law=0)
+    against = (
+        18 / 36 * 90 / 108
+    )  # planets by the sun, both against the carrier that the ring leaves 18/108
+    start = 3 * 0.01 * against
+    assert there["starting_torque"].item() == pytest.approx(start, rel=1e-9)
+    assert there["back_driving_torque"].item() == pytest.approx(176.0 * start, rel=1e-9)
+
+
+@pytest.mark.whole
+def test_the_margin_of_self_locking_is_the_friction_beyond_which_a_3k_holds():
+    """Backwards its ring meshes lock it where e_1 e_2 = I_2 in the mean, and before at the worst phase."""
+    built, found = figures(THREE_K)
+    data = ANALYSES["back_driving"].compute(built, {}, lambda *_: None).isel(law=0, point=0)
+    margin, acting = float(data["self_locking_margin"]), 0.05
+    of_rings = (1.0 - found["stage_efficiency"][1:]) / acting
+    mean = np.roots([of_rings.prod(), -of_rings.sum(), 1.0 - 90 * 34 / (36 * 88)]).min()
+    assert margin > 1.0 and margin * acting < mean
+    for times, holds in ((0.98, False), (1.02, True)):
+        case = load_case(THREE_K, settings={"models.friction.coefficient": times * margin * acting})
+        back = ANALYSES["back_driving"].compute(case, {}, lambda *_: None).isel(law=0, point=0)
+        assert bool(back["locked"]) == holds
+        assert float(back["self_locking_margin"]) == pytest.approx(1.0 / times, rel=1e-6)
+
+
+@pytest.mark.whole
 def test_bearings_of_planets_and_seals_take_their_part():
     """The pin bears two tangential forces; torques from rest go either way, with the band of what holds."""
     seal = {"between": ["sun", "housing"], "seal_torque": "0.02 N m"}
@@ -279,6 +310,9 @@ def test_torque_and_forces_over_the_period_have_the_means_of_the_operating_point
     assert data["input_torque"].values.max() <= found["max_input_torque"] * (1 + 1e-12)
     # A tooth of the sun comes to a planet once in so much of a turn against the carrier.
     assert data.attrs["driver_period"] == pytest.approx(2 * np.pi / 25 / (83 / 108))
+    outside = dict(zip(data["outer_body"].values, data["outside_torque"].values[0], strict=True))
+    sun = found["mean_input_torque"]
+    assert outside == pytest.approx({"sun": sun, "carrier": -60.0, "ring": 60.0 - sun}, rel=1e-9)
     ends = data["driver_angle"].values[[0, -1]]
     assert ends == pytest.approx([0.0, data.attrs["driver_period"]], abs=1e-9)
     first, second = data["contact_force"].values[0]

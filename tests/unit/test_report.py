@@ -52,7 +52,7 @@ from pitchpoint.views.report import render, write_report
 from pitchpoint.views.section import KeyFigure, Page, Paragraph, naming, told_of_variants
 from pitchpoint.views.sections import compared as comparison
 from pitchpoint.views.sections.answer import ANSWER, summary
-from pitchpoint.views.sections.back_driving import back_driving_figure
+from pitchpoint.views.sections.back_driving import back_driving_figure, margin_figure
 from pitchpoint.views.sections.cycle import _mean_friction
 from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.path import loss_places, loss_sentence
@@ -756,6 +756,10 @@ def test_a_drive_that_locks_or_nearly_does_is_told_among_the_first_figures(wheel
     assert figure.detail == "locks from μ = 0.29 on; at most 0.25 acts"
     back["locked"] = back["locked"] | True
     assert back_driving_figure(near, law).value == "self-locking"
+    back["self_locking_margin"].values[:] = 0.29 / 0.25
+    (margin,) = margin_figure(near, law)
+    assert (margin.name, margin.value) == ("Self-locking margin", "1.16")
+    assert [*margin_figure(outcome, law)] == []  # no flank has the friction that would lock it
 
 
 def test_a_law_that_locks_is_named_beside_the_others(wheel: Outcomes) -> None:

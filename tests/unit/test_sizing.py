@@ -7,7 +7,7 @@ import pytest
 
 from pitchpoint.errors import InputError
 from pitchpoint.sizing.arrangements import reach_words
-from pitchpoint.sizing.front import CHUNK, non_dominated, spread
+from pitchpoint.sizing.front import CHUNK, evenly_spread, non_dominated
 from pitchpoint.sizing.sizing import size
 from pitchpoint.sizing.stage_forms import tooth_loss
 from pitchpoint.sizing.strain_wave import strain_wave_sizes, why_no_size
@@ -73,9 +73,9 @@ def test_a_front_is_that_of_every_pair_compared():
 
 def test_a_few_stand_for_many_with_both_ends():
     values = np.random.default_rng(1).normal(size=50)
-    few = spread(values, 7)
+    few = evenly_spread(values, 7)
     assert len(few) == 7 and values[few[0]] == values.min() and values[few[-1]] == values.max()
-    assert len(spread(values, 80)) == 50
+    assert len(evenly_spread(values, 80)) == 50
 
 
 def test_losses_of_helical_teeth_are_the_mean_over_lines_that_fill_the_path():

@@ -26,7 +26,8 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import FELT, GUESSED, Doubt, doubts_of, in_percent, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models
-from pitchpoint.results.store import dataset, without_nan
+from pitchpoint.results.store import dataset, describe, without_nan
+from pitchpoint.results.variables import VARIABLES
 
 __all__ = [
     "BACK_DRIVING",
@@ -204,7 +205,16 @@ def _back_driving(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     for name in ("mean_input_torque", "max_input_torque", "min_input_torque", "torque_ripple"):
         if name in data:
             data[name].attrs["note"] = "of the member that the case loads, which drives here"
+    acting, limit = (data[f"nearest_{name}"] for name in ("friction", "jamming_coefficient"))
+    margin = np.divide(
+        limit.values, acting.values, out=np.full(limit.shape, np.inf), where=acting.values > 0.0
+    )
+    data[_MARGIN] = limit.dims, margin
+    describe(data, {_MARGIN: VARIABLES[_MARGIN]})
     return data
+
+
+_MARGIN = "self_locking_margin"
 
 
 def _law_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
@@ -220,7 +230,7 @@ def _law_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 def _backward_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     """Figures by law with the loaded member driving; none where nothing is transmitted."""
     data = parts.get("back_driving")
-    names = ("mean_efficiency", "locked", "jamming_coefficient")
+    names = ("mean_efficiency", "locked", "jamming_coefficient", _MARGIN)
     return {"back_driving": {} if data is None else by_law(data, names)}
 
 

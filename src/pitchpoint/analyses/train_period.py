@@ -1,5 +1,6 @@
 """A gear train over its period: torque of the driving body, forces of every planet in every mesh."""
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -51,6 +52,7 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
         np.stack([cycle[name] for cycle in cycles]) for name in ("code", "residual")
     )
     thrusts, tilting = _axial_loads(built)
+    outside = _from_outside(built, cycles)
     return dataset(
         {
             "driver_angle": (("node",), phase.ravel() * driver_period),
@@ -59,6 +61,7 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
             "efficiency": (("law", "node"), whole("efficiency")),
             "loss": (("law", "node"), whole("loss")),
             "contact_force": (("law", "stage", "planet", "node"), forces),
+            "outside_torque": (("law", "outer_body"), np.transpose([*outside.values()])),
             "body_thrust": (("body",), [*thrusts.values()]),
             "planet_tilting_moment": ((), tilting),
         },
@@ -66,6 +69,7 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
             "law": built.law_names,
             "stage": [*built.numbers],
             "planet": np.arange(1, planets + 1),
+            "outer_body": [*outside],
             "body": [*thrusts],
         },
         title="period of the train",
@@ -85,6 +89,7 @@ def _period(train: "Train", operation: Operation, laws: tuple[Models, ...]) -> d
         "input_torque": jnp.where(solved, cycle.input_torque, jnp.nan),
         "efficiency": power_ratio(cycle.output_power, cycle.input_power),
         "loss": cycle.loss,
+        "torques": {body: cycle.weight @ torque for body, torque in cycle.torques.items()},
         "forces": [mesh.force for mesh in cycle.meshes],
         "code": cycle.status.code,
         "residual": cycle.status.residual,
@@ -98,6 +103,20 @@ def _driver_period(train: "Train") -> float:
     against: Any = np.array([rates[body] - rates[mesh.carrier] for body in mesh.bodies])
     period = nominal_period(jax.device_get(mesh.design.mesh), against)
     return float(mesh.periods) * float(period)
+
+
+def _from_outside(built: BuiltTrain, cycles: Sequence[Mapping[str, Any]]) -> dict[str, list[float]]:
+    """Mean torques from outside under each law on every body that is turned, loaded or held [N m].
+
+    They are positive as the input turns.
+    """
+    train = built.design
+    sense = float(np.sign(train.rates[built.driver]))
+    return {
+        body: [sense * float(cycle["torques"][body]) for cycle in cycles]
+        for body in cycles[0]["torques"]
+        if body not in train.free
+    }
 
 
 def _over_period(train: "Train", forces: np.ndarray) -> np.ndarray:

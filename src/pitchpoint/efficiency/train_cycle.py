@@ -117,13 +117,13 @@ class TrainCycle(eqx.Module):
             in the first part of it that repeats but for that, see `Train.turns`.
         weight: of each node; they sum to one.
         meshes: states of the meshes at the nodes.
-        torques: from outside on every body that is not free, by name; none of a train without names
-            [N m or N].
+        torques: from outside on every body that is not free, by name; of a train without names on every
+            body, rounding on those that are free [N m or N].
         drag_loss: power lost beside the teeth [W].
         pressed: load on the bearing of each place, of several planets the mean [N].
         input_power, output_power: at the nodes [W].
-        levers: of a unit of normal force in each mesh on each body in equilibrium, all planets as one: of its
-            normal part, and of its friction for a coefficient of one.
+        levers: of a unit of normal force in each mesh on each body in equilibrium, with each planet as if it
+            were alone: of its normal part, and of its friction for a coefficient of one.
         status: of the search for forces at each node.
         nodes: static, nodes in each segment between events.
     """
@@ -137,7 +137,7 @@ class TrainCycle(eqx.Module):
     input_torque: Nodes
     input_power: Nodes
     output_power: Nodes
-    levers: Float[Array, "2 node body mesh"]
+    levers: Float[Array, "2 node copy body mesh"]
     status: Status
     nodes: int = eqx.field(static=True)
 
@@ -235,11 +235,12 @@ def train_cycle(
     on_bodies = jnp.stack([torques.get(body, 0.0 * weight) for body in train.bodies])
     driving = on_bodies[roles.turned] * jnp.sign(rates[roles.turned])
     power_out = operation.load * jnp.abs(rates[roles.loaded]) * operation.speed
+    balanced = train.free if train.turned else ()
     return TrainCycle(
         phase,
         weight,
         states,
-        {body: torque for body, torque in torques.items() if body not in train.free},
+        {body: torque for body, torque in torques.items() if body not in balanced},
         sum((place.lost for place in places), jnp.zeros_like(weight)),
         tuple(place.pressed for place in places),
         driving,
@@ -479,21 +480,23 @@ def _asked(train: Train, operation: Operation) -> Float[Array, "row 1"]:
     return jnp.zeros((*roles.rows.shape, 1)).at[0].set(load)
 
 
-def _levers(train: Train, every: Sequence[_Meshing]) -> Float[Array, "2 node body mesh"]:
-    """See `TrainCycle.levers`."""
+def _levers(train: Train, every: Sequence[_Meshing]) -> Float[Array, "2 node copy body mesh"]:
+    """See `TrainCycle.levers`; places without a planet have those of the first one."""
+    places = max(meshing.mesh.places for meshing in every)
 
-    def on_bodies(meshing: _Meshing, coefficient: float) -> Float[Array, "body node"]:
+    def on_bodies(meshing: _Meshing, coefficient: float) -> Float[Array, "body copy node"]:
         arms = meshing.of_force(jnp.where(meshing.carrying, coefficient, 0.0), meshing.nominal)
         nothing = jnp.zeros(meshing.nominal.shape)
         by_body = (arms.get(body, nothing) for body in train.bodies)
-        on_each = jnp.stack([jnp.sum(arm, axis=0) / meshing.mesh.count for arm in by_body])
+        on_each = jnp.stack([jnp.where(meshing.there, arm, arm[:1]) for arm in by_body])
+        on_each = jnp.broadcast_to(on_each, (len(train.bodies), places, on_each.shape[-1]))
         return on_each[train.roles.balanced]
 
     normal, with_friction = (
         jnp.stack([on_bodies(meshing, coefficient) for meshing in every], axis=-1)
         for coefficient in (0.0, 1.0)
     )
-    return jnp.moveaxis(jnp.stack([normal, with_friction - normal]), 2, 1)
+    return jnp.moveaxis(jnp.stack([normal, with_friction - normal]), (3, 2), (1, 2))
 
 
 def _arms(train: Train, every: Sequence[Mapping[str, Copies]]) -> Arms:

@@ -49,7 +49,7 @@ class TrainState(eqx.Module):
     contact_force_ratio: Each
     largest_friction: Each
     pressed: tuple[Each, ...]
-    levers: Float[Array, "*b 2 body mesh"]
+    levers: Float[Array, "*b 2 copy body mesh"]
     status: Status
 
     @property

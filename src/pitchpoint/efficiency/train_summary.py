@@ -32,6 +32,9 @@ __all__ = [
 MOST_BYTES = 1e9
 """Memory that the states of one chunk of points may take [B]."""
 
+ROUNDING = 1e-9
+"""Part of the largest lever by which those of planets in phase differ."""
+
 OF_A_LANE = 300.0
 """Memory for each contact at a phase [B], as the compiler tells."""
 
@@ -89,7 +92,7 @@ class NearestToJamming(NamedTuple):
 
 
 def nearest_to_jamming(
-    levers: Float[np.ndarray, "point 2 node body mesh"],
+    levers: Float[np.ndarray, "point 2 node copy body mesh"],
     friction: Float[np.ndarray, "point node"],
     lost: Bool[np.ndarray, "point node"],
 ) -> NearestToJamming:
@@ -145,7 +148,7 @@ def _sizes(mesh: Mesh, sharing: LoadSharing) -> tuple[Array, Array]:
 
 
 def jamming_coefficients(
-    levers: Float[np.ndarray, "point 2 node body mesh"],
+    levers: Float[np.ndarray, "point 2 node copy body mesh"],
 ) -> Float[np.ndarray, "point node"]:
     """Smallest coefficient of friction, the same at all contacts, from which on a train is locked.
 
@@ -155,11 +158,17 @@ def jamming_coefficients(
     Returns:
         At each node; infinite where friction pushes on.
 
-    From the smallest positive root of det(A + mu B), an eigenvalue of A^-1 B.
+    From the smallest positive root of det(A + mu B), an eigenvalue of A^-1 B, of any planet: the first one
+    that friction holds would have the others pull at it.
     """
+    # Planets in phase, and places without one, are as the first one, and take no time.
+    size = ROUNDING * np.abs(levers).max()
+    apart = np.abs(levers - levers[:, :, :, :1]).max(axis=(0, 1, 2, 4, 5)) > size
+    apart[0] = True
+    levers = levers[:, :, :, apart]
     roots = np.linalg.eigvals(-np.linalg.solve(levers[:, 0], levers[:, 1]))
     real = np.where(np.abs(roots.imag) <= 1e-9 * np.abs(roots.real), roots.real, 0.0)
-    largest = np.max(real, axis=-1)
+    largest = np.max(real, axis=(-1, -2))
     infinite = np.full(largest.shape, np.inf)
     return np.asarray(np.divide(1.0, largest, out=infinite, where=largest > 0.0))
 

@@ -24,6 +24,7 @@ __all__ = [
     "length",
     "mass",
     "moment_of_inertia",
+    "oil_viscosity",
     "percent",
     "power",
     "pressure",
@@ -35,7 +36,6 @@ __all__ = [
     "time",
     "torque",
     "torsional_stiffness",
-    "viscosity",
 ]
 
 _BASE = "(m|kg|s|K|N|Pa|W|J|rad)[2-4]?"
@@ -206,6 +206,6 @@ def torsional_stiffness(long_name: str, symbol: str, shown: str = "kN m/rad") ->
     return _of_kind(long_name, symbol, "torsional stiffness", shown)
 
 
-def viscosity(long_name: str, symbol: str, shown: str = "mPa s") -> Variable:
+def oil_viscosity(long_name: str, symbol: str, shown: str = "mPa s") -> Variable:
     """A dynamic viscosity [Pa s]."""
     return _of_kind(long_name, symbol, "dynamic viscosity", shown)

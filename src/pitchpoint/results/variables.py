@@ -61,6 +61,9 @@ VARIABLES: dict[str, Variable] = {
     "nearest_jamming_coefficient": dimensionless(
         "friction coefficient at which the mesh locks there", "μ lock"
     ),
+    "self_locking_margin": dimensionless(
+        "friction that locks the drive over that which acts", "μ lock/μ"
+    ),
     "contact_line_length": length("length of all contact lines together", "l"),
     "pitch_line_load": Variable(
         long_name="tangential force at the base circle over the face width, F_bt/b",
@@ -87,6 +90,7 @@ VARIABLES: dict[str, Variable] = {
     "ball_contact_diameter": length("diameter on which the balls touch", "d_K"),
     "pin_error": length("way by which a pin is ahead along its circle", "e", shown="um"),
     "pin_force": force("force of a planet on its pin along the circle", "F_pin"),
+    "outside_torque": torque("mean torque from outside on a body", "T_ext"),
     "body_thrust": force("axial force of the teeth on a body, one planet", "F_a"),
     "planet_tilting_moment": torque("moment of the axial forces that tilts a planet", "M_p"),
     "planet_share": dimensionless("load of a planet over that of an equal share", "F/F_mean"),

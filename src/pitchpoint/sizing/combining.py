@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 
 from pitchpoint.sizing.arrangements import Arrangement, arrangements, reach_words
 from pitchpoint.sizing.for_ratio import MODULES
-from pitchpoint.sizing.front import non_dominated, spread
+from pitchpoint.sizing.front import evenly_spread, non_dominated
 from pitchpoint.sizing.stage_forms import Form, Forms, Sized
 from pitchpoint.sizing.task import Task
 
@@ -71,7 +71,7 @@ class Drives:
     def few(self, count: int) -> "Drives":
         """At most so many of those that no other one beats, evenly by their mass."""
         front = self[non_dominated(self.costs)]
-        return front[spread(front.mass, count)]
+        return front[evenly_spread(front.mass, count)]
 
 
 class NoDriveError(Exception):
@@ -178,7 +178,7 @@ def _options(
         most = task.most_distance(load[0], stages)
         some = sizes[(of_load == place) & bears & sound & (~of_pairs | (sizes.distance <= most))]
         some = some[non_dominated(np.stack([some.mass, some.loss, some.diameter], 1))]
-        options[load] = some[spread(some.mass, KEPT[stages])]
+        options[load] = some[evenly_spread(some.mass, KEPT[stages])]
     for stage in range(stages):
         if not any(len(options[load]) for load in loads if load[0] == stage):
             of_stage = np.isin(of_load, [k for k, load in enumerate(loads) if load[0] == stage])

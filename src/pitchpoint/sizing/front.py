@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-__all__ = ["non_dominated", "spread"]
+__all__ = ["evenly_spread", "non_dominated"]
 
 CHUNK = 512
 """Designs that are held against all others at once, which bounds memory."""
@@ -42,7 +42,7 @@ def _beaten(some: np.ndarray, front: np.ndarray) -> np.ndarray:
     return np.asarray(np.any(np.all(front[None] <= some[:, None], axis=2), axis=1))
 
 
-def spread(values: Float[np.ndarray, " design"], count: int) -> Int[np.ndarray, " _"]:
+def evenly_spread(values: Float[np.ndarray, " design"], count: int) -> Int[np.ndarray, " _"]:
     """Numbers of at most so many designs, evenly among all in the order of a value, both ends with them.
 
     Args:
@@ -51,7 +51,7 @@ def spread(values: Float[np.ndarray, " design"], count: int) -> Int[np.ndarray, 
 
     Example:
         >>> import numpy as np
-        >>> spread(np.array([5.0, 1.0, 2.0, 4.0, 3.0]), 3).tolist()
+        >>> evenly_spread(np.array([5.0, 1.0, 2.0, 4.0, 3.0]), 3).tolist()
         [1, 4, 0]
     """
     order = np.argsort(values, kind="stable")

@@ -13,7 +13,7 @@ from pitchpoint.sizing.task import Task
 from pitchpoint.views.columns import lines_of
 from pitchpoint.views.first_screen import Line, wrapped
 
-__all__ = ["as_json", "sizing_screen"]
+__all__ = ["sizing_as_json", "sizing_screen"]
 
 _WORDS = {
     "mass": "least mass",
@@ -52,7 +52,7 @@ def sizing_screen(sizing: Sizing, width: int, written: Path | None = None) -> li
     return [*head, *counted, *table, *doubts, *foot]
 
 
-def as_json(sizing: Sizing) -> dict[str, Any]:
+def sizing_as_json(sizing: Sizing) -> dict[str, Any]:
     """Designs in SI with their cases, the front, the best by each aim, and families that have none."""
     figures = sizing.table
     names = [name for name in figures.data_vars if name not in ("family", "on_front")]

@@ -12,6 +12,7 @@ from pitchpoint.results.variable import (
     dimensionless,
     force,
     length,
+    oil_viscosity,
     percent,
     pressure,
     rotational_speed,
@@ -19,7 +20,6 @@ from pitchpoint.results.variable import (
     stiffness,
     temperature,
     torque,
-    viscosity,
 )
 
 __all__ = ["PUBLICATION"]
@@ -47,8 +47,8 @@ _VARIABLES = {
     "largest_opposed_speed": speed("largest mesh point speed, tangential parts opposed", "u"),
     "least_added_speed": speed("least mesh point speed, tangential parts added", "u"),
     "largest_added_speed": speed("largest mesh point speed, tangential parts added", "u"),
-    "viscosity": viscosity("viscosity without pressure by Roelands' law", "η"),
-    "printed_viscosity": viscosity("viscosity without pressure, formula as printed", "η"),
+    "viscosity": oil_viscosity("viscosity without pressure by Roelands' law", "η"),
+    "printed_viscosity": oil_viscosity("viscosity without pressure, formula as printed", "η"),
     "effective_modulus": pressure("equivalent modulus", "E'", shown="GPa"),
     "composite_roughness": deviation("composite Rq", "σ"),
 }

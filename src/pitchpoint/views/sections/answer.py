@@ -51,10 +51,12 @@ from pitchpoint.views.section import (
     told_of_variants,
 )
 from pitchpoint.views.sections.back_driving import (
+    ROUGHEST,
     back_driving,
     back_driving_figure,
     jamming,
     locks_from,
+    margin_figure,
 )
 from pitchpoint.views.sections.beside import loss_split
 from pitchpoint.views.sections.spread import spread, spread_sentence
@@ -441,7 +443,15 @@ def _backwards(back: xr.Dataset, law: str) -> dict[str, str]:
     return {
         "back-driving": "locked" if locked else cell(back, "mean_efficiency", position),
         f"back-driving, {_LOCKS}": _locks(back, position),
+        **_margin(back, position),
     }
+
+
+def _margin(back: xr.Dataset, position: int) -> dict[str, str]:
+    """Cell on how far friction is from locking the drive backwards, see `margin_figure`."""
+    name, limit = "self_locking_margin", float(back["jamming_coefficient"].values[position, 0])
+    known = name in back and limit <= ROUGHEST
+    return {"margin of self-locking": cell(back, name, position)} if known else {}
 
 
 def _locks(data: xr.Dataset, position: int) -> str:
@@ -549,6 +559,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
             yield key_figure(78.0 + 0.1 * place, named, value, " at stage")
         if "back_driving" in outcome.parts:
             yield back_driving_figure(outcome, law)
+            yield from margin_figure(outcome, law)
 
 
 _OF_FILM = ("film_thickness", "lambda_ratio", "pressure")

@@ -1,5 +1,6 @@
 """The drive backwards, and the friction that locks it, in words."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,14 @@ from pitchpoint.views import show
 from pitchpoint.views.figures import laws
 from pitchpoint.views.section import KeyFigure
 
-__all__ = ["back_driving", "back_driving_figure", "jamming", "locks_from"]
+__all__ = [
+    "ROUGHEST",
+    "back_driving",
+    "back_driving_figure",
+    "jamming",
+    "locks_from",
+    "margin_figure",
+]
 
 ROUGHEST = 1.0
 """Friction coefficient that no lubricated flank reaches: where a mesh locks beyond it is no figure."""
@@ -57,6 +65,24 @@ def back_driving_figure(outcome: Outcome, law: str) -> KeyFigure:
     words = f"efficiency with the output driving by {torque}; friction does not lock it"
     would = f"; {_would(data, position)}" if np.isfinite(_limit(data, position)) else ""
     return KeyFigure(_MOVES, _NAME, show.quantity("mean_efficiency", value), f"{words}{would}")
+
+
+def margin_figure(outcome: Outcome, law: str) -> Iterator[KeyFigure]:
+    """How far friction is from locking the drive backwards, where a friction that flanks have locks it.
+
+    Args:
+        outcome: that has its part.
+        law: of the case.
+    """
+    data = outcome.parts["back_driving"]
+    position = laws(data).index(law)
+    acting, limit = _nearest(data, position)
+    if "self_locking_margin" not in data or not 0.0 < limit <= ROUGHEST or acting == 0.0:
+        return
+    margin = float(data["self_locking_margin"].values[position, 0])
+    order = _NEARLY_LOCKED if acting > 0.5 * limit else _MOVES
+    at = f"times the friction locks it, from μ = {show.number(limit)} on"
+    yield KeyFigure(order + 0.05, "Self-locking margin", show.number(margin), at)
 
 
 _NAME = "Back-driving"

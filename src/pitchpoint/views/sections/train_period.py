@@ -43,6 +43,9 @@ def train_period_blocks(page: Page) -> Iterator[Block]:
             "planets share a load: of all forces that hold the train those of the least sum of squares are "
             f"shown{first}."
         )
+        if rows := _torques(data):
+            yield Table(_OUTSIDE, rows, compact=True)
+            yield Paragraph(_OF_TORQUES, "note")
         if "body_thrust" in data and data["body_thrust"].any():
             yield Table(_HEADS, _thrusts(data), compact=True)
             yield Paragraph(_tilted(data), "note")
@@ -59,6 +62,24 @@ def train_period_blocks(page: Page) -> Iterator[Block]:
 
 
 _HEADS = ["body", f"axial force [{show.unit_of('body_thrust')}]"]
+
+
+_OUTSIDE = ["friction law", "body", f"mean torque from outside [{show.unit_of('outside_torque')}]"]
+_OF_TORQUES = (
+    "Torques of the input, of the load, and of what holds the other bodies, with all losses; positive as the "
+    "input turns."
+)
+
+
+def _torques(data: xr.Dataset) -> list[tuple[str, ...]]:
+    """Rows of torques from outside on the bodies; none of results without them."""
+    if "outside_torque" not in data:
+        return []
+    return [
+        (law, str(body), show.quantity("outside_torque", float(value), with_unit=False))
+        for law, values in zip(laws(data), data["outside_torque"].values, strict=True)
+        for body, value in zip(data["outer_body"].values, values, strict=True)
+    ]
 
 
 def _thrusts(data: xr.Dataset) -> list[tuple[str, ...]]:
@@ -79,8 +100,10 @@ def _tilted(data: xr.Dataset) -> str:
 
 
 def train_period_printed(outcome: Outcome) -> Iterator[Printed]:
-    """What the screen shows of helical gears."""
+    """What the screen shows: torques on the bodies, and axial forces of helical gears."""
     data = outcome.parts[_PART]
+    if rows := [dict(zip(_OUTSIDE, row, strict=True)) for row in _torques(data)]:
+        yield Printed("Torques on the bodies", rows, _OF_TORQUES)
     if "body_thrust" in data and data["body_thrust"].any():
         rows = [dict(zip(_HEADS, row, strict=True)) for row in _thrusts(data)]
         yield Printed("Axial forces on the shafts", rows, _tilted(data))
