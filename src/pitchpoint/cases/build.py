@@ -254,31 +254,31 @@ class Built:
         """
         case = self.case
         cool = surrounded(self.solids, case.operation.temperature)
-        if case.models.tooth_temperature == "isothermal" or not any(one.plastic for one in cool):
+        if case.models.tooth_temperature == "isothermal" or not any(used.plastic for used in cool):
             return self
         cold = _of_solids(self, cool)
-        given = cold.design, cold.operation, cold.models[0], heating(case, cool)
-        found = jax.device_get(balance(*given))
-        known = replace(cold, warming=found.status)
-        if int(found.status.code) == Code.LOCKED:
-            return known  # friction locks the mesh, which the computation says
-        loss = {name: float(getattr(found, name)) for name in ("mean_friction", "loss_factor")}
-        return _of_solids(known, heated(case, cold.design, cool, loss))
+        arguments = cold.design, cold.operation, cold.models[0], heating(case, cool)
+        balanced = jax.device_get(balance(*arguments))
+        warmed = replace(cold, warming=balanced.status)
+        if int(balanced.status.code) == Code.LOCKED:
+            return warmed  # friction locks the mesh, which the computation says
+        loss = {name: float(getattr(balanced, name)) for name in ("mean_friction", "loss_factor")}
+        return _of_solids(warmed, heated(case, cold.design, cool, loss))
 
     @property
     def heated(self) -> list[str]:
         """Sentences on teeth that their own loss warms, and on what is left out of teeth of plastic."""
         plastic = [number for number, used in enumerate(self.solids, 1) if used.plastic]
-        told: list[str] = [used.told for used in self.solids if used.told]
+        warnings: list[str] = [used.told for used in self.solids if used.told]
         if not plastic:
-            return told
+            return warnings
         names = [law.name for law in self.laws if law.largest == BOUNDARY]
-        told += [fitted_on_steel(names, plastic)] if names else []
+        warnings += [fitted_on_steel(names, plastic)] if names else []
         if {"circumferential_backlash", "centre_distance"} <= {*self.dimensions}:
             angle, teeth = (getattr(self.case.gears, key) for key in ("pressure_angle", "teeth"))
             distance = float(self.dimensions["centre_distance"])
-            told += grown(self.solids, tuple(teeth), float(angle), distance)
-        return told
+            warnings += grown(self.solids, tuple(teeth), float(angle), distance)
+        return warnings
 
     @property
     def laws(self) -> list[FrictionLaw]:
@@ -389,8 +389,11 @@ class Built:
 
     def no_load_torques(self, points: Operation) -> list[np.ndarray]:
         """Torque of the driver that runs without load [*b], by each friction law, see `no_load_torque`."""
-        known = self._engaged_under(0.0)
-        return [np.asarray(no_load_torque(self.design, points, one, known)) for one in self.models]
+        unloaded = self._engaged_under(0.0)
+        return [
+            np.asarray(no_load_torque(self.design, points, models, unloaded))
+            for models in self.models
+        ]
 
     def torques_at_rest(self, points: Operation) -> list[tuple[np.ndarray, np.ndarray]]:
         """Mean and largest torque of the driver that starts the mesh, by each law, see `torques_at_rest`.
@@ -398,17 +401,17 @@ class Built:
         Args:
             points: operating points [*b] under one load; laws that solve films have NaN there.
         """
-        known, nothing = (
+        unloaded, nothing = (
             self._engaged_under(points.load.ravel()[0]),
             np.full(points.load.shape, np.nan),
         )
-        each = [
+        torques = [
             (nothing, nothing)
-            if one.law.films
-            else torques_at_rest(self.design, points, one, known)
-            for one in self.models
+            if models.law.films
+            else torques_at_rest(self.design, points, models, unloaded)
+            for models in self.models
         ]
-        return [(np.asarray(mean), np.asarray(largest)) for mean, largest in each]
+        return [(np.asarray(mean), np.asarray(largest)) for mean, largest in torques]
 
     def _engaged_under(self, load: Any) -> Engagement | None:
         return engaged(self.design, replace(self.operation, load=array(load)), self.models[0])
@@ -462,10 +465,10 @@ class Built:
 
     @cached_property
     def _of_mesh(self) -> dict[str, dict[str, Any]]:
-        found: dict[str, dict[str, Any]] = jax.tree.map(
+        figures: dict[str, dict[str, Any]] = jax.tree.map(
             np.asarray, _numbers(self.design.mesh, self.design.driver, self.design.loaded)
         )
-        return found
+        return figures
 
     @property
     def family(self) -> Family:
@@ -480,11 +483,11 @@ class Built:
     @property
     def assumed(self) -> dict[str, Followed]:
         """Those of them that rest on assumed proportions."""
-        found = self.following.items()
+        followed = self.following.items()
         return {
-            key: one
-            for key, one in found
-            if isinstance(one, Followed) and one.status == "assumed" and self._open(key)
+            key: source
+            for key, source in followed
+            if isinstance(source, Followed) and source.status == "assumed" and self._open(key)
         }
 
     def _open(self, key: str) -> bool:
@@ -514,8 +517,10 @@ class Built:
     @cached_property
     def ends(self) -> tuple[float, float]:
         """Rates of the driver and of the loaded member, in the sense that presses the flanks that touch."""
-        first, last = (float(self.nominal[end] @ self.nominal["motion"]) for end in _ENDS)
-        return first, last
+        driver_rate, loaded_rate = (
+            float(self.nominal[end] @ self.nominal["motion"]) for end in _ENDS
+        )
+        return driver_rate, loaded_rate
 
     @property
     def step(self) -> float:
@@ -531,8 +536,8 @@ class Built:
     def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:
         """Motion of the members of its mesh, in the order of its coordinates."""
         rates = (self.nominal["motion"] / self.ends[0]).tolist()
-        each = zip(self.bodies, rates, strict=True)
-        return (tuple(MemberMotion(coordinate.body, rate) for coordinate, rate in each),)
+        coordinates = zip(self.bodies, rates, strict=True)
+        return (tuple(MemberMotion(coordinate.body, rate) for coordinate, rate in coordinates),)
 
     @property
     def period(self) -> MeshPeriod:
@@ -553,12 +558,12 @@ class Built:
             first: number of the shaft that drives; that which it loads is the next one.
             free: number of the first member that is held.
         """
-        found: dict[str, int] = {}
+        coordinates: dict[str, int] = {}
         for number, name in enumerate(self.case.gears.members):
             drives, loaded = (self.nominal[end][number] for end in _ENDS)
-            found[name] = first if drives else first + 1 if loaded else free
+            coordinates[name] = first if drives else first + 1 if loaded else free
             free += not (drives or loaded)
-        return found
+        return coordinates
 
     def link(self, shafts: tuple[int, ...], table: StageTable) -> "MeshLink":
         """The mesh as a link of a drive, see `on_shafts`, where the table of its stage places it."""
@@ -586,7 +591,7 @@ class Built:
     @property
     def way(self) -> dict[str, str | float]:
         """Words of the way of a pair, as attributes of places on it."""
-        touching = [one.body for one in self.bodies if one.member is not None]
+        touching = [body.body for body in self.bodies if body.member is not None]
         return way(self.design.mesh).attributes(touching)
 
     @property
@@ -605,8 +610,8 @@ class Built:
     def lacks_bearing(self) -> bool:
         """True where teeth press on a bearing inside the drive, and no loss of the case stands for it."""
         inner = self.inner_bearing
-        given = (frozenset(loss.between) for loss in self.case.losses.values())
-        return bool(inner) and inner not in given
+        spans = (frozenset(loss.between) for loss in self.case.losses.values())
+        return bool(inner) and inner not in spans
 
     @property
     def loaded(self) -> str:
@@ -627,13 +632,13 @@ class Built:
         changes: dict[str, Any] = {"driver": self.loaded, "torque": None, "force": None}
         changes |= {load: point.load / step, "speed": point.speed / step}
         point = point.model_copy(update=changes)
-        other = replace(
+        turned = replace(
             self,
             case=self.case.model_copy(update={"operation": point}),
             design=self.design.backwards,
             operation=operation_at(point),
         )
-        return other.warmed
+        return turned.warmed
 
     def carrying(self, load: float) -> "Built":
         """The same under another load, with what follows from it, such as the temperature of plastic teeth.
@@ -655,8 +660,8 @@ def ends_of(case: Case, mesh: Mesh) -> tuple[float, float]:
     """Rates of the driver and of the loaded member of a mesh."""
     ends = jax.device_get(_ends(case, mesh))
     motion = np.asarray(nominal_motion(jax.device_get(mesh), *ends))
-    first, last = (float(end @ motion) for end in ends)
-    return first, last
+    driver_rate, loaded_rate = (float(end @ motion) for end in ends)
+    return driver_rate, loaded_rate
 
 
 def _ends(case: Case, mesh: Mesh) -> tuple[jax.Array, jax.Array]:
@@ -699,18 +704,18 @@ def build(case: Case, document: Document, own: ChosenLaws = ()) -> Built:
         driver=driver,
         loaded=loaded,
     )
-    told = [*warnings, *_yielding(case, mesh), *_of_oil(oil)]
-    told += _half_of_a_line(case.lubricant)
+    doubts = [*warnings, *_yielding(case, mesh), *_of_oil(oil)]
+    doubts += _half_of_a_line(case.lubricant)
     if case.dynamics is not None and not has(mesh, line_of_action):
-        told += _inertia_of_both(document)
+        doubts += _inertia_of_both(document)
     models = _models(case, own, used, mesh)
     name = named_set(document.tree.get("losses"))
     fitted = loss_sets()[name].fitted if name else None
     point = operation_at(case.operation)
-    built = Built(case, design, point, models, oil, used, tuple(told), fitted=fitted)
-    records = [one.record for one in used]
+    built = Built(case, design, point, models, oil, used, tuple(doubts), fitted=fitted)
+    records = [solid.record for solid in used]
     of_materials = built.family.of_materials(design.mesh, design.solids, records)
-    return replace(built, told=(*told, *of_materials, *_left_out(built), *_extrapolated(built)))
+    return replace(built, told=(*doubts, *of_materials, *_left_out(built), *_extrapolated(built)))
 
 
 def gears_of(case: Case, wrong: Complaints) -> tuple[Mesh, tuple[str, ...]] | None:
@@ -729,9 +734,9 @@ def check_alone(document: Document, wrong: Complaints) -> None:
     stages = document.tree.get(STAGES)
     if isinstance(stages, Mapping):
         tables |= {
-            f"{STAGES}.{number}.gears": one.get("gears")
-            for number, one in stages.items()
-            if isinstance(one, Mapping)
+            f"{STAGES}.{number}.gears": stage.get("gears")
+            for number, stage in stages.items()
+            if isinstance(stage, Mapping)
         }
     for key, table in tables.items():
         gears = None if wrong.of(key) else _sound(_GEARS, table)
@@ -759,8 +764,8 @@ def _worn(case: Case, gears: tuple[Mesh, tuple[str, ...]]) -> tuple[Mesh, tuple[
     from pitchpoint.cases.worn import with_wear
 
     assert case.worn is not None
-    mesh, told = with_wear(gears[0], case.gears, case.worn)
-    return mesh, (*gears[1], told)
+    mesh, warning = with_wear(gears[0], case.gears, case.worn)
+    return mesh, (*gears[1], warning)
 
 
 def _check_parts(
@@ -812,7 +817,7 @@ def _check_films(
 
     wrong.tried(height_maps, table)
     if used is not None:
-        wrong.tried(_film_model, table, [one.record for one in used], None)
+        wrong.tried(_film_model, table, [solid.record for solid in used], None)
 
 
 def _film_model(table: FilmTable, solids: Sequence[SolidRecord], size: float | None) -> "FilmModel":
@@ -827,15 +832,17 @@ def _extrapolated(built: Built) -> list[str]:
     if built.fitted is None:
         return []
     low, high = built.fitted
-    asked = [built.case.operation.temperature]
-    asked += (built.case.loss_map and built.case.loss_map.temperatures) or ()
-    told = [TEMPERATURE.show(one) for one in sorted({*asked}) if not low <= one <= high]
-    if not told:
+    temperatures = [built.case.operation.temperature]
+    temperatures += (built.case.loss_map and built.case.loss_map.temperatures) or ()
+    beyond = [
+        TEMPERATURE.show(degree) for degree in sorted({*temperatures}) if not low <= degree <= high
+    ]
+    if not beyond:
         return []
     return [
         Doubt(
             f"The losses of the set were fitted from {TEMPERATURE.show(low)} to {TEMPERATURE.show(high)}; at "
-            f"{' and '.join(told)} they are an extrapolation.",
+            f"{' and '.join(beyond)} they are an extrapolation.",
             moves=GUESSED,
             about=("mean_efficiency",),
             brief=f"Losses of the set end at {TEMPERATURE.show(low)} and {TEMPERATURE.show(high)}.",
@@ -950,8 +957,8 @@ def _under(
 
 def tooth_size(mesh: Mesh) -> float | None:
     """Module of the teeth [m], which is about the height that their flanks have; None without teeth."""
-    found = jax.device_get(_numbers(mesh, *mesh_ends(mesh))["dimensions"]).get("module")
-    return None if found is None else float(found)
+    module = jax.device_get(_numbers(mesh, *mesh_ends(mesh))["dimensions"]).get("module")
+    return None if module is None else float(module)
 
 
 def _law(name: str, case: Case, used: Sequence[SolidInUse], mesh: Mesh) -> FrictionLaw:
@@ -961,7 +968,7 @@ def _law(name: str, case: Case, used: Sequence[SolidInUse], mesh: Mesh) -> Frict
         return law
     size = tooth_size(mesh)
     if case.film is not None:
-        return replace(law, films=_film_model(case.film, [one.record for one in used], size))
+        return replace(law, films=_film_model(case.film, [solid.record for solid in used], size))
     return law if size is None else replace(law, films=replace(law.films, inlet=size))
 
 
@@ -998,14 +1005,14 @@ def _check_shapes(case: Case, mesh: Mesh, own: ChosenLaws, wrong: Complaints) ->
         if isinstance(friction, FrictionLaw):
             wrong.tried(demand_shape, friction, mesh.shape)
     if case.film is not None and case.film.solver not in FILM_SOLVERS[mesh.shape]:
-        told = (
+        message = (
             f"these gears touch {TOUCH[mesh.shape]}, and {_WHY_NOT[mesh.shape]}; take "
             f"{' or '.join(FILM_SOLVERS[mesh.shape])}, or leave the table out"
         )
-        wrong.add(InputError(told, key="film.solver"))
+        wrong.add(InputError(message, key="film.solver"))
     if mesh.shape == "line" and models.elliptic_contact != USUAL_ELLIPSE:
-        told = f"these gears touch along lines; leave it at {USUAL_ELLIPSE}"
-        wrong.add(InputError(told, key="models.elliptic_contact"))
+        message = f"these gears touch along lines; leave it at {USUAL_ELLIPSE}"
+        wrong.add(InputError(message, key="models.elliptic_contact"))
 
 
 def _check_hardness(case: Case, used: Sequence[SolidInUse]) -> None:
@@ -1013,8 +1020,8 @@ def _check_hardness(case: Case, used: Sequence[SolidInUse]) -> None:
     law = ASPERITY_LOAD[case.models.asperity_load]
     if "hardness" not in arguments(law.function)[0]:
         return
-    for gear, one in enumerate(used, 1):
-        if one.record.hardness is None:
+    for gear, solid in enumerate(used, 1):
+        if solid.record.hardness is None:
             raise InputError(
                 f"'{law.name}' asks for the hardness of both gears, and that of gear {gear} is not known; "
                 "give its material by value, with its hardness",
@@ -1028,8 +1035,8 @@ def _check_models(case: Case, mesh: Mesh, wrong: Complaints) -> None:
     for place, choice in enumerate(models.friction):
         if why_not := applies(FRICTION[choice.name], mesh):
             others = ", ".join(law.name for law in LAWS if applies(law, mesh) is None)
-            told = f"{why_not}; choose one of {others}"
-            wrong.add(InputError(told, key="models.friction", value=place))
+            message = f"{why_not}; choose one of {others}"
+            wrong.add(InputError(message, key="models.friction", value=place))
     wrong.under("models.load_sharing").tried(
         demand_sharing, LOAD_SHARING[models.load_sharing], mesh
     )
@@ -1045,7 +1052,9 @@ def _check_models(case: Case, mesh: Mesh, wrong: Complaints) -> None:
 
 def _check_map(case: Case, mesh: Mesh) -> None:
     """InputError for a loss map whose friction is that of films between teeth with gaps."""
-    solved = [one.name for one in case.models.friction if FRICTION[one.name].films is not None]
+    solved = [
+        choice.name for choice in case.models.friction if FRICTION[choice.name].films is not None
+    ]
     if case.loss_map is not None and solved and not touching(mesh):
         raise InputError(
             f"teeth with gaps share each load in another way, and '{solved[0]}' solves the films of every "
@@ -1066,17 +1075,17 @@ def _check_heat(case: Case, mesh: Mesh) -> None:
             f"'{case.models.tooth_temperature}' asks for {missing}; use isothermal",
             key="models.tooth_temperature",
         )
-    if told := _solved_first(case):
-        raise InputError(f"the heat of the teeth {told}", key="models.friction")
+    if reason := _solved_first(case):
+        raise InputError(f"the heat of the teeth {reason}", key="models.friction")
 
 
 def _solved_first(case: Case) -> str | None:
     """What is wrong with a first friction law that solves films, where a formula is asked for."""
-    first = FRICTION[case.models.friction[0].name]
-    if first.films is None:
+    formula = FRICTION[case.models.friction[0].name]
+    if formula.films is None:
         return None
     return (
-        f"follows from the first friction law of a case, and '{first.name}' is no formula; name a formula "
+        f"follows from the first friction law of a case, and '{formula.name}' is no formula; name a formula "
         "before it"
     )
 
@@ -1103,11 +1112,11 @@ def _check_masses(case: Case, mesh: Mesh) -> None:
 def _check_motion(case: Case, mesh: Mesh) -> None:
     """InputError for gears whose motion with friction cannot be computed."""
     assert case.dynamics is not None
-    asked = case.dynamics.motion
-    if asked is None:
+    motion = case.dynamics.motion
+    if motion is None:
         return
-    if told := _solved_first(case):
-        raise InputError(f"a motion {told}", key="models.friction")
+    if reason := _solved_first(case):
+        raise InputError(f"a motion {reason}", key="models.friction")
     if mesh.body.couples:
         raise InputError(
             "motion with friction takes each pair of teeth as a spring of its own, and the rim of these "
@@ -1115,23 +1124,23 @@ def _check_motion(case: Case, mesh: Mesh) -> None:
             key="dynamics.motion",
         )
     travelling = [name for name in case.gears.members if name not in case.gears.shafts]
-    if travelling and asked.bearing_stiffness is not None:
+    if travelling and motion.bearing_stiffness is not None:
         raise InputError(
             f"was given, and the {travelling[0]} travels; bearings that yield are those of gears that turn",
             key="dynamics.motion.bearing_stiffness",
         )
     if case.operation.load == 0.0:
-        told = (
+        reason = (
             f"0 was given; a motion asks for a {case.gears.load} above 0, which presses the teeth"
         )
-        raise InputError(told, key=f"operation.{case.gears.load}")
-    ratio = float(mesh.contact_ratio) if asked.pair_path else 0.0
-    if asked.pair_path and asked.pair_path[-1] < ratio - 1e-6:
+        raise InputError(reason, key=f"operation.{case.gears.load}")
+    ratio = float(mesh.contact_ratio) if motion.pair_path else 0.0
+    if motion.pair_path and motion.pair_path[-1] < ratio - 1e-6:
         raise InputError(
-            f"ends at {asked.pair_path[-1]:g}; the path of a pair is {ratio:.6g} base pitches long",
+            f"ends at {motion.pair_path[-1]:g}; the path of a pair is {ratio:.6g} base pitches long",
             key="dynamics.motion.pair_path",
         )
-    if asked.mesh_damping == 0.0 and not any(asked.bearing_damping or ()):
+    if motion.mesh_damping == 0.0 and not any(motion.bearing_damping or ()):
         raise InputError(
             "0 N s/m leaves nothing that damps the vibration, so that it never becomes steady",
             key="dynamics.motion.mesh_damping",
@@ -1165,11 +1174,11 @@ def _inertia_of_both(document: Document) -> list[str]:
     """That one moment of inertia counts for motor and load alike; nothing where each has its own."""
     if isinstance(document.tree["dynamics"].get("inertia"), list):
         return []
-    told = (
+    warning = (
         "The motor and the load have the same moment of inertia, since dynamics.inertia was given as one "
         "value; a list has that of the motor, then that of the load."
     )
-    return [Doubt(told, brief="Motor and load have the one inertia that was given.")]
+    return [Doubt(warning, brief="Motor and load have the one inertia that was given.")]
 
 
 _ALONG_ACTION = ("profile_error", "backlash", "torques", "forces", "motion")
@@ -1246,13 +1255,13 @@ def _seat(loss: Loss, losses: Mapping[str, Loss], bodies: Sequence[str]) -> Bear
         return None
     body = next(name for name in loss.between if name != "housing")
     coordinate = bodies.index(body)
-    first, *others = bearings_of(losses, body).values()
+    bearing, *others = bearings_of(losses, body).values()
     if not others:
         return Bearing(coordinate)
-    other = others[0] if loss is first else first
-    assert loss.position is not None and other.position is not None
-    thrust = _locates(loss, other, usual=loss is first)
-    return Bearing(coordinate, array(loss.position), array(other.position), thrust)
+    opposite = others[0] if loss is bearing else bearing
+    assert loss.position is not None and opposite.position is not None
+    thrust = _locates(loss, opposite, usual=loss is bearing)
+    return Bearing(coordinate, array(loss.position), array(opposite.position), thrust)
 
 
 def _locates(loss: Loss, other: Loss, *, usual: bool) -> bool:
@@ -1275,7 +1284,9 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     sections, model = _sections(mesh), TOOTH_COMPLIANCE[case.models.tooth_compliance]
     doubts = map(as_doubt, uncovered(model, sections, case.gears.members))
     about = () if sharing.by_stiffness else OF_STIFFNESS
-    return tuple(Doubt(one, moves=one.moves, about=about, brief=one.brief) for one in doubts)
+    return tuple(
+        Doubt(doubt, moves=doubt.moves, about=about, brief=doubt.brief) for doubt in doubts
+    )
 
 
 @program
@@ -1326,14 +1337,14 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
     }
     if oil.pressure_viscosity is not None:
         values["gold_s"], values["gold_t"] = lubricants.constant_alpha(oil.pressure_viscosity)
-    given = {
+    overridden = {
         key: datum(value, f"lubricant.{_OIL_KEYS[key]}", document)
         for key, value in values.items()
         if value is not None
     }
     try:
-        record = _of_values(oil, given)
-        if given:
+        record = _of_values(oil, overridden)
+        if overridden:
             lubricants.demand_plausible_cold(record)
         return record
     except InputError as error:
@@ -1369,8 +1380,8 @@ def _with_own(
         key: replace(value, note="; ".join(filter(None, [value.note, beside])))
         for key, value in given.items()
     }
-    own = ", ".join(dict.fromkeys(_OIL_KEYS[key] for key in given))
-    title = f"{oil.title or oil.name} with {own} of the case file"
+    replaced = ", ".join(dict.fromkeys(_OIL_KEYS[key] for key in given))
+    title = f"{oil.title or oil.name} with {replaced} of the case file"
     return replace(oil, title=title, **{**following, **values})
 
 
@@ -1385,17 +1396,17 @@ def _of_oil(oil: lubricants.LubricantRecord) -> list[str]:
 
 def _half_of_a_line(oil: Oil) -> list[str]:
     """One of two viscosities given beside the other one of the catalogue."""
-    given = [oil.viscosity_40 is not None, oil.viscosity_100 is not None]
-    if oil.name is None or all(given) or not any(given):
+    stated = [oil.viscosity_40 is not None, oil.viscosity_100 is not None]
+    if oil.name is None or all(stated) or not any(stated):
         return []
-    own, other = (
-        ("viscosity_40", "viscosity_100") if given[0] else ("viscosity_100", "viscosity_40")
+    key, partner = (
+        ("viscosity_40", "viscosity_100") if stated[0] else ("viscosity_100", "viscosity_40")
     )
     return [
         Doubt(
-            f"The oil has the {own} of the case file and the {other} of {oil.name}: together they make the "
+            f"The oil has the {key} of the case file and the {partner} of {oil.name}: together they make the "
             "line of viscosity over temperature; give both.",
-            brief=f"The oil has the {other} of {oil.name}; give it too.",
+            brief=f"The oil has the {partner} of {oil.name}; give it too.",
         )
     ]
 

@@ -69,12 +69,14 @@ class Acting:
     @property
     def stages(self) -> tuple[Any, ...]:
         """Models of each stage as kernels take them, of a planetary set those of its meshes."""
-        return tuple(one.stages if isinstance(one, Acting) else one for one in self.of_stages)
+        return tuple(
+            acting.stages if isinstance(acting, Acting) else acting for acting in self.of_stages
+        )
 
     @property
     def of_meshes(self) -> tuple[Models, ...]:
         """Models of each mesh."""
-        return tuple(models for one in self.of_stages for models in one.of_meshes)
+        return tuple(models for stage in self.of_stages for models in stage.of_meshes)
 
     def __repr__(self) -> str:
         return brief(self)
@@ -116,11 +118,11 @@ class BuiltDrive:
     def warnings(self) -> tuple[str, ...]:
         """Sentences about the drive, and about each of its stages."""
         of_meshes = zip(self.mesh_labels, self.meshes, strict=True)
-        told = (
+        labelled = (
             *(
                 (number, text)
-                for number, one in zip(self.numbers, self.stages, strict=True)
-                for train in one.trains.values()
+                for number, stage in zip(self.numbers, self.stages, strict=True)
+                for train in stage.trains.values()
                 for text in train.told
             ),
             *((label, text) for label, mesh in of_meshes for text in mesh.warnings),
@@ -128,34 +130,39 @@ class BuiltDrive:
         left_out = TEETH_ALONE, BEARING_FREE
         return (
             *self.told,
-            *(in_stage(label, text) for label, text in told if text not in left_out),
+            *(in_stage(label, text) for label, text in labelled if text not in left_out),
         )
 
     @property
     def heated(self) -> list[str]:
         """Sentences on teeth that their own loss warms, by stage."""
-        each = zip(self.mesh_labels, self.meshes, strict=True)
-        return [in_stage(label, text) for label, one in each for text in one.heated]
+        labelled = zip(self.mesh_labels, self.meshes, strict=True)
+        return [in_stage(label, text) for label, mesh in labelled for text in mesh.heated]
 
     @cached_property
     def models(self) -> tuple[Acting, ...]:
         """Laws that act together, once under each friction law of the case."""
-        count = max(len(one.models) for one in self.stages)
-        each = [one.models * count if len(one.models) == 1 else one.models for one in self.stages]
-        return tuple(self._acting(models) for models in zip(*each, strict=True))
+        count = max(len(stage.models) for stage in self.stages)
+        laws = [
+            stage.models * count if len(stage.models) == 1 else stage.models
+            for stage in self.stages
+        ]
+        return tuple(self._acting(models) for models in zip(*laws, strict=True))
 
     def under(self, laws: Sequence[FrictionLaw]) -> tuple[Acting, ...]:
         """The models of the case under other friction laws; stages with one of their own keep it."""
-        each = [
-            one.models[:1] * len(laws) if own else one.under(laws)
-            for one, own in zip(self.stages, self.own_friction, strict=True)
+        of_stages = [
+            stage.models[:1] * len(laws) if own_friction else stage.under(laws)
+            for stage, own_friction in zip(self.stages, self.own_friction, strict=True)
         ]
-        return tuple(self._acting(models) for models in zip(*each, strict=True))
+        return tuple(self._acting(models) for models in zip(*of_stages, strict=True))
 
     def _acting(self, models: "Sequence[Models | Acting]") -> Acting:
-        own = self.own_friction
-        each = sorted(zip(self.numbers, models, own, strict=True), key=lambda one: one[0])
-        free = [one.law for _, one, mine in each if all(own) or not mine]
+        own_friction = self.own_friction
+        ordered = sorted(
+            zip(self.numbers, models, own_friction, strict=True), key=lambda one: one[0]
+        )
+        free = [one.law for _, one, mine in ordered if all(own_friction) or not mine]
         named = list(dict.fromkeys(free))
         if len(named) == 1:
             return Acting(named[0], tuple(models))
@@ -173,8 +180,8 @@ class BuiltDrive:
     @property
     def mesh_own_friction(self) -> tuple[bool, ...]:
         """For each mesh whether its stage has a friction law of its own."""
-        each = zip(self.stages, self.own_friction, strict=True)
-        return tuple(own for one, own in each for _ in one.meshes)
+        stages = zip(self.stages, self.own_friction, strict=True)
+        return tuple(own_friction for stage, own_friction in stages for _ in stage.meshes)
 
     @property
     def laws(self) -> list[FrictionLaw]:
@@ -190,39 +197,43 @@ class BuiltDrive:
     def applicable(self) -> list[FrictionLaw]:
         """Fitted friction laws of the library that hold for all stages without one of their own."""
         pairs = zip(self.stages, self.own_friction, strict=True)
-        each = [one.applicable for one, own in pairs if not own]
-        return [law for law in (each[0] if each else []) if all(law in other for other in each)]
+        of_stages = [stage.applicable for stage, own_friction in pairs if not own_friction]
+        return [
+            law
+            for law in (of_stages[0] if of_stages else [])
+            if all(law in laws for laws in of_stages)
+        ]
 
     @property
     def temperatures(self) -> tuple[float, float]:
         """Lowest and highest temperature of all oils [K]."""
-        low, high = zip(*(one.temperatures for one in self.stages), strict=True)
+        low, high = zip(*(stage.temperatures for stage in self.stages), strict=True)
         return max(low), min(high)
 
     @property
     def meshes(self) -> tuple[Built, ...]:
         """Meshes that the case has: its stages, and those of its planetary sets."""
-        return tuple(mesh for one in self.stages for mesh in one.meshes)
+        return tuple(mesh for stage in self.stages for mesh in stage.meshes)
 
     @property
     def mesh_numbers(self) -> tuple[int, ...]:
         """Number of the stage that each mesh is in, see `meshes`."""
-        each = zip(self.numbers, self.stages, strict=True)
-        return tuple(number for number, one in each for _ in one.meshes)
+        numbered = zip(self.numbers, self.stages, strict=True)
+        return tuple(number for number, stage in numbered for _ in stage.meshes)
 
     @property
     def mesh_labels(self) -> list[int | str]:
         """Number of the stage of each mesh, with its bodies where it is one of several, see `meshes`."""
-        found: list[int | str] = []
-        for number, one in zip(self.numbers, self.stages, strict=True):
-            found += [f"{number} ({bodies})" for bodies in one.stage_bodies] or [number]
-        return found
+        labels: list[int | str] = []
+        for number, stage in zip(self.numbers, self.stages, strict=True):
+            labels += [f"{number} ({bodies})" for bodies in stage.stage_bodies] or [number]
+        return labels
 
     @property
     def trains(self) -> "dict[int, BuiltTrain]":
         """Sets of meshes that turn together, by number of the stage, in the order of the power."""
-        each = zip(self.numbers, self.stages, strict=True)
-        return {number: train for number, one in each for train in one.trains.values()}
+        numbered = zip(self.numbers, self.stages, strict=True)
+        return {number: train for number, stage in numbered for train in stage.trains.values()}
 
     @property
     def planets(self) -> int:
@@ -233,7 +244,7 @@ class BuiltDrive:
     def travels(self) -> frozenset[End]:
         """Those of driver and loaded shaft that travel in place of turning."""
         ends: dict[End, Built | BuiltTrain] = {"driver": self.stages[0], "loaded": self.stages[-1]}
-        return frozenset(end for end, one in ends.items() if end in one.travels)
+        return frozenset(end for end, stage in ends.items() if end in stage.travels)
 
     @property
     def carried(self) -> Quantity:
@@ -264,22 +275,22 @@ class BuiltDrive:
     def lacks_bearing(self) -> bool:
         """True where no loss stands for a bearing inside one of the stages, see `Built.lacks_bearing`."""
         between_shafts = any("housing" not in loss.between for loss in self.case.losses.values())
-        return not between_shafts and any(one.lacks_bearing for one in self.stages)
+        return not between_shafts and any(stage.lacks_bearing for stage in self.stages)
 
     @property
     def places(self) -> list[str]:
         """Names of the places beside the teeth where power is lost: of the drive, then of its stages."""
-        own = [
+        of_stages = [
             f"stage {number} {name}"
-            for number, one in zip(self.numbers, self.stages, strict=True)
-            for name in one.case.losses
+            for number, stage in zip(self.numbers, self.stages, strict=True)
+            for name in stage.case.losses
         ]
-        return [*self.case.losses, *own]
+        return [*self.case.losses, *of_stages]
 
     @property
     def rates_bearings(self) -> bool:
         """True if a bearing of the drive or of a stage has its dynamic load rating."""
-        every = (loss for one in self.with_losses for loss in one.case.losses.values())
+        every = (loss for holder in self.with_losses for loss in holder.case.losses.values())
         return any(loss.dynamic_load_rating is not None for loss in every)
 
     @property
@@ -311,16 +322,18 @@ class BuiltDrive:
     @property
     def on_strength(self) -> tuple[str, ...]:
         """Sentences on what a rating takes where there are several meshes."""
-        told = (
+        sentence = (
             "Forces and stresses are those without friction and losses, for the load at the output."
         )
-        return told, *self.on_load_factors
+        return sentence, *self.on_load_factors
 
     @property
     def on_load_factors(self) -> tuple[str, ...]:
         """Those of them on load factors of its sets."""
-        each = zip(self.numbers, self.stages, strict=True)
-        return tuple(in_stage(number, text) for number, one in each for text in one.on_load_factors)
+        numbered = zip(self.numbers, self.stages, strict=True)
+        return tuple(
+            in_stage(number, text) for number, stage in numbered for text in stage.on_load_factors
+        )
 
     @property
     def drags(self) -> tuple[Drag, ...]:
@@ -350,14 +363,14 @@ class BuiltDrive:
         """Torque of the input that runs without load [*b], by each friction law."""
         every = zip(points.speed.ravel(), points.temperature.ravel(), strict=True)
         running = [(self.design, Operation(*map(array, (0.0, *one)))) for one in every]
-        found = [self.figures_of(running, one) for one in self.models]
-        torques = [np.where(one["locked"], np.nan, one["mean_input_torque"]) for one in found]
+        figures = [self.figures_of(running, one) for one in self.models]
+        torques = [np.where(one["locked"], np.nan, one["mean_input_torque"]) for one in figures]
         return [one.reshape(points.speed.shape) for one in torques]
 
     def torques_at_rest(self, points: Operation) -> list[tuple[np.ndarray, np.ndarray]]:
         """Mean and largest torque of the input that starts the drive [*b], by each friction law."""
-        each = [self._at_rest(points, one.stages) for one in self.models]
-        return [(np.asarray(mean), np.asarray(largest)) for mean, largest in each]
+        torques = [self._at_rest(points, models.stages) for models in self.models]
+        return [(np.asarray(mean), np.asarray(largest)) for mean, largest in torques]
 
     def _at_rest(self, points: Operation, models: tuple[Any, ...]) -> tuple[Any, Any]:
         return torques_at_rest_of_drive(self.design, points, models)
@@ -365,7 +378,7 @@ class BuiltDrive:
     @property
     def copies(self) -> tuple[int, ...]:
         """How many there are of each mesh."""
-        return tuple(count for one in self.stages for count in one.copies)
+        return tuple(count for stage in self.stages for count in stage.copies)
 
     @property
     def steps(self) -> np.ndarray:
@@ -374,7 +387,9 @@ class BuiltDrive:
         Without losses; the output turns as much for a unit turn of that member alone.
         """
         onward = np.abs(self.motion[-1] / np.array(self.motion[1:]))
-        return np.hstack([step * one.steps for step, one in zip(onward, self.stages, strict=True)])
+        return np.hstack(
+            [step * stage.steps for step, stage in zip(onward, self.stages, strict=True)]
+        )
 
     @cached_property
     def _carried(self) -> list[float]:
@@ -398,8 +413,8 @@ class BuiltDrive:
         """
         if self.locked:
             return self.meshes
-        each = zip(self.stages, self._carried, strict=True)
-        return tuple(mesh for one, torque in each for mesh in one.carrying(torque).at_work)
+        loaded = zip(self.stages, self._carried, strict=True)
+        return tuple(mesh for stage, torque in loaded for mesh in stage.carrying(torque).at_work)
 
     def carried_by_meshes(self, figures: Mapping[str, np.ndarray]) -> np.ndarray:
         """Torque on the loaded member of each mesh with all losses: what drives the stage behind it.
@@ -407,17 +422,17 @@ class BuiltDrive:
         Args:
             figures: `stage_input_torque` and `stage_efficiency` at one operating point [stage].
         """
-        last = self.stages[-1].case.operation.load
-        return np.append(figures["stage_input_torque"][1:], last)
+        output_torque = self.stages[-1].case.operation.load
+        return np.append(figures["stage_input_torque"][1:], output_torque)
 
     @cached_property
     def motion(self) -> list[float]:
         """Rates of the shafts for a radian of the input."""
         rates, sense = [1.0], 1.0
-        for one in self.stages:
+        for stage in self.stages:
             # In which the flanks that touch turn the input; a set turns either way.
-            sense = one.sense * float(np.sign(rates[-1])) or sense
-            rates.append(rates[-1] * one.step)
+            sense = stage.sense * float(np.sign(rates[-1])) or sense
+            rates.append(rates[-1] * stage.step)
         return [sense * rate for rate in rates]
 
     @property
@@ -428,23 +443,23 @@ class BuiltDrive:
     @property
     def member_motions(self) -> tuple[tuple[MemberMotion, ...], ...]:
         """Motion of the members of each mesh, in the order of its coordinates."""
-        each = zip(self.numbers, self.stages, self.motion[:-1], strict=True)
+        stages = zip(self.numbers, self.stages, self.motion[:-1], strict=True)
         return tuple(
             tuple(member.in_stage(number, entering) for member in members)
-            for number, one, entering in each
-            for members in one.member_motions
+            for number, stage, entering in stages
+            for members in stage.member_motions
         )
 
     @cached_property
     def backwards(self) -> "BuiltDrive":
         """The same drive with its output driving, see `Built.backwards`."""
         step, point = self.output_rate, self.case.operation
-        stages = tuple(one.backwards for one in reversed(self.stages))
+        stages = tuple(stage.backwards for stage in reversed(self.stages))
         load = {"torque": None, "force": None, stages[-1].carried.kind: point.load * step}
         changed = point.model_copy(update={**load, "speed": point.speed * step})
         turned = self.design.driven_backwards()
-        each = zip(turned.links, stages, strict=True)
-        warm = [replace(link, design=one.design) for link, one in each]
+        linked = zip(turned.links, stages, strict=True)
+        warm = [replace(link, design=stage.design) for link, stage in linked]
         return replace(
             self,
             case=self.case.model_copy(update={"operation": changed}),
@@ -517,7 +532,7 @@ class BuiltTrain(BuiltDrive):
             if count in MESH_LOAD
             else "K_γ = 1"
         )
-        by_method_b = any(one.rated.table.dynamic_method == "B" for one in self.stages)
+        by_method_b = any(stage.rated.table.dynamic_method == "B" for stage in self.stages)
         return (
             *[_BY_METHOD_B] * by_method_b,
             f"Where [strength] says nothing else, {share}, teeth that two mates load both ways have "
@@ -554,12 +569,12 @@ class BuiltTrain(BuiltDrive):
     @property
     def copies(self) -> tuple[int, ...]:
         """How many there are of each mesh."""
-        return tuple(one.copies for one in self.design.meshes)
+        return tuple(mesh.copies for mesh in self.design.meshes)
 
     @property
     def steps(self) -> np.ndarray:
         """Torque on the driven member of each mesh, all its copies together, for a unit at the output."""
-        return np.array([float(one.carried) for one in self.design.meshes])
+        return np.array([float(mesh.carried) for mesh in self.design.meshes])
 
     def carrying(self, load: float) -> "BuiltTrain":
         """The same train under another load, see `Built.carrying`.
@@ -572,9 +587,11 @@ class BuiltTrain(BuiltDrive):
             return self
         point = point.model_copy(update={"torque": load})
         loads = load * self.steps / np.array(self.copies)
-        stages = tuple(one.carrying(own) for one, own in zip(self.stages, loads, strict=True))
-        each = zip(self.design.meshes, stages, strict=True)
-        meshes = tuple(replace(place, design=one.design) for place, one in each)
+        stages = tuple(
+            stage.carrying(mesh_load) for stage, mesh_load in zip(self.stages, loads, strict=True)
+        )
+        placed = zip(self.design.meshes, stages, strict=True)
+        meshes = tuple(replace(place, design=stage.design) for place, stage in placed)
         return replace(
             self,
             case=self.case.model_copy(update={"operation": point}),
@@ -585,7 +602,7 @@ class BuiltTrain(BuiltDrive):
 
     def carried_by_meshes(self, figures: Mapping[str, np.ndarray]) -> np.ndarray:
         """Torque on the driven member of one copy of each mesh with all losses, see `BuiltDrive`."""
-        ends = np.abs([one.ends for one in self.stages])
+        ends = np.abs([stage.ends for stage in self.stages])
         driving = (
             figures["stage_input_torque"] * figures["stage_efficiency"] / np.array(self.copies)
         )
@@ -642,8 +659,8 @@ class BuiltTrain(BuiltDrive):
         def named(body: str, teeth: float, number: int) -> str:
             others = {gear for gear in gears if gear[0] == body} - {(body, teeth, number)}
             alike = any(gear[1] == teeth for gear in others)
-            told = f"gear {number} of " * alike + f"{teeth:.0f} teeth"
-            return f"{body}, {told}" if others else body
+            toothing = f"gear {number} of " * alike + f"{teeth:.0f} teeth"
+            return f"{body}, {toothing}" if others else body
 
         def moving(
             mesh: Built, place: "TrainMesh", body: str, count: float, number: int
@@ -667,8 +684,8 @@ class BuiltTrain(BuiltDrive):
         changed = point.model_copy(
             update={"torque": point.load * step, "speed": point.speed * step}
         )
-        stages = tuple(one.backwards for one in self.stages)
-        turned = self.design.driven_backwards([one.design for one in stages])
+        stages = tuple(stage.backwards for stage in self.stages)
+        turned = self.design.driven_backwards([stage.design for stage in stages])
         case = self.case.model_copy(update={"operation": changed})
         return replace(
             self, case=case, stages=stages, design=turned, operation=operation_at(changed)

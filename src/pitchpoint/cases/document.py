@@ -136,8 +136,8 @@ def read(path: Path) -> Tree:
         overlays = _overlays(tree)
     except InputError as error:
         raise error.at(file=path.name) from None
-    for one in (tree, *overlays.values()):
-        _find_files(one, path.parent)
+    for table in (tree, *overlays.values()):
+        _find_files(table, path.parent)
     return tree
 
 
@@ -166,12 +166,12 @@ def _as_written(text: str) -> float | str:
 def _find_files(tree: Tree, folder: Path) -> None:
     """Names of files become those from where the case file lies."""
     for place in _NAMING_FILES:
-        for one in _tables_at(tree, place):
-            given = one.get("file")
-            if isinstance(given, dict) and isinstance(given.get("value"), str):
-                given["value"] = _from(folder, given["value"])
-            elif isinstance(given, str):
-                one["file"] = _from(folder, given)
+        for table in _tables_at(tree, place):
+            file = table.get("file")
+            if isinstance(file, dict) and isinstance(file.get("value"), str):
+                file["value"] = _from(folder, file["value"])
+            elif isinstance(file, str):
+                table["file"] = _from(folder, file)
 
 
 def files_of(tree: Tree) -> Iterator[tuple[str, str]]:
@@ -181,12 +181,14 @@ def files_of(tree: Tree) -> Iterator[tuple[str, str]]:
         tree: plain values, without marks.
     """
     for place in _NAMING_FILES:
-        *above, last = place
-        tables = [(last, one) for one in _tables_at(tree, place)] if last != "*" else []
-        if last == "*":
-            inner = [item for one in _tables_at(tree, tuple(above)) for item in one.items()]
-            tables = [(key, one) for key, one in inner if isinstance(one, dict)]
-        yield from ((key, one["file"]) for key, one in tables if isinstance(one.get("file"), str))
+        *above, name = place
+        tables = [(name, table) for table in _tables_at(tree, place)] if name != "*" else []
+        if name == "*":
+            inner = [item for table in _tables_at(tree, tuple(above)) for item in table.items()]
+            tables = [(key, table) for key, table in inner if isinstance(table, dict)]
+        yield from (
+            (key, table["file"]) for key, table in tables if isinstance(table.get("file"), str)
+        )
 
 
 def _tables_at(tree: Any, place: tuple[str, ...]) -> Iterator[Tree]:
@@ -199,8 +201,8 @@ def _tables_at(tree: Any, place: tuple[str, ...]) -> Iterator[Tree]:
     if not place:
         yield table
         return
-    first, *others = place
-    for key in table if first == "*" else (first,):
+    head, *others = place
+    for key in table if head == "*" else (head,):
         yield from _tables_at(table.get(key), tuple(others))
 
 
@@ -262,13 +264,13 @@ def unknown_variant(variant: str, known: Sequence[str]) -> InputError:
 
 
 def _overlays(tree: Tree) -> Tree:
-    given = tree.get("variants", {})
-    if not isinstance(given, dict):
-        raise InputError(f"{shown(given)} was given where a table belongs", key="variants")
-    if len(given) > MAX_VARIANTS:
-        told = f"{len(given)} were given; allowed are at most {MAX_VARIANTS}"
-        raise InputError(told, key="variants")
-    overlays = {name: _bare(overlay) for name, overlay in given.items()}
+    stated = tree.get("variants", {})
+    if not isinstance(stated, dict):
+        raise InputError(f"{shown(stated)} was given where a table belongs", key="variants")
+    if len(stated) > MAX_VARIANTS:
+        message = f"{len(stated)} were given; allowed are at most {MAX_VARIANTS}"
+        raise InputError(message, key="variants")
+    overlays = {name: _bare(overlay) for name, overlay in stated.items()}
     for name, overlay in overlays.items():
         check_name(name, "variants")
         if not isinstance(overlay, dict):
@@ -284,12 +286,12 @@ def _overlays(tree: Tree) -> Tree:
 
 def _demand_table(key: str, value: Any, variant: str, tree: Tree) -> None:
     """InputError for a key of a table of the case that stands in a variant by itself."""
-    *above, last = key.split(".")
-    tables = [name for name, table in tree.items() if isinstance(table, dict) and last in table]
+    *above, leaf = key.split(".")
+    tables = [name for name, table in tree.items() if isinstance(table, dict) and leaf in table]
     holding = ".".join(above) or next(iter(tables), "")
     if not isinstance(value, dict) and holding and key not in tree:
         raise InputError(
-            f"stands in no table; write [variants.{variant}.{holding}] and {last} below it",
+            f"stands in no table; write [variants.{variant}.{holding}] and {leaf} below it",
             key=f"variants.{variant}.{key}",
         )
 
@@ -324,9 +326,9 @@ def resolve(
     Raises:
         InputError: unknown variant, or a mark that is not one.
     """
-    known = variants(tree)
-    if variant not in known:
-        raise unknown_variant(variant, known).at(file=name)
+    allowed = variants(tree)
+    if variant not in allowed:
+        raise unknown_variant(variant, allowed).at(file=name)
     base = {key: value for key, value in tree.items() if key != "variants"}
     merged = _tables_merged(_numbered(base), _numbered(_overlays(tree).get(variant, {})))
     for key, value in (settings or {}).items():
@@ -338,7 +340,7 @@ def resolve(
                 merged[place] = copy.deepcopy(merged[place])
         _find_files(merged, folder)
     provenance: dict[str, Provenance] = {}
-    plain = {key: strip(one, provenance, name=name, key=key) for key, one in merged.items()}
+    plain = {key: strip(entry, provenance, name=name, key=key) for key, entry in merged.items()}
     _respell(plain, "gears", provenance)
     stages = plain.get(STAGES)
     for number, stage in stages.items() if isinstance(stages, dict) else ():
@@ -360,10 +362,10 @@ def _respell(tables: Any, place: str, provenance: dict[str, Provenance]) -> None
 
 def _numbered(tree: Tree) -> Tree:
     """Tables with a list of stages as tables by number, so that each value has a dotted key."""
-    given = tree.get(STAGES)
-    if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
+    stages = tree.get(STAGES)
+    if not isinstance(stages, list) or not all(isinstance(stage, dict) for stage in stages):
         return tree
-    return {**tree, STAGES: {str(number): one for number, one in enumerate(given, 1)}}
+    return {**tree, STAGES: {str(number): stage for number, stage in enumerate(stages, 1)}}
 
 
 def setting(
@@ -380,14 +382,14 @@ def setting(
     """
     if key.count(".") + _depth(value) > MAX_DEPTH:
         raise _too_deep(name).at(key=key)
-    *parents, last = key.split(".")
+    *parents, leaf = key.split(".")
     result = _copied(tree, parents)
     try:
-        if last.isdecimal() and parents:
+        if leaf.isdecimal() and parents:
             node = _table(result, parents[:-1])
             above = parents[-1]
             both = node[above] if above in node else usual(".".join(parents), tree)
-            node[parents[-1]] = _of_gear(both, last, value)
+            node[parents[-1]] = _of_gear(both, leaf, value)
         else:
             put(result, key, value)
     except InputError as error:
@@ -408,8 +410,8 @@ def _copied(tree: Tree, parents: list[str]) -> Tree:
 
 def put(tree: Tree, key: str, value: Any) -> None:
     """Put a value at a dotted key into tables; InputError if a value stands where a table is needed."""
-    *parents, last = key.split(".")
-    _table(tree, parents)[last] = value
+    *parents, leaf = key.split(".")
+    _table(tree, parents)[leaf] = value
 
 
 def _table(tree: Tree, parents: list[str]) -> Tree:
@@ -434,10 +436,10 @@ def strip(value: Any, provenance: dict[str, Provenance], *, name: str = "", key:
     if isinstance(value, dict):
         if _marked(value):
             mark = _provenance(value, name, key)
-            found = strip(value["value"], provenance, name=name, key=key)
-            for path in (key, *(leaf for leaf, _ in leaves({key: found}))):
+            bare = strip(value["value"], provenance, name=name, key=key)
+            for path in (key, *(leaf for leaf, _ in leaves({key: bare}))):
                 provenance.setdefault(path, mark)  # of a table, that of its values
-            return found
+            return bare
         return {
             part: strip(item, provenance, name=name, key=f"{key}.{part}" if key else part)
             for part, item in value.items()
@@ -498,14 +500,16 @@ def _of_gear(values: Any, gear: str, value: Any) -> Any:
         return {**values, gear: value}
     if isinstance(values, dict):
         values = values.get("value")
-    each = list(values) if isinstance(values, list | tuple) and len(values) > 1 else [values] * 2
-    known = [str(number) for number in range(1, len(each) + 1)]
-    if gear not in known:
-        raise InputError(f"there is no gear {shorten(gear)}; use {' or '.join(known)}")
+    of_gears = (
+        list(values) if isinstance(values, list | tuple) and len(values) > 1 else [values] * 2
+    )
+    gears = [str(number) for number in range(1, len(of_gears) + 1)]
+    if gear not in gears:
+        raise InputError(f"there is no gear {shorten(gear)}; use {' or '.join(gears)}")
     if values is None:
         raise InputError(
             "is the value of one gear, and there is none for the other; give both as a list"
         )
     mark = value if isinstance(value, dict) else {"value": value}
-    each[int(gear) - 1] = mark["value"]
-    return {**mark, "value": each}
+    of_gears[int(gear) - 1] = mark["value"]
+    return {**mark, "value": of_gears}

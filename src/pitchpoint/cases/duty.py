@@ -47,9 +47,9 @@ def duty_inputs(table: DutyTable, temperature: float, *, travels: bool) -> DutyI
         InputError: a file that holds no load over time, bodies without resistances, with the key.
     """
     if travels and table.lives:
-        told = "are those over turns of an output, and this one travels; leave the table out"
-        raise InputError(told, key="duty.lives")
-    lives = {name: RatedLife(**one.model_dump()) for name, one in table.lives.items()}
+        message = "are those over turns of an output, and this one travels; leave the table out"
+        raise InputError(message, key="duty.lives")
+    lives = {name: RatedLife(**life.model_dump()) for name, life in table.lives.items()}
     return DutyInputs(
         _history(table.file, temperature, travels),
         None if table.motor is None else _motor(table.motor),
@@ -104,7 +104,9 @@ def _heating(table: HeatTable) -> Heating:
 def _between(tables: Iterable[ResistanceTable]) -> dict[tuple[str, str], float]:
     """Resistances by the two names that they join; those side by side as what they are together [K/W]."""
     conductances: dict[tuple[str, str], float] = {}
-    for one in tables:
-        first, second = sorted(one.between)
-        conductances[first, second] = conductances.get((first, second), 0.0) + 1.0 / one.resistance
+    for table in tables:
+        body, neighbour = sorted(table.between)
+        conductances[body, neighbour] = (
+            conductances.get((body, neighbour), 0.0) + 1.0 / table.resistance
+        )
     return {names: 1.0 / conductance for names, conductance in conductances.items()}

@@ -76,9 +76,9 @@ def film_model(table: FilmTable, solids: Sequence[SolidRecord], size: float | No
     Raises:
         InputError: the conductivity or specific heat of a member is not known, and asked for.
     """
-    names = [one.name for one in fields(FilmModel) if one.name in FilmTable.model_fields]
-    given = {name: getattr(table, name) for name in names}
-    chosen = {name: value for name, value in given.items() if value is not None}
+    names = [field.name for field in fields(FilmModel) if field.name in FilmTable.model_fields]
+    stated = {name: getattr(table, name) for name in names}
+    chosen = {name: value for name, value in stated.items() if value is not None}
     if "nodes" in chosen:
         chosen["nodes"] = int(chosen["nodes"])
     if table.over_patch:  # lines beside it have their own nodes

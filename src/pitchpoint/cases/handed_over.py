@@ -64,17 +64,19 @@ def as_toml(
         studies: beside those of the case.
         files: names in the folder `files` by those that the case has for its files.
     """
-    own = {name: study.model_dump(exclude_unset=True) for name, study in (studies or {}).items()}
+    of_studies = {
+        name: study.model_dump(exclude_unset=True) for name, study in (studies or {}).items()
+    }
     tree = {"title": title, **document.tree} if title else dict(document.tree)
-    if own:
-        tree["studies"] = {**tree.get("studies", {}), **own}
+    if of_studies:
+        tree["studies"] = {**tree.get("studies", {}), **of_studies}
     every = dict.fromkeys((*_FIRST, *tree))
-    whole = tomlkit.document()
-    whole.add(tomlkit.comment(_HEAD))
+    toml = tomlkit.document()
+    toml.add(tomlkit.comment(_HEAD))
     pen = _Pen(document.provenance, {} if files is None else files)
     for key, item in pen.entries({key: tree[key] for key in every if key in tree}, ""):
-        whole.add(key, item)
-    return tomlkit.dumps(whole)
+        toml.add(key, item)
+    return tomlkit.dumps(toml)
 
 
 class _Pen:
@@ -91,35 +93,37 @@ class _Pen:
 
     def entries(self, tree: Mapping[str, Any], path: str) -> list[tuple[str, Item]]:
         """Keys and what stands at them, tables last as TOML wants it."""
-        made = [(key, self.entry(value, _at(path, key))) for key, value in tree.items()]
-        return sorted(made, key=lambda one: isinstance(one[1], Table | AoT))
+        written = [(key, self.entry(value, _at(path, key))) for key, value in tree.items()]
+        return sorted(written, key=lambda entry: isinstance(entry[1], Table | AoT))
 
     def entry(self, value: Any, path: str) -> Item:
         """What stands at a key."""
         mark = self.marks.get(path, Provenance())
         if mark != Provenance():
-            told = {"where": mark.where, "note": mark.note}
-            marks = {"status": mark.status, **{key: text for key, text in told.items() if text}}
+            remarks = {"where": mark.where, "note": mark.note}
+            marks = {"status": mark.status, **{key: text for key, text in remarks.items() if text}}
             return _inline({"value": self.plain(value, path), **marks})
         if path == STAGES and isinstance(value, Mapping):
-            return self.tables([(one, f"{STAGES}.{number}") for number, one in value.items()])
+            return self.tables([(table, f"{STAGES}.{number}") for number, table in value.items()])
         if isinstance(value, Mapping):
             return self.table(value, path)
         if "." not in path and _of_tables(value):
-            return self.tables([(one, f"{path}.{place}") for place, one in enumerate(value)])
+            return self.tables([(table, f"{path}.{place}") for place, table in enumerate(value)])
         return self.plain(value, path)
 
     def table(self, tree: Mapping[str, Any], path: str) -> Table:
         """A table under a heading of its own."""
-        told = self.entries(tree, path)
-        table = tomlkit.table(bool(told) and all(isinstance(one, Table) for _, one in told))
-        for key, item in told:
+        entries = self.entries(tree, path)
+        table = tomlkit.table(
+            bool(entries) and all(isinstance(entry, Table) for _, entry in entries)
+        )
+        for key, item in entries:
             table.add(key, item)
         return table
 
     def tables(self, every: list[tuple[Mapping[str, Any], str]]) -> AoT:
         """A list of tables, each under its heading."""
-        return _aot([self.table(*one) for one in every])
+        return _aot([self.table(*placed) for placed in every])
 
     def plain(self, value: Any, path: str) -> Item:
         """A value without marks, tables in it in braces."""
@@ -128,12 +132,12 @@ class _Pen:
         if isinstance(value, SIValue):
             return tomlkit.item(_with_unit(value, path))
         if isinstance(value, Mapping):
-            inner = {key: self.plain(one, _at(path, key)) for key, one in value.items()}
+            inner = {key: self.plain(element, _at(path, key)) for key, element in value.items()}
             return _inline(inner)
         if isinstance(value, list | tuple):
             array = tomlkit.array()
-            for one in value:
-                array.append(self.plain(one, path))
+            for element in value:
+                array.append(self.plain(element, path))
             return array
         written: Item = tomlkit.item(value)
         return written
@@ -144,10 +148,10 @@ def _at(path: str, key: str) -> str:
 
 
 def _aot(tables: list[Table]) -> AoT:
-    whole = tomlkit.aot()
+    array = tomlkit.aot()
     for table in tables:
-        whole.append(table)
-    return whole
+        array.append(table)
+    return array
 
 
 def _inline(values: Mapping[str, Any]) -> InlineTable:

@@ -54,11 +54,11 @@ def height_maps(table: FilmTable, *, moving: bool = False) -> tuple[HeightMap, .
     """
     if table.heights is None:
         return ()
-    given = ((name, getattr(table.heights, name)) for name in MEMBERS)
+    heights = ((name, getattr(table.heights, name)) for name in MEMBERS)
     return tuple(
-        _map(one, MEMBERS[name] if moving else None, f"film.heights.{name}.file")
-        for name, one in given
-        if one is not None
+        _map(height_table, MEMBERS[name] if moving else None, f"film.heights.{name}.file")
+        for name, height_table in heights
+        if height_table is not None
     )
 
 
@@ -99,20 +99,20 @@ def _steps(table: HeightTable, held: Heights, key: str, *, profile: bool) -> tup
     for name in ("unit", "step_along", "step_across"):
         if held.unit is not None and name in table.model_fields_set:
             raise InputError("is said by an x3p file itself; leave it out", key=f"{key}.{name}")
-    given = {"along": table.step_along, "across": table.step_across}
+    steps = {"along": table.step_along, "across": table.step_across}
     if held.unit is not None:
-        own = held.steps if not profile or table.direction == "along" else held.steps[::-1]
-        given = dict(zip(given, own, strict=True))
+        file_steps = held.steps if not profile or table.direction == "along" else held.steps[::-1]
+        steps = dict(zip(steps, file_steps, strict=True))
     if profile:
-        given["across" if table.direction == "along" else "along"] = WIDE
-    for way, step in given.items():
+        steps["across" if table.direction == "along" else "along"] = WIDE
+    for direction, step in steps.items():
         if step is None:
-            what = f"profile {way} the surface speeds" if profile else "height map"
-            told = f"is missing; a {what} needs the distance of its heights, such as"
-            raise InputError(f'{told} step_{way} = "5 um"', key=f"{key}.step_{way}")
-        if way == table.direction and held.apart is not None:
-            _demand_apart(held.apart, step, f"{key}.step_{way}")
-    return tuple(given.values())  # type: ignore[return-value]  # none is None by now
+            what = f"profile {direction} the surface speeds" if profile else "height map"
+            message = f"is missing; a {what} needs the distance of its heights, such as"
+            raise InputError(f'{message} step_{direction} = "5 um"', key=f"{key}.step_{direction}")
+        if direction == table.direction and held.apart is not None:
+            _demand_apart(held.apart, step, f"{key}.step_{direction}")
+    return tuple(steps.values())  # type: ignore[return-value]  # none is None by now
 
 
 def _demand_apart(apart: float, step: float, key: str) -> None:
@@ -129,12 +129,12 @@ def _stamp(file: str) -> tuple[int, int]:
     """Size and time of change of a file, by which it is read anew."""
     try:
         with plain_file(Path(file), MOST_BYTES, "file of heights") as held:
-            found = os.fstat(held.fileno())
+            status = os.fstat(held.fileno())
     except InputError as error:
         folder = os.path.dirname(file)
         where = f" in {visible(shorten(folder, LONGEST_PLACE))}" if folder else ""
         raise InputError(f"{error.message}{where}") from None
-    return found.st_size, found.st_mtime_ns
+    return status.st_size, status.st_mtime_ns
 
 
 @lru_cache(maxsize=4)
@@ -147,8 +147,8 @@ def _read(file: str, stamp: tuple[int, int]) -> Heights:
     if ending == _ARCHIVE:
         held = read_x3p(packed, MOST_HEIGHTS)
     else:
-        found = _array(packed) if ending == ".npy" else _text(packed, _TEXTS[ending])
-        held = _told_apart(_grid(found))
+        heights = _array(packed) if ending == ".npy" else _text(packed, _TEXTS[ending])
+        held = _told_apart(_grid(heights))
     wrong = int(np.sum(~np.isfinite(held.heights)))
     if wrong:
         which = "one height" if wrong == 1 else f"{wrong} heights"

@@ -138,13 +138,13 @@ def input_rows(
         studies: beside those of the case.
     """
     every = {**built.case.studies, **(studies or {})}
-    own = (
+    study_rows = (
         _of_drive(cast(BuiltDrive, built), document)
         if built.numbers
         else _of_mesh(built.meshes[0], document)
     )
     return [
-        *own,
+        *study_rows,
         *(row for name, study in every.items() for row in _of_study(name, study, document)),
     ]
 
@@ -154,8 +154,8 @@ def _of_mesh(built: Built, document: Document) -> Iterator[Row]:
     for table in _TABLES:
         yield from _rows(built.case, document, table, following.get(table))
     if built.case.film is None:
-        for key, one in following["film"].items():
-            yield _row("film", key, one.value, _kind(f"film.{key}", one.value), _mark(one))
+        for key, source in following["film"].items():
+            yield _row("film", key, source.value, _kind(f"film.{key}", source.value), _mark(source))
     yield from _digests(built)
 
 
@@ -166,9 +166,9 @@ def _digests(built: Built) -> Iterator[Row]:
     yield from _digest_of_duty(built)
     heights = None if built.case.film is None else built.case.film.heights
     for name in MEMBERS:
-        one = getattr(heights, name, None)
-        if one is not None:
-            yield _digest("film", f"heights.{name}.digest", digest_of(one.file))
+        height_table = getattr(heights, name, None)
+        if height_table is not None:
+            yield _digest("film", f"heights.{name}.digest", digest_of(height_table.file))
 
 
 def _digest_of_duty(built: Ready) -> Iterator[Row]:
@@ -205,18 +205,18 @@ def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
     """Rows of the stages, then those of the tables that they share."""
     short = built.case.gears is not None  # for which the stages stand
     document = with_meshes(document)
-    for number, one, inside in zip(built.numbers, built.stages, built.documents, strict=True):
-        own = document.tree[STAGES][str(number)]
-        following = {"gears": one.following, "film": _of_films(one)}
-        for table in ("gears", *(key for key in _OF_STAGE if key in own)):
-            for row in _rows(one.case, inside, table, following.get(table)):
-                holds = not short and _holds(own, table, row["key"])
+    for number, stage, inside in zip(built.numbers, built.stages, built.documents, strict=True):
+        stage_tree = document.tree[STAGES][str(number)]
+        following = {"gears": stage.following, "film": _of_films(stage)}
+        for table in ("gears", *(key for key in _OF_STAGE if key in stage_tree)):
+            for row in _rows(stage.case, inside, table, following.get(table)):
+                holds = not short and _holds(stage_tree, table, row["key"])
                 follows = {"status": "derived"} if short and row["status"] == "given" else {}
                 yield _in_stage({**row, **follows}, number, given=holds)
-        for mesh in one.meshes:
+        for mesh in stage.meshes:
             yield from (_in_stage(row, number, given=False) for row in _digests(mesh))
         for key in ("bodies", "driver", "place", "turn"):
-            if key in own and not short:
+            if key in stage_tree and not short:
                 path, value = f"{number}.{key}", getattr(built.case.stages[str(number)], key)
                 mark = document.provenance.get(f"{STAGES}.{path}", Provenance())
                 yield _row(STAGES, path, value, _kind(f"{STAGES}.{path}", value), mark, given=True)
@@ -230,20 +230,23 @@ def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
 
 def _models(built: BuiltDrive, document: Document) -> Iterator[Row]:
     """Rows of the models, once where no stage has its own."""
-    whole = {row["key"]: row for row in _rows(built.case, document, "models") if row["given"]}
-    each = [
+    of_drive = {row["key"]: row for row in _rows(built.case, document, "models") if row["given"]}
+    of_stages = [
         {row["key"]: row for row in _rows(one.case, inside, "models")}
         for one, inside in zip(built.stages, built.documents, strict=True)
     ]
     trees = [document.tree[STAGES][str(number)] for number in built.numbers]
-    for key in each[0]:
-        rows, own = [one[key] for one in each], [_holds(tree, "models", key) for tree in trees]
-        if not any(own) and all(row["value"] == rows[0]["value"] for row in rows):
+    for key in of_stages[0]:
+        rows, stated = (
+            [one[key] for one in of_stages],
+            [_holds(tree, "models", key) for tree in trees],
+        )
+        if not any(stated) and all(row["value"] == rows[0]["value"] for row in rows):
             yield rows[0]
             continue
-        yield from (whole[key] for _ in range(key in whole))
-        for number, row, given in zip(built.numbers, rows, own, strict=True):
-            yield _in_stage(row, number, given=given)
+        yield from (of_drive[key] for _ in range(key in of_drive))
+        for number, row, in_stage in zip(built.numbers, rows, stated, strict=True):
+            yield _in_stage(row, number, given=in_stage)
 
 
 _OF_STAGE = (
@@ -261,9 +264,9 @@ _OF_STAGE = (
 
 def _holds(tree: Mapping[str, Any], table: str, key: str) -> bool:
     """True if a stage has a value of its own at a key of a table."""
-    asked = dict(leaves({table: tree.get(table, {})}))
+    stated = dict(leaves({table: tree.get(table, {})}))
     path = f"{table}.{key}"
-    return any(one == path or one.startswith(f"{path}.") for one in asked)
+    return any(leaf == path or leaf.startswith(f"{path}.") for leaf in stated)
 
 
 def _in_stage(row: Row, number: int, *, given: bool) -> Row:
@@ -275,14 +278,14 @@ def _in_stage(row: Row, number: int, *, given: bool) -> Row:
 
 def following_rows(built: Ready) -> Iterator[Row]:
     """Rows of what follows from gears, materials and oil; of a drive by stage."""
-    one_oil = all(one.lubricant == built.meshes[0].lubricant for one in built.meshes)
-    for label, one in zip(built.mesh_labels, built.meshes, strict=True):
+    one_oil = all(mesh.lubricant == built.meshes[0].lubricant for mesh in built.meshes)
+    for label, mesh in zip(built.mesh_labels, built.meshes, strict=True):
         rows = [
-            *_dimensions(one),
-            *_inertia(one),
-            *(row for gear in (1, 2) for row in _of_solid(one, gear)),
+            *_dimensions(mesh),
+            *_inertia(mesh),
+            *(row for gear in (1, 2) for row in _of_solid(mesh, gear)),
         ]
-        rows += [] if one_oil else _of_oil(one)
+        rows += [] if one_oil else _of_oil(mesh)
         of_stage = f"stage {label}." if label else ""
         yield from ({**row, "key": f"{of_stage}{row['key']}"} for row in rows)
     if one_oil:
@@ -290,9 +293,9 @@ def following_rows(built: Ready) -> Iterator[Row]:
 
 
 def _of_oil(built: Built) -> Iterator[Row]:
-    known = built.lubricant.data()
+    data = built.lubricant.data()
     for name, kind in _OIL.items():
-        datum = known.get(name)
+        datum = data.get(name)
         if datum is None:
             continue
         bend = built.lubricant.bend if name == "nu_0" else ""
@@ -322,25 +325,25 @@ def _rows(
     following: Mapping[str, Any] | None = None,
 ) -> Iterator[Row]:
     """Rows of a table of the case file; `following` are values of what it leaves open."""
-    asked = dict(leaves({table: document.tree[table]})) if table in document.tree else {}
-    ends = ((path, at) for path in asked for at, sign in enumerate(f"{path}.") if sign == ".")
+    stated = dict(leaves({table: document.tree[table]})) if table in document.tree else {}
+    ends = ((path, at) for path in stated for at, sign in enumerate(f"{path}.") if sign == ".")
     held = {path[:end] for path, end in ends}  # with the tables above each value
     derived = following or {}
     usual = marks_of(document.tree.get(table)) if table == "losses" else {}
     for key, left in _leaves(getattr(case, table)):
-        found = _followed(derived.get(key)) if left is None else None
-        path, value = f"{table}.{key}", left if found is None else found.value
+        followed = _followed(derived.get(key)) if left is None else None
+        path, value = f"{table}.{key}", left if followed is None else followed.value
         if value is None:
             continue
         value = _plain(value)
         if path in held:
             mark = document.provenance.get(path, Provenance())
-            mark = _scaled(mark, path, document, asked.get(path))
+            mark = _scaled(mark, path, document, stated.get(path))
             yield _row(table, key, value, _kind(path, value), mark, given=True)
         else:
-            mark = usual.get(key, _DEFAULT if found is None else _mark(found))
+            mark = usual.get(key, _DEFAULT if followed is None else _mark(followed))
             yield _row(table, key, value, _kind(path, value), mark)
-    for path, value in asked.items():
+    for path, value in stated.items():
         key = path[len(table) + 1 :]
         if value == {} or (usual and key == SET):
             mark = document.provenance.get(path, Provenance())
@@ -354,13 +357,15 @@ def _scaled(mark: Provenance, path: str, document: Document, given: Any) -> Prov
         return mark
     quantity = quantity_at(path, document.tree)
     if isinstance(quantity, SmallerOfTwo) and isinstance(given, list):
-        told = f"the smaller of {given[0]} and {given[1]}, as wide as which both bodies count"
-        return replace(mark, note="; ".join(filter(None, [mark.note, told])))
+        remark = f"the smaller of {given[0]} and {given[1]}, as wide as which both bodies count"
+        return replace(mark, note="; ".join(filter(None, [mark.note, remark])))
     scale = hardness_scale(given) if quantity is not None and quantity.kind == "hardness" else ""
     if not scale:
         return mark
-    told = f"given as {given}; a {scale} number is kgf/mm2 over its own indentation, used as it is"
-    return replace(mark, note="; ".join(filter(None, [mark.note, told])))
+    remark = (
+        f"given as {given}; a {scale} number is kgf/mm2 over its own indentation, used as it is"
+    )
+    return replace(mark, note="; ".join(filter(None, [mark.note, remark])))
 
 
 def _followed(found: Any) -> Followed:
@@ -372,22 +377,22 @@ def _leaves(table: Any) -> Iterator[tuple[str, Any]]:
     """Dotted keys and values of a table and of the tables in it; None for what is left open."""
     for key, value in dict(table or {}).items():
         if isinstance(value, BaseModel) or _are_tables(value):
-            yield from ((f"{key}.{name}", one) for name, one in _leaves(value))
+            yield from ((f"{key}.{name}", leaf) for name, leaf in _leaves(value))
         else:
             yield key, value
 
 
 def _are_tables(value: Any) -> bool:
     """True for tables by names of the user's own, be there none."""
-    return isinstance(value, dict) and all(isinstance(one, BaseModel) for one in value.values())
+    return isinstance(value, dict) and all(isinstance(table, BaseModel) for table in value.values())
 
 
 def _of_study(name: str, study: Study, document: Document) -> Iterator[Row]:
     """Rows of a study: its title, its changes, its sweep."""
-    for key, given in leaves({name: study.model_dump(exclude_unset=True)}):
+    for key, setting in leaves({name: study.model_dump(exclude_unset=True)}):
         path = f"{STUDIES}.{key}"
         subject = _subject(key.removeprefix(f"{name}."), study) or path
-        value, mark = _in_si(subject, given), document.provenance.get(path, Provenance())
+        value, mark = _in_si(subject, setting), document.provenance.get(path, Provenance())
         yield _row(STUDIES, key, value, _kind(subject, value), mark, given=True)
 
 
@@ -414,9 +419,11 @@ def _kind(key: str, value: Any) -> str | dict[str, str]:
     """Kind of the numbers at a key; by key of the tables where it holds a list of them; none of a text."""
     if isinstance(value, str):
         return ""
-    tables = [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
+    tables = (
+        [table for table in value if isinstance(table, dict)] if isinstance(value, list) else []
+    )
     if tables:
-        inner = {name: quantity_at(f"{key}.{name}") for one in tables for name in one}
+        inner = {name: quantity_at(f"{key}.{name}") for table in tables for name in table}
         return {name: quantity.kind for name, quantity in inner.items() if quantity is not None}
     quantity = quantity_at(key)
     return "" if quantity is None else quantity.kind
@@ -436,16 +443,16 @@ def _plain(value: Any) -> Any:
 
 
 def _dimensions(built: Built) -> Iterator[Row]:
-    known, mark = built.dimensions, Provenance("derived")
+    dimensions, mark = built.dimensions, Provenance("derived")
     for name in _DIMENSIONS:
-        if name in known:
+        if name in dimensions:
             variable = VARIABLES.get(name) or VARIABLES[f"{name}_1"]
             if name == "undercut_limit" and getattr(built.design.mesh, "internal", False):
                 # No rack cuts a ring.
-                limit = np.asarray(known[name]).tolist()[0]
+                limit = np.asarray(dimensions[name]).tolist()[0]
                 yield _row(DIMENSIONS, f"gear_1.{name}", limit, variable.kind, mark)
                 continue
-            yield _row(DIMENSIONS, name, known[name], variable.kind, mark)
+            yield _row(DIMENSIONS, name, dimensions[name], variable.kind, mark)
     cut = built.following.get("generating_shift")
     if cut is not None:
         yield _row(DIMENSIONS, "generating_shift", cut.value, "dimensionless", _mark(cut))
@@ -453,12 +460,12 @@ def _dimensions(built: Built) -> Iterator[Row]:
 
 def _inertia(built: Built) -> Iterator[Row]:
     """Moments of inertia that a vibration takes where the case gives none; those that travel have a mass."""
-    mesh, asked = built.design.mesh, built.case.dynamics
-    if asked is None or asked.inertia is not None or not has(mesh, line_of_action):
+    mesh, dynamics = built.design.mesh, built.case.dynamics
+    if dynamics is None or dynamics.inertia is not None or not has(mesh, line_of_action):
         return
     density = array([float(solid.density) for solid in built.design.solids])
     every = np.asarray(plain_inertia(mesh, density)).tolist()
-    turning = [value for value, one in zip(every, built.bodies, strict=True) if one.turns]
+    turning = [value for value, body in zip(every, built.bodies, strict=True) if body.turns]
     mark = Provenance("derived", note="discs of the material from bore to reference circle")
     yield _row("dynamics", "inertia", turning, "moment of inertia", mark)
 
@@ -467,8 +474,8 @@ def _of_solid(built: Built, gear: int) -> Iterator[Row]:
     """Values of a material at the temperature at which they are used."""
     used = built.solids[gear - 1]
     warm = built.film_model is not None and built.film_model.thermal != ISOTHERMAL
-    asked = _SOLID | (_FLANK if built.asperities else {}) | (_CONDUCTS if warm else {})
-    for name, kind in asked.items():
+    properties = _SOLID | (_FLANK if built.asperities else {}) | (_CONDUCTS if warm else {})
+    for name, kind in properties.items():
         datum = used.record.data()[name]
         note = (used.told if name == "young" else "") or datum.note
         mark = Provenance(datum.status, datum.source, note)

@@ -31,12 +31,12 @@ class _Names(GenerateJsonSchema):
         self, schema: core_schema.BeforeValidatorFunctionSchema
     ) -> JsonSchemaValue:
         """Schema of what is read before it is checked; the names of a registry where it is one."""
-        known: Callable[[], list[str]] | None = getattr(
+        names: Callable[[], list[str]] | None = getattr(
             schema["function"]["function"], "known", None
         )
-        if known is None:
+        if names is None:
             return super().function_before_schema(schema)
-        return {"type": "string", "enum": [*known()]}
+        return {"type": "string", "enum": [*names()]}
 
 
 def case_schema() -> dict[str, Any]:
@@ -48,14 +48,14 @@ def case_schema() -> dict[str, Any]:
     defs: dict[str, Any] = {}
     properties: dict[str, Any] = {}
     wholes = []
-    models = dict(one for model in (Case, DriveCase) for one in _tables(model))
+    models = dict(entry for model in (Case, DriveCase) for entry in _tables(model))
     for model in (Case, DriveCase):
-        made = model.model_json_schema(schema_generator=_Names, mode="validation")
-        defs |= made.pop(_DEFS)
-        if "gears" not in made["required"]:  # those of a planetary set stand for stages
-            made["required"].remove(STAGES)
-            made["anyOf"] = [{"required": [STAGES]}, {"required": ["gears"]}]
-        defs[model.__name__] = made
+        schema = model.model_json_schema(schema_generator=_Names, mode="validation")
+        defs |= schema.pop(_DEFS)
+        if "gears" not in schema["required"]:  # those of a planetary set stand for stages
+            schema["required"].remove(STAGES)
+            schema["anyOf"] = [{"required": [STAGES]}, {"required": ["gears"]}]
+        defs[model.__name__] = schema
         wholes.append({"$ref": f"#/{_DEFS}/{model.__name__}"})
     for name, table in defs.items():
         _plain(table)
@@ -105,9 +105,9 @@ _OF_ONE_OR_SEVERAL = ("friction", "at")
 
 def _loosen(table: dict[str, Any], model: type[BaseModel]) -> None:
     """Takes what the reader takes: marks, one in place of a list, stages in a list, sets of losses."""
-    told = sentences(model)
+    descriptions = sentences(model)
     for key, value in table.get("properties", {}).items():
-        words = _words(value, model.model_fields[key], told.get(key, ""))
+        words = _words(value, model.model_fields[key], descriptions.get(key, ""))
         options = [value, *_other_ways(key, value), {"$ref": f"#/{_DEFS}/mark"}]
         table["properties"][key] = {**words, "anyOf": options}
     if issubclass(model, GearsTable) and "module" in model.model_fields:
@@ -124,9 +124,9 @@ def _words(value: dict[str, Any], info: FieldInfo, sentence: str) -> dict[str, A
     """What is told of a key in place of what is told of its values; a usual value with its unit."""
     value.pop("description", None)
     default, usual = value.pop("default", None), usual_words(info)
-    kept = isinstance(default, str | bool) and not usual
-    told = " ".join(filter(None, [sentence, _measured(value, info)]))
-    return {"description": told, **({"default": default} if kept else {})}
+    constant = isinstance(default, str | bool) and not usual
+    description = " ".join(filter(None, [sentence, _measured(value, info)]))
+    return {"description": description, **({"default": default} if constant else {})}
 
 
 def _measured(value: dict[str, Any], info: FieldInfo) -> str:
@@ -134,8 +134,8 @@ def _measured(value: dict[str, Any], info: FieldInfo) -> str:
     measure = measure_of(info)
     if measure is None:
         return ""
-    told = f"each {measure.told}" if value.get("type") == "array" else measure.told
-    return "; ".join(filter(None, [told[0].upper() + told[1:], usual_words(info)]))
+    unit = f"each {measure.told}" if value.get("type") == "array" else measure.told
+    return "; ".join(filter(None, [unit[0].upper() + unit[1:], usual_words(info)]))
 
 
 def _other_ways(key: str, value: dict[str, Any]) -> list[dict[str, Any]]:
@@ -158,14 +158,14 @@ def _other_ways(key: str, value: dict[str, Any]) -> list[dict[str, Any]]:
 
 def _plain(node: Any) -> None:
     """One of several tables is the first that fits, for a key that decides may be left out; no nulls."""
-    for one in _nodes(node):
-        if "oneOf" in one:
-            one["anyOf"] = one.pop("oneOf")
-            one.pop("discriminator", None)
-        if {"type": "null"} in one.get("anyOf", ()):
-            one["anyOf"].remove({"type": "null"})
-            if len(one["anyOf"]) == 1:
-                one.update(one.pop("anyOf")[0])
+    for schema in _nodes(node):
+        if "oneOf" in schema:
+            schema["anyOf"] = schema.pop("oneOf")
+            schema.pop("discriminator", None)
+        if {"type": "null"} in schema.get("anyOf", ()):
+            schema["anyOf"].remove({"type": "null"})
+            if len(schema["anyOf"]) == 1:
+                schema.update(schema.pop("anyOf")[0])
 
 
 def _tables(model: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
@@ -179,11 +179,11 @@ def _tables(model: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
 def _partial(table: Mapping[str, Any]) -> dict[str, Any]:
     """The same table where any key may be left out, in it and below."""
     part = copy.deepcopy(dict(table))
-    for one in _nodes(part):
-        one.pop("required", None)
-        name, slash, inside = one.get("$ref", "").removeprefix(f"#/{_DEFS}/").partition("/")
+    for schema in _nodes(part):
+        schema.pop("required", None)
+        name, slash, inside = schema.get("$ref", "").removeprefix(f"#/{_DEFS}/").partition("/")
         if name and name != "mark" and not name.endswith(_PART):
-            one["$ref"] = f"#/{_DEFS}/{name}{_PART}{slash}{inside}"
+            schema["$ref"] = f"#/{_DEFS}/{name}{_PART}{slash}{inside}"
     return part
 
 
@@ -191,5 +191,5 @@ def _nodes(node: Any) -> Iterator[dict[str, Any]]:
     if isinstance(node, dict):
         yield node
     inner = node.values() if isinstance(node, dict) else node if isinstance(node, list) else ()
-    for one in list(inner):
-        yield from _nodes(one)
+    for child in list(inner):
+        yield from _nodes(child)

@@ -26,7 +26,9 @@ def names() -> list[str]:
 def _shipped() -> tuple[str, ...]:
     """Names of the shipped cases, looked for once: a run asks four times."""
     folder = resources.files(published)
-    return tuple(sorted(one.name for one in folder.iterdir() if (one / "case.toml").is_file()))
+    return tuple(
+        sorted(entry.name for entry in folder.iterdir() if (entry / "case.toml").is_file())
+    )
 
 
 def path_of(case: str) -> Path:
@@ -40,8 +42,8 @@ def path_of(case: str) -> Path:
     if Path(case).suffix == "" and not _exists(Path(case)):
         from pitchpoint.cases.other_formats import neighbours
 
-        told = f"'{shorten(case)}' is neither a shipped case nor a file"
-        raise InputError(f"{told}{neighbours(Path(case)) or nearest(case, names())}")
+        message = f"'{shorten(case)}' is neither a shipped case nor a file"
+        raise InputError(f"{message}{neighbours(Path(case)) or nearest(case, names())}")
     return Path(case)
 
 
@@ -52,11 +54,11 @@ def _of_a_result(path: Path) -> str:
         return ""
     folder = path if is_folder else path.parent
     kind = "a folder" if is_folder else _WRITTEN[path.suffix]
-    for one in (folder, folder.absolute().parent):
-        if (one / "run.json").is_file():
-            whole = shorten(as_text(str(one)))
-            return f"is {kind} of a result, no case; give {whole}, which computes the same"
-    inside = ", ".join(shorten(one.name) for one in sorted(folder.glob("*.toml"))[:3])
+    for place in (folder, folder.absolute().parent):
+        if (place / "run.json").is_file():
+            result = shorten(as_text(str(place)))
+            return f"is {kind} of a result, no case; give {result}, which computes the same"
+    inside = ", ".join(shorten(place.name) for place in sorted(folder.glob("*.toml"))[:3])
     return f"is {kind}, no case file{f'; there are {inside} in it' if is_folder and inside else ''}"
 
 
@@ -80,8 +82,8 @@ def find(case: str) -> tuple[str, Tree]:
     if not case.strip():
         raise InputError(f"no case was given; name a file or one of {', '.join(names())}")
     path = path_of(case)
-    if told := _of_a_result(path):
-        raise InputError(told, file=visible(as_text(case)))
+    if reason := _of_a_result(path):
+        raise InputError(reason, file=visible(as_text(case)))
     tree = read(path)
     return (case if case in names() else visible(as_text(path.name))), tree
 

@@ -89,12 +89,14 @@ class LossSet:
             InputError: the gears do not have what the set is scaled by.
         """
         scales = gears.loss_scales
-        asked = [term.times for place in self.places.values() for term in _terms(place)]
-        if missing := [*dict.fromkeys(one for one in asked if one and one not in scales)]:
-            told = (
+        factors = [term.times for place in self.places.values() for term in _terms(place)]
+        if missing := [
+            *dict.fromkeys(factor for factor in factors if factor and factor not in scales)
+        ]:
+            message = (
                 f"'{self.name}' scales with {' and '.join(missing)}, which these gears do not have"
             )
-            raise InputError(f"{told}; give the losses by value", key=SET)
+            raise InputError(f"{message}; give the losses by value", key=SET)
         return {
             name: {key: _scaled(value, scales) for key, value in place.items()}
             for name, place in self.places.items()
@@ -123,11 +125,11 @@ def loss_sets() -> Registry[LossSet]:
 
 def named_set(losses: Any) -> str:
     """Name of the set that a table of losses asks for; empty without one."""
-    given = losses.get(SET) if isinstance(losses, dict) else None
-    if given is None or isinstance(given, dict):
+    name = losses.get(SET) if isinstance(losses, dict) else None
+    if name is None or isinstance(name, dict):
         return ""
     try:
-        return named(lambda: [*loss_sets()], "set of losses")(given)
+        return named(lambda: [*loss_sets()], "set of losses")(name)
     except InputError as error:
         raise error.at(key=SET) from None
 
@@ -142,11 +144,11 @@ def expanded(losses: Any, gears: GearsTable | None) -> Any:
     name = named_set(losses)
     if not name:
         return losses
-    own = {key: table for key, table in losses.items() if key != SET}
+    stated = {key: table for key, table in losses.items() if key != SET}
     places = {} if gears is None else loss_sets()[name].of(gears)
     return {
         place: {**places.get(place, {}), **table} if isinstance(table, dict) else table
-        for place, table in {**places, **own}.items()
+        for place, table in {**places, **stated}.items()
         if not (place in places and table == NOT_THERE)
     }
 
@@ -179,11 +181,11 @@ def _read(value: Any) -> Any:
         return value
     return tuple(
         Term(
-            one["value"],
-            one.get("times", ""),
-            Provenance(one["status"], one.get("source", ""), one["note"]),
+            term["value"],
+            term.get("times", ""),
+            Provenance(term["status"], term.get("source", ""), term["note"]),
         )
-        for one in several
+        for term in several
     )
 
 
@@ -199,9 +201,9 @@ def _scaled(value: Any, scales: Mapping[str, float]) -> Any:
 
 def _mark(name: str, value: Any) -> Provenance:
     """Mark of a value of a set: fitted where one of its terms is."""
-    told = f"of the set {name}"
+    origin = f"of the set {name}"
     if not isinstance(value, tuple):
-        return Provenance("default", note=told)
-    first = min(value, key=lambda term: term.mark.status != "fitted")
-    note = f"{told}: {' + '.join(term.rule for term in value)}"
-    return Provenance(first.mark.status, first.mark.where, note)
+        return Provenance("default", note=origin)
+    least_sure = min(value, key=lambda term: term.mark.status != "fitted")
+    note = f"{origin}: {' + '.join(term.rule for term in value)}"
+    return Provenance(least_sure.mark.status, least_sure.mark.where, note)

@@ -50,8 +50,8 @@ def not_utf_8(error: UnicodeDecodeError) -> str:
         return "is not text, so it is no case file"
     line = content.count(b"\n", 0, error.start) + 1
     sign = content[error.start : error.start + 1].decode("cp1252", "replace")
-    told = f'"{sign}" in Latin-1' if sign.isprintable() and sign != "\ufffd" else "no sign"
-    return f"is not UTF-8 text: line {line} has a byte that is {told}; save it as UTF-8"
+    character = f'"{sign}" in Latin-1' if sign.isprintable() and sign != "\ufffd" else "no sign"
+    return f"is not UTF-8 text: line {line} has a byte that is {character}; save it as UTF-8"
 
 
 def not_toml(text: str, error: ValueError) -> str:
@@ -66,8 +66,8 @@ def not_toml(text: str, error: ValueError) -> str:
             return f"looks like {name}; {_CASE}"
     again = bool(_AGAIN.search(str(error)))
     at_end = again or "end of document" in str(error)  # where the reader tells no line
-    last = len(text.splitlines()) if at_end else 0
-    number = int((_LINE.search(str(error)) or [0, last])[1])
+    line_count = len(text.splitlines()) if at_end else 0
+    number = int((_LINE.search(str(error)) or [0, line_count])[1])
     line = [*text.splitlines(), ""][number - 1] if 0 < number <= text.count("\n") + 1 else ""
     return f"is not a TOML file: {_mended(line, number, again) or error}"
 
@@ -97,8 +97,8 @@ def _mended(line: str, number: int, again: bool) -> str:
         plain = "true" if truth[2].lower() in ("true", "yes", "on") else "false"
         return f"{at} has {truth[2]}; write {shorten(f'{truth[1]} = {plain}')}"
     if word := _WORD.fullmatch(code):
-        told = shorten(f'{word[1]} = "{word[2]}"')
-        return f"{at} has a word outside of quotation marks; write {told}"
+        cure = shorten(f'{word[1]} = "{word[2]}"')
+        return f"{at} has a word outside of quotation marks; write {cure}"
     if comma := _COMMA.search(code):
         meant = comma_readings(comma[0])
         which = "before decimals" if len(meant) == 1 else "in a number"
@@ -110,8 +110,8 @@ def _mended(line: str, number: int, again: bool) -> str:
         what = "table" if code.startswith("[") else "key"
         return f"{at} has a {what} that was there before, {shorten(code)}; write it once"
     if spaced := _SPACED.search(code):
-        told = f"[{', '.join(spaced[0].strip('[]').split())}]"
-        return f"{at} has a list without commas; write {shorten(told)}"
+        cure = f"[{', '.join(spaced[0].strip('[]').split())}]"
+        return f"{at} has a list without commas; write {shorten(cure)}"
     if after := _AFTER.fullmatch(code):
         remark = f"  # {after[3]}" if after[3] else ""
         return f"{at} has {after[2]} behind a value; write {shorten(after[1] + remark)}"
@@ -126,9 +126,9 @@ def _mended(line: str, number: int, again: bool) -> str:
 def neighbours(path: Path) -> str:
     """End of a sentence on a file that is not there: case files beside it whose names are nearly the same."""
     try:
-        known = sorted(path.parent.glob("*.toml"))[:1000]
+        files = sorted(path.parent.glob("*.toml"))[:1000]
     except (OSError, ValueError):
         return ""
-    close = alike(path.name.partition(".")[0], [one.stem for one in known])
-    names = [one.name for one in known if one.stem in close and one.name != path.name]
+    close = alike(path.name.partition(".")[0], [file.stem for file in files])
+    names = [file.name for file in files if file.stem in close and file.name != path.name]
     return f"; did you mean {' or '.join(map(shorten, names))}?" if names else ""

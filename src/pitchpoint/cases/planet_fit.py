@@ -42,17 +42,17 @@ def with_fitting(error: InputError, case: DriveCase, ratio: float, attempt: Atte
         attempt: what a change makes of the case.
     """
     assert case.train is not None
-    told, cures = [], []
+    changes, cures = [], []
     angled = bool(case.train.planet_angles)
-    found = None if angled else _first(_nearest_teeth(case, ratio), attempt)
-    if found is not None:
-        teeth, reached = found
+    fitting = None if angled else _first(_nearest_teeth(case, ratio), attempt)
+    if fitting is not None:
+        teeth, reached = fitting
         cures.append(teeth)
-        told.append(f"{change_words(teeth)} (ratio {reached:.6g}, here {ratio:.6g})")
+        changes.append(f"{change_words(teeth)} (ratio {reached:.6g}, here {ratio:.6g})")
     if angles := _nearest_angles(case, attempt):
         cures.append(angles)
-        told.append(change_words(angles))
-    longer = error.followed_by(f"it runs with {', or with '.join(told)}" if told else "")
+        changes.append(change_words(angles))
+    longer = error.followed_by(f"it runs with {', or with '.join(changes)}" if changes else "")
     longer.cures = tuple(cures)
     return longer
 
@@ -73,14 +73,16 @@ def _nearest_angles(case: DriveCase, attempt: Attempt) -> Cure | None:
     assert train is not None
     planet_gears = _PlanetGears.of(case)
     places = places_around([*planet_gears.meshes(planet_gears.teeth.tolist())])
-    asked = (
+    stated = (
         np.array(train.planet_angles) if train.planet_angles else equal_angles(round(train.planets))
     )
-    if places < asked.size:
+    if places < stated.size:
         return None
-    degrees = np.degrees(nearest_places(asked, places))
+    degrees = np.degrees(nearest_places(stated, places))
     table = "train" if case.gears is None else "gears"
-    angles = {f"{table}.planet_angles": [f"{round(one, 6):.9g} deg" for one in degrees.tolist()]}
+    angles = {
+        f"{table}.planet_angles": [f"{round(angle, 6):.9g} deg" for angle in degrees.tolist()]
+    }
     return angles if _first(iter([angles]), attempt) else None
 
 
@@ -191,11 +193,11 @@ def _written(case: DriveCase, gears: _PlanetGears, teeth: Int[np.ndarray, " gear
             listed.setdefault(key, [0, 0])[place] = int(number)
     if case.gears is None:
         return listed
-    first, *others = listed.values()
+    teeth_of_first, *others = listed.values()
     if case.gears.stepped:
         second = [others[0][0], -others[0][1]]
-        return {"gears.teeth": first, "gears.second.teeth": second}
-    change: Cure = {"gears.teeth": [*first, -others[0][1]]}
+        return {"gears.teeth": teeth_of_first, "gears.second.teeth": second}
+    change: Cure = {"gears.teeth": [*teeth_of_first, -others[0][1]]}
     if len(others) > 1:
         change["gears.second.teeth"] = [others[1][0], -others[1][1]]
     return change

@@ -76,13 +76,13 @@ class _Kept(BaseModel):
         try:
             return cls.model_validate_json(written)
         except ValidationError as error:
-            first = error.errors(include_url=False, include_input=False)[0]
-            if first["type"] in ("missing", "model_type") and path.name not in (MANIFEST, RUN):
-                told = "is JSON, and no record of a result; a case file is TOML (pitchpoint new)"
-                raise InputError(told, file=str(path)) from None
-            told = f"was not written by this version of pitchpoint: {first['msg']}"
-            key = shorten(".".join(map(str, first["loc"])))
-            raise InputError(told, file=str(path), key=key or None) from None
+            failure = error.errors(include_url=False, include_input=False)[0]
+            if failure["type"] in ("missing", "model_type") and path.name not in (MANIFEST, RUN):
+                message = "is JSON, and no record of a result; a case file is TOML (pitchpoint new)"
+                raise InputError(message, file=str(path)) from None
+            message = f"was not written by this version of pitchpoint: {failure['msg']}"
+            key = shorten(".".join(map(str, failure["loc"])))
+            raise InputError(message, file=str(path), key=key or None) from None
 
 
 class Record(_Kept):
@@ -113,12 +113,12 @@ class Record(_Kept):
 
         A result that is run again in its own folder stays that of its case.
         """
-        told = _in_words(settings or {})
+        words = _in_words(settings or {})
         if is_result(case) and os.path.realpath(case) == os.path.realpath(folder):
-            kept = cls.read(folder / RUN)
-            changed = {"variants": variants, "settings": {**kept.settings, **told}}
-            return kept.model_copy(update=changed)
-        return cls(case=name, file=_way(case, folder), variants=variants, settings=told)
+            record = cls.read(folder / RUN)
+            changed = {"variants": variants, "settings": {**record.settings, **words}}
+            return record.model_copy(update=changed)
+        return cls(case=name, file=_way(case, folder), variants=variants, settings=words)
 
     @property
     def mark(self) -> str:
@@ -135,8 +135,8 @@ class Record(_Kept):
             return ""
         if not {*self.variants} & {*later.variants}:
             return ""
-        told = " ".join(f"--set {key}={value}" for key, value in self.settings.items())
-        return f"with {told}" if told else "without --set"
+        options = " ".join(f"--set {key}={value}" for key, value in self.settings.items())
+        return f"with {options}" if options else "without --set"
 
     def demand_own(self, folder: Path) -> None:
         """InputError if the folder holds results of another case."""
@@ -151,8 +151,8 @@ class Record(_Kept):
 
 def _in_words(settings: Mapping[str, Any]) -> dict[str, str]:
     """Settings as texts by dotted key, without those of how results are shown."""
-    told = {as_text(key): as_text(str(value)) for key, value in settings.items()}
-    return {key: text for key, text in told.items() if key.partition(".")[0] != OUTPUT}
+    words = {as_text(key): as_text(str(value)) for key, value in settings.items()}
+    return {key: text for key, text in words.items() if key.partition(".")[0] != OUTPUT}
 
 
 def _known(kind: str) -> str:
@@ -369,15 +369,15 @@ class Manifest(_Kept):
         Raises:
             InputError: inputs that do not fit together.
         """
-        made: Tree = {key: getattr(self, key) for key in ("title", "summary", "source")}
-        for one in self.inputs:
-            if one.given:
-                put(made, f"{one.table}.{one.key}".removesuffix("."), one.entry)
-        demand_shallow(made, "")
-        made["issues"] = [issue.model_dump() for issue in self.issues]
+        tree: Tree = {key: getattr(self, key) for key in ("title", "summary", "source")}
+        for row in self.inputs:
+            if row.given:
+                put(tree, f"{row.table}.{row.key}".removesuffix("."), row.entry)
+        demand_shallow(tree, "")
+        tree["issues"] = [issue.model_dump() for issue in self.issues]
         if self.targets:
-            made["targets"] = self.targets
-        return {"variants": {self.variant: made}}
+            tree["targets"] = self.targets
+        return {"variants": {self.variant: tree}}
 
     @property
     def warning(self) -> list[str]:
@@ -386,7 +386,7 @@ class Manifest(_Kept):
         others = [name for name in here if self.surroundings.get(name) != here[name]]
         if not others:
             return []
-        then, now = (_listed(one, others) for one in (self.surroundings, here))
+        then, now = (_listed(environment, others) for environment in (self.surroundings, here))
         return [
             Doubt(
                 f"The record was made with {then} and is computed with {now}: numbers may differ.",
@@ -439,14 +439,14 @@ def default_folder(case: str, root: Path, settings: Mapping[str, Any] | None = N
     """
     if is_result(case) and not settings:
         return Path(case)
-    told = _in_words(settings or {})
+    words = _in_words(settings or {})
     parts = _parts(case)
     names_ = ["-".join(parts[-count:]) for count in range(1, len(parts) + 1)]
-    folders = [root / f"{name}{_suffix(told)}" for name in names_]
+    folders = [root / f"{name}{_suffix(words)}" for name in names_]
     owners = {folder: owner(folder) for folder in folders}
-    own = [one for one, of in owners.items() if of and _same(of, case, one, told)]
-    free = [one for one, of in owners.items() if of is None]
-    return [*own, *free, *folders][0]
+    of_same = [place for place, of in owners.items() if of and _same(of, case, place, words)]
+    free = [place for place, of in owners.items() if of is None]
+    return [*of_same, *free, *folders][0]
 
 
 def _parts(case: str) -> tuple[str, ...]:
@@ -468,10 +468,10 @@ def _suffix(settings: Mapping[str, str]) -> str:
     """End of the name of a folder that tells settings from any others."""
     if not settings:
         return ""
-    told = ",".join(f"{key}={value}" for key, value in settings.items())
-    plain = _STRANGE.sub("_", told)
-    digest = hashlib.sha256(told.encode()).hexdigest()[:8]
-    spaced = _STRANGE.sub("_", told.replace(" ", "_")) == told.replace(" ", "_")
+    words = ",".join(f"{key}={value}" for key, value in settings.items())
+    plain = _STRANGE.sub("_", words)
+    digest = hashlib.sha256(words.encode()).hexdigest()[:8]
+    spaced = _STRANGE.sub("_", words.replace(" ", "_")) == words.replace(" ", "_")
     return f"+{plain}" if spaced and len(plain) <= _LONGEST else f"+{plain[:_LONGEST]}-{digest}"
 
 

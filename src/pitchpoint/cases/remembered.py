@@ -23,16 +23,16 @@ def remembering(function: Callable[P, R]) -> Callable[P, R]:
     Args:
         function: pure, of values that compare by `==`; its result is not to be changed.
     """
-    known: deque[tuple[object, R]] = deque(maxlen=MOST)
+    memory: deque[tuple[object, R]] = deque(maxlen=MOST)
 
     @wraps(function)
     def take(*args: P.args, **named: P.kwargs) -> R:
-        given = args, named
-        for before, found in tuple(known):  # another thread may add to it
-            if before == given:
-                return found
-        found = function(*args, **named)
-        known.appendleft((given, found))
-        return found
+        arguments = args, named
+        for before, result in tuple(memory):  # another thread may add to it
+            if before == arguments:
+                return result
+        result = function(*args, **named)
+        memory.appendleft((arguments, result))
+        return result
 
     return take

@@ -213,9 +213,9 @@ def _unit(value: Any) -> str:
 
 def _places(value: Any) -> tuple[Any, ...]:
     several = value if isinstance(value, list | tuple) else [value]
-    for one in several:
-        if isinstance(one, bool) or not isinstance(one, str | int | float):
-            raise InputError(f"{shown(one)} was given where a place of the axis belongs")
+    for place in several:
+        if isinstance(place, bool) or not isinstance(place, str | int | float):
+            raise InputError(f"{shown(place)} was given where a place of the axis belongs")
     if not 1 <= len(several) <= 12:
         raise InputError(f"{len(several)} places were given; allowed are 1 to 12")
     return tuple(several)
@@ -228,11 +228,13 @@ def _flag(value: Any) -> bool:
 
 
 def _variables() -> list[str]:
-    return list(dict.fromkeys(name for one in (VARIABLES, *_published()) for name in one))
+    return list(
+        dict.fromkeys(name for variables in (VARIABLES, *_published()) for name in variables)
+    )
 
 
 def _published() -> Iterator[Iterable[str]]:
-    return (one.variables for one in PUBLICATIONS.values())
+    return (publication.variables for publication in PUBLICATIONS.values())
 
 
 def _with_its_variables(source: str) -> str:
@@ -376,11 +378,11 @@ class Surface(Table):
 
     @model_validator(mode="after")
     def _enough(self) -> "Surface":
-        given = [name for name in ("ra", "rq", "composite_rq") if getattr(self, name) is not None]
-        if not given or ("composite_rq" in given and len(given) > 1):
+        stated = [name for name in ("ra", "rq", "composite_rq") if getattr(self, name) is not None]
+        if not stated or ("composite_rq" in stated and len(stated) > 1):
             raise InputError(
-                f"{' and '.join(given) or 'no roughness'} "
-                f"{'were' if len(given) > 1 else 'was'} given; give ra, rq or both (one flank or a list of "
+                f"{' and '.join(stated) or 'no roughness'} "
+                f"{'were' if len(stated) > 1 else 'was'} given; give ra, rq or both (one flank or a list of "
                 "two), or composite_rq alone"
             )
         for number, (ra, rq) in enumerate(zip(self.ra or (), self.rq or (), strict=False), 1):
@@ -436,10 +438,10 @@ class FrictionChoice(BaseModel):
             return self
         from pitchpoint.lubrication.conditions import arguments
 
-        _, known = arguments(FRICTION[self.name].function)
+        _, constants = arguments(FRICTION[self.name].function)
         for key, value in self.model_extra.items():
-            if key not in known:
-                has = nearest(key, known) if known else "; it has none"
+            if key not in constants:
+                has = nearest(key, constants) if constants else "; it has none"
                 raise InputError(f"is no parameter of {self.name}{has}", key=shorten(key))
             try:
                 COEFFICIENT.read(value)
@@ -452,8 +454,11 @@ def _choices(value: Any) -> Any:
     several = value if isinstance(value, list | tuple) else [value]
     if not 1 <= len(several) <= 12:
         raise InputError(f"{len(several)} friction laws were given; allowed are 1 to 12")
-    tables = [one if isinstance(one, dict | FrictionChoice) else {"name": one} for one in several]
-    names = [str(one.get("name")) for one in tables if isinstance(one, dict)]
+    tables = [
+        choice if isinstance(choice, dict | FrictionChoice) else {"name": choice}
+        for choice in several
+    ]
+    names = [str(choice.get("name")) for choice in tables if isinstance(choice, dict)]
     plain = [letters(name) for name in names]
     for name in names:
         if plain.count(letters(name)) > 1:
@@ -604,14 +609,14 @@ class Loss(Table):
     @property
     def factors(self) -> dict[str, float]:
         """Factors of the bearing model by name."""
-        given = {"f0": self.f0, "f1": self.f1}
-        return {name: value for name, value in given.items() if value is not None}
+        factors = {"f0": self.f0, "f1": self.f1}
+        return {name: value for name, value in factors.items() if value is not None}
 
     @property
     def breakaway_factors(self) -> dict[str, float]:
         """Factors of the breakaway model by name."""
-        given = {"dry": self.breakaway_dry, "viscous": self.breakaway_viscous}
-        named = {name: value for name, value in given.items() if value is not None}
+        factors = {"dry": self.breakaway_dry, "viscous": self.breakaway_viscous}
+        named = {name: value for name, value in factors.items() if value is not None}
         if self.breakaway == "none" and self.breakaway_preload is None:
             return named
         ratio = 1.0 if self.breakaway_preload is None else self.breakaway_preload
@@ -668,8 +673,8 @@ class Loss(Table):
                         f'was given, and no model asks for it: {kind} is "none"; name one, or leave this out',
                         key=name,
                     )
-                told = "is missing" if name in needed else "was given"
-                raise InputError(f"{told}; {model} asks for {', '.join(needed)}", key=name)
+                complaint = "is missing" if name in needed else "was given"
+                raise InputError(f"{complaint}; {model} asks for {', '.join(needed)}", key=name)
         return needed
 
 
@@ -724,8 +729,8 @@ class StartUp(Table):
     @model_validator(mode="after")
     def _inside(self) -> "StartUp":
         if self.rise >= self.duration:
-            told = f"{RISE.show(self.rise)} was given; it is shorter than the duration"
-            raise InputError(f"{told}, {DURATION.show(self.duration)}", key="rise")
+            message = f"{RISE.show(self.rise)} was given; it is shorter than the duration"
+            raise InputError(f"{message}, {DURATION.show(self.duration)}", key="rise")
         return self
 
 
@@ -764,11 +769,15 @@ class MotionTable(Table):
             if _given(self, key) and not _given(self, needed):
                 raise InputError(f"is missing; {why}", key=needed)
         if self.prescribed_speed and self.stall_torque is not None:
-            told = "was given; a driver of prescribed speed needs no motor, leave one of them out"
-            raise InputError(told, key="stall_torque")
+            message = (
+                "was given; a driver of prescribed speed needs no motor, leave one of them out"
+            )
+            raise InputError(message, key="stall_torque")
         if len(self.pair_path) != len(self.pair_stiffness):
-            told = f"{len(self.pair_stiffness)} values are given for {len(self.pair_path)} places"
-            raise InputError(f"{told} of pair_path; give as many", key="pair_stiffness")
+            message = (
+                f"{len(self.pair_stiffness)} values are given for {len(self.pair_path)} places"
+            )
+            raise InputError(f"{message} of pair_path; give as many", key="pair_stiffness")
         _check_path(self.pair_path)
         self._check_start()
         return self
@@ -779,17 +788,21 @@ class MotionTable(Table):
             return
         motor = self.stall_torque is not None
         if motor and start.torque is not None:
-            told = "was given; the motor of stall_torque drives, leave one of them out"
-            raise InputError(told, key="start_up.torque")
+            message = "was given; the motor of stall_torque drives, leave one of them out"
+            raise InputError(message, key="start_up.torque")
         if not motor and start.torque is None and not self.prescribed_speed:
-            told = "is missing; a start asks for a torque that drives, or for the motor of stall_torque"
-            raise InputError(told, key="start_up.torque")
+            message = "is missing; a start asks for a torque that drives, or for the motor of stall_torque"
+            raise InputError(message, key="start_up.torque")
         if self.prescribed_speed and start.torque is not None:
-            told = "was given; a driver of prescribed speed needs no torque, leave one of them out"
-            raise InputError(told, key="start_up.torque")
+            message = (
+                "was given; a driver of prescribed speed needs no torque, leave one of them out"
+            )
+            raise InputError(message, key="start_up.torque")
         if self.prescribed_speed and start.speed == 0.0:
-            told = "is missing; a driver of prescribed speed keeps the speed with which it starts"
-            raise InputError(told, key="start_up.speed")
+            message = (
+                "is missing; a driver of prescribed speed keeps the speed with which it starts"
+            )
+            raise InputError(message, key="start_up.speed")
 
 
 _TOGETHER = (
@@ -809,9 +822,9 @@ def _check_path(places: Sequence[float]) -> None:
     if not places:
         return
     if len(places) < 2 or places[0] != 0.0 or any(b <= a for a, b in pairwise(places)):
-        told = f"{', '.join(f'{one:g}' for one in places)} was given"
+        stated = f"{', '.join(f'{place:g}' for place in places)} was given"
         raise InputError(
-            f"{told}; places of a pair grow from 0, where it enters, in base pitches, at least two of them",
+            f"{stated}; places of a pair grow from 0, where it enters, in base pitches, at least two of them",
             key="pair_path",
         )
 
@@ -1024,8 +1037,8 @@ class FilmTable(Table):
     @property
     def profile_parameters(self) -> dict[str, float]:
         """Parameters of the profile of the ends that were given, by the names that it has for them [SI]."""
-        given = {name.removeprefix("end_"): getattr(self, name) for name in _OF_ENDS}
-        return {name: value for name, value in given.items() if value is not None}
+        stated = {name.removeprefix("end_"): getattr(self, name) for name in _OF_ENDS}
+        return {name: value for name, value in stated.items() if value is not None}
 
     @model_validator(mode="after")
     def _of_solver(self) -> "FilmTable":
@@ -1037,30 +1050,30 @@ class FilmTable(Table):
         else:
             _check_line(self)
         if self.squeezes and self.thermal not in (None, "isothermal"):
-            told = f'"{self.thermal}" was given; films with squeeze are isothermal: leave it or time out'
-            raise InputError(told, key="thermal")
+            message = f'"{self.thermal}" was given; films with squeeze are isothermal: leave it or time out'
+            raise InputError(message, key="thermal")
         if self.moments is not None and not self.squeezes:
-            told = 'was given without time = "squeeze", to which it belongs'
-            raise InputError(told, key="moments")
+            message = 'was given without time = "squeeze", to which it belongs'
+            raise InputError(message, key="moments")
         return self
 
     @model_validator(mode="after")
     def _of_profile(self) -> "FilmTable":
-        given = self.profile_parameters
+        stated = self.profile_parameters
         if self.end_profile is None:
-            for name in given:
+            for name in stated:
                 raise InputError(
                     "was given without end_profile, to which it belongs", key=f"end_{name}"
                 )
             return self
-        needed, known = END_PROFILES[self.end_profile].parameters
-        for name in given:
-            if name not in known:
-                has = ", ".join(f"end_{one}" for one in known) or "none"
-                told = f"is no parameter of {self.end_profile}; it has {has}"
-                raise InputError(told, key=f"end_{name}")
+        needed, parameters = END_PROFILES[self.end_profile].parameters
+        for name in stated:
+            if name not in parameters:
+                has = ", ".join(f"end_{parameter}" for parameter in parameters) or "none"
+                message = f"is no parameter of {self.end_profile}; it has {has}"
+                raise InputError(message, key=f"end_{name}")
         for name in needed:
-            if name not in given:
+            if name not in stated:
                 raise InputError(f"is missing; {self.end_profile} asks for it", key=f"end_{name}")
         return self
 
@@ -1073,15 +1086,15 @@ class FilmTable(Table):
         for law, named_here in laws:
             has = [name for name in law.parameters if name in FilmTable.model_fields]
             for key in named_here.keys() - {*has}:
-                told = f"is no parameter of {law.name}; it has {', '.join(has) or 'none'}"
-                raise InputError(told, key=key)
+                message = f"is no parameter of {law.name}; it has {', '.join(has) or 'none'}"
+                raise InputError(message, key=key)
         for key in _OF_ROUGH if self.asperities == SMOOTH else ():
             if getattr(self, key) is not None:
-                told = "was given without asperities, to which it belongs"
-                raise InputError(told, key=key)
+                message = "was given without asperities, to which it belongs"
+                raise InputError(message, key=key)
         if None not in (self.summits, self.eta_beta_sigma, self.sigma_over_beta):
-            told = "was given with both constants of a set: leave out it or one of them"
-            raise InputError(told, key="summits")
+            message = "was given with both constants of a set: leave out it or one of them"
+            raise InputError(message, key="summits")
         return self
 
 
@@ -1122,21 +1135,21 @@ _NOT_OF: Mapping[str, Mapping[str, str]] = {
 
 def _check_line(table: FilmTable) -> None:
     """InputError for profiles that lines without ends do not take."""
-    for name, one in table.heights or ():
-        if one is not None and one.direction == "across":
+    for name, heights in table.heights or ():
+        if heights is not None and heights.direction == "across":
             raise InputError(_EVEN, key=f"heights.{name}.direction")
 
 
 def _check_patch(table: FilmTable) -> None:
     """InputError for what solvers over a patch do not take."""
     if table.nodes is not None and table.nodes > MOST_PATCH_NODES:
-        told = (
+        message = (
             f"{table.nodes:g} nodes along a patch; allowed are 33, 65, 129 and {MOST_PATCH_NODES}"
         )
-        raise InputError(told, key="nodes")
+        raise InputError(message, key="nodes")
     if table.pattern not in (None, 1.0):
-        told = "over a patch oil flows both ways, and only the pattern 1 is the same for both"
-        raise InputError(f"{table.pattern:g} was given; {told}", key="pattern")
+        message = "over a patch oil flows both ways, and only the pattern 1 is the same for both"
+        raise InputError(f"{table.pattern:g} was given; {message}", key="pattern")
 
 
 def one_value(start: Any, stop: Any) -> str:
@@ -1303,10 +1316,10 @@ def _at_most(most: int) -> Callable[[Any], Any]:
     """Validator of tables under names of the user's own, which are counted before they are read."""
 
     def check(value: Any) -> Any:
-        given = value if isinstance(value, dict) else {}
-        if len(given) > most:
-            raise InputError(_too_many(len(given), most))
-        for name in given:
+        entries = value if isinstance(value, dict) else {}
+        if len(entries) > most:
+            raise InputError(_too_many(len(entries), most))
+        for name in entries:
             check_name(name, "")
         return value
 
@@ -1325,8 +1338,8 @@ def _of_set(value: Any, info: ValidationInfo) -> Any:
 def _of_no_set(value: Any) -> Any:
     """InputError if the losses of a drive of several meshes name a set."""
     if named_set(value):
-        told = "a set belongs to one mesh; name it under the stage, losses = { set = ... }"
-        raise InputError(told, key="set")
+        message = "a set belongs to one mesh; name it under the stage, losses = { set = ... }"
+        raise InputError(message, key="set")
     return value
 
 
@@ -1508,8 +1521,8 @@ class StrengthTable(Table):
 
     @model_validator(mode="after")
     def _by_one_way(self) -> "StrengthTable":
-        given = self.model_fields_set
-        if self.dynamic_factor is not None and "dynamic_method" in given:
+        stated = self.model_fields_set
+        if self.dynamic_factor is not None and "dynamic_method" in stated:
             raise InputError(
                 "was given beside dynamic_factor, which is K_v itself; give one",
                 key="dynamic_method",
@@ -1527,14 +1540,14 @@ class StrengthTable(Table):
 
     @model_validator(mode="after")
     def _whole_shaft(self) -> "StrengthTable":
-        given = [key for key in _SHAFT if getattr(self, key) is not None]
+        stated = [key for key in _SHAFT if getattr(self, key) is not None]
         missing = [key for key in _SHAFT if getattr(self, key) is None]
-        if given and missing:
+        if stated and missing:
             raise InputError(
                 f"was given without {' and '.join(missing)}; K_Hβ by method C takes all three",
-                key=given[0],
+                key=stated[0],
             )
-        if given and self.face_load_factor is not None:
+        if stated and self.face_load_factor is not None:
             raise InputError(
                 f"was given beside face_load_factor, which is K_Hβ itself; give it or {', '.join(_SHAFT)}",
                 key="bearing_span",
@@ -1711,23 +1724,23 @@ class _Numbered:
 
 def _stages(value: Any) -> Any:
     """Stages by number, from a list or a table of them."""
-    given = value if isinstance(value, dict) else {}
-    if not given:
-        told = "no stage was given" if value in ([], {}) else f"{shown(value)} was given"
-        raise InputError(f"{told}; write a table [[stages]] for each mesh, input first")
-    numbers = {str(number) for number in range(1, len(given) + 1)}
-    if strange := [key for key in given if key not in numbers]:
-        raise _no_stage(strange[0], given)
-    if len(given) > MOST_STAGES:
-        raise InputError(_too_many(len(given), MOST_STAGES))
-    return dict(sorted(given.items()))
+    stages = value if isinstance(value, dict) else {}
+    if not stages:
+        complaint = "no stage was given" if value in ([], {}) else f"{shown(value)} was given"
+        raise InputError(f"{complaint}; write a table [[stages]] for each mesh, input first")
+    numbers = {str(number) for number in range(1, len(stages) + 1)}
+    if strange := [key for key in stages if key not in numbers]:
+        raise _no_stage(strange[0], stages)
+    if len(stages) > MOST_STAGES:
+        raise InputError(_too_many(len(stages), MOST_STAGES))
+    return dict(sorted(stages.items()))
 
 
 def _no_stage(key: str, given: Mapping[str, Any]) -> InputError:
     """What is wrong with the number of a stage."""
-    last = next(number for number in count() if str(number + 1) not in given)
-    allowed = f"stages.1 to stages.{last}" if last > 1 else "stages.1"
-    before = f"{last + 1} before " if key.isdecimal() and not key.startswith("0") else ""
+    highest = next(number for number in count() if str(number + 1) not in given)
+    allowed = f"stages.1 to stages.{highest}" if highest > 1 else "stages.1"
+    before = f"{highest + 1} before " if key.isdecimal() and not key.startswith("0") else ""
     listed = "" if key.isdecimal() else ", or a table [[stages]] for each mesh"
     return InputError(f"there is no stage {before}{shown(key)}; use {allowed}{listed}")
 
@@ -1836,7 +1849,7 @@ class DriveCase(Table):
     def bodies(self) -> tuple[str, ...]:
         """Shafts from the input to the output, of which the last one may travel; bodies of a train."""
         if self.train is not None:
-            named = [body for one in self.stages.values() for body in one.bodies]
+            named = [body for stage in self.stages.values() for body in stage.bodies]
             carrier = [self.train.carrier] * (self.train.planet in named)
             return tuple(dict.fromkeys((*named, *carrier)))
         return tuple(f"shaft {number}" for number in range(1, len(self.stages) + 2))
@@ -1858,21 +1871,23 @@ class DriveCase(Table):
             turning = self.bodies[: len(self.bodies) - travels]
             wrong.tried(_check_load, self, self.last)
             wrong.tried(_check_quadrants, self)
-            sets = [n for n, one in self.stages.items() if isinstance(one.gears, PlanetaryGears)]
+            sets = [
+                n for n, stage in self.stages.items() if isinstance(stage.gears, PlanetaryGears)
+            ]
             wrong.tried(_check_losses, self.losses, turning, self.bodies, sets)
         if self.operation.driver:
-            told = (
+            message = (
                 "that is the input of the train, a key beside its held and output"
                 if self.train is not None
                 else "the first stage drives; the member that drives a stage is its own key, "
                 'driver = "gear 2" under [[stages]]'
             )
-            wrong.add(InputError(told, key="operation.driver"))
-        tables = {f"stages.{number}.models": one.models for number, one in self.stages.items()}
+            wrong.add(InputError(message, key="operation.driver"))
+        tables = {f"stages.{number}.models": stage.models for number, stage in self.stages.items()}
         for key, models in {"models": self.models, **tables}.items():
             if models.averaging != "base_pitch":
-                told = "the path of one pair does not stand for several meshes; leave it out"
-                wrong.add(InputError(told, key=f"{key}.averaging"))
+                message = "the path of one pair does not stand for several meshes; leave it out"
+                wrong.add(InputError(message, key=f"{key}.averaging"))
         wrong.tried(_check_aims, self.targets, self.studies, self.source)
         wrong.demand_none()
         return self
@@ -1884,18 +1899,20 @@ def _check_train(case: DriveCase) -> None:
     for number, stage in case.stages.items():
         key, members = f"stages.{number}.bodies", len(stage.gears.members)
         if train is None and stage.bodies:
-            told = "was given without a table [train], which says who is turned, loaded and held"
-            wrong.add(InputError(told, key=key))
+            message = "was given without a table [train], which says who is turned, loaded and held"
+            wrong.add(InputError(message, key=key))
         if train is not None and not isinstance(stage.gears, CylindricalGears):
-            told = (
+            message = (
                 "meshes of a train are pairs of cylindrical gears; gears of another family before or behind "
                 "them are not computed together with them"
             )
-            wrong.add(InputError(told, key=f"stages.{number}.gears.family"))
+            wrong.add(InputError(message, key=f"stages.{number}.gears.family"))
         elif train is not None and len(stage.bodies) != members:
-            given = f"{shown([*stage.bodies])} was given" if stage.bodies else "is missing"
-            told = f"{given}; name the {members} bodies that {', '.join(stage.gears.members)} are"
-            wrong.add(InputError(told, key=key))
+            complaint = f"{shown([*stage.bodies])} was given" if stage.bodies else "is missing"
+            message = (
+                f"{complaint}; name the {members} bodies that {', '.join(stage.gears.members)} are"
+            )
+            wrong.add(InputError(message, key=key))
     wrong.demand_none()
     if train is None:
         return
@@ -1903,35 +1920,39 @@ def _check_train(case: DriveCase) -> None:
     for key, bodies in ends.items():
         for body in bodies:
             if body not in case.bodies:
-                told = f"{shown(body)} is no body of this train{nearest(body, case.bodies)}"
-                wrong.add(InputError(told, key=f"train.{key}"))
+                message = f"{shown(body)} is no body of this train{nearest(body, case.bodies)}"
+                wrong.add(InputError(message, key=f"train.{key}"))
     if train.planet not in case.bodies:
-        told = (
+        message = (
             f"no stage has a body {shown(train.planet)}{nearest(train.planet, case.bodies)}; stages that "
             "follow each other have no table [train]"
         )
-        wrong.add(InputError(told, key="train.planet"))
+        wrong.add(InputError(message, key="train.planet"))
     for key, bodies in ends.items():
         if train.planet in bodies:
-            told = "planets are neither turned nor loaded nor held; their carrier may be"
-            wrong.add(InputError(told, key=f"train.{key}"))
+            message = "planets are neither turned nor loaded nor held; their carrier may be"
+            wrong.add(InputError(message, key=f"train.{key}"))
     if "housing" in (train.carrier, *case.bodies):
-        told = "the housing is no body of a train; one that stands still is held"
-        wrong.add(InputError(told, key="train.carrier" if train.carrier == "housing" else "stages"))
+        message = "the housing is no body of a train; one that stands still is held"
+        wrong.add(
+            InputError(message, key="train.carrier" if train.carrier == "housing" else "stages")
+        )
     for number, stage in case.stages.items():
         for key in ("driver", "place", "turn"):
             if key in stage.model_fields_set:
-                told = "follows from the train; leave it out"
-                wrong.add(InputError(told, key=f"stages.{number}.{key}"))
+                message = "follows from the train; leave it out"
+                wrong.add(InputError(message, key=f"stages.{number}.{key}"))
         if stage.dynamics is not None:
             wrong.add(InputError(_NO_VIBRATION, key=f"stages.{number}.dynamics"))
         for name in stage.losses:
-            told = "losses of a train stand between its bodies; give this one under [losses]"
-            wrong.add(InputError(told, key=f"stages.{number}.losses.{name}"))
+            message = "losses of a train stand between its bodies; give this one under [losses]"
+            wrong.add(InputError(message, key=f"stages.{number}.losses.{name}"))
         if case.losses and stage.lubricant is not None:
-            told = "was given beside [losses]; a train that has them has one oil, that of the case"
-            wrong.add(InputError(told, key=f"stages.{number}.lubricant"))
-    _check_pins(train, [one.bodies for one in case.stages.values()], wrong)
+            message = (
+                "was given beside [losses]; a train that has them has one oil, that of the case"
+            )
+            wrong.add(InputError(message, key=f"stages.{number}.lubricant"))
+    _check_pins(train, [meshing.bodies for meshing in case.stages.values()], wrong)
     _check_bearings(case.losses, train, wrong)
     wrong.demand_none()
 
@@ -1941,22 +1962,22 @@ def _check_pins(train: TrainTable, meshes: Sequence[tuple[str, ...]], wrong: Com
     around = [body for bodies in meshes if train.planet in bodies for body in bodies]
     central = [body for body in dict.fromkeys((*around, train.carrier)) if body != train.planet]
     if train.floating and train.floating not in central:
-        told = f"{shown(train.floating)} does not float; {', '.join(central)} may"
-        wrong.add(InputError(told, key="train.floating"))
+        message = f"{shown(train.floating)} does not float; {', '.join(central)} may"
+        wrong.add(InputError(message, key="train.floating"))
     count = round(train.planets)
     for key, what in (("pin_errors", "error"), ("planet_angles", "angle")):
-        given = len(getattr(train, key))
-        if given not in (0, count):
-            told = f"{given} were given for {count} planets; give the {what} of each"
-            wrong.add(InputError(told, key=f"train.{key}"))
+        places = len(getattr(train, key))
+        if places not in (0, count):
+            message = f"{places} were given for {count} planets; give the {what} of each"
+            wrong.add(InputError(message, key=f"train.{key}"))
     if not (train.pin_errors or train.by_tolerance):
         for key in ("floating", "pin_stiffness"):
             if getattr(train, key):
-                told = (
+                message = (
                     "counts where pins are out of place; give pin_errors, pin_tolerance or the like, or "
                     "leave it out"
                 )
-                wrong.add(InputError(told, key=f"train.{key}"))
+                wrong.add(InputError(message, key=f"train.{key}"))
 
 
 def _check_bearings(losses: Mapping[str, Loss], train: TrainTable, wrong: Complaints) -> None:
@@ -1965,35 +1986,35 @@ def _check_bearings(losses: Mapping[str, Loss], train: TrainTable, wrong: Compla
     for name, loss in losses.items():
         for key in ("position", "locating"):
             if key in loss.model_fields_set:
-                told = "was given; a bearing of a train stands for all bearings of its body"
-                wrong.add(InputError(told, key=f"losses.{name}.{key}"))
+                message = "was given; a bearing of a train stands for all bearings of its body"
+                wrong.add(InputError(message, key=f"losses.{name}.{key}"))
         if loss.bearing == "none":
             continue
         bodies = frozenset(loss.between)
         if train.planet in bodies and bodies != {train.planet, train.carrier}:
-            told = (
+            message = (
                 f'bearings of planets sit in their carrier: ["{train.planet}", "{train.carrier}"]'
             )
-            wrong.add(InputError(told, key=f"losses.{name}.between"))
+            wrong.add(InputError(message, key=f"losses.{name}.between"))
         before = seen.setdefault(bodies, name)
         if before != name:
-            told = (
+            message = (
                 f"{before} is a bearing between the same two; one of a train stands for all bearings of its "
                 "body: add their factors f0, and leave one out"
             )
-            wrong.add(InputError(told, key=f"losses.{name}.between"))
+            wrong.add(InputError(message, key=f"losses.{name}.between"))
 
 
 def _check_passing(stages: Mapping[str, StageTable]) -> None:
     """InputError if a stage passes no torque on, or has losses that are those of a shaft."""
     for number, stage in stages.items():
-        told = None
+        message = None
         if not stage.gears.transmits:
-            told = "a test rig transmits nothing and is no stage of a drive"
+            message = "a test rig transmits nothing and is no stage of a drive"
         elif stage.gears.load != "torque" and number != str(len(stages)):
-            told = f"{stage.gears.carries} and turns no shaft; such gears are the last stage of a drive"
-        if told is not None:
-            raise InputError(told, key=f"stages.{number}.gears.family")
+            message = f"{stage.gears.carries} and turns no shaft; such gears are the last stage of a drive"
+        if message is not None:
+            raise InputError(message, key=f"stages.{number}.gears.family")
         for name, loss in stage.losses.items():
             if "housing" in loss.between:
                 raise InputError(
@@ -2024,27 +2045,29 @@ def _check_sets(stages: Mapping[str, StageTable]) -> None:
     wrong = Complaints()
     for number, stage in stages.items():
         if isinstance(stage.gears, PlanetaryGears):
-            for key, told in _OF_NO_SET.items():
+            for key, message in _OF_NO_SET.items():
                 if key in stage.model_fields_set:
-                    wrong.add(InputError(told, key=f"stages.{number}.{key}"))
+                    wrong.add(InputError(message, key=f"stages.{number}.{key}"))
     wrong.demand_none()
 
 
 def _check_materials(case: DriveCase) -> None:
     """InputError for materials of gears of planetary sets where there is no set."""
-    sets = [number for number, one in case.stages.items() if isinstance(one.gears, PlanetaryGears)]
+    sets = [
+        number for number, stage in case.stages.items() if isinstance(stage.gears, PlanetaryGears)
+    ]
     wrong = Complaints()
     tables = {
-        f"stages.{number}.": one.materials
-        for number, one in case.stages.items()
+        f"stages.{number}.": stage.materials
+        for number, stage in case.stages.items()
         if number not in sets
     }
     if not sets and case.gears is None:
         tables[""] = case.materials
     for place, materials in tables.items():
         for key in sorted(materials.of_set):
-            told = "is the material of a gear of a planetary set, which this is not; use gear_1 and gear_2"
-            wrong.add(InputError(told, key=f"{place}materials.{key}"))
+            message = "is the material of a gear of a planetary set, which this is not; use gear_1 and gear_2"
+            wrong.add(InputError(message, key=f"{place}materials.{key}"))
     wrong.demand_none()
 
 
@@ -2064,8 +2087,8 @@ def _check_aims(targets: Sequence[Target], studies: Mapping[str, Study], source:
         if target.kind == "excluded" or target.part:
             continue
         if target.study not in studies:
-            told = f"there is no study {shown(target.study)}{nearest(target.study, studies)}"
-            wrong.add(InputError(told, key=f"targets.{position}.study"))
+            message = f"there is no study {shown(target.study)}{nearest(target.study, studies)}"
+            wrong.add(InputError(message, key=f"targets.{position}.study"))
             continue
         try:
             _check_places(target, studies[target.study].sweep, source)
@@ -2107,17 +2130,18 @@ def _given(table: Table, key: str) -> bool:
 def _check_load(case: Case | DriveCase, gears: GearsTable | PlanetaryGears) -> None:
     """InputError unless the load is given that the driven member takes, and no table asks for the other."""
     point, wanted = case.operation, gears.load
-    other = "force" if wanted == "torque" else "torque"
-    asked = {
-        f"operation.{other}": getattr(point, other),
-        f"dynamics.{other}s": getattr(getattr(case, "dynamics", None), f"{other}s", ()) or None,
-        f"loss_map.{other}": getattr(case.loss_map, other, None),
-        f"loss_map.{other}_count": getattr(case.loss_map, f"{other}_count", None),
+    unwanted = "force" if wanted == "torque" else "torque"
+    loads = {
+        f"operation.{unwanted}": getattr(point, unwanted),
+        f"dynamics.{unwanted}s": getattr(getattr(case, "dynamics", None), f"{unwanted}s", ())
+        or None,
+        f"loss_map.{unwanted}": getattr(case.loss_map, unwanted, None),
+        f"loss_map.{unwanted}_count": getattr(case.loss_map, f"{unwanted}_count", None),
     }
-    for key in (key for key, given in asked.items() if given is not None):
+    for key in (key for key, load in loads.items() if load is not None):
         name = key.rpartition(".")[2]
-        told = f"{gears.carries}; give {name.replace(other, wanted)} in place of {name}"
-        raise InputError(told, key=key)
+        message = f"{gears.carries}; give {name.replace(unwanted, wanted)} in place of {name}"
+        raise InputError(message, key=key)
     if getattr(point, wanted) is None:
         missing = f"is missing{_needed(('operation', wanted), Case)}"
         raise InputError(missing, key=f"operation.{wanted}")
@@ -2131,19 +2155,19 @@ def _check_load(case: Case | DriveCase, gears: GearsTable | PlanetaryGears) -> N
 
 def _check_quadrants(case: Case | DriveCase) -> None:
     """InputError unless a duty cycle has its map, and a map of four quadrants speeds between its ends."""
-    asked = case.loss_map
-    if case.duty is not None and (asked is None or asked.quadrants != 4):
-        told = "asks for the loss map of the output; give [loss_map] with quadrants = 4 too"
-        raise InputError(told, key="duty")
-    if asked is None or asked.quadrants != 4:
+    loss_map = case.loss_map
+    if case.duty is not None and (loss_map is None or loss_map.quadrants != 4):
+        message = "asks for the loss map of the output; give [loss_map] with quadrants = 4 too"
+        raise InputError(message, key="duty")
+    if loss_map is None or loss_map.quadrants != 4:
         return
-    largest = 1.5 * case.operation.speed if asked.speed is None else asked.speed
+    largest = 1.5 * case.operation.speed if loss_map.speed is None else loss_map.speed
     if largest == 0.0:
-        told = "0 was given; a map of four quadrants asks for a speed above standstill"
-        raise InputError(told, key="loss_map.speed")
-    if asked.lowest_speed is not None and asked.lowest_speed >= largest:
+        message = "0 was given; a map of four quadrants asks for a speed above standstill"
+        raise InputError(message, key="loss_map.speed")
+    if loss_map.lowest_speed is not None and loss_map.lowest_speed >= largest:
         raise InputError(
-            f"{SPEED.show(asked.lowest_speed)} was given; allowed is less than the largest speed of the "
+            f"{SPEED.show(loss_map.lowest_speed)} was given; allowed is less than the largest speed of the "
             f"map, {SPEED.show(largest)}",
             key="loss_map.lowest_speed",
         )
@@ -2164,8 +2188,8 @@ def _check_meant(case: Case) -> None:
     for key, why in case.gears.meaningless.items():
         usual = Choices.model_fields[key].default
         if getattr(case.models, key) != usual:
-            told = f"{usual:g}" if isinstance(usual, float) else shown(usual)
-            raise InputError(f"{why}; leave it at {told}", key=f"models.{key}")
+            allowed = f"{usual:g}" if isinstance(usual, float) else shown(usual)
+            raise InputError(f"{why}; leave it at {allowed}", key=f"models.{key}")
 
 
 def _check_driver(case: Case) -> None:
@@ -2201,20 +2225,20 @@ def _check_bodies(
     loss: Loss, turning: Sequence[str], bodies: Sequence[str], sets: Sequence[str]
 ) -> None:
     """InputError if a loss arises between bodies that the drive does not have, or that travel."""
-    known = (*turning, "housing")
-    first, second = loss.between
-    strange = next((body for body in loss.between if body not in known), None)
-    told = (
+    allowed = (*turning, "housing")
+    inner, outer = loss.between
+    strange = next((body for body in loss.between if body not in allowed), None)
+    message = (
         f"{shown(strange)} travels, and losses are torques between bodies that turn; name two of "
-        f"{', '.join(known)}"
+        f"{', '.join(allowed)}"
         if strange in bodies
-        else f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
+        else f"{shown(strange)} is no body of this drive{nearest(strange, allowed)}"
         + _within_set(strange, sets)
         if strange is not None
-        else f"{shown(first)} was given twice; name two bodies of {', '.join(dict.fromkeys(known))}"
+        else f"{shown(inner)} was given twice; name two bodies of {', '.join(dict.fromkeys(allowed))}"
     )
-    if strange is not None or first == second:
-        raise InputError(told, key="between")
+    if strange is not None or inner == outer:
+        raise InputError(message, key="between")
 
 
 def _within_set(body: str, sets: Sequence[str]) -> str:
@@ -2225,16 +2249,18 @@ def _within_set(body: str, sets: Sequence[str]) -> str:
 
 def _check_span(body: str, bearings: Mapping[str, Loss]) -> None:
     """InputError if the loads on the bearings of a body do not follow from their places."""
-    placed = [name for name, one in bearings.items() if one.position is not None]
-    for name, one in bearings.items():
-        wrong = _out_of_place(body, one, [other for other in bearings.values() if other is not one])
+    placed = [name for name, bearing in bearings.items() if bearing.position is not None]
+    for name, bearing in bearings.items():
+        wrong = _out_of_place(
+            body, bearing, [mate for mate in bearings.values() if mate is not bearing]
+        )
         if wrong is not None:
             raise InputError(wrong[1], key=f"losses.{name}.{wrong[0]}")
-        if placed and one.position is None:
-            told = (
+        if placed and bearing.position is None:
+            message = (
                 f"is missing; {placed[0]} has one, and the load of two bearings on {body} follows"
             )
-            raise InputError(f"{told} from the places of both", key=f"losses.{name}.position")
+            raise InputError(f"{message} from the places of both", key=f"losses.{name}.position")
 
 
 def _out_of_place(body: str, one: Loss, others: Sequence[Loss]) -> tuple[str, str] | None:
@@ -2244,8 +2270,8 @@ def _out_of_place(body: str, one: Loss, others: Sequence[Loss]) -> tuple[str, st
         return "between", f"{count}; the loads of more than two do not follow from their places"
     for key in ("position", "locating"):
         if not others and getattr(one, key) is not None:
-            told = f"was given for the only bearing of {body}, which takes all load"
-            return key, f"{told}; give the second bearing too, or leave it out"
+            message = f"was given for the only bearing of {body}, which takes all load"
+            return key, f"{message}; give the second bearing too, or leave it out"
     if others and one.position is None and others[0].position is None:
         return "position", (
             f"is missing; the load of two bearings on {body} follows from the places of both: give "
@@ -2277,10 +2303,10 @@ def validate(document: Document) -> Case | DriveCase:
     of_set = is_planetary(document.tree)
     for key, why in (_OF_SETS if of_set else _OF_ONE_MESH).items():
         if key in document.tree:
-            given = document.tree[key]
-            why = why if isinstance(given, Mapping) else f"{shown(given)} {why}"
-            if key == "gears" and isinstance(given, Mapping) and given:
-                why += f": write stages.1.gears.{next(iter(given))} for those of the first one"
+            table = document.tree[key]
+            why = why if isinstance(table, Mapping) else f"{shown(table)} {why}"
+            if key == "gears" and isinstance(table, Mapping) and table:
+                why += f": write stages.1.gears.{next(iter(table))} for those of the first one"
             raise InputError(why, file=document.name, key=key)
     return validated(DriveCase, document)
 
@@ -2351,7 +2377,7 @@ def with_meshes(document: Document) -> Document:
     _demand_one_for_all(document)
     of_each = {key: tree[key] for key in _OF_EACH_MESH if key in tree}
     meshes = _with_materials(gears.meshes(), document)
-    stages = {str(number): {**one, **of_each} for number, one in enumerate(meshes, 1)}
+    stages = {str(number): {**mesh, **of_each} for number, mesh in enumerate(meshes, 1)}
     return replace(document, tree={**tree, STAGES: stages, "train": _Followed(gears.train())})
 
 
@@ -2362,11 +2388,11 @@ _OF_MEMBERS = {"film": ("heights",), "wear": ("coefficient", "engagements", "har
 def _demand_one_for_all(document: Document) -> None:
     """InputError for values of two gears, of which a planetary set has three or more kinds."""
     for table, keys in _OF_MEMBERS.items():
-        own = document.tree.get(table)
-        held = own if isinstance(own, Mapping) else {}
+        stated = document.tree.get(table)
+        held = stated if isinstance(stated, Mapping) else {}
         for key in keys:
             value = held.get(key)
-            unlike = isinstance(value, list) and any(one != value[0] for one in value)
+            unlike = isinstance(value, list) and any(element != value[0] for element in value)
             if unlike or isinstance(value, Mapping):
                 raise InputError(
                     "is one value for sun, planets and rings of a planetary set; for different ones write "
@@ -2392,15 +2418,15 @@ def _with_materials(meshes: list[dict[str, Any]], document: Document) -> list[di
         InputError: gears that the set does not have, materials of gears 1 and 2 beside those of its own.
     """
     materials = document.tree.get("materials", {})
-    given = of_set(materials)
-    if not given or not _is_sound(materials):
+    of_gears = of_set(materials)
+    if not of_gears or not _is_sound(materials):
         return meshes
     bodies = {body.replace(" ", "_") for mesh in meshes for body in mesh["bodies"]}
     for key in materials:
-        if key in given - bodies or key in Materials.model_fields:
-            every = ", ".join(one for one in OF_SET if one in bodies)
-            told = f"the gears of this set are {every}; leave it out"
-            raise InputError(told, file=document.name, key=f"materials.{key}")
+        if key in of_gears - bodies or key in Materials.model_fields:
+            every = ", ".join(gear for gear in OF_SET if gear in bodies)
+            message = f"the gears of this set are {every}; leave it out"
+            raise InputError(message, file=document.name, key=f"materials.{key}")
     return [
         {
             **mesh,
@@ -2481,23 +2507,23 @@ def _quantity_anywhere(key: str) -> Quantity | None:
 
 def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | None:
     parts = [part for part in key.split(".") if not part.isdigit()]
-    named, root, whole = False, models[0], tree
+    named, root, document = False, models[0], tree
     for position, part in enumerate(parts):
         if named:  # a name of the user's own
             named = False
             continue
         fields = [model.model_fields for model in models]
-        holding = [each[part] for each in fields if part in each]
+        holding = [allowed[part] for allowed in fields if part in allowed]
         if not holding and FrictionChoice in models:
             return COEFFICIENT  # a law's own parameter
         if not holding:
-            known = dict.fromkeys(name for each in fields for name in each)
+            keys = dict.fromkeys(name for allowed in fields for name in allowed)
             from pitchpoint.cases.wishes import answer
 
-            told = answer(parts[: position + 1], None, {}, known) or _meant(
-                parts[: position + 1], known, root, whole
+            advice = answer(parts[: position + 1], None, {}, keys) or _meant(
+                parts[: position + 1], keys, root, document
             )
-            raise InputError(f"there is no such key{told}", key=key)
+            raise InputError(f"there is no such key{advice}", key=key)
         if position == len(parts) - 1:
             return quantity_of(holding[0])
         tree = tree.get(part, {}) if isinstance(tree, Mapping) else None
@@ -2524,7 +2550,9 @@ def usual_at(key: str, tree: Mapping[str, Any]) -> Any:
         node = node.get(part) if isinstance(node, Mapping) else None
         if part.isdigit():
             continue
-        info = next((one.model_fields[part] for one in models if part in one.model_fields), None)
+        info = next(
+            (table.model_fields[part] for table in models if part in table.model_fields), None
+        )
         models = forms(info.annotation, node) if info is not None else []
     return None if info is None or info.is_required() else info.default
 
@@ -2544,7 +2572,7 @@ def keys(table: type[BaseModel] = Case) -> Iterator[str]:
         if kind is not dict and len(options) > len(inner):
             yield name
         if kind not in (dict, tuple):
-            below = (f"{name}.{key}" for each in inner.values() for key in keys(each))
+            below = (f"{name}.{key}" for inside in inner.values() for key in keys(inside))
             yield from dict.fromkeys(below)
 
 
@@ -2556,14 +2584,14 @@ def _named_tables(info: FieldInfo) -> bool:
 
 def quantity_of(info: FieldInfo) -> Quantity | None:
     """Kind and range of the values of a field, None where they are no quantities."""
-    found = measure_of(info)
-    return found.each if isinstance(found, Pair) else found
+    measure = measure_of(info)
+    return measure.each if isinstance(measure, Pair) else measure
 
 
 def measure_of(info: FieldInfo) -> Quantity | Pair | None:
     """The same, of both gears together where a field holds a value for each."""
     every = (*info.metadata, *marks(info.annotation))
-    return next((one for one in every if isinstance(one, Quantity | Pair)), None)
+    return next((mark for mark in every if isinstance(mark, Quantity | Pair)), None)
 
 
 def usual_words(info: FieldInfo) -> str:
@@ -2572,8 +2600,10 @@ def usual_words(info: FieldInfo) -> str:
     if quantity is None or usual is None or info.is_required():
         return ""
     values = usual if isinstance(usual, tuple) else (usual,)
-    told = dict.fromkeys(quantity.show(value) for value in values if isinstance(value, float))
-    return f"default {' / '.join(told)}" if told else ""
+    shown_values = dict.fromkeys(
+        quantity.show(value) for value in values if isinstance(value, float)
+    )
+    return f"default {' / '.join(shown_values)}" if shown_values else ""
 
 
 def marks(annotation: Any) -> Iterator[Any]:
@@ -2591,11 +2621,11 @@ def _complaint(error: ValidationError, document: Document, model: type[BaseModel
     """The complaints of pydantic in gear words, the clearest one first, each thing once."""
     details = error.errors(include_url=False)[:1000]  # of a hostile file, the first ones
     causes = [_clearest(details), *_causes(details, document)]
-    told = {str(each): each for one in causes for each in _sentences(one, document, model)}
-    every = list({each.key: each for each in reversed(told.values())}.values())[::-1]
+    faults = {str(fault): fault for cause in causes for fault in _sentences(cause, document, model)}
+    every = list({fault.key: fault for fault in reversed(faults.values())}.values())[::-1]
     if len(every) > _MOST_TOLD:
-        more = InputError("more is wrong; these first", file=document.name)
-        every = [*every[:_MOST_TOLD], more]
+        ending = InputError("more is wrong; these first", file=document.name)
+        every = [*every[:_MOST_TOLD], ending]
     return every[0] if len(every) == 1 else CollectedInputError(every)
 
 
@@ -2606,18 +2636,23 @@ def _causes(details: Sequence[Any], document: Document) -> list[Any]:
     one about something in it, as a name that was given as a table has it.
     """
     places: dict[tuple[str, ...], list[Any]] = {}
-    for one in details:
-        places.setdefault(_place_of(one, document), []).append(one)
+    for detail in details:
+        places.setdefault(_place_of(detail, document), []).append(detail)
     inside = {place[:end] for place in places for end in range(len(place))}
-    forms_of = {place[:-1] for place, same in places.items() if _misspelt_form(same)}
-    unknown = [place for place, same in places.items() if same[0]["type"] == "extra_forbidden"]
+    forms_of = {place[:-1] for place, at_place in places.items() if _misspelt_form(at_place)}
+    unknown = [
+        place for place, at_place in places.items() if at_place[0]["type"] == "extra_forbidden"
+    ]
     return [
-        _clearest(same)
-        for place, same in places.items()
+        _clearest(at_place)
+        for place, at_place in places.items()
         if place not in inside
-        and (_misspelt_form(same) or not any(place[:end] in forms_of for end in range(len(place))))
-        and not _left_missing(place, same, unknown, document.tree)
-        and not _told_with_another(place, same, places)
+        and (
+            _misspelt_form(at_place)
+            or not any(place[:end] in forms_of for end in range(len(place)))
+        )
+        and not _left_missing(place, at_place, unknown, document.tree)
+        and not _told_with_another(place, at_place, places)
     ]
 
 
@@ -2627,9 +2662,11 @@ def _told_with_another(
     """True for a missing table whose sentence stands with the first one, and the rest of a wrong list."""
     if same[0]["type"] != "missing":
         return False
-    beside = [one for one in places if one[:-1] == place[:-1] and len(one) == len(place)]
+    beside = [
+        sibling for sibling in places if sibling[:-1] == place[:-1] and len(sibling) == len(place)
+    ]
     if len(place) == 1:
-        lacking = (one for one in beside if places[one][0]["type"] == "missing")
+        lacking = (sibling for sibling in beside if places[sibling][0]["type"] == "missing")
         return place != next(lacking)
     return place[-1].isdigit() and len(beside) > 1
 
@@ -2641,7 +2678,9 @@ def _place_of(detail: Any, document: Document) -> tuple[str, ...]:
 
 def _misspelt_form(same: Sequence[Any]) -> bool:
     """True for complaints about a key that decides what the others may be."""
-    return any(one["type"] == "literal_error" and one["loc"][-1] in DECIDING for one in same)
+    return any(
+        detail["type"] == "literal_error" and detail["loc"][-1] in DECIDING for detail in same
+    )
 
 
 def _left_missing(
@@ -2653,9 +2692,9 @@ def _left_missing(
     """True for a missing key that stands there in another spelling."""
     from pitchpoint.cases.wishes import answered
 
-    beside = (one for one in unknown if one[:-1] == place[:-1])
+    beside = (sibling for sibling in unknown if sibling[:-1] == place[:-1])
     return same[0]["type"] == "missing" and any(
-        place[-1] in answered(one, tree) or alike(one[-1], place[-1:]) for one in beside
+        place[-1] in answered(sibling, tree) or alike(sibling[-1], place[-1:]) for sibling in beside
     )
 
 
@@ -2667,11 +2706,13 @@ def _sentences(detail: Any, document: Document, model: type[BaseModel]) -> Seque
     if isinstance(cause, InputError):
         from pitchpoint.cases.wishes import value_advice
 
-        each = cause.errors if isinstance(cause, CollectedInputError) else (cause,)
-        places = [".".join(filter(None, (key, one.key))) for one in each]
+        errors = cause.errors if isinstance(cause, CollectedInputError) else (cause,)
+        places = [".".join(filter(None, (key, complaint.key))) for complaint in errors]
         return [
-            one.at(file=document.name, key=place).followed_by(value_advice(place, detail["input"]))
-            for one, place in zip(each, places, strict=True)
+            complaint.at(file=document.name, key=place).followed_by(
+                value_advice(place, detail["input"])
+            )
+            for complaint, place in zip(errors, places, strict=True)
         ]
     return [InputError(_message(detail, document, model), file=document.name, key=key)]
 
@@ -2685,10 +2726,12 @@ def _clearest(details: list[Any]) -> Any:
         if item["type"] == "literal_error" and item["loc"][-1] in DECIDING:
             return item
     unknown = [item for item in details if item["type"] == "extra_forbidden"]
-    first = (unknown or details)[0]
-    same = [item for item in details if item["loc"][:2] == first["loc"][:2]]
-    fitting = [item for item in same if item["type"] not in ("model_type", "model_attributes_type")]
-    return unknown[0] if unknown else (fitting or same)[0]
+    foremost = (unknown or details)[0]
+    at_place = [item for item in details if item["loc"][:2] == foremost["loc"][:2]]
+    fitting = [
+        item for item in at_place if item["type"] not in ("model_type", "model_attributes_type")
+    ]
+    return unknown[0] if unknown else (fitting or at_place)[0]
 
 
 def _words(document: Document, detail: Any) -> set[str]:
@@ -2707,36 +2750,36 @@ def _words(document: Document, detail: Any) -> set[str]:
 
 
 def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
-    kind, given, context = detail["type"], detail.get("input"), detail.get("ctx", {})
+    kind, stated, context = detail["type"], detail.get("input"), detail.get("ctx", {})
     if kind == "missing":
         return f"is missing{_needed(detail['loc'], model)}"
     if kind == "extra_forbidden":
-        what, fields = "table" if isinstance(given, dict) else "key", _fields(detail["loc"], model)
+        what, fields = "table" if isinstance(stated, dict) else "key", _fields(detail["loc"], model)
         from pitchpoint.cases.wishes import answer
 
         place = _place_of(detail, document)
-        told = answer(place, given, document.tree, fields) or _meant(
+        advice = answer(place, stated, document.tree, fields) or _meant(
             place, fields, model, document.tree
         )
-        return f"is not a known {what}{told}"
+        return f"is not a known {what}{advice}"
     if kind == "literal_error":
         allowed = _options(detail["loc"], model) or context["expected"]
-        if detail["loc"][-1] == "family" and isinstance(given, str):
+        if detail["loc"][-1] == "family" and isinstance(stated, str):
             from pitchpoint.cases.wishes import no_family
 
-            return f"{shown(given)} is no family of gears{no_family(given, _quoted(allowed))}"
-        return f"{shown(given)} is not allowed; use {allowed}"
-    if isinstance(given, list) and given and all(isinstance(one, dict) for one in given):
+            return f"{shown(stated)} is no family of gears{no_family(stated, _quoted(allowed))}"
+        return f"{shown(stated)} is not allowed; use {allowed}"
+    if isinstance(stated, list) and stated and all(isinstance(entry, dict) for entry in stated):
         table = ".".join(_place_of(detail, document))
         both = "; a list in it has a value for each gear" if table == "gears" else ""
         return f"tables [[{table}]] were given where one table [{table}] belongs{both}"
     if kind in ("model_type", "model_attributes_type", "dict_type"):
-        return f"{shown(given)} was given where a table belongs{_inner(detail['loc'], model)}"
+        return f"{shown(stated)} was given where a table belongs{_inner(detail['loc'], model)}"
     if kind in ("tuple_type", "list_type"):
-        return f"{shown(given)} was given where a list belongs{_as_list(detail['loc'], model)}"
+        return f"{shown(stated)} was given where a list belongs{_as_list(detail['loc'], model)}"
     if kind == "too_long":
-        return _too_many(len(given), context["max_length"])
-    return f"{shown(given)} is not allowed: {detail['msg'].lower()}"
+        return _too_many(len(stated), context["max_length"])
+    return f"{shown(stated)} is not allowed: {detail['msg'].lower()}"
 
 
 def _as_list(location: tuple[Any, ...], model: type[BaseModel]) -> str:

@@ -81,13 +81,13 @@ Used = tuple[SolidInUse, SolidInUse]
 
 def failures(used: Used) -> list[str]:
     """Gears that are hotter than their material bears."""
-    told = (heat_failure(one.record, one.hottest) for one in used)
+    failing = (heat_failure(solid.record, solid.hottest) for solid in used)
     return [
         fails(
-            f"the teeth of gear {gear} are at {celsius(one.hottest)}; {text}.",
-            f"gear {gear} is at {celsius(one.hottest)}; {text.removesuffix(' for long')}.",
+            f"the teeth of gear {gear} are at {celsius(solid.hottest)}; {text}.",
+            f"gear {gear} is at {celsius(solid.hottest)}; {text.removesuffix(' for long')}.",
         )
-        for gear, (one, text) in enumerate(zip(used, told, strict=True), 1)
+        for gear, (solid, text) in enumerate(zip(used, failing, strict=True), 1)
         if text
     ]
 
@@ -136,12 +136,12 @@ def grown(
     further out, so that they are thicker by 2 r_w tan(alpha) e at the pitch circle.
     """
     taken, hottest = 0.0, ROOM
-    for number, one in zip(teeth, used, strict=True):
-        if one.plastic:
+    for number, solid in zip(teeth, used, strict=True):
+        if solid.plastic:
             radius = centre_distance * number / abs(sum(teeth))
-            growth = EXPANSION * (one.temperature - ROOM)
+            growth = EXPANSION * (solid.temperature - ROOM)
             taken += growth * 2.0 * radius * tan(pressure_angle)
-            hottest = max(hottest, one.temperature)
+            hottest = max(hottest, solid.temperature)
     if taken < _SLIGHT * 2.0 * centre_distance / abs(sum(teeth)):
         return []
     lost = float(f"{1e6 * taken:.2g}")  # um
@@ -163,13 +163,13 @@ def solids_in_use(materials: Materials, document: Document, temperature: float) 
         InputError: the temperature is outside what is known of a material.
     """
     wrong = Complaints(document.name)
-    first = wrong.tried(_of_gear, materials.gear_1, "gear_1", document, temperature)
-    if first is None and materials.gear_1 == materials.gear_2:
+    gear_1 = wrong.tried(_of_gear, materials.gear_1, "gear_1", document, temperature)
+    if gear_1 is None and materials.gear_1 == materials.gear_2:
         raise wrong.error  # of the other gear too
-    second = wrong.tried(_of_gear, materials.gear_2, "gear_2", document, temperature)
-    if first is None or second is None:
+    gear_2 = wrong.tried(_of_gear, materials.gear_2, "gear_2", document, temperature)
+    if gear_1 is None or gear_2 is None:
         raise wrong.error
-    return first, second
+    return gear_1, gear_2
 
 
 def _of_gear(
@@ -184,10 +184,10 @@ def surrounded(used: Used, temperature: float) -> Used:
     Raises:
         InputError: the temperature is outside what is known of a material.
     """
-    first, second = (
-        _in_use(one.record, key, temperature) for one, key in zip(used, _KEYS, strict=True)
+    gear_1, gear_2 = (
+        _in_use(solid.record, key, temperature) for solid, key in zip(used, _KEYS, strict=True)
     )
-    return first, second
+    return gear_1, gear_2
 
 
 def heated(case: Case, design: Design, used: Used, found: Mapping[str, float]) -> Used:
@@ -204,11 +204,11 @@ def heated(case: Case, design: Design, used: Used, found: Mapping[str, float]) -
     Raises:
         InputError: the temperature is outside what is known of a material.
     """
-    first, second = (
+    gear_1, gear_2 = (
         _warm(case, design, used, gear, found) if used[gear].plastic else used[gear]
         for gear in (0, 1)
     )
-    return first, second
+    return gear_1, gear_2
 
 
 def heating(case: Case, used: Used) -> Heated:
@@ -219,15 +219,15 @@ def heating(case: Case, used: Used) -> Heated:
         used: materials at the temperature of the surroundings.
     """
     gears, housing = case.gears, case.housing
-    tables = [_table(one) for one in used]
+    tables = [_table(solid) for solid in used]
     length = max(len(places) for places, _ in tables)
-    known, moduli = (
+    known_at, moduli = (
         np.stack([np.pad(part, (0, length - len(part)), "edge") for part in parts])
         for parts in zip(*tables, strict=True)
     )
     return Heated(
-        plastic=array([one.plastic for one in used]),
-        known=array(known),
+        plastic=array([solid.plastic for solid in used]),
+        known=array(known_at),
         moduli=array(moduli),
         teeth=array(gears.tooth_numbers, float),
         module=array(gears.normal_module),
@@ -240,8 +240,8 @@ def heating(case: Case, used: Used) -> Heated:
 
 def _mates(used: Used) -> tuple[str, str]:
     """Materials of the mates of both gears, as the thermal model tells them apart."""
-    first, second = ("plastic" if one.plastic else "steel" for one in reversed(used))
-    return first, second
+    mate_of_1, mate_of_2 = ("plastic" if solid.plastic else "steel" for solid in reversed(used))
+    return mate_of_1, mate_of_2
 
 
 def _table(used: SolidInUse) -> tuple[list[float], list[float]]:
@@ -282,19 +282,19 @@ def _warm(
     record = used[gear].record
     warm = _in_use(record, _KEYS[gear], root)
     modulus = f"modulus {float(warm.solid.young) / 1e9:.3g} GPa"
-    told = (
+    warning = (
         f"The teeth of gear {gear + 1} reach {celsius(flank)} at the flank and {celsius(root)} at the "
         f"root; {modulus}."
     )
     brief, moved = f"Gear {gear + 1} is warm: root at {celsius(root)}, {modulus}.", REMARKED
     if not heat_failure(record, max(flank, root)):
         status = modulus_at(record, root).status
-        told += f" {status[:1].upper()}{status[1:]}."
+        warning += f" {status[:1].upper()}{status[1:]}."
         if record.young_at and flank > record.young_at[-1].temperature:
-            told += f" No modulus is known at the temperature of the flank of gear {gear + 1}."
+            warning += f" No modulus is known at the temperature of the flank of gear {gear + 1}."
             brief = f"Gear {gear + 1}: no modulus is known at the {celsius(flank)} of its flank."
             moved = LEFT_OUT
-    return replace(warm, told=Doubt(told, moves=moved, brief=brief), flank=flank)
+    return replace(warm, told=Doubt(warning, moves=moved, brief=brief), flank=flank)
 
 
 @remembering

@@ -114,12 +114,12 @@ def as_spelt(error: InputError, document: Document, *, advised: bool = False) ->
     except InputError:  # which is the error itself
         return error
     wrong = Complaints()
-    keys = [each.key for each in error.every if isinstance(each, InputError)]
-    for one in error.every:
-        if isinstance(one, InputError):
-            spelt = in_words_of_set(one, gears)
-            if spelt.cures and (one.key or "").startswith(STAGES):
-                others = {key for key in keys if key != one.key}
+    keys = [input_error.key for input_error in error.every if isinstance(input_error, InputError)]
+    for complaint in error.every:
+        if isinstance(complaint, InputError):
+            spelt = in_words_of_set(complaint, gears)
+            if spelt.cures and (complaint.key or "").startswith(STAGES):
+                others = {key for key in keys if key != complaint.key}
                 every = spelt.cures if advised else ()
                 sound = [change for change in every if _mends(change, document, others)]
                 spelt = _ended_with_cures(spelt, sound)
@@ -132,7 +132,9 @@ def _mends(change: Tree, document: Document, others: set[str | None]) -> bool:
     try:
         _changed_drive(document, change)
     except InputError as left:
-        return {one.key for one in left.every if isinstance(one, InputError)} <= others
+        return {
+            complaint.key for complaint in left.every if isinstance(complaint, InputError)
+        } <= others
     return True
 
 
@@ -141,7 +143,7 @@ def _ended_with_cures(error: InputError, sound: Sequence[Tree]) -> InputError:
     from pitchpoint.gears.cylindrical.cures import told_with_cures
 
     longer = copy.copy(error)
-    bare = [{key.removeprefix("gears."): one for key, one in each.items()} for each in sound]
+    bare = [{key.removeprefix("gears."): value for key, value in cure.items()} for cure in sound]
     longer.message, longer.cures = told_with_cures(error.message, bare), tuple(sound)
     return longer
 
@@ -171,7 +173,7 @@ class _Stage(NamedTuple):
 def _alone(case: DriveCase, document: Document, *, advised: bool = False) -> list[_Stage]:
     """Each stage as a case of its own, at the load and speed of the drive; `advised` as in `ready`."""
     wrong = Complaints()
-    found: list[_Stage] = []
+    stages: list[_Stage] = []
     for number in range(1, len(case.stages) + 1):
         inside = _of_stage(case, document, number)
 
@@ -180,12 +182,12 @@ def _alone(case: DriveCase, document: Document, *, advised: bool = False) -> lis
             with _spelt(inside, advised):
                 return _Stage(number, validate(spelt_out), spelt_out)
 
-        found += filter(None, [wrong.tried(_in_stage, document, number, read)])
+        stages += filter(None, [wrong.tried(_in_stage, document, number, read)])
     wrong.demand_none()
-    for one in found:
-        wrong.tried(_turns, one, document, advised=advised)
+    for stage in stages:
+        wrong.tried(_turns, stage, document, advised=advised)
     wrong.demand_none()
-    return found
+    return stages
 
 
 def _built(
@@ -203,7 +205,7 @@ def _built(
     if case.train is None:
         alone = _following(alone, document)
         points = _points(case.operation, alone, document)
-        cases: Sequence[Case | DriveCase] = [one.case for one in alone]
+        cases: Sequence[Case | DriveCase] = [stage.case for stage in alone]
     else:
         # Only now: a pair or a chain does not load what trains take.
         from pitchpoint.cases.trains import turning_together
@@ -211,24 +213,24 @@ def _built(
         cases, points = turning_together(case, *_of_train(alone, document))
     wrong = Complaints()
     built: list[Any] = []  # each a mesh or a set
-    for one, each, point in zip(alone, cases, points, strict=True):
-        loaded = each.model_copy(update={"operation": point})
-        warmed = partial(ready, loaded, one.document, own, advised=advised)
-        built += filter(None, [wrong.tried(_in_stage, document, one.number, warmed)])
+    for stage, stage_case, point in zip(alone, cases, points, strict=True):
+        loaded = stage_case.model_copy(update={"operation": point})
+        warmed = partial(ready, loaded, stage.document, own, advised=advised)
+        built += filter(None, [wrong.tried(_in_stage, document, stage.number, warmed)])
     wrong.demand_none()
     try:
-        made = _together(case, built, [one.document for one in alone])
+        drive = _together(case, built, [stage.document for stage in alone])
     except InputError as error:
         if advised and error.key in OF_PLANETS:
             raise _with_fitting(error, case, document, built) from None
         raise
-    _check_map(made)
+    _check_map(drive)
     if case.duty is not None:
         from pitchpoint.cases.duty import duty_inputs
 
-        duty_inputs(case.duty, case.operation.temperature, travels="loaded" in made.travels)
-    bearing = without_bearing(made.places, lacks_bearing=made.lacks_bearing)
-    return replace(made, told=(*made.told, *bearing))
+        duty_inputs(case.duty, case.operation.temperature, travels="loaded" in drive.travels)
+    bearing = without_bearing(drive.places, lacks_bearing=drive.lacks_bearing)
+    return replace(drive, told=(*drive.told, *bearing))
 
 
 OF_PLANETS = ("train.planets", "train.planet_angles")
@@ -247,14 +249,14 @@ def _with_fitting(
 
     train = case.train
     assert train is not None
-    rates = rates_of(case, [one.design.mesh for one in built])
+    rates = rates_of(case, [stage.design.mesh for stage in built])
     return with_fitting(error, case, rates[train.input] / rates[train.output], attempt)
 
 
 def _changed(document: Document, change: Tree) -> Document:
     """A document with other values; a planetary set has its meshes to be made anew."""
     of_set = (STAGES, "train") if is_planetary(document.tree) else ()
-    tree = {key: one for key, one in document.tree.items() if key not in of_set}
+    tree = {key: table for key, table in document.tree.items() if key not in of_set}
     for key, value in change.items():
         tree = setting(tree, key, value)
     return replace(document, tree=tree)
@@ -262,8 +264,8 @@ def _changed(document: Document, change: Tree) -> Document:
 
 def _of_train(alone: Sequence[_Stage], document: Document) -> tuple[list[Case], list[Mesh]]:
     """Cases and meshes of the stages of a train."""
-    cases = [one.case for one in alone if isinstance(one.case, Case)]
-    return cases, [_mesh(one, number, document) for number, one in enumerate(cases, 1)]
+    cases = [stage.case for stage in alone if isinstance(stage.case, Case)]
+    return cases, [_mesh(stage, number, document) for number, stage in enumerate(cases, 1)]
 
 
 def _together(
@@ -274,12 +276,12 @@ def _together(
     if case.train is not None:
         from pitchpoint.cases.trains import about_trains, train_of
 
-        meshes = tuple(mesh for one in built for mesh in one.meshes)
-        told = about_trains(case, meshes)
+        meshes = tuple(mesh for stage in built for mesh in stage.meshes)
+        warnings = about_trains(case, meshes)
         return BuiltTrain(
-            case, meshes, numbers, tuple(documents), train_of(case, meshes), point, told
+            case, meshes, numbers, tuple(documents), train_of(case, meshes), point, warnings
         )
-    told = (
+    warnings = (
         *_few_meetings(built),
         *_adding_thrusts(built),
         *_on_one_place(case, built),
@@ -287,35 +289,35 @@ def _together(
         *_on_vibration(case),
     )
     drive = _drive(case, built)
-    return BuiltDrive(case, tuple(built), numbers, tuple(documents), drive, point, told)
+    return BuiltDrive(case, tuple(built), numbers, tuple(documents), drive, point, warnings)
 
 
 def _check_map(made: BuiltDrive) -> None:
     """InputError if the loss map runs over temperatures at which an oil of the drive is not known."""
     low, high = made.temperatures
-    for asked in (made.case.loss_map and made.case.loss_map.temperatures) or ():
-        if not low <= asked <= high:
+    for temperature in (made.case.loss_map and made.case.loss_map.temperatures) or ():
+        if not low <= temperature <= high:
             allowed = replace(TEMPERATURE, low=low, high=high).allowed
             raise InputError(
-                f"{TEMPERATURE.show(asked)} is outside the range of the oil; {allowed}",
+                f"{TEMPERATURE.show(temperature)} is outside the range of the oil; {allowed}",
                 key="loss_map.temperatures",
             )
 
 
 def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
     """A stage as a case of its own: its tables, and those of the drive for what it leaves out."""
-    whole, stage = document.tree, document.tree[STAGES][str(number)]
-    tree: Tree = {key: stage.get(key, whole[key]) for key in _OF_STAGE if key in {*stage, *whole}}
+    drive, stage = document.tree, document.tree[STAGES][str(number)]
+    tree: Tree = {key: stage.get(key, drive[key]) for key in _OF_STAGE if key in {*stage, *drive}}
     gears = case.stages[str(number)].gears
-    shared = {key: whole.get(key, {}) for key in _SHARED if gears.rated or key != "strength"}
+    shared = {key: drive.get(key, {}) for key in _SHARED if gears.rated or key != "strength"}
     shared["materials"] = _materials(shared["materials"], stage.get("materials", {}), gears)
     both = {key: {**shared.get(key, {}), **stage.get(key, {})} for key in _SHARED}
     tree |= {key: table for key, table in both.items() if table}
     tree |= {
         key: stage[key] for key in ("gears", "losses", "film", "wear", "dynamics") if key in stage
     }
-    kept = {key: whole["operation"][key] for key in ("speed", "temperature")}
-    tree["operation"] = {**kept, gears.load: SIValue(case.operation.load)}
+    conditions = {key: drive["operation"][key] for key in ("speed", "temperature")}
+    tree["operation"] = {**conditions, gears.load: SIValue(case.operation.load)}
     if "driver" in stage:
         tree["operation"]["driver"] = stage["driver"]
     return Document(document.name, tree, _marks(document.provenance, number, stage))
@@ -323,21 +325,23 @@ def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
 
 def _materials(whole: Tree, stage: Tree, gears: Any) -> Tree:
     """Materials of the drive that count for a stage: of the gears of a set where it is one with its own."""
-    own = of_set((*whole, *stage)) and isinstance(gears, PlanetaryGears)
-    return {key: value for key, value in whole.items() if (key in OF_SET) == bool(own)}
+    of_gears = of_set((*whole, *stage)) and isinstance(gears, PlanetaryGears)
+    return {key: value for key, value in whole.items() if (key in OF_SET) == bool(of_gears)}
 
 
 def _marks(given: Mapping[str, Provenance], number: int, stage: Tree) -> dict[str, Provenance]:
     """Where values of a stage come from, by its own keys."""
     inside = f"{STAGES}.{number}."
     replaced = [key for key in stage if key not in _SHARED]
-    found = {
+    inherited = {
         key: mark
         for key, mark in given.items()
         if not key.startswith(f"{STAGES}.") and key.partition(".")[0] not in replaced
     }
-    own = {key.removeprefix(inside): mark for key, mark in given.items() if key.startswith(inside)}
-    return {**found, **own}
+    stated = {
+        key.removeprefix(inside): mark for key, mark in given.items() if key.startswith(inside)
+    }
+    return {**inherited, **stated}
 
 
 def _in_stage(document: Document, number: int, make: Callable[[], T]) -> T:
@@ -346,9 +350,9 @@ def _in_stage(document: Document, number: int, make: Callable[[], T]) -> T:
         return make()
     except InputError as error:
         wrong = Complaints()
-        for one in error.every:
-            if isinstance(one, InputError):
-                wrong.add(_of_the_drive(one, document, number))
+        for complaint in error.every:
+            if isinstance(complaint, InputError):
+                wrong.add(_of_the_drive(complaint, document, number))
         raise wrong.error from None
 
 
@@ -372,7 +376,7 @@ def _key(number: int, key: str) -> str:
 
 def _check_laws(alone: Sequence[_Stage]) -> None:
     """InputError if stages have several friction laws, but not as many as the others."""
-    counts = [len(one.case.models.friction) for one in alone]
+    counts = [len(stage.case.models.friction) for stage in alone]
     for number, count in enumerate(counts, 1):
         for choice in alone[number - 1].case.models.friction:
             if FRICTION[choice.name].films is not None:
@@ -391,7 +395,7 @@ def _check_laws(alone: Sequence[_Stage]) -> None:
 
 def _check_rated(case: DriveCase) -> None:
     """InputError for a table on strength that no stage has a use for."""
-    if case.strength is not None and not any(one.gears.rated for one in case.stages.values()):
+    if case.strength is not None and not any(stage.gears.rated for stage in case.stages.values()):
         raise InputError(UNRATED, key="strength")
 
 
@@ -403,27 +407,28 @@ def _following(alone: Sequence[_Stage], document: Document) -> list[_Stage]:
     Raises:
         InputError: no choice of those that were left open does so.
     """
-    found: list[_Stage] = []
-    last = 0.0
-    for one in alone:
-        first, loaded = _turns(one, document)
-        mesh = one.case
+    stages: list[_Stage] = []
+    incoming = 0.0
+    for stage in alone:
+        driver_rate, loaded = _turns(stage, document)
+        mesh = stage.case
         if not isinstance(mesh, Case):
-            last *= np.sign(first * loaded)
-            found.append(one)
+            incoming *= np.sign(driver_rate * loaded)
+            stages.append(stage)
             continue
-        if first * last < 0.0:
-            if _open(one):
-                one, loaded = _turned(one), -loaded
+        if driver_rate * incoming < 0.0:
+            if _open(stage):
+                stage, loaded = _turned(stage), -loaded
             elif all(
-                not isinstance(before.case, Case) or _open(before) for before in alone[: len(found)]
+                not isinstance(before.case, Case) or _open(before)
+                for before in alone[: len(stages)]
             ):
-                found = [*map(_turned, found)]
+                stages = [*map(_turned, stages)]
             else:
-                raise _against(mesh, one.number)
-        last = loaded
-        found.append(one)
-    return found
+                raise _against(mesh, stage.number)
+        incoming = loaded
+        stages.append(stage)
+    return stages
 
 
 def _open(stage: _Stage) -> bool:
@@ -442,16 +447,16 @@ def _turned(stage: _Stage) -> _Stage:
 
 def _against(one: Case, number: int) -> InputError:
     if one.gears.opposed is None:
-        told = (
+        message = (
             f"these gears carry on the flanks for one sense of rotation alone, and shaft {number} turns "
             "the other way; leave the flanks of the stages before them open"
         )
-        return InputError(told, key=_key(number, "gears"))
-    told = (
+        return InputError(message, key=_key(number, "gears"))
+    message = (
         f"with these flanks in contact shaft {number} turns against the stage before it; leave flank out, or "
         "take the others"
     )
-    return InputError(told, key=_key(number, "gears.flank"))
+    return InputError(message, key=_key(number, "gears.flank"))
 
 
 def _mesh(one: Case, number: int, document: Document) -> Mesh:
@@ -491,13 +496,15 @@ def _rate_of_output(case: DriveCase, document: Document, *, advised: bool) -> fl
 
 def _points(point: Operating, alone: Sequence[_Stage], document: Document) -> list[Operating]:
     """Operating point of each stage where nothing is lost."""
-    ends = [_turns(one, document) for one in alone]
-    steps = np.array([abs(last / first) for first, last in ends])
+    ends = [_turns(stage, document) for stage in alone]
+    steps = np.array([abs(loaded_rate / driver_rate) for driver_rate, loaded_rate in ends])
     speeds = point.speed * np.cumprod([1.0, *steps[:-1]])
     loads = point.load * np.cumprod([1.0, *steps[:0:-1]])[::-1]
     return [
-        one.case.operation.model_copy(update={_load_of(one): float(load), "speed": float(speed)})
-        for one, load, speed in zip(alone, loads, speeds, strict=True)
+        stage.case.operation.model_copy(
+            update={_load_of(stage): float(load), "speed": float(speed)}
+        )
+        for stage, load, speed in zip(alone, loads, speeds, strict=True)
     ]
 
 
@@ -511,11 +518,11 @@ def _drive(case: DriveCase, built: Sequence[Built | BuiltTrain]) -> Drive:
     count = len(built) + 1
     held = 0
     links, inner = [], set()
-    for first, (one, table) in enumerate(zip(built, case.stages.values(), strict=True)):
-        names = one.on_shafts(first, count + held)
+    for shaft, (stage, table) in enumerate(zip(built, case.stages.values(), strict=True)):
+        names = stage.on_shafts(shaft, count + held)
         held += len(names) - 2
-        links.append(one.link(tuple(names.values()), table))
-        inner.add(frozenset(f"shaft {names[body] + 1}" for body in one.inner_bearing))
+        links.append(stage.link(tuple(names.values()), table))
+        inner.add(frozenset(f"shaft {names[body] + 1}" for body in stage.inner_bearing))
     still = [f"held {number}" for number in range(held)]
     bodies = (*case.bodies, *still)
     placed = drags(case.losses, bodies, inner - {frozenset()})
@@ -559,12 +566,12 @@ def _few_meetings(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
 
 def _on_sets(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
     """Planetary sets of which not all is computed that a file of them alone has."""
-    for number, one in enumerate(built, 1):
-        for point in (train.case.operation for train in one.trains.values()):
+    for number, stage in enumerate(built, 1):
+        for point in (train.case.operation for train in stage.trains.values()):
             yield Doubt(
                 f"Stage {number} is a planetary set: its state over a period is not computed here. A file of "
                 f"this set alone has it, with torque "
-                f"{one.carried.show(point.load)} and speed {SPEED.show(point.speed)}, which is the set "
+                f"{stage.carried.show(point.load)} and speed {SPEED.show(point.speed)}, which is the set "
                 "without losses behind it.",
                 moves=REMARKED,
                 brief=f"Stage {number}: its period in a file of this set alone.",
@@ -591,11 +598,13 @@ def _adding_thrusts(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
     for shaft, (before, behind) in enumerate(pairwise(built), 2):
         if before.trains or behind.trains:
             continue
-        (first,), (second,) = before.meshes, behind.meshes
-        helical = [float(one.dimensions.get("overlap_ratio", 0.0)) > 0.0 for one in (first, second)]
-        members = np.argmax(first.nominal["loaded"]), np.argmax(second.nominal["driver"])
+        (mesh_in,), (mesh_out,) = before.meshes, behind.meshes
+        helical = [
+            float(mesh.dimensions.get("overlap_ratio", 0.0)) > 0.0 for mesh in (mesh_in, mesh_out)
+        ]
+        members = np.argmax(mesh_in.nominal["loaded"]), np.argmax(mesh_out.nominal["driver"])
         if all(helical) and members[0] == members[1]:
-            gear = first.case.gears.members[members[0]]
+            gear = mesh_in.case.gears.members[members[0]]
             yield (
                 f"On shaft {shaft} the helical {gear}s of stages {shaft - 1} and {shaft} have opposite "
                 "hands: their axial forces add up. Those of a gear 2 and a gear 1 counteract."
@@ -607,11 +616,16 @@ def _on_one_place(case: DriveCase, built: Sequence[Built | BuiltTrain]) -> Itera
     tables = [*case.stages.values()]
     if not any("place" in table.model_fields_set for table in tables):
         return
-    for shaft, (first, second) in enumerate(pairwise(zip(tables, built, strict=True)), 2):
-        if first[1].trains or second[1].trains:
+    for shaft, (stage_before, stage_behind) in enumerate(
+        pairwise(zip(tables, built, strict=True)), 2
+    ):
+        if stage_before[1].trains or stage_behind[1].trains:
             continue
-        apart = abs(second[0].place - first[0].place)
-        widths = (getattr(one.case.gears, "face_width", 0.0) for _, one in (first, second))
+        apart = abs(stage_behind[0].place - stage_before[0].place)
+        widths = (
+            getattr(stage.case.gears, "face_width", 0.0)
+            for _, stage in (stage_before, stage_behind)
+        )
         half = [float(np.max(width)) / 2.0 for width in widths]
         if over := max(sum(half) - apart, 0.0):
             yield Doubt(

@@ -67,8 +67,8 @@ class Rated:
     @property
     def assumed(self) -> tuple[str, ...]:
         """What was not given, in the words of a list."""
-        told = _assumed(self.table, self.grade, _plastic(self.used), helical=self.helical)
-        return *told, *_cycles(self.table, self.used)
+        assumptions = _assumed(self.table, self.grade, _plastic(self.used), helical=self.helical)
+        return *assumptions, *_cycles(self.table, self.used)
 
     @property
     def withheld(self) -> tuple[str, ...]:
@@ -79,8 +79,8 @@ class Rated:
     def sources(self) -> tuple[str, ...]:
         """Keys of the bibliography."""
         plastic = any(_plastic(self.used))
-        curves = (one.record.root_strength for one in self.used)
-        printed = [one.origin.source for one in curves if one is not None]
+        curves = (curve.record.root_strength for curve in self.used)
+        printed = [curve.origin.source for curve in curves if curve is not None]
         by_part_1 = self.table.dynamic_method == "B" or self.table.shaft is not None
         return (
             *_EDITIONS[self.table.edition],
@@ -101,8 +101,8 @@ class Rated:
         """
         flank, root = self.endured
         time, engagements = nan if life is None else life, self.table.engagements or (1.0, 1.0)
-        given = point.load, point.speed, flank, root, driver
-        return Duty(*given, array(time), array(engagements))
+        conditions = point.load, point.speed, flank, root, driver
+        return Duty(*conditions, array(time), array(engagements))
 
 
 def check_strength(case: Case, used: Used) -> None:
@@ -230,13 +230,13 @@ class _Toothing:
         """
         gears: Any = case.gears
         cosine = cos(gears.helix_angle)
-        first, second = (abs(teeth) * gears.module / cosine for teeth in gears.teeth)
+        diameter_1, diameter_2 = (abs(teeth) * gears.module / cosine for teeth in gears.teeth)
         relief = None if gears.modifications is None else gears.modifications.tip_relief
         drawn = None if gears.deviations is None else gears.deviations.iso_class
         return cls(
             grade,
             drawn if drawn is not None and table.accuracy_class is None else (grade, grade),
-            (first, second),
+            (diameter_1, diameter_2),
             gears.module,
             gears.face_width,
             nan if relief is None else min(relief),
@@ -274,9 +274,9 @@ def _by_method_b(table: StrengthTable, toothing: _Toothing, used: Used) -> dict[
     """Deviations and relief for K_v by method B; nothing for other methods."""
     if table.dynamic_method != "B":
         return {}
-    first, second = toothing.tolerances
-    pitch = max(first.single_pitch, second.single_pitch) * cos(toothing.pressure_angle)
-    profile = max(first.profile_form, second.profile_form)
+    gear_1, gear_2 = toothing.tolerances
+    pitch = max(gear_1.single_pitch, gear_2.single_pitch) * cos(toothing.pressure_angle)
+    profile = max(gear_1.profile_form, gear_2.profile_form)
     relief = nan
     if max(toothing.classes) < _FINEST_WITHOUT_RELIEF:
         run_in = running_in_relief(_limits(table.sigma_hlim, "sigma_hlim", used))
@@ -292,7 +292,7 @@ def _of_shaft(table: StrengthTable, toothing: _Toothing) -> dict[str, Array]:
     """What K_Hbeta by method C takes; nothing where it is not asked."""
     if table.shaft is None:
         return {}
-    slopes = [one.helix_slope for one in toothing.tolerances]
+    slopes = [tolerance.helix_slope for tolerance in toothing.tolerances]
     return {"shaft": array(table.shaft), "helix_slopes": array(slopes)}
 
 
@@ -314,7 +314,7 @@ def _factors(table: StrengthTable, toothing: _Toothing, used: Used) -> Factors:
         accurate=array(float(toothing.grade <= 4)),
         correction=_given(table.profile_correction, 1.0 if earlier else NO_MODIFICATION),
         before_2019=array(float(earlier)),
-        soft=array([float(one in _SOFT) for one in _treatment_names(table, used)]),
+        soft=array([float(treatment in _SOFT) for treatment in _treatment_names(table, used)]),
         **_by_method_b(table, toothing, used),
         **_of_shaft(table, toothing),
     )
@@ -324,8 +324,8 @@ _SOFT = ("normalised", "through_hardened")
 
 
 def _treatment_names(table: StrengthTable, used: Used) -> tuple[str, str]:
-    first, second = _treatments(table, used)
-    return first.name, second.name
+    treatment_1, treatment_2 = _treatments(table, used)
+    return treatment_1.name, treatment_2.name
 
 
 def _given(value: float | None, usual: float) -> Array:
@@ -337,35 +337,38 @@ def _strengths(
     table: StrengthTable, used: Used, plastic: tuple[bool, bool]
 ) -> tuple[Strengths, tuple[Array, Array]]:
     """What both gears bear, and from how many cycles on they endure."""
-    first, second = _treatments(table, used)
-    found = Strengths(
+    treatment_1, treatment_2 = _treatments(table, used)
+    strengths = Strengths(
         solids=(used[0].solid, used[1].solid),
         flank=array(_limits(table.sigma_hlim, "sigma_hlim", used)),
         root=array(_limits(table.sigma_flim, "sigma_flim", used)),
-        constants=Constants.of(first, second),
+        constants=Constants.of(treatment_1, treatment_2),
         plastic=array(plastic),
         work_hardening=array(table.work_hardening or (1.0, 1.0)),
         mean_stress=array(table.mean_stress_factor or (1.0, 1.0)),
         over_cycles=array(np.array([_over_cycles(one) for one in used]).T),
     )
-    endured = [[getattr(one, part).many for one in (first, second)] for part in ("flank", "root")]
-    return found, (array(endured[0]), array(endured[1]))
+    endured = [
+        [getattr(one, part).many for one in (treatment_1, treatment_2)]
+        for part in ("flank", "root")
+    ]
+    return strengths, (array(endured[0]), array(endured[1]))
 
 
 def _over_cycles(used: SolidInUse) -> tuple[float, ...]:
     """Root strength at the temperature of the teeth, see `Strengths`."""
-    known, tensile = used.record.root_strength, used.record.tensile_strength
-    if known is None or not used.plastic:
+    curve, tensile = used.record.root_strength, used.record.tensile_strength
+    if curve is None or not used.plastic:
         return (nan,) * 4
-    return *known.at(used.temperature), inf if tensile is None else tensile.value
+    return *curve.at(used.temperature), inf if tensile is None else tensile.value
 
 
 def _limits(given: tuple[float, float] | None, name: str, used: Used) -> list[float]:
     """Limits of both gears, by value or of their materials; not a number where they are not known."""
     if given is not None:
         return [*given]
-    known = (getattr(one.record, name) for one in used)
-    return [nan if datum is None else datum.value for datum in known]
+    data = (getattr(solid.record, name) for solid in used)
+    return [nan if datum is None else datum.value for datum in data]
 
 
 def _treatments(table: StrengthTable, used: Used) -> tuple[Treatment, Treatment]:
@@ -374,8 +377,10 @@ def _treatments(table: StrengthTable, used: Used) -> tuple[Treatment, Treatment]
     Raises:
         InputError: limits by value of a steel whose treatment is not known.
     """
-    first, second = (_treatment(table, one, gear) for gear, one in enumerate(used, 1))
-    return first, second
+    treatment_1, treatment_2 = (
+        _treatment(table, solid, gear) for gear, solid in enumerate(used, 1)
+    )
+    return treatment_1, treatment_2
 
 
 def _treatment(table: StrengthTable, used: SolidInUse, gear: int) -> Treatment:
@@ -459,13 +464,13 @@ def _by_cycles(used: SolidInUse) -> bool:
 def _withheld(strengths: Strengths, used: Used) -> Iterator[str]:
     """Why a gear has no safeties."""
     limits = zip(np.asarray(strengths.flank), np.asarray(strengths.root), used, strict=True)
-    for gear, (flank, root, one) in enumerate(limits, 1):
-        known = {"sigma_hlim": flank, "sigma_flim": root}
-        missing = [name for name, value in known.items() if np.isnan(value)]
-        if _by_cycles(one) and "sigma_flim" in missing:
+    for gear, (flank, root, solid) in enumerate(limits, 1):
+        limit_values = {"sigma_hlim": flank, "sigma_flim": root}
+        missing = [name for name, value in limit_values.items() if np.isnan(value)]
+        if _by_cycles(solid) and "sigma_flim" in missing:
             missing.remove("sigma_flim")
         if missing:
-            yield _missing(gear, missing, one)
+            yield _missing(gear, missing, solid)
 
 
 def _missing(gear: int, names: list[str], used: SolidInUse) -> str:

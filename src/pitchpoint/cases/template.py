@@ -65,22 +65,22 @@ def template(family: str, changes: Tree | None = None, remarks: Sequence[str] = 
     Raises:
         InputError: there is no such family.
     """
-    found = known_as(family, FAMILIES)
-    if found is None and family.endswith(".toml"):
+    family_name = known_as(family, FAMILIES)
+    if family_name is None and family.endswith(".toml"):
         raise InputError(
             f"'{shorten(family)}' is a file and no family of gears; write new spur -o FILE"
         )
-    if found is None:
+    if family_name is None:
         raise InputError(f"'{shorten(family)}' is no family of gears{no_family(family, FAMILIES)}")
-    model, sample = _sample(found)
+    model, sample = _sample(family_name)
     tree = _changed(sample, changes or {})
-    told = (line for text in remarks for line in textwrap.wrap(text, _WIDTH - 2))
+    remark_lines = (line for text in remarks for line in textwrap.wrap(text, _WIDTH - 2))
     lines = [
-        f"# A case of Pitchpoint, {found.replace('_', ' ')}. It runs as it is: pitchpoint run FILE.",
+        f"# A case of Pitchpoint, {family_name.replace('_', ' ')}. It runs as it is: pitchpoint run FILE.",
         "# Keys behind a # are optional; what they say is the usual value, or an example of one.",
         "# pitchpoint check FILE tells all that is wrong, pitchpoint models every law, oil and material.",
-        *(f"# {line}" for line in told),
-        f"title = {_toml('My ' + found.replace('_', ' '))}",
+        *(f"# {line}" for line in remark_lines),
+        f"title = {_toml('My ' + family_name.replace('_', ' '))}",
         *(line for key in model.model_fields for line in _of_table(model, key, tree)),
         "",
         "# [variants.rough.roughness]  # a variant says what differs",
@@ -114,27 +114,27 @@ def _sample(family: str) -> tuple[type[BaseModel], Tree]:
     name = "cylindrical" if family in _CYLINDRICAL else family
     table = next(table for table in TABLES if tag(table) == name)
     tree = tomllib.loads(sample_of(table).read_text("utf-8"))
-    more = _MORE.get(family, {})
-    tree["gears"] = {"family": name, **tree["gears"], **more.get("gears", {})}
-    return Case, {**tree, **{key: table for key, table in more.items() if key != "gears"}}
+    tables = _MORE.get(family, {})
+    tree["gears"] = {"family": name, **tree["gears"], **tables.get("gears", {})}
+    return Case, {**tree, **{key: table for key, table in tables.items() if key != "gears"}}
 
 
 def _of_table(model: type[BaseModel], key: str, tree: Tree) -> Iterator[str]:
     """Lines of a table at the top of the file."""
     if key in _LEFT_OUT or (key in _ARRANGING and key not in tree):
         return
-    info, given = model.model_fields[key], tree.get(key)
+    info, stated = model.model_fields[key], tree.get(key)
     if key == STAGES:
         yield from _of_stages(tree[STAGES])
     elif get_origin(info.annotation) is dict:
-        live = "" if SET in (given or {}) else "# "
+        live = "" if SET in (stated or {}) else "# "
         yield ""
         yield from (
-            f"{live}{line}" for line in tomlkit.dumps({key: given or {}}).splitlines() if given
+            f"{live}{line}" for line in tomlkit.dumps({key: stated or {}}).splitlines() if stated
         )
     else:
-        meant = forms(info.annotation, given)[0]
-        yield from _lines(meant, key, given or {}, live=key in _MEANT and key in tree)
+        meant = forms(info.annotation, stated)[0]
+        yield from _lines(meant, key, stated or {}, live=key in _MEANT and key in tree)
 
 
 def _of_stages(stages: Sequence[Tree]) -> Iterator[str]:
@@ -152,16 +152,16 @@ def _lines(model: type[BaseModel], path: str, given: Tree, *, live: bool) -> Ite
     yield ""
     yield from _remark(model)
     yield f"{'' if live else '# '}[{path}]"
-    inner, told = [], sentences(model)
+    inner, descriptions = [], sentences(model)
     for key, info in model.model_fields.items():
         tables = _inner(info, given.get(key))
         if tables is not None:
             inner.append((key, tables))
         elif live and key in given:
-            yield f"{key} = {_toml(given[key])}{_words(info, told.get(key, ''))}"
+            yield f"{key} = {_toml(given[key])}{_words(info, descriptions.get(key, ''))}"
         else:
             value = _example(info)
-            yield f"# {key} = {_toml(value)}{_words(info, told.get(key, ''))}"
+            yield f"# {key} = {_toml(value)}{_words(info, descriptions.get(key, ''))}"
     for key, table in inner:
         below = live and key in given and key != "deviations"
         yield from _lines(table, f"{path}.{key}", given.get(key, {}), live=below)
@@ -171,7 +171,9 @@ def _inner(info: FieldInfo, given: Any) -> type[BaseModel] | None:
     """The table that stands at a key; None for values, and for what may be a name as well."""
     tables = alternatives(info.annotation)
     several = get_origin(info.annotation) in (tuple, dict)
-    by_name = any(_known(one) for option in get_args(info.annotation) for one in _metadata(option))
+    by_name = any(
+        _known(mark) for option in get_args(info.annotation) for mark in _metadata(option)
+    )
     if not tables or several or by_name:
         return None
     return forms(info.annotation, given)[0]
@@ -192,18 +194,24 @@ def _remark(model: type[BaseModel]) -> Iterator[str]:
 def _known(mark: Any) -> list[str]:
     """Names out of a registry that a key takes; none where it takes others."""
     function = getattr(mark, "func", None) if isinstance(mark, BeforeValidator) else None
-    known: Callable[[], list[str]] | None = getattr(function, "known", None)
-    return [] if known is None else list(known())
+    names: Callable[[], list[str]] | None = getattr(function, "known", None)
+    return [] if names is None else list(names())
 
 
 def _names(info: FieldInfo) -> list[str]:
-    every = [*info.metadata, *(one for opt in get_args(info.annotation) for one in _metadata(opt))]
+    every = [
+        *info.metadata,
+        *(mark for opt in get_args(info.annotation) for mark in _metadata(opt)),
+    ]
     return next(filter(None, map(_known, every)), [])
 
 
 def _options(info: FieldInfo) -> tuple[Any, ...]:
-    each = (info.annotation, *get_args(info.annotation))
-    return next((get_args(one) for one in each if get_origin(one) is Literal), ())
+    annotations = (info.annotation, *get_args(info.annotation))
+    return next(
+        (get_args(annotation) for annotation in annotations if get_origin(annotation) is Literal),
+        (),
+    )
 
 
 def _example(info: FieldInfo) -> Any:
@@ -222,23 +230,28 @@ def _example(info: FieldInfo) -> Any:
     tables = alternatives(info.annotation)
     if tables:
         table = next(iter(tables.values()))
-        made = {key: _example(one) for key, one in table.model_fields.items() if one.is_required()}
+        example = {
+            key: _example(field) for key, field in table.model_fields.items() if field.is_required()
+        }
         kind = get_origin(info.annotation)
-        return [made] if kind is tuple else {"name": made} if kind is dict else made
+        return [example] if kind is tuple else {"name": example} if kind is dict else example
     return False if bool in (info.annotation, *get_args(info.annotation)) else "text"
 
 
 def _pair(info: FieldInfo) -> bool:
-    every = [*info.metadata, *(one for opt in get_args(info.annotation) for one in _metadata(opt))]
-    return any(isinstance(one, Pair) for one in every)
+    every = [
+        *info.metadata,
+        *(mark for opt in get_args(info.annotation) for mark in _metadata(opt)),
+    ]
+    return any(isinstance(mark, Pair) for mark in every)
 
 
 def _of_quantity(quantity: Quantity, usual: Any) -> Any:
     """The usual value in the unit in which it is shown, or one in its range."""
     if isinstance(usual, tuple) and usual and isinstance(usual[0], float):
         words = [value if isinstance(value, str) else quantity.show(value) for value in usual]
-        each = [*map(_read, words)]
-        return each[0] if len(set(map(str, each))) == 1 else each
+        numbers = [*map(_read, words)]
+        return numbers[0] if len(set(map(str, numbers))) == 1 else numbers
     if isinstance(usual, float):
         return _read(quantity.show(usual))
     return _read(quantity.example.strip('"'))
@@ -257,14 +270,14 @@ def _words(info: FieldInfo, sentence: str) -> str:
     """What a key is, and what it takes, as a remark behind it."""
     quantity, names = quantity_of(info), _names(info)
     if quantity is not None:
-        told = quantity.allowed
+        allowed = quantity.allowed
     elif names:
-        told = f"one of {', '.join(names)}" if len(names) <= _FEW else "see pitchpoint models"
+        allowed = f"one of {', '.join(names)}" if len(names) <= _FEW else "see pitchpoint models"
     elif _options(info):
-        told = f"one of {', '.join(map(str, _options(info)))}" if len(_options(info)) > 1 else ""
+        allowed = f"one of {', '.join(map(str, _options(info)))}" if len(_options(info)) > 1 else ""
     else:
-        told = ""
-    words = "; ".join(filter(None, [sentence.rstrip("."), told]))
+        allowed = ""
+    words = "; ".join(filter(None, [sentence.rstrip("."), allowed]))
     return f"  # {words}" if words else ""
 
 
@@ -272,7 +285,8 @@ def _toml(value: Any) -> str:
     """A value as TOML has it, tables in braces."""
     if isinstance(value, Mapping):
         inner = ", ".join(
-            f"{tomlkit.key(key).as_string()} = {_toml(one)}" for key, one in value.items()
+            f"{tomlkit.key(key).as_string()} = {_toml(inner_value)}"
+            for key, inner_value in value.items()
         )
         return f"{{ {inner} }}"
     if isinstance(value, list):

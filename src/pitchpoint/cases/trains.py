@@ -44,10 +44,10 @@ __all__ = ["USUAL_BEARING", "about_trains", "rates_of", "train_of", "turning_tog
 def _links(case: DriveCase, train: TrainTable, meshes: Sequence[Mesh]) -> list[Link]:
     """Meshes with their bodies; the axes of those of planets sit on the carrier."""
     gears = case.gears.planet_gears if case.gears else (1,) * len(meshes)
-    each = zip(meshes, case.stages.values(), gears, strict=True)
+    meshings = zip(meshes, case.stages.values(), gears, strict=True)
     return [
         Link(mesh, stage.bodies, train.carrier if train.planet in stage.bodies else HOUSING, gear)
-        for mesh, stage, gear in each
+        for mesh, stage, gear in meshings
     ]
 
 
@@ -91,31 +91,35 @@ def turning_together(
     assert train is not None
     try:
         links = _links(case, train, meshes)
-        found = train_torques(links, _ends(case, train), 1.0, [1.0] * len(links))
+        balanced = train_torques(links, _ends(case, train), 1.0, [1.0] * len(links))
     except InputError as error:
         raise error.at(key=error.key or "train") from None
     meshings = Counter(gear for link in links for gear in link.gears)
     turned, points = [], []
-    for number, (one, link, torques) in enumerate(zip(alone, links, found.shares, strict=True), 1):
+    for number, (stage, link, torques) in enumerate(
+        zip(alone, links, balanced.shares, strict=True), 1
+    ):
         torque = np.array([torques[body] for body in link.bodies])
-        rates = np.array([found.rates[body] - found.rates[link.carrier] for body in link.bodies])
-        driver = link.bodies.index(found.driving[number - 1])
+        rates = np.array(
+            [balanced.rates[body] - balanced.rates[link.carrier] for body in link.bodies]
+        )
+        driver = link.bodies.index(balanced.driving[number - 1])
         if presses_other_flanks(link.mesh, torque):
-            one = _on_other_flanks(one, number)
+            stage = _on_other_flanks(stage, number)
         copies = train.planets if train.planet in link.bodies else 1.0
         carried = abs(torque[1 - driver]) / copies * case.operation.load
         changes = {
-            one.gears.load: float(carried),
+            stage.gears.load: float(carried),
             "speed": float(abs(rates[driver])),
-            "driver": one.gears.members[driver],
+            "driver": stage.gears.members[driver],
         }
-        points.append(one.operation.model_copy(update=changes))
-        per_turn = float(abs(rates[driver] / found.rates[train.input]))
+        points.append(stage.operation.model_copy(update=changes))
+        per_turn = float(abs(rates[driver] / balanced.rates[train.input]))
         shared = {
-            "strength": _strength(one, link, meshings, train),
-            "wear": _wear(one.wear, link, train, per_turn),
+            "strength": _strength(stage, link, meshings, train),
+            "wear": _wear(stage.wear, link, train, per_turn),
         }
-        turned.append(one.model_copy(update=shared))
+        turned.append(stage.model_copy(update=shared))
     return turned, points
 
 
@@ -152,8 +156,8 @@ def _wear(
 
 
 def _both(values: Iterable[bool]) -> tuple[bool, bool]:
-    first, second = values
-    return first, second
+    gear_1, gear_2 = values
+    return gear_1, gear_2
 
 
 def _on_other_flanks(one: Case, number: int) -> Case:
@@ -185,7 +189,7 @@ def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
     on_planets = [link for link in links if link.carrier != HOUSING]
     angles = _angles(on_planets, train)
     phases = iter(_fitted(on_planets, train, angles))
-    each = [np.zeros(1) if link.carrier == HOUSING else next(phases) for link in links]
+    phases_of_links = [np.zeros(1) if link.carrier == HOUSING else next(phases) for link in links]
     braked = [loss.between for loss in case.losses.values()]
     try:
         return gear_train(
@@ -193,7 +197,7 @@ def train_of(case: DriveCase, built: Sequence[Built]) -> Train:
             designs,
             _ends(case, train),
             planets=(train.planet,),
-            phases=each,
+            phases=phases_of_links,
             angles=angles,
             drag=[
                 replace(drags({name: loss}, loss.between, ())[0], seat=None)
@@ -214,9 +218,9 @@ def _pull(case: DriveCase, built: Sequence[Built]) -> float:
     """
     masses: dict[tuple[str, float, int], float] = {}
     radius = 0.0
-    for one, link, member in _of_planets(case, built):
-        gear, radius = link.gears[member], float(one.dimensions["centre_distance"])
-        masses[gear] = max(masses.get(gear, 0.0), _mass(one, member))
+    for mesh, link, member in _of_planets(case, built):
+        gear, radius = link.gears[member], float(mesh.dimensions["centre_distance"])
+        masses[gear] = max(masses.get(gear, 0.0), _mass(mesh, member))
     return radius * sum(masses.values())
 
 
@@ -224,10 +228,10 @@ def _of_planets(case: DriveCase, built: Sequence[Built]) -> Iterator[tuple[Built
     """Meshes of a train in which planets are, with the number of the planet in each."""
     train = case.train
     assert train is not None
-    links = _links(case, train, [one.design.mesh for one in built])
-    for one, link in zip(built, links, strict=True):
+    links = _links(case, train, [stage.design.mesh for stage in built])
+    for stage, link in zip(built, links, strict=True):
         if train.planet in link.bodies:
-            yield one, link, link.bodies.index(train.planet)
+            yield stage, link, link.bodies.index(train.planet)
 
 
 def _mass(built: Built, member: int) -> float:
@@ -290,31 +294,31 @@ def _check_planets(case: DriveCase, built: Sequence[Built]) -> None:
     """InputError where planets are not the same gears in all meshes, or have two centre distances."""
     train = case.train
     assert train is not None
-    links = _links(case, train, [one.design.mesh for one in built])
-    known: dict[tuple[str, float, int], tuple[str, dict[str, Any]]] = {}
+    links = _links(case, train, [built_stage.design.mesh for built_stage in built])
+    teeth_of: dict[tuple[str, float, int], tuple[str, dict[str, Any]]] = {}
     distance: tuple[str, float] | None = None
-    for (number, stage), one, link in zip(case.stages.items(), built, links, strict=True):
+    for (number, stage), built_stage, link in zip(case.stages.items(), built, links, strict=True):
         if train.planet not in stage.bodies:
             continue
-        mesh: Any = one.design.mesh
+        mesh: Any = built_stage.design.mesh
         member = stage.bodies.index(train.planet)
         apart = float(mesh.centre_distance)
-        first = distance = distance or (number, apart)
-        if abs(apart / first[1] - 1.0) > CLOSES:
+        reference = distance = distance or (number, apart)
+        if abs(apart / reference[1] - 1.0) > CLOSES:
             raise InputError(
-                f"the centre distance is {1e3 * apart:.7g} mm, and {1e3 * first[1]:.7g} mm in stage "
-                f"{first[0]}; all meshes of a planet have the same: give it as centre_distance, with "
+                f"the centre distance is {1e3 * apart:.7g} mm, and {1e3 * reference[1]:.7g} mm in stage "
+                f"{reference[0]}; all meshes of a planet have the same: give it as centre_distance, with "
                 f'profile_shift = "{FROM_CENTRE_DISTANCE}" for the other gear',
                 key=f"{STAGES}.{number}.gears.centre_distance",
             )
         teeth = abs(float(np.asarray(mesh.teeth)[member]))
-        gear = _of_gear(one, member)
-        before, other = known.setdefault(link.gears[member], (number, gear))
-        different = next((key for key, value in gear.items() if value != other[key]), None)
+        gear = _of_gear(built_stage, member)
+        before, earlier = teeth_of.setdefault(link.gears[member], (number, gear))
+        different = next((key for key, value in gear.items() if value != earlier[key]), None)
         if different is not None:
             raise InputError(
                 f"{different} of the planet with {teeth:.0f} teeth is {gear[different]} here and "
-                f"{other[different]} in stage {before}; it is one gear{_IN_SETS if case.gears else ''}",
+                f"{earlier[different]} in stage {before}; it is one gear{_IN_SETS if case.gears else ''}",
                 key=f"{STAGES}.{number}.gears",
             )
 
@@ -347,10 +351,10 @@ def _material(record: SolidRecord) -> str:
     """A material by its name, or by its values where it has none of its own."""
     if record.title != BY_VALUE:
         return record.name
-    given = {name: getattr(record, name) for name in SolidValues.model_fields}
+    values = {name: getattr(record, name) for name in SolidValues.model_fields}
     return ", ".join(
         f"{name.replace('_', ' ')} {value.value:.6g}"
-        for name, value in given.items()
+        for name, value in values.items()
         if value is not None
     )
 
@@ -394,11 +398,11 @@ def _angles(links: Sequence[Link], train: TrainTable) -> np.ndarray:
     """Angles of the planets [rad]: as the case has them but for rounding, or equal ones."""
     if not train.planet_angles:
         return equal_angles(round(train.planets))
-    given = np.array(train.planet_angles)
+    stated = np.array(train.planet_angles)
     places = places_around([_teeth_of(link, train) for link in links])
-    nearest = nearest_places(given, places)
-    rounded = np.abs(nearest - given) * places < 2.0 * np.pi * PLAY
-    return np.where(rounded, nearest, given)
+    nearest = nearest_places(stated, places)
+    rounded = np.abs(nearest - stated) * places < 2.0 * np.pi * PLAY
+    return np.where(rounded, nearest, stated)
 
 
 def _teeth_of(link: Link, train: TrainTable) -> tuple[int, int]:
@@ -416,9 +420,9 @@ def _fitted(links: Sequence[Link], train: TrainTable, angles: np.ndarray) -> lis
     """
 
     def phases(angles: np.ndarray) -> list[np.ndarray]:
-        found = planet_phases(links, (train.planet,), angles)
+        mesh_phases = planet_phases(links, (train.planet,), angles)
         check_neighbours(links, (train.planet,), angles)
-        return found
+        return mesh_phases
 
     try:
         return phases(angles)
@@ -428,8 +432,8 @@ def _fitted(links: Sequence[Link], train: TrainTable, angles: np.ndarray) -> lis
         every = range(1, MOST_FITTED + 1)
         fitting = [count for count in every if _fits(phases, equal_angles(count))]
         counts = f"of 1 to {MOST_FITTED} planets fit {', '.join(map(str, fitting))}"
-        told = error.followed_by(counts if fitting else "")
-        raise told.at(key="train.planets") from None
+        misfit = error.followed_by(counts if fitting else "")
+        raise misfit.at(key="train.planets") from None
 
 
 def _fits(phases: Callable[[np.ndarray], list[np.ndarray]], angles: np.ndarray) -> bool:
@@ -443,8 +447,8 @@ def _fits(phases: Callable[[np.ndarray], list[np.ndarray]], angles: np.ndarray) 
 def _worn_twice(case: DriveCase, built: Sequence[Built]) -> bool:
     """True where one flank of the planets is pressed in two meshes."""
     pressed = Counter(
-        (link.gears[member], getattr(one.case.gears, "flank", ""))
-        for one, link, member in _of_planets(case, built)
+        (link.gears[member], getattr(stage.case.gears, "flank", ""))
+        for stage, link, member in _of_planets(case, built)
     )
     return any(count > 1 for count in pressed.values())
 
@@ -483,8 +487,10 @@ def about_trains(case: DriveCase, built: Sequence[Built]) -> tuple[str, ...]:
     borne = [{*loss.between} for loss in losses]
     out_of_place = bool(train.pin_errors) or train.by_tolerance
     alone = case.strength is None or case.strength.mesh_load_factor is None
-    worn = any(one.wear is not None for one in case.stages.values()) and _worn_twice(case, built)
-    warmed = any(one.warming is not None for one in built)
+    worn = any(stage.wear is not None for stage in case.stages.values()) and _worn_twice(
+        case, built
+    )
+    warmed = any(stage.warming is not None for stage in built)
     return (
         *[_WORN] * worn,
         *[_WARMED] * warmed,

@@ -83,14 +83,15 @@ class Variant:
 
     def built_each(self, changes: Sequence[Mapping[str, Any]]) -> list[Ready | InputError]:
         """Cases with some values changed, or what is wrong with them; their gears are built together."""
-        read = [_or_error(self._read, each) for each in changes]
+        read = [_or_error(self._read, change) for change in changes]
         build_together(
             (case.gears, int(case.models.slices))
-            for case, _ in (one for one in read if not isinstance(one, InputError))
+            for case, _ in (loaded for loaded in read if not isinstance(loaded, InputError))
             if isinstance(case, Case)
         )
         return [
-            one if isinstance(one, InputError) else _or_error(self._ready, *one) for one in read
+            loaded if isinstance(loaded, InputError) else _or_error(self._ready, *loaded)
+            for loaded in read
         ]
 
     def _read(self, changes: Mapping[str, Any]) -> tuple[Case | DriveCase, Document]:
@@ -118,13 +119,13 @@ def _or_error(make: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | In
 
 
 def _without(tree: Mapping[str, Any]) -> dict[str, Any]:
-    kept = {key: value for key, value in tree.items() if key not in _TOLD}
-    overlays = kept.get("variants", {})
+    plain = {key: value for key, value in tree.items() if key not in _TOLD}
+    overlays = plain.get("variants", {})
     if isinstance(overlays, dict):
-        kept["variants"] = {
+        plain["variants"] = {
             name: {key: value for key, value in overlay.items() if key not in _TOLD}
             if isinstance(overlay, dict)
             else overlay
             for name, overlay in overlays.items()
         }
-    return kept
+    return plain

@@ -59,11 +59,11 @@ def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
     if table is None:
         return
     if not has(mesh, flanks_in_turn):
-        told = (
+        message = (
             "was given; these gears name no number of flanks among which wear goes round, as a rack has "
             "none; leave the table out"
         )
-        raise InputError(told, key="wear")
+        raise InputError(message, key="wear")
     if case.worn is not None:
         raise InputError(
             "was given with [worn]: only flanks as new are worn; leave one out", key="wear"
@@ -121,9 +121,9 @@ def _check_share(
             key="film.asperities",
         )
     if not films and case.models.asperity_load == "none":
-        known = ", ".join(name for name in ASPERITY_LOAD if name != "none")
+        models = ", ".join(name for name in ASPERITY_LOAD if name != "none")
         raise InputError(
-            f"'{law.name}' asks for the load on asperities, which 'none' leaves out; choose {known}, or set "
+            f"'{law.name}' asks for the load on asperities, which 'none' leaves out; choose {models}, or set "
             'wear.load_ratio = "film"',
             key="models.asperity_load",
         )
@@ -142,9 +142,9 @@ def _check_teeth(table: WearTable, mesh: Mesh) -> None:
 def _check_asked(table: WearTable, law: WearLaw, wanted: Mapping[str, object]) -> None:
     """InputError for a constant that the law does not ask for."""
     groups = {name: (name,) for name in _OWN} | {"film_defect": _DEFECT}
-    for asked, keys in groups.items():
+    for group, keys in groups.items():
         for key in keys:
-            if asked not in wanted and getattr(table, key) is not None:
+            if group not in wanted and getattr(table, key) is not None:
                 raise InputError(
                     f"was given, and '{law.name}' does not ask for it; leave it out",
                     key=f"wear.{key}",
@@ -155,19 +155,19 @@ def _own(
     table: WearTable, law: WearLaw, wanted: Mapping[str, object], used: Used
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """Constants of the law that belong to each member."""
-    found: tuple[dict[str, Array], dict[str, Array]] = ({}, {})
+    constants: tuple[dict[str, Array], dict[str, Array]] = ({}, {})
     for name in _OWN:
         if name not in wanted:
             continue
-        given = getattr(table, name)
-        for member, own in enumerate(found):
-            if given is not None:
-                own[name] = array(given[member])
+        stated = getattr(table, name)
+        for member, of_member in enumerate(constants):
+            if stated is not None:
+                of_member[name] = array(stated[member])
             elif (usual := _usual(name, used[member])) is not None:
-                own[name] = array(usual)
+                of_member[name] = array(usual)
             else:
                 raise InputError(_missing(law, name, member), key=f"wear.{name}")
-    return found
+    return constants
 
 
 def _usual(name: str, used: SolidInUse) -> float | None:
@@ -205,17 +205,17 @@ def wear_model(
     assert table is not None
     law = WEAR_LAWS[table.law]
     wanted = inspect.signature(law.function).parameters
-    own = _own(table, law, wanted, used)
+    constants = _own(table, law, wanted, used)
     if "ra_1" in wanted:
-        for one in own:
-            one.update(ra_1=array(roughness[0]), ra_2=array(roughness[1]))
+        for of_member in constants:
+            of_member.update(ra_1=array(roughness[0]), ra_2=array(roughness[1]))
     defect = None
     if "film_defect" in wanted:
-        given = {key: getattr(table, key) for key in _DEFECT}
-        defect = {key: array(value) for key, value in given.items() if value is not None}
+        defects = {key: getattr(table, key) for key in _DEFECT}
+        defect = {key: array(value) for key, value in defects.items() if value is not None}
     return WearModel(
         law=law.function,
-        own=own,
+        own=constants,
         asperities=ASPERITY_LOAD[case.models.asperity_load],
         defect=defect,
         bodies=_conductors(used) if defect is not None and _by_formula(case) else None,
@@ -232,10 +232,10 @@ def _by_formula(case: Case) -> bool:
 def _conductors(used: Used) -> tuple[Conductor, Conductor] | None:
     """What conducts heat behind both flanks; None where that of a material is not known."""
     try:
-        first, second = (Conductor.of(one.record) for one in used)
+        gear_1, gear_2 = (Conductor.of(solid.record) for solid in used)
     except InputError:
         return None
-    return first, second
+    return gear_1, gear_2
 
 
 def told_of_wear(case: Case, model: WearModel) -> list[str]:
@@ -249,9 +249,9 @@ def told_of_wear(case: Case, model: WearModel) -> list[str]:
     assert table is not None
     law = WEAR_LAWS[table.law]
     brief = f"Wear by '{law.name}': depths are as good as its constants."
-    found: list[str] = [Doubt(f"Wear: {law.note}", brief=brief)]
+    warnings: list[str] = [Doubt(f"Wear: {law.note}", brief=brief)]
     if table.coefficient is None and "coefficient" in model.own[0]:
-        found.append(
+        warnings.append(
             Doubt(
                 f"wear.coefficient was left out and is taken as {ASSUMED_COEFFICIENT:g}; those of dry metals "
                 "are 1e-6 to 1e-4, and depths are in proportion to it.",
@@ -259,7 +259,7 @@ def told_of_wear(case: Case, model: WearModel) -> list[str]:
             )
         )
     if model.films is not None:
-        found.append(
+        warnings.append(
             Doubt(
                 "Wear: the load on asperities is that of steady films, each contact by itself, solved anew "
                 "in every state that a step looks at. What the depth depends on is not told: no derivatives "
@@ -269,7 +269,7 @@ def told_of_wear(case: Case, model: WearModel) -> list[str]:
         )
     if model.defect is not None:
         if "adsorption_heat" not in model.defect:
-            found.append(
+            warnings.append(
                 Doubt(
                     "wear.adsorption_heat was left out and is taken as 49 kJ/mol: 12 kJ/mol less make a "
                     "hundred times the wear.",
@@ -277,11 +277,11 @@ def told_of_wear(case: Case, model: WearModel) -> list[str]:
                 )
             )
         if model.bodies is None:
-            found.append(
+            warnings.append(
                 Doubt(
                     "Wear: contacts are taken to be as warm as the oil: the conductivity or specific heat of "
                     "a material is not known, or the first friction law solves films.",
                     brief="Wear: contacts are taken to be as warm as the oil.",
                 )
             )
-    return found
+    return warnings

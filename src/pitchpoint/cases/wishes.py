@@ -176,7 +176,7 @@ def elsewhere(name: str) -> str:
     A name of one letter is none: it means too much.
     """
     plain = letters(name)
-    tables = [table for table, known in _BY_NAME if known == plain and table in _OF_CASE]
+    tables = [table for table, table_name in _BY_NAME if table_name == plain and table in _OF_CASE]
     if len(plain) < 2 or len(tables) != 1:
         return ""
     wish = _BY_NAME[tables[0], plain]
@@ -223,9 +223,9 @@ def _taken(table: Sequence[str], line: str, tree: Tree) -> bool:
     ):  # a remark stands behind the line, or its key takes no quantity
         return True
     try:
-        for one in value if isinstance(value, list) else [value]:
+        for entry in value if isinstance(value, list) else [value]:
             if quantity is not None:
-                quantity.read(one)
+                quantity.read(entry)
     except InputError:
         return False
     return True
@@ -237,7 +237,7 @@ def _said(key: str, quantity: Quantity, *values: float) -> str:
         quantity.show(quantity.read(f"{value!r} {units.si_unit(quantity.kind)}"))
         for value in values
     ]
-    written = [one if quantity.unit == "1" else f'"{one}"' for one in shown]
+    written = [number if quantity.unit == "1" else f'"{number}"' for number in shown]
     several = ", ".join(written)
     return f"{key} = {several if len(written) == 1 else f'[{several}]'}"
 
@@ -340,13 +340,13 @@ def _by_working_angle(value: Any, table: Tree, tree: Tree) -> str:
 
 def _by_normal_backlash(value: Any, table: Tree, tree: Tree) -> str:
     """The backlash on the pitch circles of one along the normal; an error where the gears cannot have it."""
-    known = {key: table[key] for key in table if key in CylindricalGears.model_fields}
-    gears = CylindricalGears.model_validate(known)
+    stated = {key: table[key] for key in table if key in CylindricalGears.model_fields}
+    gears = CylindricalGears.model_validate(stated)
     slope = _base_radii(table) / gears.operating_distance
     if not slope < 1.0:
         raise ValueError("the base circles reach beyond the centre distance")
     on_circles = DEVIATION.read(value) / (slope * cos(gears.toothings[0].base_helix_angle))
-    CylindricalGears.model_validate(known | {"backlash": DEVIATION.show(on_circles)})
+    CylindricalGears.model_validate(stated | {"backlash": DEVIATION.show(on_circles)})
     return _said("backlash", DEVIATION, on_circles)
 
 
@@ -354,12 +354,12 @@ def _in_modules(key: str, quantity: Quantity) -> Write:
     """A dimension of the basic rack under its key, in modules."""
 
     def write(value: Any, table: Tree, tree: Tree) -> str:
-        each = value if isinstance(value, list) else [value]
+        lengths = value if isinstance(value, list) else [value]
         module = _of_pair(table, "module")
         return _said(
             key,
             quantity,
-            *(_LENGTH.read(v) / module if isinstance(v, str) else _RATIO.read(v) for v in each),
+            *(_LENGTH.read(v) / module if isinstance(v, str) else _RATIO.read(v) for v in lengths),
         )
 
     return write
@@ -375,7 +375,8 @@ def _chain(tree: Tree) -> list[tuple[GearsTable, str]]:
     point: Any = tree.get("operation", {})
     tables = [*tree["stages"].values()] if "stages" in tree else [{**point, "gears": tree["gears"]}]
     every = [
-        (TypeAdapter(Gears).validate_python(one["gears"]), one.get("driver")) for one in tables
+        (TypeAdapter(Gears).validate_python(stage["gears"]), stage.get("driver"))
+        for stage in tables
     ]
     return [(gears, driver or gears.drivers[0]) for gears, driver in every]
 
@@ -427,8 +428,8 @@ def _by_output_speed(value: Any, table: Tree, tree: Tree) -> str:
 
 
 def _by_rz(value: Any, table: Tree, tree: Tree) -> str:
-    each = value if isinstance(value, list) else [value]
-    return f"{_said('ra', _ROUGHNESS, *(_ROUGHNESS.read(one) / 6.0 for one in each))}, Rz/6 as ISO 6336-2"
+    depths = value if isinstance(value, list) else [value]
+    return f"{_said('ra', _ROUGHNESS, *(_ROUGHNESS.read(rz) / 6.0 for rz in depths))}, Rz/6 as ISO 6336-2"
 
 
 def _iso_class(value: Any, table: Tree, tree: Tree) -> str:
@@ -461,7 +462,7 @@ def _of_members(*names: str) -> Write:
 
 
 def _by_grade(value: Any, table: Tree, tree: Tree) -> str:
-    names = [one for one in oil_names() if one.endswith(f"-vg-{value}")]
+    names = [oil for oil in oil_names() if oil.endswith(f"-vg-{value}")]
     return f'name = "{names[0]}", say' if names else ""
 
 
@@ -470,8 +471,8 @@ def _of_both(key: str, *names: str) -> Write:
 
     def write(value: Any, table: Tree, tree: Tree) -> str:
         by_letters = {letters(name): number for name, number in table.items()}
-        each = [_plain(by_letters[letters(name)]) for name in names]
-        return f"{key} = [{', '.join(each)}]"
+        plain_names = [_plain(by_letters[letters(name)]) for name in names]
+        return f"{key} = [{', '.join(plain_names)}]"
 
     return write
 

@@ -60,8 +60,8 @@ def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str
     cycles = data["cycles"].values
     turns = float(cycles[-1]) if worn.cycles is None else worn.cycles
     if turns > cycles[-1]:
-        told = f"{turns:.6g} is beyond the {cycles[-1]:.6g} turns that {name} holds; give at most so many"
-        raise InputError(told, key="worn.cycles")
+        warning = f"{turns:.6g} is beyond the {cycles[-1]:.6g} turns that {name} holds; give at most so many"
+        raise InputError(warning, key="worn.cycles")
     depth = data["worn_depth"]
     at = max(int(np.searchsorted(cycles, turns)), 1) if cycles.size > 1 else 0
     part = 0.0 if at == 0 else (turns - cycles[at - 1]) / (cycles[at] - cycles[at - 1])
@@ -78,18 +78,18 @@ def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str
         " and ".join(f"{1e6 * float(one):.3g}" for one in each)
         for each in (gone.max(axis=(1, 2)), most, error)
     )
-    told = (
+    warning = (
         f"Flanks are worn by {turns:.4g} turns of {data.attrs['driver']}: {deepest} um deep at most, within "
         f"{off} um by grid and steps, and {cut} um in the {depth.shape[2]} cells along a flank whose depths "
         "its surfaces have."
     )
     if data["conforming"].values[: at + 1].any():
-        told += (
+        warning += (
             f" They conform; their contacts are taken to keep {FLATTEST:g} of the relative curvature they "
             "had, and pressures are a guess."
         )
     # Flanks from which nothing is gone are those as new, to the last bit.
-    return cells.worn(mesh, array(gone)) if gone.any() else mesh, told
+    return cells.worn(mesh, array(gone)) if gone.any() else mesh, warning
 
 
 def _wrong(name: str, told: str) -> InputError:

@@ -94,20 +94,20 @@ class _Description:
         """Heights of the archive that is described."""
         columns, rows, layers = (self.value(_SIZES + axis, int) for axis in "XYZ")
         if min(columns, rows) < 1 or layers != 1:
-            told = f"has {columns} x {rows} x {layers} points"
-            raise InputError(f"{told}; a height map has one layer of them on a grid")
+            complaint = f"has {columns} x {rows} x {layers} points"
+            raise InputError(f"{complaint}; a height map has one layer of them on a grid")
         if columns * rows > most:
-            told = f"holds {columns * rows / 1e6:.6g} million heights"
-            raise InputError(f"{told}; a height map has at most {most / 1e6:g} million")
+            complaint = f"holds {columns * rows / 1e6:.6g} million heights"
+            raise InputError(f"{complaint}; a height map has at most {most / 1e6:g} million")
         kind = np.dtype(_TYPES[self.text(_AXES + "CZ/{*}DataType")])
         data = _unpacked(
             archive, self.text(_LINKS + "PointDataLink"), columns * rows * kind.itemsize
         )
-        found = np.frombuffer(data, kind).reshape(rows, columns)
+        heights = np.frombuffer(data, kind).reshape(rows, columns)
         scale = self.value(_AXES + "CZ/{*}Increment", float) if kind.kind == "i" else 1.0
-        found = self.measured(archive, found)
+        heights = self.measured(archive, heights)
         steps = self.step("CX"), self.step("CY") if rows > 1 else None
-        return Heights(found if rows > 1 else found.T, scale, steps)
+        return Heights(heights if rows > 1 else heights.T, scale, steps)
 
     def measured(self, archive: zipfile.ZipFile, found: np.ndarray) -> np.ndarray:
         """Heights with NaN where the archive says that none was measured."""
@@ -128,11 +128,11 @@ class _Description:
 
     def text(self, place: str) -> str:
         """What stands at a place; InputError where nothing does."""
-        found = self.root.findtext(place)
-        if found is None:
+        entry = self.root.findtext(place)
+        if entry is None:
             name = place.replace("{*}", "")
             raise InputError(f"lacks {name} in main.xml, so its heights are not known")
-        return found.strip()
+        return entry.strip()
 
     def value(self, place: str, kind: Callable[[str], Number]) -> Number:
         """A positive number at a place; InputError where there is none."""

@@ -74,10 +74,10 @@ class Case:
         **tables: Any,
     ) -> None:
         demand_arguments(variant=variant)
-        origin, made = _read(tables if source is None else source)
-        kept = tuple(made if variant is None else _only(made, variant))
+        origin, variants = _read(tables if source is None else source)
+        chosen = tuple(variants if variant is None else _only(variants, variant))
         object.__setattr__(self, "origin", origin)
-        object.__setattr__(self, "held", kept)
+        object.__setattr__(self, "held", chosen)
         if tables and source is not None:
             object.__setattr__(self, "held", self.set(_flat(plain_value(tables))).held)
 
@@ -94,10 +94,10 @@ class Case:
             InputError: no such key, several that end so, or a value that the key does not take.
         """
         demand_arguments(changes=changes)
-        made = self
+        changed = self
         for name, value in {**(changes or {}), **named}.items():
-            made = made._with(made.key(name), value)
-        return made
+            changed = changed._with(changed.key(name), value)
+        return changed
 
     def key(self, name: str) -> str:
         """Whole key of a case file for one that may lack its tables.
@@ -111,19 +111,19 @@ class Case:
             return name
         ending = [key for key in _every_key(tree) if key.rpartition(".")[2] == name]
         at_point = [key for key in ending if key == f"operation.{name}"]
-        given = at_point or [key for key in ending if _has(tree, key)]
+        stated = at_point or [key for key in ending if _has(tree, key)]
         within = [key for key in ending if _has(tree, key.rpartition(".")[0])]
-        found = given or within or ending
-        if len(found) == 1:
-            return found[0]
-        if not found:
+        matches = stated or within or ending
+        if len(matches) == 1:
+            return matches[0]
+        if not matches:
             ends = dict.fromkeys(key.rpartition(".")[2] for key in _every_key(tree))
             from pitchpoint.cases.wishes import WISHES, answer
 
             wishes = (answer((table, name), None, {}, ends) for table in WISHES)
-            told = next(filter(None, wishes), nearest(name, ends))
-            raise InputError(f"there is no such key{told}", key=shorten(name))
-        listed = [*found[:_LISTED], *["..."] * (len(found) > _LISTED)]
+            advice = next(filter(None, wishes), nearest(name, ends))
+            raise InputError(f"there is no such key{advice}", key=shorten(name))
+        listed = [*matches[:_LISTED], *["..."] * (len(matches) > _LISTED)]
         raise InputError(f"several keys end so; give one of {', '.join(listed)}", key=name)
 
     def __getitem__(self, name: str) -> Any:
@@ -156,13 +156,13 @@ class Case:
     @property
     def variants(self) -> list[str]:
         """Names of its variants."""
-        return [one.variant for one in self.held]
+        return [variant.variant for variant in self.held]
 
     @property
     def tables(self) -> Tree:
         """Tables of a case file that says the same; marks on values are kept."""
-        each = {one.variant: _tables(one.document()) for one in self.held}
-        return each["default"] if [*each] == ["default"] else {"variants": each}
+        by_variant = {variant.variant: _tables(variant.document()) for variant in self.held}
+        return by_variant["default"] if [*by_variant] == ["default"] else {"variants": by_variant}
 
     def to_toml(self, path: str | Path | None = None) -> str:
         """The case as the text of a case file, which is written where a path is given."""
@@ -182,11 +182,13 @@ class Case:
         text = written(key, value)
         if quantity is not None:
             _demand(quantity, text, key)
-        made = copy.copy(self)
-        changed = (replace(one, settings={**one.settings, key: text}) for one in self.held)
-        object.__setattr__(made, "held", tuple(changed))
-        made._first.document()  # a value of one gear where there is none for the other
-        return made
+        changed_case = copy.copy(self)
+        changed = (
+            replace(variant, settings={**variant.settings, key: text}) for variant in self.held
+        )
+        object.__setattr__(changed_case, "held", tuple(changed))
+        changed_case._first.document()  # a value of one gear where there is none for the other
+        return changed_case
 
 
 _A_CASE = "a case is a file, the name of a shipped case, or a dictionary of tables"
@@ -216,9 +218,12 @@ def held(
     settings = {key: plain_value(value, key) for key, value in (settings or {}).items()}
     if isinstance(case, str):
         return variants_of(case, only, settings, own)
-    made: Sequence[Variant] = as_case(case).held
-    made = [one for name in only for one in _only(made, name)] if only else made
-    return [replace(one, settings={**one.settings, **settings}, own=own or one.own) for one in made]
+    chosen: Sequence[Variant] = as_case(case).held
+    chosen = [entry for name in only for entry in _only(chosen, name)] if only else chosen
+    return [
+        replace(entry, settings={**entry.settings, **settings}, own=own or entry.own)
+        for entry in chosen
+    ]
 
 
 def written(key: str, value: Any) -> Any:
@@ -260,8 +265,8 @@ def _unit(key: str) -> str:
 def _demand(quantity: Quantity, value: Any, key: str) -> None:
     """InputError if a value, or one of a list of them, is not what a key takes."""
     if isinstance(value, list):
-        for one in value:
-            _demand(quantity, one, key)
+        for element in value:
+            _demand(quantity, element, key)
     elif quantity == SHIFT and value == FROM_CENTRE_DISTANCE:
         pass  # which shifts may follow so is the table's to say
     elif not isinstance(value, dict) and value is not None:
@@ -288,16 +293,16 @@ def _of_tables(source: Mapping[str, Any]) -> Sequence[Variant]:
     tree: Tree = _with_units("", plain)
     if isinstance(named := plain.get("variants"), dict) and named:
         # Keys inside are those of a case file again.
-        tree["variants"] = {one: _with_units("", table) for one, table in named.items()}
+        tree["variants"] = {variant: _with_units("", table) for variant, table in named.items()}
     demand_shallow(tree, "case")
-    return [Variant(tree, "case", one) for one in variants(tree)]
+    return [Variant(tree, "case", variant) for variant in variants(tree)]
 
 
 def _only(made: Sequence[Variant], name: str) -> list[Variant]:
-    known = [one.variant for one in made]
-    if name not in known:
-        raise unknown_variant(name, known).at(file=made[0].name)
-    return [one for one in made if one.variant == name]
+    variant_names = [variant.variant for variant in made]
+    if name not in variant_names:
+        raise unknown_variant(name, variant_names).at(file=made[0].name)
+    return [variant for variant in made if variant.variant == name]
 
 
 def _flat(tables: Mapping[str, Any]) -> dict[str, Any]:
@@ -347,8 +352,8 @@ def _plain(value: Any) -> Any:
 
 
 def _tables(document: Document) -> Tree:
-    found: Tree = _marked(in_form(document), document.provenance, "")
-    return found
+    marked: Tree = _marked(in_form(document), document.provenance, "")
+    return marked
 
 
 def _marked(value: Any, marks: Mapping[str, Provenance], key: str) -> Any:
@@ -362,11 +367,11 @@ def _marked(value: Any, marks: Mapping[str, Provenance], key: str) -> Any:
         return inner
     plain = [*map(_listed, value)] if isinstance(value, list | tuple) else value
     mark = marks.get(key, Provenance())
-    told = {"where": mark.where, "note": mark.note}
-    told = {name: text for name, text in told.items() if text}
-    if mark.status in ("given", "set") and not told:
+    remarks = {"where": mark.where, "note": mark.note}
+    remarks = {name: text for name, text in remarks.items() if text}
+    if mark.status in ("given", "set") and not remarks:
         return plain
-    return {"value": plain, "status": mark.status, **told}
+    return {"value": plain, "status": mark.status, **remarks}
 
 
 def _listed(value: Any) -> Any:

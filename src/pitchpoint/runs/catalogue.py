@@ -46,8 +46,8 @@ def matching(which: str) -> list[dict[str, str]]:
     of_kind = [row for row in rows if row["kind"] == which]
     named = [row for row in rows if row["name"] == which]
     if not of_kind and not named:
-        known = {word for row in rows for word in (row["kind"], row["name"])}
-        raise unknown_name(which, known, what="a kind or a name")
+        allowed = {word for row in rows for word in (row["kind"], row["name"])}
+        raise unknown_name(which, allowed, what="a kind or a name")
     return of_kind or named
 
 
@@ -61,7 +61,7 @@ def entries() -> list[dict[str, str]]:
     rows += [
         _entry("rolling_resistance", model, _shape(model)) for model in ROLLING_RESISTANCE.values()
     ]
-    rows += [_entry("elliptic_contact", one, "") for one in ELLIPTIC_CONTACT.values()]
+    rows += [_entry("elliptic_contact", entry, "") for entry in ELLIPTIC_CONTACT.values()]
     rows += [_entry("film_thickness", law, _film_range(law)) for law in FILM_THICKNESS.values()]
     rows += [
         _entry("asperity_load", law, "; ".join([_shape(law), *_limits(law)]))
@@ -93,7 +93,7 @@ def entries() -> list[dict[str, str]]:
     ]
     rows += [_entry("asperities", law, "") for law in ASPERITIES.values()]
     rows += [_entry("summits", constants, "") for constants in SUMMITS.values()]
-    rows += [_entry("losses", one, "") for one in loss_sets().values()]
+    rows += [_entry("losses", entry, "") for entry in loss_sets().values()]
     rows += [_record("lubricant", oil, _oil_range(oil)) for oil in lubricants.catalogue().values()]
     return rows + [_record("material", solid, "") for solid in solids.catalogue().values()]
 
@@ -111,7 +111,7 @@ def figures(outcome: Outcome) -> dict[str, Any]:
         "implausible": manifest["implausible"],
         "title": manifest["title"],
         "units": units_of,
-        **{key: value for one in shown for key, value in one.items()},
+        **{key: value for names in shown for key, value in names.items()},
         "warnings": manifest["warnings"],
         "rows": manifest["rows"],
     }
@@ -175,9 +175,9 @@ def _record(kind: str, record: Any, limits: str) -> dict[str, str]:
 
 
 def _sources(record: Any) -> str:
-    values = [getattr(record, one.name) for one in fields(record)]
-    found = [value.source for value in values if isinstance(value, Datum) and value.source]
-    return ", ".join(dict.fromkeys(found))
+    values = [getattr(record, field.name) for field in fields(record)]
+    sources = [value.source for value in values if isinstance(value, Datum) and value.source]
+    return ", ".join(dict.fromkeys(sources))
 
 
 _SHAPES = {"line": "line contacts", "ellipse": "elliptic contacts", None: "any shape of contact"}
@@ -193,8 +193,8 @@ def _friction_range(law: FrictionLaw) -> str:
     limits += ["film at least Rq"] if law.full_film else []
     limits += [f"coefficient at most {law.largest:g}"] if law.largest < inf else []
     place = "each contact" if law.local else "whole mesh"
-    own = "; only for its case" if law.name in LAWS_OF_CASES else ""
-    return "; ".join([place + own, _shape(law), *limits])
+    restriction = "; only for its case" if law.name in LAWS_OF_CASES else ""
+    return "; ".join([place + restriction, _shape(law), *limits])
 
 
 def _film_range(law: FilmThickness) -> str:

@@ -29,24 +29,24 @@ def check(
         InputError: what is wrong in any of the variants, each thing once; a `CollectedInputError` of
             several.
     """
-    told: dict[str, dict[Doubt, list[str]]] = {"implausible": {}, "warnings": {}}
+    sentences_of: dict[str, dict[Doubt, list[str]]] = {"implausible": {}, "warnings": {}}
     wrong: dict[str, dict[str, InputError]] = {}
     checked = only or [*_variants(case)]
     for name in checked:
         try:
             for kind, sentences in forewarned(case, [name] if name else (), settings).items():
                 for text in map(as_doubt, sentences):
-                    told[kind].setdefault(text, []).append(name)
+                    sentences_of[kind].setdefault(text, []).append(name)
         except InputError as error:
             every = error.errors if isinstance(error, CollectedInputError) else (error,)
-            for one in every:
-                wrong.setdefault(str(one), {})[name] = one
+            for fault in every:
+                wrong.setdefault(str(fault), {})[name] = fault
     if wrong:
         located = [*_located(wrong.values(), checked)]
         raise located[0] if len(located) == 1 else CollectedInputError(located)
     return [
         text if len(names) == len(checked) else of_designs(text, " and ".join(names))
-        for of_kind in told.values()
+        for of_kind in sentences_of.values()
         for text, names in of_kind.items()
     ]
 

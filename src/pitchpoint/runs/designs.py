@@ -99,37 +99,40 @@ def designs(
     Raises:
         InputError: anything wrong with a reference or its case; a design that is named twice.
     """
-    every = [one for reference in references for one in _each(wanted(reference))]
-    for one in every:
-        if every.count(one) > 1:
-            raise InputError(f"{shown(_told(one))} was named twice; name each design once")
-    titles = _titles(list(dict.fromkeys(one.case for one in every)))
-    found = {
+    every = [design for reference in references for design in _each(wanted(reference))]
+    for design in every:
+        if every.count(design) > 1:
+            raise InputError(f"{shown(_told(design))} was named twice; name each design once")
+    titles = _titles(list(dict.fromkeys(design.case for design in every)))
+    outcomes = {
         case: _results(
             case,
-            [str(one.variant) for one in every if one.case == case],
+            [str(design.variant) for design in every if design.case == case],
             None if folder is None else folder / _file_name(title),
             overwrite=overwrite,
             progress=progress,
         )
         for case, title in titles.items()
     }
-    alone = {case for case in titles if sum(one.case == case for one in every) == 1}
-    asked = {one.case for one in map(wanted, references) if one.variant}
+    alone = {case for case in titles if sum(design.case == case for design in every) == 1}
+    with_variant = {design.case for design in map(wanted, references) if design.variant}
     return {
-        titles[one.case] + ("" if one.case in alone - asked else f"@{one.variant}"): found[
-            one.case
-        ][str(one.variant)]
-        for one in every
+        titles[design.case]
+        + ("" if design.case in alone - with_variant else f"@{design.variant}"): outcomes[
+            design.case
+        ][str(design.variant)]
+        for design in every
     }
 
 
 def folder_of(references: Sequence[str], root: Path) -> Path:
     """Folder of a comparison under that of all results, named after its designs."""
     every = [wanted(reference) for reference in references]
-    titles = _titles(list(dict.fromkeys(one.case for one in every)))
-    told = [titles[one.case] + (f"@{one.variant}" if one.variant else "") for one in every]
-    return root / _file_name("-".join(told))
+    titles = _titles(list(dict.fromkeys(design.case for design in every)))
+    labels = [
+        titles[design.case] + (f"@{design.variant}" if design.variant else "") for design in every
+    ]
+    return root / _file_name("-".join(labels))
 
 
 def _told(one: Wanted) -> str:
@@ -138,19 +141,21 @@ def _told(one: Wanted) -> str:
 
 def _each(one: Wanted) -> Iterator[Wanted]:
     """The variants that a reference means, each by name."""
-    known = _variants(one)
-    if one.variant is not None and one.variant not in known:
-        told = f"{shown(one.variant)} is not a variant of this case{nearest(one.variant, known)}"
-        raise InputError(told, file=visible(as_text(one.case)))
-    yield from (replace(one, variant=name) for name in known if one.variant in (None, name))
+    variants = _variants(one)
+    if one.variant is not None and one.variant not in variants:
+        message = (
+            f"{shown(one.variant)} is not a variant of this case{nearest(one.variant, variants)}"
+        )
+        raise InputError(message, file=visible(as_text(one.case)))
+    yield from (replace(one, variant=name) for name in variants if one.variant in (None, name))
 
 
 def _variants(one: Wanted) -> list[str]:
     if one.computed:
         return [*open_result(one.case)]
     if is_record(one.case):
-        told = f"is the record of a result; name its folder, without {MANIFEST}"
-        raise InputError(told, file=visible(as_text(one.case)))
+        message = f"is the record of a result; name its folder, without {MANIFEST}"
+        raise InputError(message, file=visible(as_text(one.case)))
     return variants(find(one.case)[1])
 
 
@@ -172,9 +177,9 @@ def _titles(cases: Sequence[str]) -> dict[str, str]:
     """Names by case, each as short as it tells it from the others."""
     ways = {case: Wanted(case).parts for case in cases}
     for count in range(1, max(map(len, ways.values()), default=0) + 1):
-        told = {case: shorten(as_text("/".join(way[-count:]))) for case, way in ways.items()}
-        if len(set(told.values())) == len(told):
-            return told
+        titles = {case: shorten(as_text("/".join(path[-count:]))) for case, path in ways.items()}
+        if len(set(titles.values())) == len(titles):
+            return titles
     return {case: shorten(as_text(case)) for case in cases}
 
 
@@ -255,19 +260,21 @@ def main_results(outcomes: Mapping[str, Outcome]) -> list[Figure]:
         outcomes: by design.
     """
     shared = shared_laws(outcomes)
-    found: dict[Keys, dict[str, float]] = {}
+    by_key: dict[Keys, dict[str, float]] = {}
     for design, outcome in outcomes.items():
         for key, value in _of_design(outcome, shared):
-            found.setdefault(key, {})[design] = value
+            by_key.setdefault(key, {})[design] = value
     order = {name: position for position, name in enumerate(ANALYSES)}
-    every = [Figure(*key, values) for key, values in found.items() if any(values.values())]
+    every = [Figure(*key, values) for key, values in by_key.items() if any(values.values())]
     return sorted(every, key=lambda one: (one.part != "operation", order[one.part]))
 
 
 def shared_laws(outcomes: Mapping[str, Outcome]) -> list[str]:
     """Friction laws that all designs have, in the order of the first one."""
-    each = [[law["name"] for law in one.manifest["laws"]] for one in outcomes.values()]
-    return [law for law in each[0] if all(law in laws for laws in each)]
+    of_designs = [
+        [law["name"] for law in outcome.manifest["laws"]] for outcome in outcomes.values()
+    ]
+    return [law for law in of_designs[0] if all(law in laws for laws in of_designs)]
 
 
 def _of_design(outcome: Outcome, shared: Sequence[str]) -> Iterator[tuple[Keys, float]]:
@@ -361,7 +368,7 @@ def _of_stages(array: xr.DataArray) -> Iterator[tuple[str, float]]:
     if extreme is not None:
         of = array.max if extreme == "largest" else array.min
         yield from (
-            (f"{extreme} of {stage}", one) for stage, one in _along(of("gear", skipna=False))
+            (f"{extreme} of {stage}", number) for stage, number in _along(of("gear", skipna=False))
         )
 
 
@@ -369,8 +376,8 @@ def _along(array: xr.DataArray) -> Iterator[tuple[str, float]]:
     """Values along the only axis, by their labels."""
     dim = str(array.dims[0])
     for place, value in zip(array[dim].values, array.values, strict=True):
-        told = str(place).replace("_", " ")
-        yield f"{dim} {told}" if told.isdigit() or dim == STAGE else told, float(value)
+        label = str(place).replace("_", " ")
+        yield f"{dim} {label}" if label.isdigit() or dim == STAGE else label, float(value)
 
 
 def differing_inputs(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
@@ -386,17 +393,19 @@ def differing_inputs(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
         {
             "table": table,
             "key": key,
-            "unit": _unit(each.values()),
-            "values": {one: each[one]["value"] if one in each else None for one in outcomes},
+            "unit": _unit(by_design.values()),
+            "values": {
+                name: by_design[name]["value"] if name in by_design else None for name in outcomes
+            },
         }
-        for (table, key), each in rows.items()
-        if len(each) < len(outcomes) or _several(row["value"] for row in each.values())
+        for (table, key), by_design in rows.items()
+        if len(by_design) < len(outcomes) or _several(row["value"] for row in by_design.values())
     ]
 
 
 def _several(values: Iterable[Any]) -> bool:
-    first, *others = values
-    return any(other != first for other in others)
+    reference, *others = values
+    return any(value != reference for value in others)
 
 
 def _unit(rows: Iterable[Mapping[str, Any]]) -> str:
@@ -408,9 +417,9 @@ def _unit(rows: Iterable[Mapping[str, Any]]) -> str:
 def as_json(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
     """A comparison as JSON has it: what cannot be, inputs that differ, main results, in SI by design."""
     results = [
-        {"result": one.title, "part": one.part, "variable": one.name, "law": one.law}
-        | {"place": one.place, "unit": one.variable.unit, "values": dict(one.values)}
-        for one in main_results(outcomes)
+        {"result": figure.title, "part": figure.part, "variable": figure.name, "law": figure.law}
+        | {"place": figure.place, "unit": figure.variable.unit, "values": dict(figure.values)}
+        for figure in main_results(outcomes)
     ]
-    failing = {name: one.manifest["implausible"] for name, one in outcomes.items()}
+    failing = {name: figure.manifest["implausible"] for name, figure in outcomes.items()}
     return {"implausible": failing, "inputs": differing_inputs(outcomes), "results": results}

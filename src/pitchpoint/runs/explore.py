@@ -126,9 +126,9 @@ def explore(
             computed.
         ConvergenceError: the case itself has no balance.
     """
-    told = progress or Progress()
-    whole = Case(case, variant=variant) if not isinstance(case, Case) or variant else case
-    chosen = whole.set(settings or {})
+    reporter = progress or Progress()
+    whole_case = Case(case, variant=variant) if not isinstance(case, Case) or variant else case
+    chosen = whole_case.set(settings or {})
     base = chosen.held[0].computed
     axes = tuple(_given(chosen, over) if over else usual(base))
     count = prod(len(axis.values) for axis in axes)
@@ -138,17 +138,17 @@ def explore(
             file=base.name,
             key="--over",
         )
-    told.expect(4)
-    told.part("", "the case itself", False)
-    own, _ = _computed(base)
-    told.part("", f"{count} designs", False)
+    reporter.expect(4)
+    reporter.part("", "the case itself", False)
+    own_design, _ = _computed(base)
+    reporter.part("", f"{count} designs", False)
     figures = study(chosen, {axis.key: axis.values for axis in axes})
-    told.part("", "places between them", False)
+    reporter.part("", "places between them", False)
     errors, midpoints = _errors(chosen, axes, figures)
-    told.part("", "teeth and mesh cycles", False)
+    reporter.part("", "teeth and mesh cycles", False)
     refused: dict[int, str] = {}
-    seen = list(_seen(base, axes, read, refused, told))
-    return Explored(own, axes, figures, seen, refused, errors, midpoints)
+    seen = list(_seen(base, axes, read, refused, reporter))
+    return Explored(own_design, axes, figures, seen, refused, errors, midpoints)
 
 
 def usual(variant: Variant) -> Iterator[Axis]:
@@ -174,11 +174,11 @@ def _of_gears(built: Ready, count: int) -> Iterator[Axis]:
     inside, reach = gears.explored
     key = f"{table}.{inside}"
     quantity = quantity_at(key)
-    own: Any = reduce(_at, inside.split("."), gears)
-    if quantity is None or own is None:
+    of_case: Any = reduce(_at, inside.split("."), gears)
+    if quantity is None or of_case is None:
         return
-    values = np.clip(own + reach * np.linspace(-1.0, 1.0, count), quantity.low, quantity.high)
-    yield Axis(key, quantity, np.unique(values.round(12)), float(own))
+    values = np.clip(of_case + reach * np.linspace(-1.0, 1.0, count), quantity.low, quantity.high)
+    yield Axis(key, quantity, np.unique(values.round(12)), float(of_case))
 
 
 def _at(node: Any, part: str) -> Any:
@@ -193,8 +193,8 @@ def _given(case: Case, over: Sequence[Sweep]) -> Iterator[Axis]:
             raise InputError(f"{sweep.key} is given twice", file=variant.name, key="--over")
         values, quantity = sweep_values(sweep, "--over", variant.name, variant.document().tree)
         if quantity is None:
-            told = f"{sweep.key} takes names; a slider needs numbers"
-            raise InputError(told, file=variant.name, key="--over")
+            message = f"{sweep.key} takes names; a slider needs numbers"
+            raise InputError(message, file=variant.name, key="--over")
         several = np.unique(np.array(values, float))
         if len(several) < 2:
             raise InputError(
@@ -202,8 +202,12 @@ def _given(case: Case, over: Sequence[Sweep]) -> Iterator[Axis]:
                 file=variant.name,
                 key="--over",
             )
-        own = case[sweep.key]
-        number = float(own) if isinstance(own, float | int) else float(several[len(several) // 2])
+        of_case = case[sweep.key]
+        number = (
+            float(of_case)
+            if isinstance(of_case, float | int)
+            else float(several[len(several) // 2])
+        )
         number = float(np.clip(number, several[0], several[-1]))
         if not np.isclose(several, number, rtol=ROUNDING).any():
             several = np.unique([*several, number])
@@ -226,14 +230,14 @@ def _computed(
 
 def _of_stages(variant: Variant, drive: Ready) -> dict[int, Outcome]:
     """Teeth of each stage that is one mesh by its number, in the order of the power."""
-    found = {}
+    outcomes = {}
     for number, stage, inside in zip(drive.numbers, drive.stages, drive.documents, strict=True):
         alone = Variant(inside.tree, inside.name, variant.variant, folder=variant.folder)
         if work := [Job(teeth, stage) for teeth in _there(stage, TEETH)]:
-            found[number] = run_variant(
+            outcomes[number] = run_variant(
                 alone, work, folder=None, studies={}, progress=Progress(), whole=False
             )
-    return found
+    return outcomes
 
 
 def _there(built: Ready, names: Sequence[str]) -> list[Analysis]:
@@ -241,9 +245,11 @@ def _there(built: Ready, names: Sequence[str]) -> list[Analysis]:
     every = [ANALYSES[name] for name in names]
     alone = len(built.meshes) == 1
     return [
-        one
-        for one in every
-        if isinstance(one, Analysis) and one.why_not(built) is None and (alone or one.of != "mesh")
+        part
+        for part in every
+        if isinstance(part, Analysis)
+        and part.why_not(built) is None
+        and (alone or part.of != "mesh")
     ]
 
 
@@ -258,11 +264,11 @@ def _seen(
     texts = [[*written(axis.key, axis.values)] for axis in axes]
     for number, row in enumerate(product(*texts)):
         try:
-            found = read(*_computed(variant, dict(zip((a.key for a in axes), row, strict=True))))
+            design = read(*_computed(variant, dict(zip((a.key for a in axes), row, strict=True))))
         except PitchpointError as error:
             refused[number] = getattr(error, "message", str(error))
-            found = None
-        yield found
+            design = None
+        yield design
         progress.points(number + 1)
 
 
@@ -280,7 +286,7 @@ def _errors(case: Case, axes: Sequence[Axis], figures: xr.Dataset) -> tuple[dict
     except InputError:  # none of them can be computed
         return {}, 0
     errors: dict[str, float] = {}
-    known = np.zeros(len(rows), bool)
+    comparable = np.zeros(len(rows), bool)
     for name in main_figures(figures):
         for law in range(figures.sizes["law"]):
             over = RegularGridInterpolator([a.values for a in axes], figures[name].values[law])
@@ -288,24 +294,26 @@ def _errors(case: Case, axes: Sequence[Axis], figures: xr.Dataset) -> tuple[dict
             off = np.abs(over(rows) - expected)
             least = ROUNDING * np.nanmax(np.abs(figures[name].values[law]), initial=0.0)
             counts = np.isfinite(off) & (np.abs(expected) > least)
-            known |= counts
+            comparable |= counts
             worst = np.max(off[counts] / np.abs(expected[counts]), initial=0.0)
             errors[name] = max(errors.get(name, 0.0), float(worst))
-    return errors, int(known.sum())
+    return errors, int(comparable.sum())
 
 
 def _outermost(axes: Sequence[Axis], figures: xr.Dataset) -> np.ndarray:
     """Cells of the grid with figures at all corners [cell, axis]: those farthest out, and a middle one."""
-    whole = np.all(figures["reason"].values == "", axis=0)
+    computed = np.all(figures["reason"].values == "", axis=0)
     for k, axis in enumerate(axes):
         if not axis.quantity.whole:
             count = len(axis.values) - 1
-            whole = np.take(whole, range(count), k) & np.take(whole, range(1, count + 1), k)
-    cells = np.argwhere(whole)
+            computed = np.take(computed, range(count), k) & np.take(
+                computed, range(1, count + 1), k
+            )
+    cells = np.argwhere(computed)
     if not len(cells):
         return cells
-    place = cells / np.maximum(np.array(whole.shape) - 1, 1)
+    place = cells / np.maximum(np.array(computed.shape) - 1, 1)
     ways = np.array([*product((-1.0, 1.0), repeat=len(axes))])
     middle = np.argmin(np.sum((place - 0.5) ** 2, axis=1))
-    found: np.ndarray = cells[np.unique([*np.argmax(place @ ways.T, axis=0), middle])]
-    return found
+    chosen: np.ndarray = cells[np.unique([*np.argmax(place @ ways.T, axis=0), middle])]
+    return chosen

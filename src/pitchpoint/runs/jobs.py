@@ -40,7 +40,7 @@ class Job:
         """Descriptions of the pieces, in order; a long sweep has several, what reads another part none."""
         if self.analysis.reads:
             return ()
-        return tuple({"analysis": self.name, **each} for each in self.analysis.pieces(self.built))
+        return tuple({"analysis": self.name, **piece} for piece in self.analysis.pieces(self.built))
 
     @property
     def several(self) -> bool:
@@ -83,16 +83,18 @@ def jobs(
     built = variant.built({})
     subject = Subject(variant, built, studies)
     wrong = Complaints(variant.name)
-    asked = (
-        one
-        for one in ANALYSES.values()
-        if names is None or one.name in names or isinstance(one, Several)
+    chosen = (
+        analysis_or_group
+        for analysis_or_group in ANALYSES.values()
+        if names is None
+        or analysis_or_group.name in names
+        or isinstance(analysis_or_group, Several)
     )
-    made = [wrong.tried(_parts, analysis, subject) for analysis in asked]
+    collected = [wrong.tried(_parts, analysis, subject) for analysis in chosen]
     wrong.demand_none()
     return [
         Job(part, built)
-        for parts in made
+        for parts in collected
         for part in parts or ()
         if names is None or part.name in names
     ]
@@ -105,8 +107,8 @@ def chosen_jobs(variant: Variant, studies: Mapping[str, Study], names: Sequence[
         InputError: no name, or one that is no part of the case, with what it lacks where that is known.
     """
     if isinstance(names, str) or not names:
-        told = 'analyses are a list of names of parts, ["operation", "cycle"]'
-        raise InputError(f"{shown(names)} was given; {told}", file=variant.name)
+        advice = 'analyses are a list of names of parts, ["operation", "cycle"]'
+        raise InputError(f"{shown(names)} was given; {advice}", file=variant.name)
     chosen = jobs(variant, studies, [*with_read(names)])
     if missing := {*names} - {job.name for job in chosen}:
         every = [job.name for job in jobs(variant, studies)]
@@ -125,10 +127,12 @@ def with_read(names: Iterable[str]) -> set[str]:
         >>> sorted(with_read(["duty"]))
         ['duty', 'four_quadrants']
     """
-    known = dict(ANALYSES)
-    asked = {*names}
-    read = (known[name] for name in asked & known.keys())
-    return asked | {one.reads for one in read if isinstance(one, Analysis) and one.reads}
+    analyses = dict(ANALYSES)
+    wanted = {*names}
+    read = (analyses[name] for name in wanted & analyses.keys())
+    return wanted | {
+        analysis.reads for analysis in read if isinstance(analysis, Analysis) and analysis.reads
+    }
 
 
 def _parts(entry: Analysis | Several, subject: Subject) -> list[Analysis]:
@@ -137,9 +141,9 @@ def _parts(entry: Analysis | Several, subject: Subject) -> list[Analysis]:
 
 def job_of(variant: Variant, name: str) -> Job:
     """The part of that name; InputError if the case has none, with what it lacks where that is known."""
-    made = {job.name: job for job in jobs(variant, {})}
-    _demand_part(name, [*made], variant)
-    return made[name]
+    by_name = {job.name: job for job in jobs(variant, {})}
+    _demand_part(name, [*by_name], variant)
+    return by_name[name]
 
 
 def _demand_part(name: str, known: Sequence[str], variant: Variant) -> None:
@@ -148,5 +152,5 @@ def _demand_part(name: str, known: Sequence[str], variant: Variant) -> None:
         return
     analyses = dict(ANALYSES)
     why = analyses[name].why_not(variant.built({})) if name in analyses else None
-    told = f": {why}" if why else nearest(name, known)
-    raise InputError(f"this case computes no part '{shorten(name)}'{told}", file=variant.name)
+    advice = f": {why}" if why else nearest(name, known)
+    raise InputError(f"this case computes no part '{shorten(name)}'{advice}", file=variant.name)

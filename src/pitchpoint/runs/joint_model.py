@@ -201,9 +201,9 @@ class JointModel:
         lacks = {
             name: f"no {name.replace('_', ' ')} was given" for name in _MAYBE if name not in known
         }
-        rest = {"ratio": 1.0 / table.speed_ratio, "table": table, "law": law, "limits": limits}
-        made: dict[str, Any] = {**texts, **ends, **point, **maybe, **rest, "lacks": lacks}
-        return cls(**(made | known))
+        of_joint = {"ratio": 1.0 / table.speed_ratio, "table": table, "law": law, "limits": limits}
+        values: dict[str, Any] = {**texts, **ends, **point, **maybe, **of_joint, "lacks": lacks}
+        return cls(**(values | known))
 
     def __repr__(self) -> str:
         return f"JointModel({self.title!r})\n" + "\n".join(f"  {line}" for line in self.lines())
@@ -240,8 +240,8 @@ class JointModel:
     @property
     def play(self) -> float:
         """Backlash in the mean of its tolerances; none where it is not known [rad or m]."""
-        each = self.backlash or {}
-        return each.get("mean", each.get("nominal", 0.0))
+        backlash = self.backlash or {}
+        return backlash.get("mean", backlash.get("nominal", 0.0))
 
     def loss_torque(self, torque: Any, speed: Any, temperature: Any = None) -> Any:
         """Torque of the output that is lost in motion.
@@ -260,8 +260,8 @@ class JointModel:
 
     def driver_torque(self, torque: Any, speed: Any, temperature: Any = None) -> Any:
         """Torque of the driver in motion; arguments as in `loss_torque`."""
-        found = np.asarray(self._at(torque, speed, temperature).input_torque)
-        return found.item() if found.ndim == 0 else found
+        input_torque = np.asarray(self._at(torque, speed, temperature).input_torque)
+        return input_torque.item() if input_torque.ndim == 0 else input_torque
 
     def holding_band(self, torque: float = 0.0, temperature: float | None = None) -> Rest:
         """Torques of the driver between which the drive stands with a load; without one those that start it.
@@ -342,11 +342,11 @@ _MAYBE = (
 def _told(joint: JointModel) -> Any:
     unit = joint.units
     yield f"{joint.driver} drives {joint.output}, ratio {joint.ratio:.6g}, friction {joint.law}"
-    rest = joint.holding_band()
+    band = joint.holding_band()
     yield (
         f"map to {joint.limits['largest_torque']:.4g} {unit['torque']} and "
         f"{joint.limits['largest_speed']:.4g} {unit['speed']}, {joint.table.temperatures[0]:g} to "
-        f"{joint.table.temperatures[-1]:g} degC; starts without load at {rest.highest:.4g} {unit['driver']}"
+        f"{joint.table.temperatures[-1]:g} degC; starts without load at {band.highest:.4g} {unit['driver']}"
     )
     yield from (
         f"limit by {PARTS[name]}: {torque:.4g} {unit['torque']} of the output"
@@ -381,7 +381,7 @@ def joint_model(
     name = law_of(table, law)
     ratio, speed = _ratio(record), float(data["output_speed"].max())
     travels = [*map(str, record["travels"])]
-    found, lacks = _parts(outcome, name, ratio, float(data.attrs["load"]))
+    parts, lacks = _parts(outcome, name, ratio, float(data.attrs["load"]))
     rotor = quantity_of(rotor_inertia, "kg" if "driver" in travels else "kg m2", "rotor_inertia")
     if rotor is None:
         lacks["rotor_inertia"] = "that of the motor was not given (rotor_inertia)"
@@ -408,7 +408,7 @@ def joint_model(
         },
         lacks=lacks,
         warnings=tuple(map(str, record["warnings"])),
-        **found,
+        **parts,
     )
 
 
@@ -498,8 +498,8 @@ def map_of_output(outcome: Outcome) -> xr.Dataset:
         return outcome.parts[name]
     why = outcome.manifest["lacks"].get(name)
     how = f"it is computed by: pitchpoint run {outcome.manifest['case']} --set loss_map.quadrants=4"
-    told = f"the result has no {FOUR_QUADRANTS.title}"
-    raise InputError(f"{told}: {why}" if why else f"{told}; {how}")
+    message = f"the result has no {FOUR_QUADRANTS.title}"
+    raise InputError(f"{message}: {why}" if why else f"{message}; {how}")
 
 
 def law_of(table: LossTable, law: str | None) -> str:
@@ -507,8 +507,8 @@ def law_of(table: LossTable, law: str | None) -> str:
     names = [*table.loss_torques]
     if law is None or law in names:
         return law or names[0]
-    told = f"{shown(law)} is not a friction law of this result{nearest(law, names)}"
-    raise InputError(told, key="law")
+    message = f"{shown(law)} is not a friction law of this result{nearest(law, names)}"
+    raise InputError(message, key="law")
 
 
 def _part_limits(outcome: Outcome, load: float) -> dict[str, float]:
@@ -527,14 +527,14 @@ def _part_limits(outcome: Outcome, load: float) -> dict[str, float]:
 
 def _least(values: Any) -> float:
     """The least of what is known; infinite where nothing is."""
-    known = np.asarray(values)[np.isfinite(values)]
-    return float(known.min()) if known.size else math.inf
+    finite = np.asarray(values)[np.isfinite(values)]
+    return float(finite.min()) if finite.size else math.inf
 
 
 def _margins(data: xr.Dataset) -> dict[str, Any]:
     """Margins of a strain wave gear against what the case gives, by name of the limit."""
-    each = zip(data["against"].values, data["limit_margin"].values, strict=True)
-    return {f"{against}_torque": margin for against, margin in each}
+    pairs = zip(data["against"].values, data["limit_margin"].values, strict=True)
+    return {f"{against}_torque": margin for against, margin in pairs}
 
 
 _LIMITED: tuple[tuple[str, str, Any], ...] = (
@@ -583,8 +583,10 @@ def _ratio(record: Mapping[str, Any]) -> float:
 
 def _operating_speed(record: Mapping[str, Any], largest: float, ratio: float) -> float:
     """Of the output at the operating point; that of the map where the record has none."""
-    asked = {row["key"]: row["value"] for row in record["inputs"] if row["table"] == "operation"}
-    speed = asked.get("speed")
+    operation = {
+        row["key"]: row["value"] for row in record["inputs"] if row["table"] == "operation"
+    }
+    speed = operation.get("speed")
     return abs(float(speed) / ratio) if isinstance(speed, float | int) else largest
 
 
@@ -592,19 +594,20 @@ def _parts(
     outcome: Outcome, law: str, ratio: float, load: float
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """What the record has beside the map, and why it has not what is None."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     lacks: dict[str, str] = {}
-    told = outcome.manifest["lacks"]
+    reasons = outcome.manifest["lacks"]
     for name, (parts, read, usual) in _READERS.items():
         there = [outcome.parts[part] for part in parts if part in outcome.parts]
         value = next(
-            (v for v in (read(one, outcome, law, load) for one in there) if v is not None), None
+            (v for v in (read(reader, outcome, law, load) for reader in there) if v is not None),
+            None,
         )
-        found[name] = value
+        values[name] = value
         if value is None:
-            whys = (told[part] for part in parts if part in told)
+            whys = (reasons[part] for part in parts if part in reasons)
             lacks[name] = usual if there else next(whys, usual)
-    return found, lacks
+    return values, lacks
 
 
 def _inertia(data: xr.Dataset, outcome: Outcome, _: str, __: float) -> float | None:
@@ -617,10 +620,12 @@ def _inertia(data: xr.Dataset, outcome: Outcome, _: str, __: float) -> float | N
         return None
     rates = _rates(record)
     turning = [
-        one for one in rates if not (one == record["loaded"] and "loaded" in record["travels"])
+        body for body in rates if not (body == record["loaded"] and "loaded" in record["travels"])
     ]
-    each = dict(zip(rates, data[name].values, strict=False))
-    sums = sum(each[one] * rates[one] ** 2 for one in turning if rates[one] and one in each)
+    inertias = dict(zip(rates, data[name].values, strict=False))
+    sums = sum(
+        inertias[body] * rates[body] ** 2 for body in turning if rates[body] and body in inertias
+    )
     return _known(sums / rates[record["loaded"]] ** 2)
 
 
@@ -633,11 +638,11 @@ def _wind_up(data: xr.Dataset, _: Outcome, law: str, load: float) -> WindUpTable
     torque, turned, slope = (
         data[name].values for name in ("torque", "wind_up", "tangent_torsional_stiffness")
     )
-    known = np.isfinite(torque) & np.isfinite(turned) & np.isfinite(slope)
-    if known.sum() < 2:
+    finite = np.isfinite(torque) & np.isfinite(turned) & np.isfinite(slope)
+    if finite.sum() < 2:
         return None
     torque, turned, slope, held = (
-        one[known] for one in (torque, turned, slope, _held(data, law, torque))
+        curve[finite] for curve in (torque, turned, slope, _held(data, law, torque))
     )
     covers = str(data["torsional_stiffness"].attrs.get("covers", ""))
     return WindUpTable(torque, turned, slope, float(np.interp(load, torque, slope)), covers, held)
@@ -713,8 +718,12 @@ def _of_law(name: str) -> Any:
     def read(data: xr.Dataset, _: Outcome, law: str, __: float) -> float | None:
         if name not in data:
             return None
-        one = data[name]
-        return _known(one.sel(law=law).values.ravel()[0]) if "law" in one.dims else _known(one)
+        figure = data[name]
+        return (
+            _known(figure.sel(law=law).values.ravel()[0])
+            if "law" in figure.dims
+            else _known(figure)
+        )
 
     return read
 
@@ -723,16 +732,16 @@ def _backlash(data: xr.Dataset, outcome: Outcome, _: str, __: float) -> dict[str
     """By case of the tolerances, or by the rigid teeth alone; nothing below rounding."""
     record = outcome.manifest
     if "output_backlash" in data:
-        each = data["output_backlash"]
+        backlash = data["output_backlash"]
     elif "backlash_angle" in data and data["backlash_angle"].dims == ("gear", "case"):
-        each = data["backlash_angle"].isel(gear=record["members"].index(record["loaded"]))
+        backlash = data["backlash_angle"].isel(gear=record["members"].index(record["loaded"]))
     elif "kinematic_play" in data:
         return {"nominal": max(float(data["kinematic_play"]), 0.0)}
     else:
         return None
     return {
         str(case): max(float(v), 0.0)
-        for case, v in zip(each["case"].values, each.values, strict=True)
+        for case, v in zip(backlash["case"].values, backlash.values, strict=True)
     }
 
 
@@ -746,20 +755,23 @@ def _kinematic_error(data: xr.Dataset, outcome: Outcome, _: str, __: float) -> A
     lines = 2.0 * np.fft.rfft(values)[1 : values.size // 2] / values.size
     size = np.abs(lines)
     largest = np.argsort(-size)[:MOST_WAVES]
-    kept = np.sort(largest[size[largest] >= LEAST_WAVE * size.max()])
+    strong = np.sort(largest[size[largest] >= LEAST_WAVE * size.max()])
     angle = str(data.attrs["turn_angle"])
     turns = _turns_of(angle, outcome.manifest)
     if turns is None:
         return None
-    return AngleWaves(kept + 1, size[kept], np.angle(lines[kept]), angle, turns)
+    return AngleWaves(strong + 1, size[strong], np.angle(lines[strong]), angle, turns)
 
 
 def _turns_of(angle: str, record: Mapping[str, Any]) -> float | None:
     """Turns of an angle in one turn of the driver: of one member, or of one against another."""
-    rates, (name, _, other) = _rates(record), angle.removeprefix("angle of ").partition(" against ")
-    if name not in rates or (other or name) not in rates or not rates[record["driver"]]:
+    rates, (name, _, reference) = (
+        _rates(record),
+        angle.removeprefix("angle of ").partition(" against "),
+    )
+    if name not in rates or (reference or name) not in rates or not rates[record["driver"]]:
         return None
-    return abs((rates[name] - (rates[other] if other else 0.0)) / rates[record["driver"]])
+    return abs((rates[name] - (rates[reference] if reference else 0.0)) / rates[record["driver"]])
 
 
 def _transmission_error(data: xr.Dataset, _: Outcome, __: str, load: float) -> float | None:

@@ -42,12 +42,12 @@ def matrix() -> list[dict[str, str]]:
     turning = [
         table for table in TABLES if samples[tag(table)][0].transmits and table.load == "torque"
     ]
-    asked: list[Mapping[str, Any]] = [*map(_films, FILM_SOLVERS["line"]), _WEAR]
+    extras: list[Mapping[str, Any]] = [*map(_films, FILM_SOLVERS["line"]), _WEAR]
     drives = [_drive(sample_of(table), _sharing(*samples[tag(table)][:1])) for table in turning]
-    samples["several stages"] = drives + [_drive(sample_of(turning[0]), one) for one in asked]
+    samples["several stages"] = drives + [_drive(sample_of(turning[0]), extra) for extra in extras]
     deviating = {"gears.deviations.iso_class": 6}
     pins = {"gears.pin_tolerance": "20 um"}
-    samples["planetary"] = [*map(_set, (pins, *asked)), _train(deviating)]
+    samples["planetary"] = [*map(_set, (pins, *extras)), _train(deviating)]
     return [
         {"analysis": analysis.name, "title": analysis.title}
         | {name: _why_not(analysis, cases) for name, cases in samples.items()}
@@ -87,7 +87,7 @@ def _asking(sample: str) -> list[Ready]:
     """The sample, the same with every solver of films that its contacts have, with wear, with all maps."""
     (built,) = load_case(sample).meshes
     solvers = FILM_SOLVERS[built.design.mesh.shape]
-    films = [load_case(sample, settings=_films(one)) for one in solvers]
+    films = [load_case(sample, settings=_films(solver)) for solver in solvers]
     worn = [load_case(sample, settings=_WEAR)] if has(built.design.mesh, flanks_in_turn) else []
     maps = [load_case(sample, settings=_OF_OUTPUT)] if built.transmits else []
     return [built, *films, *worn, *maps]
@@ -125,8 +125,8 @@ def page() -> str:
     cells = [[row[title], *(marks[row[name]] for name in columns)] for row in rows]
     lines = [heads, ["---", *(":---:" for _ in columns)], *cells]
     table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
-    told = "".join(f"{n}. {text[0].upper()}{text[1:]}.\n" for n, text in enumerate(reasons, 1))
-    return f"{_PAGE}{table}\n{told}"
+    footnotes = "".join(f"{n}. {text[0].upper()}{text[1:]}.\n" for n, text in enumerate(reasons, 1))
+    return f"{_PAGE}{table}\n{footnotes}"
 
 
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")

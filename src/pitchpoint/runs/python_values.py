@@ -107,8 +107,8 @@ def _typed(value: Any) -> str:
 
 def _whole(least: int) -> Callable[[Any], bool]:
     def fits(value: Any) -> bool:
-        whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-        return whole and least <= value < TOO_LONG
+        is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+        return is_whole and least <= value < TOO_LONG
 
     return fits
 
@@ -128,7 +128,7 @@ def _are_names(value: Any) -> bool:
 
 def _are_laws(value: Any) -> bool:
     listed = isinstance(value, Sequence) and not isinstance(value, str) and len(value) > 0
-    return callable(value) or (listed and all(callable(one) or _is_name(one) for one in value))
+    return callable(value) or (listed and all(callable(law) or _is_name(law) for law in value))
 
 
 def _is_path(value: Any) -> bool:
@@ -140,7 +140,7 @@ def _by_key(value: Any) -> bool:
 
 
 def _are_studies(value: Any) -> bool:
-    return _by_key(value) and all(isinstance(one, Study) for one in value.values())
+    return _by_key(value) and all(isinstance(study, Study) for study in value.values())
 
 
 _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {

@@ -33,18 +33,20 @@ def variants_of(
         name, tree = find(case)
         held = Variant(tree, name, "", folder=path_of(case).parent)
     chosen = only or variants(dict(held.tree))
-    return [replace(held, variant=one, settings=dict(settings or {}), own=own) for one in chosen]
+    return [
+        replace(held, variant=variant, settings=dict(settings or {}), own=own) for variant in chosen
+    ]
 
 
 def _of_result(
     folder: Path, only: Sequence[str], settings: Mapping[str, Any], own: ChosenLaws
 ) -> list[Variant]:
     """Variants of the folder of a result, each from the case file that was written beside it."""
-    known = Record.read(folder / RUN).variants
+    variants = Record.read(folder / RUN).variants
     for name in only:
-        if name not in known:
-            told = f"'{shorten(name)}' is not a variant of this result{nearest(name, known)}"
-            raise InputError(told, file=visible(as_text(str(folder))))
+        if name not in variants:
+            message = f"'{shorten(name)}' is not a variant of this result{nearest(name, variants)}"
+            raise InputError(message, file=visible(as_text(str(folder))))
     return [
         replace(
             _handed_over(folder / name, own, settings),
@@ -52,7 +54,7 @@ def _of_result(
             settings=dict(settings),
             own=own,
         )
-        for name in only or known
+        for name in only or variants
     ]
 
 
@@ -64,8 +66,8 @@ def _handed_over(folder: Path, own: ChosenLaws, settings: Mapping[str, Any]) -> 
     record = Manifest.read(folder / MANIFEST)
     name = visible(as_text(f"{folder.name}/{CASE}"))
     tree = {"variants": {folder.name: read(path)}}
-    told = tuple(record.warning)
-    return Variant(tree, name, folder.name, recorded=record.case, warnings=told, folder=folder)
+    warnings = tuple(record.warning)
+    return Variant(tree, name, folder.name, recorded=record.case, warnings=warnings, folder=folder)
 
 
 def _recorded(path: Path, own: ChosenLaws, settings: Mapping[str, Any]) -> Variant:
@@ -81,9 +83,13 @@ def _recorded(path: Path, own: ChosenLaws, settings: Mapping[str, Any]) -> Varia
         tree = record.tree
     except InputError as error:
         raise error.at(file=name) from None
-    told = (*record.warning, *_other_heights(record, settings), *_other_inputs(record, settings))
+    warnings = (
+        *record.warning,
+        *_other_heights(record, settings),
+        *_other_inputs(record, settings),
+    )
     return Variant(
-        tree, name, record.variant, recorded=record.case, warnings=told, folder=path.parent
+        tree, name, record.variant, recorded=record.case, warnings=warnings, folder=path.parent
     )
 
 
@@ -91,7 +97,9 @@ def _other_heights(record: Manifest, settings: Mapping[str, Any]) -> Iterator[st
     """That files hold other heights than when the record was made, those that settings replace left out."""
     for key in _by_key(record):
         film, _, which = key.partition(".heights.")
-        replaced = any(one == film or one.startswith(f"{film}.heights") for one in settings)
+        replaced = any(
+            setting == film or setting.startswith(f"{film}.heights") for setting in settings
+        )
         if which.endswith(".digest") and not replaced:
             yield from _other_file(record, key.removesuffix("digest"), "heights")
 

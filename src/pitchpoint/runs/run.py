@@ -138,9 +138,9 @@ class Outcome:
     doubts: list[str] = field(default_factory=list)
 
     def __repr__(self) -> str:
-        told = f"{len(self.manifest['warnings'])} warnings, {len(self.rows)} rows compared"
+        summary = f"{len(self.manifest['warnings'])} warnings, {len(self.rows)} rows compared"
         title, listed = shorten(str(self.manifest["title"])), ", ".join(self.parts)
-        return f"Outcome({title!r})\n  {told}\n  parts {shorten(listed, LONGEST_LIST)}"
+        return f"Outcome({title!r})\n  {summary}\n  parts {shorten(listed, LONGEST_LIST)}"
 
     def __getstate__(self) -> dict[str, Any]:
         return {**vars(self), "manifest": self.manifest}  # laws of the user's own cannot be pickled
@@ -154,9 +154,9 @@ class Outcome:
         """Add sentences to what is implausible, and to the warnings: as far as parts are there for them."""
         self.doubts += sentences
         there = {str(name) for part in self.parts.values() for name in part}
-        told = apart(text for text in self.doubts if concerns(text, there))
-        briefs = [as_doubt(text).brief for sentences in told.values() for text in sentences]
-        self.note(**told, briefs=briefs)
+        by_kind = apart(text for text in self.doubts if concerns(text, there))
+        briefs = [as_doubt(text).brief for sentences in by_kind.values() for text in sentences]
+        self.note(**by_kind, briefs=briefs)
 
     def note(self, **entries: Any) -> None:
         """Put entries into the manifest, which is not made for it."""
@@ -209,24 +209,26 @@ def run(
     demand_arguments(
         folder=folder, analyses=analyses, studies=studies, friction=friction, overwrite=overwrite
     )
-    given = case if isinstance(case, str) else as_case(case)
-    own, named = _chosen(friction)
-    made = held(given, only, {**(settings or {}), **named}, own)
-    work = {variant.variant: (variant, _jobs(variant, studies or {}, analyses)) for variant in made}
+    source = case if isinstance(case, str) else as_case(case)
+    laws, named = _chosen(friction)
+    variants = held(source, only, {**(settings or {}), **named}, laws)
+    work = {
+        variant.variant: (variant, _jobs(variant, studies or {}, analyses)) for variant in variants
+    }
     where = None if folder is None else Path(folder)
     watching = progress or Progress()
     watching.expect(sum(len(parts) for _, parts in work.values()))
-    mine = None if where is None else _record(given, made[0], where, [*work])
+    mine = None if where is None else _record(source, variants[0], where, [*work])
     with nullcontext() if mine is None or where is None else _own_folder(where, mine, overwrite):
         return {
-            one: run_variant(
+            name: run_variant(
                 *prepared,
-                folder=None if where is None else where / one,
+                folder=None if where is None else where / name,
                 studies=studies or {},
                 progress=watching,
                 whole=analyses is None,
             )
-            for one, prepared in work.items()
+            for name, prepared in work.items()
         }
 
 
@@ -245,8 +247,8 @@ def _own_folder(folder: Path, record: Record, overwrite: bool) -> Iterator[None]
     with sole_writer(folder) as alone:
         if not overwrite:
             record.demand_own(folder)
-        own = [folder / one for one in record.variants]
-        for place in (folder, *own, *(one / FILES for one in own)) if alone else ():
+        of_variants = [folder / one for one in record.variants]
+        for place in (folder, *of_variants, *(one / FILES for one in of_variants)) if alone else ():
             sweep(place)
         record.write(folder)
         yield
@@ -307,8 +309,8 @@ def _of_design(variant: Variant, built: Ready) -> list[str]:
 
 def own_law(variant: Variant, friction: FrictionChoice) -> Variant:
     """The variant under friction laws of the user's own, with others by name."""
-    own, named = _chosen(friction)
-    return replace(variant, own=own, settings={**variant.settings, **named})
+    laws, named = _chosen(friction)
+    return replace(variant, own=laws, settings={**variant.settings, **named})
 
 
 def _hand_over(variant: Variant, title: str, folder: Path, studies: Mapping[str, Study]) -> None:
@@ -329,18 +331,18 @@ _LARGEST_OF_OWN = 1.0
 
 def _chosen(friction: FrictionChoice | None) -> tuple[ChosenLaws, dict[str, Any]]:
     """Laws among which some are the user's own, and the setting that gives the case those by name."""
-    each = [friction] if callable(friction) else list(friction or ())
-    laws = tuple(one if isinstance(one, str) else _own(one) for one in each)
+    choices = [friction] if callable(friction) else list(friction or ())
+    laws = tuple(choice if isinstance(choice, str) else _own(choice) for choice in choices)
     named = [law for law in laws if isinstance(law, str)]
-    own = [law.name for law in laws if isinstance(law, FrictionLaw)]
-    meant = [*map(letters, own + named)]
-    for name in own:
+    own_names = [law.name for law in laws if isinstance(law, FrictionLaw)]
+    meant = [*map(letters, own_names + named)]
+    for name in own_names:
         if meant.count(letters(name)) > 1:
-            told = (
+            message = (
                 f"two laws are named {shorten(name)}, and results go by name; rename the function"
             )
-            raise InputError(told, key="friction")
-    return laws if own else (), {"models.friction": named} if named else {}
+            raise InputError(message, key="friction")
+    return laws if own_names else (), {"models.friction": named} if named else {}
 
 
 def _own(function: Callable[..., Any]) -> FrictionLaw:
@@ -376,9 +378,9 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
     where = Path(folder)
     if not os.path.isfile(where / RUN):  # be the name longer than any file's
         above = os.path.isfile(where.parent / RUN) and os.path.isdir(where)
-        asked = f"{where.parent}, the folder" if above else "a folder"
-        told = f"holds no result of pitchpoint; give {asked} that pitchpoint run wrote"
-        raise InputError(told, file=str(folder))
+        wanted = f"{where.parent}, the folder" if above else "a folder"
+        message = f"holds no result of pitchpoint; give {wanted} that pitchpoint run wrote"
+        raise InputError(message, file=str(folder))
     paths = {name: where / name / MANIFEST for name in Record.read(where / RUN).variants}
     opened = {name: _opened(path) for name, path in paths.items() if path.is_file()}
     if not opened:
@@ -470,14 +472,14 @@ def describe(
         InputError: anything wrong with the input that shows before the computation.
     """
     demand_arguments(studies=studies)
-    made = held(case, only, settings)
-    for variant in made:
+    variants = held(case, only, settings)
+    for variant in variants:
         _jobs(variant, studies or {})  # made, not computed: a wrong study shows now
-    built = [(variant, variant.built({})) for variant in made]
+    built = [(variant, variant.built({})) for variant in variants]
     return [
-        _manifest(*each, inputs.input_rows(each[1], each[0].document(), studies))
-        | apart(_of_design(*each))
-        for each in built
+        _manifest(*prepared, inputs.input_rows(prepared[1], prepared[0].document(), studies))
+        | apart(_of_design(*prepared))
+        for prepared in built
     ]
 
 
@@ -521,12 +523,14 @@ def compare_case(
     Raises:
         InputError: the case has no targets.
     """
-    kept = _kept_rows(case, variant)
-    if kept is not None:
-        return kept
-    known = held(case, [variant] if variant else [])
-    made = next((one for one in known if one.variant == "as_published"), known[0])
-    return made.label, made.variant, rows_of(made, watch)
+    rows = _kept_rows(case, variant)
+    if rows is not None:
+        return rows
+    variants = held(case, [variant] if variant else [])
+    published = next(
+        (option for option in variants if option.variant == "as_published"), variants[0]
+    )
+    return published.label, published.variant, rows_of(published, watch)
 
 
 def _kept_rows(case: str, variant: str | None) -> tuple[str, str, list[Row]] | None:
@@ -538,8 +542,8 @@ def _kept_rows(case: str, variant: str | None) -> tuple[str, str, list[Row]] | N
     outcome = outcomes.get(name)
     if outcome is None or not outcome.rows or not outcome.manifest["finished"]:
         return None
-    known = json.dumps(surroundings(), sort_keys=True)
-    if json.dumps(outcome.manifest["surroundings"], sort_keys=True) != known:
+    here = json.dumps(surroundings(), sort_keys=True)
+    if json.dumps(outcome.manifest["surroundings"], sort_keys=True) != here:
         return None
     return str(outcome.manifest["case"]), name, outcome.rows
 
@@ -554,8 +558,8 @@ def rows_of(
     """
     built = made.built({})
     if not built.case.targets:
-        told = "has no targets to compare with; give several designs, or a published case"
-        raise InputError(told, file=made.name)
+        message = "has no targets to compare with; give several designs, or a published case"
+        raise InputError(message, file=made.name)
     needed = with_read({target.reads for target in built.case.targets})
     work = jobs(made, {})
     demand_parts(built.case.targets, [job.name for job in work], made.name)
@@ -587,17 +591,17 @@ def run_piece(
         InputError: anything wrong with the input, or no such part.
         ConvergenceError: a balance that was not found.
     """
-    made = held(case, [variant] if variant else [])[0]
-    job = job_of(made, str(description.get("analysis", "")))
-    with _told_of(made):
+    ready = held(case, [variant] if variant else [])[0]
+    job = job_of(ready, str(description.get("analysis", "")))
+    with _told_of(ready):
         return job.compute(description) if last is None else job.onward(last)
 
 
 @double_precision()
 def pieces_of(case: str, *, variant: str | None = None) -> list[Piece]:
     """Descriptions of all pieces of a case, each less than 1 kB of plain data, see `run_piece`."""
-    made = held(case, [variant] if variant else [])[0]
-    return [piece for job in jobs(made, {}) for piece in job.pieces]
+    ready = held(case, [variant] if variant else [])[0]
+    return [piece for job in jobs(ready, {}) for piece in job.pieces]
 
 
 @contextmanager
@@ -606,8 +610,8 @@ def _unwatched(_: Path | None) -> Iterator[Progress]:
 
 
 def _opened(path: Path) -> Outcome:
-    kept = Manifest.read(path)
-    manifest = kept.model_dump() | kept.doubts
+    record = Manifest.read(path)
+    manifest = record.model_dump() | record.doubts
     publication_of(manifest["source"])  # whose variables the parts may hold
     parts = {name: load(path.parent / f"{name}.nc") for name in manifest["parts"]}
     return Outcome(manifest, parts)
@@ -617,7 +621,7 @@ def _mark(variant: Variant, built: Ready, rows: Sequence[inputs.Row], part: str)
     """Digest of the inputs of a part, out of their rows: the same for a case and for its record."""
     study = inputs.STUDIES
     rows = [row for row in rows if row["table"] != DUTY.name or part == DUTY.name]
-    given = [
+    of_inputs = [
         [row["table"], row["key"], row["value"]]
         for row in rows
         if row["given"]
@@ -626,9 +630,9 @@ def _mark(variant: Variant, built: Ready, rows: Sequence[inputs.Row], part: str)
         and not _names_file(row)
     ]
     # What a function of the user's own gave is nobody else's result, nor that of its next version.
-    own = uuid4().hex if any(isinstance(law, FrictionLaw) for law in variant.own) else ""
+    nonce = uuid4().hex if any(isinstance(law, FrictionLaw) for law in variant.own) else ""
     source = built.case.source
-    return fingerprint(surroundings(), source, given, part, own, *_digests(rows))
+    return fingerprint(surroundings(), source, of_inputs, part, nonce, *_digests(rows))
 
 
 def _beside(job: Job, before: Mapping[str, xr.Dataset]) -> Iterator[str]:
@@ -640,8 +644,8 @@ def _beside(job: Job, before: Mapping[str, xr.Dataset]) -> Iterator[str]:
 
 def _names_file(row: Mapping[str, Any]) -> bool:
     """True for the name of a file: what it holds counts, see `_digests`, not where it lies."""
-    *above, last = f"{row['table']}.{row['key']}".split(".")
-    return last == "file" and bool({"film", "worn", "duty"} & {*above})
+    *above, leaf = f"{row['table']}.{row['key']}".split(".")
+    return leaf == "file" and bool({"film", "worn", "duty"} & {*above})
 
 
 def _digests(rows: Sequence[inputs.Row]) -> list[str]:
@@ -659,13 +663,13 @@ def _part(
 ) -> xr.Dataset:
     """A part, computed or read; `before` are parts that are there already."""
     labels = {"case": variant.label, "variant": variant.variant, "fingerprint": mark}
-    whole = None if folder is None else folder / f"{job.name}.nc"
-    found = None if variant.own else _found(whole, mark)
-    progress.part(variant.variant, job.title, found is not None)
-    if found is not None:
+    path = None if folder is None else folder / f"{job.name}.nc"
+    stored = None if variant.own else _found(path, mark)
+    progress.part(variant.variant, job.title, stored is not None)
+    if stored is not None:
         if folder is not None:
             _drop_pieces(folder, job.name)  # of a run that was killed while it removed them
-        return found
+        return stored
     bound_programs()  # those of the parts before
     named = [job.analysis.reads] if job.analysis.reads else []
     pieces = [before[name] for name in (*named, *_beside(job, before))]
@@ -675,7 +679,7 @@ def _part(
     with _told_of(variant):
         data = job.joined(pieces)
     data.attrs.update(labels)
-    _keep(data, whole)
+    _keep(data, path)
     if folder is not None:
         _drop_pieces(folder, job.name)
     return data
@@ -685,19 +689,19 @@ def _pieces(
     job: Job, variant: Variant, labels: Mapping[str, str], folder: Path | None, progress: Progress
 ) -> Iterator[xr.Dataset]:
     """Pieces of a part in order, those on disk read; a march goes on from its last one."""
-    last: xr.Dataset | None = None
+    previous: xr.Dataset | None = None
     for number in count():
         path = None if folder is None else folder / f"{job.name}.{number:04d}.nc"
         piece = None if variant.own else _found(path, labels["fingerprint"])
         if piece is None:
             with _told_of(variant):
-                piece = job.piece(number, last, progress.points)
+                piece = job.piece(number, previous, progress.points)
             if piece is None:
                 return
             piece.attrs.update(labels)
             if job.several:
                 _keep(piece, path)
-        last = piece
+        previous = piece
         yield piece
 
 
@@ -717,8 +721,8 @@ def _told_of(variant: Variant) -> Iterator[None]:
 
 def _points(piece: xr.Dataset) -> int:
     """Operating points of a piece."""
-    each = ("point", "torque", "speed", "temperature")
-    return prod(size for name, size in piece.sizes.items() if name in each)
+    dims = ("point", "torque", "speed", "temperature")
+    return prod(size for name, size in piece.sizes.items() if name in dims)
 
 
 def _found(path: Path | None, mark: str) -> xr.Dataset | None:
@@ -752,23 +756,27 @@ def _jobs(
     """Parts of a variant, or those of some names; InputError if a target reads one that the case has not."""
     if analyses is not None:
         return chosen_jobs(variant, studies, analyses)
-    made = jobs(variant, studies)
+    prepared = jobs(variant, studies)
     if _measured(variant):
         targets = validate(variant.document()).targets
-        demand_parts(targets, [job.name for job in made], variant.name)
-    return made
+        demand_parts(targets, [job.name for job in prepared], variant.name)
+    return prepared
 
 
 def _measured(variant: Variant) -> bool:
     """True for the reading of the paper, and for a variant that brings targets of its own."""
-    own = variant.tree.get("variants", {}).get(variant.variant, {})
-    return variant.variant in ("as_published", "default") or "targets" in own
+    overlay = variant.tree.get("variants", {}).get(variant.variant, {})
+    return variant.variant in ("as_published", "default") or "targets" in overlay
 
 
 def _rows(built: Ready, variant: Variant, parts: Mapping[str, xr.Dataset]) -> list[Row]:
     if not _measured(variant):
         return []
-    targets = [one for one in built.case.targets if one.kind == "excluded" or one.reads in parts]
+    targets = [
+        target
+        for target in built.case.targets
+        if target.kind == "excluded" or target.reads in parts
+    ]
     return compare(targets, parts, variant.name)
 
 
@@ -778,10 +786,10 @@ def _stages(built: Ready) -> list[dict[str, Any]]:
         return []
     bodies = built.stage_bodies or [""] * len(built.stages)
     stages = [
-        _stage(number, SET if one.trains else named, one)
-        for number, one, named in zip(built.numbers, built.stages, bodies, strict=True)
+        _stage(number, SET if stage.trains else named, stage)
+        for number, stage, named in zip(built.numbers, built.stages, bodies, strict=True)
     ]
-    of_sets = [named for one in built.stages for named in one.stage_bodies]
+    of_sets = [named for stage in built.stages for named in stage.stage_bodies]
     meshes = zip(built.mesh_labels, built.meshes, strict=True)
     labelled = [(label, mesh) for label, mesh in meshes if label not in built.numbers]
     return stages + [
@@ -814,7 +822,9 @@ def _trains(built: Ready) -> list[dict[str, Any]]:
 def _train(number: int, train: BuiltTrain, built: Ready) -> dict[str, Any]:
     """Record of one of them; rates are for one of its input."""
     meshes = zip(built.mesh_labels, built.meshes, strict=True)
-    labels = [label for label, mesh in meshes if any(mesh is one for one in train.meshes)]
+    labels = [
+        label for label, mesh in meshes if any(mesh is placed_mesh for placed_mesh in train.meshes)
+    ]
     design = train.design
     return {
         "stage": number,
@@ -826,12 +836,12 @@ def _train(number: int, train: BuiltTrain, built: Ready) -> dict[str, Any]:
         "meshes": [
             {
                 "label": label,
-                "bodies": list(one.bodies),
-                "carrier": one.carrier,
-                "teeth": [abs(teeth) for _, teeth, _ in one.link.gears],
-                "planet_gear": one.planet_gear,
+                "bodies": list(placed_mesh.bodies),
+                "carrier": placed_mesh.carrier,
+                "teeth": [abs(teeth) for _, teeth, _ in placed_mesh.link.gears],
+                "planet_gear": placed_mesh.planet_gear,
             }
-            for label, one in zip(labels, design.meshes, strict=True)
+            for label, placed_mesh in zip(labels, design.meshes, strict=True)
         ],
     }
 
@@ -905,7 +915,9 @@ def _sources(built: Ready, models: Mapping[str, Any], document: Document) -> lis
     solids = [used.record for mesh in meshes for used in mesh.solids]
     data = [("oil", mesh.lubricant.data()) for mesh in meshes]
     data += [("materials", solid.data()) for solid in solids]
-    cited += [(one.source, of) for of, values in data for one in values.values() if one.source]
+    cited += [
+        (datum.source, of) for of, values in data for datum in values.values() if datum.source
+    ]
     uses: dict[str, dict[str, None]] = {}
     for key, of in cited:
         uses.setdefault(key, {})[of] = None
@@ -915,24 +927,26 @@ def _sources(built: Ready, models: Mapping[str, Any], document: Document) -> lis
 def _loss_tables(document: Document) -> list[Any]:
     """Tables of losses as the case file has them: its own and those of its stages."""
     stages = document.tree.get(STAGES, {})
-    return [one.get("losses") for one in (document.tree, *stages.values())]
+    return [table.get("losses") for table in (document.tree, *stages.values())]
 
 
 def _lacking(built: Ready) -> dict[str, str]:
     """By analysis why its part does not exist, those left out that a case file does not ask for."""
-    told = {name: analysis.why_not(built) for name, analysis in ANALYSES.items()}
-    return {name: why for name, why in told.items() if why and not isinstance(why, Unasked)}
+    reasons = {name: analysis.why_not(built) for name, analysis in ANALYSES.items()}
+    return {name: why for name, why in reasons.items() if why and not isinstance(why, Unasked)}
 
 
 def _models(built: Ready) -> dict[str, Any]:
     """Models that the case uses beside friction, by effect; with the stage where they differ."""
-    each = [_of_mesh(mesh) for mesh in built.meshes]
+    of_meshes = [_of_mesh(mesh) for mesh in built.meshes]
     bearings = _bearings(built.case.losses)
-    found = {effect: law for effect, law in each[0].items() if _everywhere(effect, law, each)}
-    for label, models in zip(built.mesh_labels, each, strict=True):
-        apart = {effect: law for effect, law in models.items() if effect not in found}
-        found |= {f"{effect}, stage {label}": law for effect, law in apart.items()}
-    return {**found, **bearings}
+    shared = {
+        effect: law for effect, law in of_meshes[0].items() if _everywhere(effect, law, of_meshes)
+    }
+    for label, models in zip(built.mesh_labels, of_meshes, strict=True):
+        apart = {effect: law for effect, law in models.items() if effect not in shared}
+        shared |= {f"{effect}, stage {label}": law for effect, law in apart.items()}
+    return {**shared, **bearings}
 
 
 def _everywhere(effect: str, law: Any, each: Sequence[Mapping[str, Any]]) -> bool:
@@ -947,44 +961,46 @@ def _bearings(losses: Mapping[str, Loss]) -> dict[str, Any]:
     }
     held = {f"breakaway {name}": BREAKAWAY[loss.breakaway] for name, loss in losses.items()}
     every: dict[str, Any] = {**moving, **held}
-    return {effect.replace("_", " "): one for effect, one in every.items() if one.name != "none"}
+    return {
+        effect.replace("_", " "): model for effect, model in every.items() if model.name != "none"
+    }
 
 
 def _of_mesh(built: Built) -> dict[str, Any]:
     """Models of one mesh, by effect."""
     case = built.case
-    found: dict[str, Any] = {
+    models: dict[str, Any] = {
         "load sharing": LOAD_SHARING[case.models.load_sharing],
         "rolling resistance": ROLLING_RESISTANCE[case.models.rolling_resistance],
         "film thickness": FILM_THICKNESS[case.models.film_thickness],
     }
     if built.asperities is not None:
-        found["asperity load"] = built.asperities
+        models["asperity load"] = built.asperities
     if case.models.inlet_heating != "none":
-        found["inlet heating"] = INLET_HEATING[case.models.inlet_heating]
-    if case.dynamics is not None or found["load sharing"].by_stiffness:
-        found["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
+        models["inlet heating"] = INLET_HEATING[case.models.inlet_heating]
+    if case.dynamics is not None or models["load sharing"].by_stiffness:
+        models["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
         if case.models.line_stiffness != "integrated":
-            found["stiffness of contact lines"] = LINE_STIFFNESS[case.models.line_stiffness]
+            models["stiffness of contact lines"] = LINE_STIFFNESS[case.models.line_stiffness]
     if case.dynamics is not None and has(built.design.mesh, line_of_action):
-        found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
+        models["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
     if built.film_model is not None:
-        found |= _of_films(built.film_model)
-    found |= _bearings(case.losses)
+        models |= _of_films(built.film_model)
+    models |= _bearings(case.losses)
     if case.models.tooth_temperature != "isothermal":
-        found["tooth temperature"] = TOOTH_TEMPERATURE[case.models.tooth_temperature]
-    return found
+        models["tooth temperature"] = TOOTH_TEMPERATURE[case.models.tooth_temperature]
+    return models
 
 
 def _of_films(model: "FilmModel") -> dict[str, Any]:
     """Models behind films that are solved, by effect."""
-    found: dict[str, Any] = {
+    models: dict[str, Any] = {
         "viscosity under pressure": VISCOSITY[model.viscosity_law],
         "density under pressure": DENSITY[model.density_law],
         "shear of the oil": SHEAR_STRESS[model.shear_law],
     }
     if model.thermal != ISOTHERMAL:
-        found["heat of the film"] = THERMAL[model.thermal]
+        models["heat of the film"] = THERMAL[model.thermal]
     if model.asperities != SMOOTH:
-        found["asperities that touch"] = ASPERITIES[model.asperities]
-    return found
+        models["asperities that touch"] = ASPERITIES[model.asperities]
+    return models

@@ -64,7 +64,7 @@ def sobol_indices(
     """
     shares = _shares(len(over), n, seed)
     values = drawn_values(case, over, shares.reshape(shares.shape[0] * n, len(over)), variant)
-    found = study(
+    computed = study(
         case,
         values,
         "zip",
@@ -73,15 +73,15 @@ def sobol_indices(
         folder=folder,
         progress=progress,
     )
-    data = xr.concat([_figure(found, name) for name in figures], "figure")
+    data = xr.concat([_figure(computed, name) for name in figures], "figure")
     rows = data.transpose("figure", "law", "design").values.reshape(-1, len(over) + 2, n)
     sound = np.flatnonzero(np.isfinite(rows).all(axis=(0, 1)))
     count = 1 << max(sound.size.bit_length() - 1, 0)
     if sound.size < FEWEST:
-        reasons = {str(one) for one in found["reason"].values.ravel() if str(one)}
-        told = f": {min(reasons)}" if reasons else ""
+        reasons = {str(reason) for reason in computed["reason"].values.ravel() if str(reason)}
+        cause = f": {min(reasons)}" if reasons else ""
         raise InputError(
-            f"{sound.size} of {n} designs can be computed with all changes of them{told}"
+            f"{sound.size} of {n} designs can be computed with all changes of them{cause}"
         )
     indices = indices_of(rows[..., sound[:count]], seed)
     shape = (len(figures), data.sizes["law"], len(over))
@@ -117,8 +117,8 @@ def indices_of(
     from scipy.stats import sobol_indices as parted
 
     every: dict[str, list[Float[np.ndarray, " key"]]] = {}
-    for each in rows:
-        for name, value in _of_figure(each, parted, seed).items():
+    for sample in rows:
+        for name, value in _of_figure(sample, parted, seed).items():
             every.setdefault(name, []).append(value)
     return {name: np.stack(values) for name, values in every.items()}
 
@@ -134,19 +134,19 @@ def _of_figure(
     rng = np.random.default_rng(seed)
     count = rows.shape[1]
     picked = [np.arange(count), *rng.integers(count, size=(RESAMPLES, count))]
-    given = (rows[:, each] for each in picked)
+    samples = (rows[:, pick] for pick in picked)
     every = [
         parted(func={"f_A": one[0][None], "f_B": one[1][None], "f_AB": one[2:, None]}, n=count)
-        for one in given
+        for one in samples
     ]
-    made: dict[str, Any] = {}
+    indices: dict[str, Any] = {}
     for name in ("first_order", "total_order"):
-        found, *others = (np.reshape(getattr(one, name), keys) for one in every)
+        index, *others = (np.reshape(getattr(one, name), keys) for one in every)
         low, high = np.quantile(
             others, [(1.0 - CONFIDENCE) / 2.0, (1.0 + CONFIDENCE) / 2.0], axis=0
         )
-        made |= {name: found, f"{name}_low": low, f"{name}_high": high}
-    return made
+        indices |= {name: index, f"{name}_low": low, f"{name}_high": high}
+    return indices
 
 
 ROUNDING = 1e-9
@@ -155,18 +155,24 @@ ROUNDING = 1e-9
 
 def _shares(keys: int, n: int, seed: int) -> Float[np.ndarray, "sample design key"]:
     """Both samples, and the first one with each key in turn from the second, as shares of the ranges."""
-    first, second = np.split(sobol_shares(n, 2 * keys, seed, FEWEST), 2, axis=1)
-    swapped = [np.where(np.arange(keys) == key, second, first) for key in range(keys)]
-    return np.stack([first, second, *swapped])
+    base, resample = np.split(sobol_shares(n, 2 * keys, seed, FEWEST), 2, axis=1)
+    swapped = [np.where(np.arange(keys) == key, resample, base) for key in range(keys)]
+    return np.stack([base, resample, *swapped])
 
 
 def _figure(found: xr.Dataset, name: str) -> xr.DataArray:
     """One figure over designs and laws; InputError if there is none."""
-    whole = {"design", "law"}
-    known = [str(one) for one, data in found.data_vars.items() if whole == {*map(str, data.dims)}]
-    known = [one for one in known if np.issubdtype(found[one].dtype, np.floating)]
-    if name not in known:
+    dims_of_figure = {"design", "law"}
+    figures = [
+        str(one)
+        for one, data in found.data_vars.items()
+        if dims_of_figure == {*map(str, data.dims)}
+    ]
+    figures = [one for one in figures if np.issubdtype(found[one].dtype, np.floating)]
+    if name not in figures:
         raise InputError(
-            f"{shown(name)} is no figure of this study{nearest(name, known)}; it has {', '.join(known)}"
+            f"{shown(name)} is no figure of this study{nearest(name, figures)}; it has {', '.join(figures)}"
         )
-    return found[name].drop_vars([str(one) for one in found[name].coords if str(one) not in whole])
+    return found[name].drop_vars(
+        [str(one) for one in found[name].coords if str(one) not in dims_of_figure]
+    )

@@ -48,9 +48,9 @@ def campbell(
     ends = display("speed", np.array([0.0, fastest]), data)
     traces: list[Trace] = []
     marks, unit = [], show.unit_of("natural_frequency")
-    for key, each in orders:
-        line = np.array([0.0, min(fastest, most / each)])
-        x, y = display("speed", line, data), display("natural_frequency", each * line)
+    for key, order in orders:
+        line = np.array([0.0, min(fastest, most / order)])
+        x, y = display("speed", line, data), display("natural_frequency", order * line)
         traces.append(plain(key, x, y, unit))
         marks.append({"text": key.label, "x": float(x[1]), "y": float(y[1])} | _LABEL)
     for key, value in natural:
@@ -78,12 +78,12 @@ def campbell(
 
 def _legible(marks: Sequence[Trace], fastest: float, highest: float) -> list[Trace]:
     """Those of some marks that do not stand on the one before."""
-    kept: list[Trace] = []
+    legible: list[Trace] = []
     for mark in marks:
         across, up = _APART[0] * fastest, _APART[1] * highest
         touching = [
-            k for k in kept if abs(mark["x"] - k["x"]) < across and abs(mark["y"] - k["y"]) < up
+            k for k in legible if abs(mark["x"] - k["x"]) < across and abs(mark["y"] - k["y"]) < up
         ]
         if not touching:
-            kept.append(mark)
-    return kept
+            legible.append(mark)
+    return legible

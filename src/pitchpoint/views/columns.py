@@ -71,18 +71,18 @@ def lines_of(rows: Sequence[Mapping[str, str]], names: Sequence[str], width: int
 def _least(name: str, cells: Sequence[str]) -> int:
     """Width below which a word of the head, or a number with its unit, would be broken."""
     words = [word for text in (name, *cells) for word in text.split()]
-    whole = [text for text in cells if len(text) <= _WHOLE]
-    return max(map(len, [*words, *whole]), default=1)
+    short = [text for text in cells if len(text) <= _WHOLE]
+    return max(map(len, [*words, *short]), default=1)
 
 
 def _blocks(least: Columns, width: int) -> list[list[str]]:
     """Names of the columns of each block."""
-    first, *others = least
-    blocks = [[first]]
+    row_head, *others = least
+    blocks = [[row_head]]
     for name in others:
-        taken = sum(least[known] + _GAP for known in blocks[-1])
+        taken = sum(least[column] + _GAP for column in blocks[-1])
         if taken + least[name] > width and len(blocks[-1]) > 1:
-            blocks.append([first])
+            blocks.append([row_head])
         blocks[-1].append(name)
     return blocks
 

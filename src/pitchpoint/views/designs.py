@@ -68,15 +68,15 @@ def input_tables(outcomes: Mapping[str, Outcome]) -> tuple[Compared, Compared]:
             if row["status"] != "default":
                 stated.add((row["table"], row["key"]))
     differing = [
-        (table, key, *(each.get(one, NOTHING) for one in outcomes))
-        for (table, key), each in rows.items()
-        if len({each.get(one, NOTHING) for one in outcomes}) > 1
-        and (len({*each.values()}) > 1 or (table, key) in stated)
+        (table, key, *(by_design.get(name, NOTHING) for name in outcomes))
+        for (table, key), by_design in rows.items()
+        if len({by_design.get(name, NOTHING) for name in outcomes}) > 1
+        and (len({*by_design.values()}) > 1 or (table, key) in stated)
     ]
     head = ("table", "key", *outcomes)
     following = [row for row in differing if row[0] in FOLLOWING]
-    given = sorted((row for row in differing if row not in following), key=_standing)
-    return Compared(head, given, 2), Compared(head, following, 2)
+    inputs = sorted((row for row in differing if row not in following), key=_standing)
+    return Compared(head, inputs, 2), Compared(head, following, 2)
 
 
 _DEMANDS = ("operation", "strength", "materials", "lubricant", "roughness", "models")
@@ -95,28 +95,28 @@ def _standing(row: Sequence[str]) -> tuple[int, bool]:
 
 def differing(outcomes: Mapping[str, Outcome]) -> dict[str, Compared]:
     """Tables of the inputs by title; that of gears, materials and oils only where they differ."""
-    given, following = input_tables(outcomes)
+    inputs, following = input_tables(outcomes)
     also = {"Gears, materials and oils that differ by them": following} if following.rows else {}
-    return {"Inputs that differ": given, **also}
+    return {"Inputs that differ": inputs, **also}
 
 
 def named_inputs(table: Compared) -> list[tuple[str, ...]]:
     """Rows of a table of inputs with table and key as one name."""
-    return [(f"{where}, {key}", *told) for where, key, *told in table.rows]
+    return [(f"{where}, {key}", *cells) for where, key, *cells in table.rows]
 
 
 def law_words(outcomes: Mapping[str, Outcome], most: int | None = None) -> str:
     """Under which friction laws the designs are compared, so many at most, as a sentence."""
     shared = shared_laws(outcomes)[:most]
     if shared:
-        told = [law_title(next(iter(outcomes.values())), law) for law in shared]
-        return f"Friction in every design: {'; '.join(told)}."
-    each = [
-        f"{name}: {law_title(one, one.manifest['laws'][0]['name'])}"
-        for name, one in outcomes.items()
-        if one.manifest["laws"]
+        law_names = [law_title(next(iter(outcomes.values())), law) for law in shared]
+        return f"Friction in every design: {'; '.join(law_names)}."
+    labelled = [
+        f"{name}: {law_title(outcome, outcome.manifest['laws'][0]['name'])}"
+        for name, outcome in outcomes.items()
+        if outcome.manifest["laws"]
     ]
-    return f"The designs share no friction law; each stands under its first one, {'; '.join(each)}."
+    return f"The designs share no friction law; each stands under its first one, {'; '.join(labelled)}."
 
 
 def result_table(outcomes: Mapping[str, Outcome]) -> Compared:
@@ -125,16 +125,19 @@ def result_table(outcomes: Mapping[str, Outcome]) -> Compared:
     Args:
         outcomes: by design.
     """
-    first, *others = outcomes if len(outcomes) <= _FEW_DESIGNS else [*outcomes][:1]
-    figures = [one for one in main_results(outcomes) if not left_by_rounding(one)]
-    by_law = len({one.law for one in figures if one.law}) > 1
+    reference, *others = outcomes if len(outcomes) <= _FEW_DESIGNS else [*outcomes][:1]
+    figures = [entry for entry in main_results(outcomes) if not left_by_rounding(entry)]
+    by_law = len({entry.law for entry in figures if entry.law}) > 1
     rows = [
         figure_row(
-            one, f"{one.title} ({one.law})" if by_law and one.law else one.title, outcomes, others
+            entry,
+            f"{entry.title} ({entry.law})" if by_law and entry.law else entry.title,
+            outcomes,
+            others,
         )
-        for one in figures
+        for entry in figures
     ]
-    head = ("result", *outcomes, *(f"{one} against {first}" for one in others))
+    head = ("result", *outcomes, *(f"{entry} against {reference}" for entry in others))
     blank = ("",) * len(others)
     return Compared(head, [*((*row, *blank) for row in bases(outcomes)), *rows], 1)
 
@@ -150,15 +153,15 @@ def figure_row(
         outcomes: by design.
         others: designs whose differences from the first one are told.
     """
-    first = next(iter(outcomes))
+    reference = next(iter(outcomes))
     return (
         show.bracketed(title, figure.variable),
         *(_value(figure, design) for design in outcomes),
         *(
             UNLIKE
-            if {first, design} <= {*figure.values}
-            and _unlike(figure, outcomes[first], outcomes[design])
-            else _difference(figure, first, design)
+            if {reference, design} <= {*figure.values}
+            and _unlike(figure, outcomes[reference], outcomes[design])
+            else _difference(figure, reference, design)
             for design in others
         ),
     )
@@ -178,18 +181,18 @@ def _unlike(figure: Figure, first: Outcome, other: Outcome) -> bool:
 
     What is of other things has a difference, but it says nothing of the designs.
     """
-    told: Callable[[Outcome], str]
+    basis: Callable[[Outcome], str]
     if any(part in figure.name for part in _OF_POWER):
-        told = _efficiency
+        basis = _efficiency
     elif "backlash" in figure.name:
-        told = _tolerances
+        basis = _tolerances
     elif figure.part == "torsion" or "stiffness" in figure.name:
-        told = _yields
+        basis = _yields
     elif any(part in figure.name for part in _OF_BODIES):
-        told = _bodies
+        basis = _bodies
     else:
         return False
-    return told(first) != told(other)
+    return basis(first) != basis(other)
 
 
 def of_several(table: Compared, designs: int) -> tuple[Compared, int]:
@@ -205,16 +208,16 @@ def of_several(table: Compared, designs: int) -> tuple[Compared, int]:
 
 def bases(outcomes: Mapping[str, Outcome]) -> Iterator[tuple[str, ...]]:
     """Ratios that differ, and what efficiencies and stiffnesses are of, where that is not the whole."""
-    ratios = [ratio_words(one) or NOTHING for one in outcomes.values()]
+    ratios = [ratio_words(outcome) or NOTHING for outcome in outcomes.values()]
     if len({*ratios}) > 1:
         yield (RATIO, *ratios)
-    for words, told in (
+    for words, basis in (
         ("efficiency is that of the", _efficiency),
         ("stiffness is that of", _yields),
     ):
-        each = [told(one).partition(";")[0] for one in outcomes.values()]
-        if any(each):
-            yield (words, *(one or NOTHING for one in each))
+        cells = [basis(outcome).partition(";")[0] for outcome in outcomes.values()]
+        if any(cells):
+            yield (words, *(outcome or NOTHING for outcome in cells))
 
 
 RATIO = "ratio, speed of the driver over that of the output"
@@ -236,15 +239,17 @@ def _bodies(outcome: Outcome) -> str:
 def _tolerances(outcome: Outcome) -> str:
     """Whether a backlash is by tolerances or as drawn."""
     parts = (outcome.parts.get(name) for name in ("reflected", "inspection"))
-    return str(max((one.sizes.get("case", 1) for one in parts if one is not None), default=1) > 1)
+    return str(
+        max((part.sizes.get("case", 1) for part in parts if part is not None), default=1) > 1
+    )
 
 
 def _yields(outcome: Outcome) -> str:
     torsion = outcome.parts.get("torsion")
     if torsion is None:
         return ""
-    told = torsion["torsional_stiffness"].attrs
-    return f"{told.get('covers', '')}{told.get('assumed', '')}"
+    attributes = torsion["torsional_stiffness"].attrs
+    return f"{attributes.get('covers', '')}{attributes.get('assumed', '')}"
 
 
 def _shown(figure: Figure, value: float) -> float:
@@ -267,12 +272,12 @@ def _difference(figure: Figure, first: str, design: str) -> str:
     """Difference from the first design; in points of a percentage, else in its unit and in percent."""
     if first not in figure.values or design not in figure.values:
         return NOTHING
-    before, now = (_shown(figure, figure.values[one]) for one in (first, design))
+    before, now = (_shown(figure, figure.values[name]) for name in (first, design))
     change = now - before
     if figure.variable.display == "%":
         return f"{show.signed(change, 2)} points"
     if abs(change) <= _ROUNDING * max(abs(before), abs(now)):
         return "0"
-    told = show.number(change) if change < 0.0 else f"+{show.number(change)}"
+    signed = show.number(change) if change < 0.0 else f"+{show.number(change)}"
     part = 100.0 * np.divide(change, abs(before)) if before else np.inf
-    return f"{told} ({show.signed(part, 1)} %)" if abs(part) < 1000.0 else told
+    return f"{signed} ({show.signed(part, 1)} %)" if abs(part) < 1000.0 else signed

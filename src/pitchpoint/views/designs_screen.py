@@ -123,8 +123,8 @@ def _told(
     shown = ranked if len(ranked) <= most else ranked[: most - 1]
     lines = 2 if style == "doubt" else 1
     yield from (Line(line, style) for text in shown for line in within(text, width, lines))
-    if rest := len(ranked) - len(shown):
-        yield Line(f"{rest} more of this kind by --full.", style)
+    if hidden := len(ranked) - len(shown):
+        yield Line(f"{hidden} more of this kind by --full.", style)
 
 
 def _answers(outcomes: Mapping[str, Outcome]) -> tuple[list[tuple[str, ...]], list[str]]:
@@ -207,14 +207,14 @@ def _cut(lines: list[str], room: int) -> list[str]:
 
 def _basis(outcomes: Mapping[str, Outcome]) -> Iterator[str]:
     """What efficiency and stiffness are of, where that is not the same; else what the efficiency is of."""
-    for words, *each in bases(outcomes):
+    for words, *cells in bases(outcomes):
         designs: dict[str, list[str]] = {}
-        for name, what in zip(outcomes, each, strict=True):
+        for name, what in zip(outcomes, cells, strict=True):
             if what != NOTHING:
                 designs.setdefault(what, []).append(name)
-        told = "; ".join(f"{what} ({', '.join(names)})" for what, names in designs.items())
+        sentences = "; ".join(f"{what} ({', '.join(names)})" for what, names in designs.items())
         if words != RATIO and len(designs) > 1:
-            yield f"{show.sentence(words, whole=False)}: {told}."
+            yield f"{show.sentence(words, whole=False)}: {sentences}."
         elif words.startswith("efficiency"):
             yield f"{show.sentence(words, whole=False)} {next(iter(designs))}."
 
@@ -227,28 +227,26 @@ def _same(alike: Sequence[str]) -> Iterator[str]:
 def _inputs(outcomes: Mapping[str, Outcome], width: int, most: int) -> list[str]:
     """Inputs that differ, with their values of two designs, as many as a few lines hold."""
     table, _ = of_several(input_tables(outcomes)[0], len(outcomes))
-    each = [
+    differing = [
         f"{row[0]}.{row[1]}" + (f" {row[2]} → {row[3]}" if len(outcomes) == 2 else "")
         for row in table.rows
     ]
-    for count in range(len(each), 0, -1):
-        rest = f"; {len(each) - count} more by --full" if count < len(each) else ""
-        lines = wrapped(f"Inputs that differ: {'; '.join(each[:count])}{rest}.", width)
+    for count in range(len(differing), 0, -1):
+        hidden = f"; {len(differing) - count} more by --full" if count < len(differing) else ""
+        lines = wrapped(f"Inputs that differ: {'; '.join(differing[:count])}{hidden}.", width)
         if len(lines) <= most + 1:
             return lines
-    return ["Inputs that differ: by --full."] if each else ["No input differs."]
+    return ["Inputs that differ: by --full."] if differing else ["No input differs."]
 
 
 def _behind(outcomes: Mapping[str, Outcome], shown: int) -> str:
     """What --full has beyond that."""
     results = len(result_table(outcomes).rows) - shown
     inputs = sum(len(table.rows) for table in input_tables(outcomes))
-    warnings = sum(len(one.manifest["warnings"]) for one in outcomes.values())
-    told = {
+    warnings = sum(len(outcome.manifest["warnings"]) for outcome in outcomes.values())
+    counts = {
         "more results": results,
         f"input{'s' * (inputs > 1)} that differ{'s' * (inputs == 1)}": inputs,
         f"warning{'s' * (warnings > 1)} in full": warnings,
     }
-    return (
-        f"By --full: {', '.join(f'{count} {words}' for words, count in told.items() if count > 0)}"
-    )
+    return f"By --full: {', '.join(f'{count} {words}' for words, count in counts.items() if count > 0)}"

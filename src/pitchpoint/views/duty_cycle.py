@@ -128,8 +128,8 @@ def _electrical(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
                 "peak_electrical_power",
             )
         )
-        told = f"{back} given back, efficiency {share}, {most} at most"
-        yield "Electrical energy", "electrical_energy", told
+        detail = f"{back} given back, efficiency {share}, {most} at most"
+        yield "Electrical energy", "electrical_energy", detail
 
 
 def first_to_fail(data: xr.Dataset, order: float) -> KeyFigure:

@@ -102,14 +102,14 @@ class Reader:
         """What the page shows of a case at one point, and of the teeth of its stages by number."""
         titled_ones = {f"Stage {number}": one for number, one in stages.items()} or {"": outcome}
         drawn = [one for title, of in titled_ones.items() for one in self._drawn(of, title)]
-        told = outcome.manifest
+        manifest = outcome.manifest
         with shown_in(recorded_units({"": outcome})):
             courses = _courses(outcome)
         rates = [rate for *_, rate in drawn]
         return Point(
             courses,
-            told["implausible"],
-            told["warnings"],
+            manifest["implausible"],
+            manifest["warnings"],
             [number for number, *_ in drawn],
             [acting for _, acting, _ in drawn],
             [rate / rates[0] for rate in rates],
@@ -118,12 +118,12 @@ class Reader:
     def _drawn(self, outcome: Outcome, title: str) -> Iterator[tuple[int, Any, float]]:
         """Number of a drawing, what acts in it, and what its slider counts in a second; none without one."""
         name = f"drawing{len(self.drawings)}"
-        for made in islice(_movings(outcome, name), 1):
-            mark = json.dumps({**made.picture, "name": title})
+        for moving in islice(_movings(outcome, name), 1):
+            mark = json.dumps({**moving.picture, "name": title})
             number = self._known.setdefault(mark, len(self.drawings))
             if number == len(self.drawings):
-                self.drawings.append(replace(made, title=title))
-            yield number, made.acting, made.period / period_of(outcome).time
+                self.drawings.append(replace(moving, title=title))
+            yield number, moving.acting, moving.period / period_of(outcome).time
 
 
 def _movings(outcome: Outcome, name: str) -> Iterator[Moving]:
@@ -149,23 +149,23 @@ def _courses(outcome: Outcome) -> dict[str, Course]:
 
 def _course(outcome: Outcome, data: xr.Dataset, name: str) -> Course:
     values = np.atleast_2d(display(name, data[name].values, data))
-    each = [_thinned(*gapped(*folded(data["phase"].values, row))) for row in values]
+    courses = [_thinned(*gapped(*folded(data["phase"].values, row))) for row in values]
     return Course(
         title=f"{titled(name, data)} over the mesh cycle",
         axis=short_axis(name, data),
         abscissa=period_of(outcome).axis,
-        x=rounded(each[0][0], 5),
-        y=[rounded(y) for _, y in each],
+        x=rounded(courses[0][0], 5),
+        y=[rounded(y) for _, y in courses],
     )
 
 
 def _thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Fewer points, with those on both sides of every gap, which repeats the place before it."""
-    kept = np.arange(x.size) % max(x.size // _NODES, 1) == 0
+    shown = np.arange(x.size) % max(x.size // _NODES, 1) == 0
     gaps = np.flatnonzero(np.diff(x) == 0.0) + 1
     for beside in (gaps - 1, gaps, gaps[gaps + 1 < x.size] + 1):
-        kept[beside] = True
-    return x[kept], y[kept]
+        shown[beside] = True
+    return x[shown], y[shown]
 
 
 def write_explorer(found: Explored[Point], drawings: Sequence[Moving], path: str | Path) -> None:
@@ -241,13 +241,13 @@ def _rendered(found: Explored[Point], drawings: Sequence[Moving]) -> str:
 def _axis(axis: Axis, found: Explored[Point]) -> dict[str, Any]:
     """What a slider needs, in the unit in which a case file shows the values."""
     quantity = axis.quantity
-    values, own = (_shown(axis, one) for one in (axis.values, np.array([axis.own])))
+    values, own_value = (_shown(axis, one) for one in (axis.values, np.array([axis.own])))
     return {
         "key": axis.key,
         "words": _words(axis.key, found.own.manifest),
         "unit": show.unit(unit_in_use(quantity.kind, quantity.unit)),
         "values": values,
-        "own": own[0],
+        "own": own_value[0],
         "step": _step(values),
         "whole": quantity.whole,
         "shapes": _shapes(axis, found),
@@ -298,15 +298,18 @@ def _words(key: str, manifest: Mapping[str, Any]) -> str:
     stage = [f"stage {inside[0]}"] if table == "stages" else []
     inside = inside[2:] if stage else inside
     return ", ".join(
-        [*stage, *(f"gear {one}" if one.isdecimal() else one.replace("_", " ") for one in inside)]
+        [
+            *stage,
+            *(f"gear {part}" if part.isdecimal() else part.replace("_", " ") for part in inside),
+        ]
     )
 
 
 def _shapes(axis: Axis, found: Explored[Point]) -> bool:
     """True if the teeth, or the phases at which pairs come and go, change along an axis."""
-    where = [one.key for one in found.axes].index(axis.key)
+    where = [slider.key for slider in found.axes].index(axis.key)
     numbers = np.moveaxis(
-        np.arange(len(found.seen)).reshape([len(one.values) for one in found.axes]), where, 0
+        np.arange(len(found.seen)).reshape([len(slider.values) for slider in found.axes]), where, 0
     ).reshape(len(axis.values), -1)
     return any(
         _differ(found.seen[a], found.seen[b])
@@ -341,10 +344,10 @@ def _figures(found: Explored[Point]) -> Iterator[dict[str, Any]]:
 def _figure(name: str, label: str, values: np.ndarray, found: Explored[Point]) -> dict[str, Any]:
     variable = show.described(name, found.figures)
     finite = values[np.isfinite(values)]
-    told = [variable.long_name, *([label.replace("_", " ")] if label else [])]
+    words = [variable.long_name, *([label.replace("_", " ")] if label else [])]
     return {
         "name": name,
-        "words": ", ".join(told),
+        "words": ", ".join(words),
         "axis": short_axis(name, found.figures),
         "unit": show.unit(variable.display),
         "range": rounded([finite.min(), finite.max()]),
@@ -359,26 +362,28 @@ def _percent(share: float) -> str:
 
 def _error_words(found: Explored[Point]) -> str:
     """How far interpolated figures are off, the worst one first."""
-    each = sorted(found.errors.items(), key=lambda one: -one[1])
-    named = {show.described(name, found.figures).long_name: _percent(off) for name, off in each}
-    return ", ".join(f"{told} {words}" for words, told in named.items())
+    errors = sorted(found.errors.items(), key=lambda one: -one[1])
+    named = {show.described(name, found.figures).long_name: _percent(off) for name, off in errors}
+    return ", ".join(f"{percent} {words}" for words, percent in named.items())
 
 
 def _sentences(found: Explored[Point]) -> dict[str, Any]:
     """Sentences once, and by point and law which of them say why there are no figures, or warn."""
-    known: dict[str, int] = {"": 0}
+    sentences: dict[str, int] = {"": 0}
 
     def number(text: str) -> int:
-        return known.setdefault(show.pretty(text), len(known))
+        return sentences.setdefault(show.pretty(text), len(sentences))
 
     reasons = found.figures["reason"].values
     why = [[number(str(text)) for text in row.ravel()] for row in reasons]
-    told: list[list[list[int]]] = [
-        [[], []] if one is None else [[*map(number, one.implausible)], [*map(number, one.warnings)]]
-        for one in found.seen
+    by_design: list[list[list[int]]] = [
+        [[], []]
+        if design is None
+        else [[*map(number, design.implausible)], [*map(number, design.warnings)]]
+        for design in found.seen
     ]
     absent = [number(found.refused.get(k, "")) for k in range(len(found.seen))]
-    return {"why": why, "told": told, "absent": absent, "sentences": [*known]}
+    return {"why": why, "told": by_design, "absent": absent, "sentences": [*sentences]}
 
 
 _LEVEL = {"automargin": False, "tickangle": 0}
@@ -390,20 +395,26 @@ def _drawn_courses(found: Explored[Point]) -> list[dict[str, Any]]:
     names = dict.fromkeys(name for one in found.seen if one is not None for name in one.courses)
     drawn = []
     for name in names:
-        each = [None if one is None else one.courses.get(name) for one in found.seen]
-        first = next(one for one in each if one is not None)
-        if not any(y is not None for one in each if one for row in one.y for y in row):
+        courses = [None if one is None else one.courses.get(name) for one in found.seen]
+        sample = next(one for one in courses if one is not None)
+        if not any(y is not None for one in courses if one for row in one.y for y in row):
             continue
-        known: dict[str, int] = {}
+        phase_numbers: dict[str, int] = {}
         phases: list[list[Any]] = []
         points: list[Any] = []
-        for one in each:
-            if one is not None and (key := str(one.x)) not in known:
-                known[key] = len(phases)
+        for one in courses:
+            if one is not None and (key := str(one.x)) not in phase_numbers:
+                phase_numbers[key] = len(phases)
                 phases.append(one.x)
-            points.append(None if one is None else [known[str(one.x)], one.y])
-        look = layout(first.abscissa, first.axis, xaxis=_LEVEL)
+            points.append(None if one is None else [phase_numbers[str(one.x)], one.y])
+        look = layout(sample.abscissa, sample.axis, xaxis=_LEVEL)
         drawn.append(
-            {"name": name, "title": first.title, "phases": phases, "points": points, "layout": look}
+            {
+                "name": name,
+                "title": sample.title,
+                "phases": phases,
+                "points": points,
+                "layout": look,
+            }
         )
     return drawn

@@ -64,8 +64,8 @@ INK, GREY = "#24303a", "#7b8791"
 
 def evenly(*colours: str) -> list[list[Any]]:
     """A scale of colours for a map, written with #: pages turn only these over for dark paper."""
-    last = len(colours) - 1
-    return [[place / last, colour] for place, colour in enumerate(colours)]
+    end = len(colours) - 1
+    return [[place / end, colour] for place, colour in enumerate(colours)]
 
 
 RISING = evenly("#fffef2", "#fed976", "#fd8d3c", "#e31a1c", "#800026")
@@ -212,9 +212,9 @@ def pair_key(position: int) -> Key:
 
 def law_title(outcome: Outcome, law: str) -> str:
     """Title of a friction law, or its name where nobody knows it any more."""
-    known = {entry["name"]: str(entry["title"]) for entry in outcome.manifest["laws"]}
-    if law in known:
-        return known[law]
+    titles = {entry["name"]: str(entry["title"]) for entry in outcome.manifest["laws"]}
+    if law in titles:
+        return titles[law]
     return FRICTION[law].title if law in FRICTION else law
 
 
@@ -239,13 +239,13 @@ def rounded(values: Any, digits: int = 5) -> list[Any]:
 
     def plain(value: Any) -> Any:
         if isinstance(value, list):
-            return [plain(one) for one in value]
+            return [plain(entry) for entry in value]
         if not isfinite(value):
             return None
         return round(value, max(_decimals(value, digits), of_range))
 
-    told: list[Any] = plain(array.tolist())
-    return told
+    entries: list[Any] = plain(array.tolist())
+    return entries
 
 
 def line_heights(values: Any, levels: int = 4000) -> list[Any]:
@@ -262,7 +262,7 @@ def line_heights(values: Any, levels: int = 4000) -> list[Any]:
     most = max(
         10.0**decimals * span / levels, 1.0
     )  # units of the last decimal from a level to the next
-    step = next(one for one in (5, 2, 1) if one <= most) * 10.0**-decimals
+    step = next(factor for factor in (5, 2, 1) if factor <= most) * 10.0**-decimals
     return [v if v is None else round(round(v / step) * step, decimals) + 0.0 for v in numbers]
 
 
@@ -301,8 +301,8 @@ def hovered(values: Any) -> str:
     array = np.asarray(values, float)
     finite = array[np.isfinite(array)]
     size, span = np.max(np.abs(finite), initial=0.0), np.ptp(finite) if finite.size else 0.0
-    more = ceil(log10(size / span)) if span > ROUNDING * size else 0
-    return f".{max(4, 3 + more)}~r"
+    extra_digits = ceil(log10(size / span)) if span > ROUNDING * size else 0
+    return f".{max(4, 3 + extra_digits)}~r"
 
 
 def plain(key: Key, x: Any, y: Any, unit: str, **more: Any) -> Trace:
@@ -319,12 +319,12 @@ def continued(x: np.ndarray, y: np.ndarray, most: int = 600) -> tuple[np.ndarray
     """
     span = np.nanmax(y, initial=-np.inf) - np.nanmin(y, initial=np.inf)
     jumps = np.flatnonzero((np.diff(x) < 1e-6) & (np.abs(np.diff(y)) > 1e-3 * span))
-    kept = np.zeros(x.size, bool)
-    kept[:: max(x.size // most, 1)] = True
-    kept[[0, -1, *jumps, *(jumps + 1)]] = True
-    kept |= np.isnan(y) | np.isnan(np.roll(y, 1)) | np.isnan(np.roll(y, -1))  # gaps stay as wide
-    cuts = np.searchsorted(np.flatnonzero(kept), jumps + 1)
-    return np.insert(x[kept], cuts, x[jumps]), np.insert(y[kept], cuts, np.nan)
+    shown = np.zeros(x.size, bool)
+    shown[:: max(x.size // most, 1)] = True
+    shown[[0, -1, *jumps, *(jumps + 1)]] = True
+    shown |= np.isnan(y) | np.isnan(np.roll(y, 1)) | np.isnan(np.roll(y, -1))  # gaps stay as wide
+    cuts = np.searchsorted(np.flatnonzero(shown), jumps + 1)
+    return np.insert(x[shown], cuts, x[jumps]), np.insert(y[shown], cuts, np.nan)
 
 
 def layout(x: str, y: str, **more: Any) -> dict[str, Any]:
@@ -395,12 +395,12 @@ def text(words: str) -> str:
 
 def merged(traces: Sequence[Trace]) -> tuple[list[Trace], str]:
     """One trace and a remark in place of several that lie on each other."""
-    first = traces[0] if traces else {}
-    same = all((t["x"], t["y"]) == (first["x"], first["y"]) for t in traces)
-    if len(traces) < 2 or not same:
+    trace = traces[0] if traces else {}
+    alike = all((t["x"], t["y"]) == (trace["x"], trace["y"]) for t in traces)
+    if len(traces) < 2 or not alike:
         return list(traces), ""
-    one = {**first, "name": "", "meta": "", "line": {"color": INK, "width": 2}}
-    return [one], "The same for every curve."
+    common = {**trace, "name": "", "meta": "", "line": {"color": INK, "width": 2}}
+    return [common], "The same for every curve."
 
 
 def _constant(traces: Sequence[Trace]) -> float | None:

@@ -124,8 +124,10 @@ def _spread(data: xr.Dataset) -> str:
     """What asperities carry at most with every set of summits, in words."""
     if "summits_share" not in data:
         return ""
-    each = zip(data["summits"].values, data["summits_share"].values, strict=True)
-    shares = (f"{show.quantity('summits_share', float(one))} by {name}" for name, one in each)
+    summits = zip(data["summits"].values, data["summits_share"].values, strict=True)
+    shares = (
+        f"{show.quantity('summits_share', float(share))} by {name}" for name, share in summits
+    )
     return f" ({', '.join(shares)})"
 
 
@@ -183,15 +185,15 @@ def _thermal(data: xr.Dataset) -> str:
 
 def _main(data: xr.Dataset) -> tuple[str, ...]:
     """Names of the figures of the films themselves."""
-    known = (name for name in _FINITE if name in data and np.isfinite(float(data[name])))
-    found = (*known, *(name for name in _FIGURES if name in data))
-    return found if _thermal(data) == ISOTHERMAL else (*found, *_WARMTH)
+    finite = (name for name in _FINITE if name in data and np.isfinite(float(data[name])))
+    names = (*finite, *(name for name in _FIGURES if name in data))
+    return names if _thermal(data) == ISOTHERMAL else (*names, *_WARMTH)
 
 
 def _first(data: xr.Dataset) -> tuple[str, ...]:
     """Those on the screen: a largest pressure at a sharp end is none to begin with."""
     sharp = bool(data.attrs.get("sharp"))
-    return tuple(one for one in _main(data) if not (sharp and one == "largest_film_pressure"))
+    return tuple(name for name in _main(data) if not (sharp and name == "largest_film_pressure"))
 
 
 def _warmed(data: xr.Dataset) -> str:
@@ -236,9 +238,9 @@ def of_most(data: xr.Dataset, values: np.ndarray) -> np.ndarray:
     """Values [..., phase, pair, slice] at the contact of each phase that carries most [..., phase]."""
     load = data["load"].values
     flat = np.argmax(load.reshape(load.shape[0], -1), axis=-1)
-    each = values.reshape(*values.shape[:-2], -1)
-    found: np.ndarray = each[..., np.arange(load.shape[0]), flat]
-    return found
+    places = values.reshape(*values.shape[:-2], -1)
+    of_loaded: np.ndarray = places[..., np.arange(load.shape[0]), flat]
+    return of_loaded
 
 
 def _mean(data: xr.Dataset, values: np.ndarray) -> np.ndarray:
@@ -246,8 +248,8 @@ def _mean(data: xr.Dataset, values: np.ndarray) -> np.ndarray:
     carries = np.where(np.isnan(data["pressure"].values), 0.0, data["load"].values)
     weighed = np.where(carries > 0.0, carries * values, 0.0).sum(axis=(-2, -1))
     total = carries.sum(axis=(-2, -1))
-    found: np.ndarray = weighed / np.where(total > 0.0, total, np.nan)
-    return found
+    mean: np.ndarray = weighed / np.where(total > 0.0, total, np.nan)
+    return mean
 
 
 def course(data: xr.Dataset, name: str, key: Key, values: np.ndarray) -> Trace:
@@ -280,9 +282,9 @@ def _films(name: str, data: xr.Dataset, axis: str) -> Figure:
         for key, film in zip(_SOLVED, ("minimum_film", "central_film"), strict=True)
     ]
     lines += [
-        (key, course(data, one, key, of_most(data, data[one].values)))
-        for one, key in _OF_LINES_ALONE.items()
-        if one in data
+        (key, course(data, variable, key, of_most(data, data[variable].values)))
+        for variable, key in _OF_LINES_ALONE.items()
+        if variable in data
     ]
     by_law = of_most(data, data["film_by_law"].values)
     lines += [
@@ -313,8 +315,8 @@ def _film_keys(data: xr.Dataset) -> list[Key]:
     titles, places = (json.loads(data.attrs[f"film_{what}"]) for what in ("titles", "places"))
     broken = cycle(_CENTRAL)
     dashes = [next(broken) if place == "central" else "solid" for place in places]
-    each = enumerate(zip(titles, dashes, strict=True))
-    return [Key(title, PALETTE[k % len(PALETTE)], dash) for k, (title, dash) in each]
+    numbered = enumerate(zip(titles, dashes, strict=True))
+    return [Key(title, PALETTE[k % len(PALETTE)], dash) for k, (title, dash) in numbered]
 
 
 def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
@@ -324,7 +326,7 @@ def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
         return
     rough = np.nanmedian(film / ratio)
     thinnest = np.min(np.where(np.isnan(ratio), np.inf, ratio), axis=(-2, -1))
-    given = {
+    ratios = {
         Key("solved, smallest", INK): of_most(data, ratio),
         Key("solved, in the middle", INK, "dash"): of_most(data, data["central_film"].values)
         / rough,
@@ -333,8 +335,8 @@ def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
         ),
     }
     by_law = of_most(data, data["film_by_law"].values) / rough
-    given |= dict(zip(_film_keys(data), by_law, strict=True))
-    lines = [(key, course(data, "minimum_lambda", key, values)) for key, values in given.items()]
+    ratios |= dict(zip(_film_keys(data), by_law, strict=True))
+    lines = [(key, course(data, "minimum_lambda", key, values)) for key, values in ratios.items()]
     title = "Film over composite Rq, and lubrication regimes"
     note = f"{MOST} {REGRESSED} What asperities carry stands in the next figure."
     figure = course_figure(name, title, "minimum_lambda", lines, axis, note)
@@ -371,7 +373,8 @@ def _frictions(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> Figu
         Key("of it by asperities", INK, "dot"): "boundary_part",
     }
     lines = [
-        (key, course(data, one, key, _mean(data, data[one].values))) for key, one in both.items()
+        (key, course(data, figure, key, _mean(data, data[figure].values)))
+        for key, figure in both.items()
     ]
     for key, values in zip(_law_keys(outcome, data), data["friction"].values, strict=True):
         lines.append((key, course(data, "friction", key, _mean(data, values))))
@@ -437,23 +440,23 @@ def _warmth(data: xr.Dataset) -> str:
 
 def figures_table(outcome: Outcome, data: xr.Dataset) -> Table:
     """Figures of the cycle, with those of lines without ends and of the friction laws beside them."""
-    known, lines = laws(data), [LINES] * ("mean_line_loss" in data)
+    law_names, lines = laws(data), [LINES] * ("mean_line_loss" in data)
 
     def row(name: str, cells: Sequence[str]) -> tuple[str, ...]:
         beside = [told(data, _OF_LINES[name]) if name in _OF_LINES else "" for _ in lines]
         title = titled(name, data).removesuffix(" by the films")
         return (title, told(data, name), *beside, *cells)
 
-    empty = [""] * len(known)
+    empty = [""] * len(law_names)
     rows = [row(name, empty) for name in _main(data)]
     rows += [row(name, empty) for name in _SERIES if name in data]
-    for own, by_law in _BESIDE.items():
+    for figure, by_law in _BESIDE.items():
         values = data[by_law].values
-        if own == "film_efficiency" and not np.isfinite(values).any():
+        if figure == "film_efficiency" and not np.isfinite(values).any():
             continue  # nothing is transmitted
-        rows.append(row(own, [show.quantity(by_law, float(one), of=data) for one in values]))
-        rows += [row(part, empty) for part in _PARTS.get(own, ())]
-    named = [law_title(outcome, law) for law in known]
+        rows.append(row(figure, [show.quantity(by_law, float(value), of=data) for value in values]))
+        rows += [row(part, empty) for part in _PARTS.get(figure, ())]
+    named = [law_title(outcome, law) for law in law_names]
     return Table(["", "by films", *lines, *named], rows, compact=True)
 
 
@@ -499,13 +502,13 @@ def beneath(data: xr.Dataset) -> Iterator[Paragraph]:
 
 def place_of(data: xr.Dataset, phase: int, pair: int, part: int) -> str:
     """Where a contact of the cycle is, in words; bodies with one alone have neither phases nor pairs."""
-    _, pairs, many = data["minimum_film"].shape
+    _, pairs, part_count = data["minimum_film"].shape
     word = data["minimum_film"].dims[-1]
     parts = [
         f"phase {float(data['phase'][phase]) % 1.0:.3f}, {pair_key(pair).label}"
         if pairs > 1
         else "",
-        f"{word} {part + 1} of {many}, counted along the face" if many > 1 else "",
+        f"{word} {part + 1} of {part_count}, counted along the face" if part_count > 1 else "",
     ]
     return ", ".join(filter(None, parts)) or "the only contact"
 
@@ -569,8 +572,8 @@ def _row(
 
 def counted(data: xr.Dataset) -> str:
     """How many contacts have a film, and what of it rests on assumptions."""
-    found, every = int(data["solved_contacts"]), int(data["loaded_contacts"])
-    words = f"{found} of {every} loaded contacts of the mesh cycle have a film that was found."
+    solved, every = int(data["solved_contacts"]), int(data["loaded_contacts"])
+    words = f"{solved} of {every} loaded contacts of the mesh cycle have a film that was found."
     words = words if every else UNLOADED
     return " ".join(
         filter(

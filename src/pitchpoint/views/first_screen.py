@@ -95,20 +95,20 @@ def first_screen(
     title = _title(outcome, len(outcomes))
     at = _operation(outcome) if len(outcomes) == 1 else ""
     doubts = _doubts(outcomes, width)
-    more = _more(outcomes, report, width) if tables else [Line(f"Report: {report}")]
+    below = _more(outcomes, report, width) if tables else [Line(f"Report: {report}")]
     rows = [*_rows_met(outcomes), *_missed(outcomes, report.parent, width)]
     folded = [line for text in rows for line in wrapped(text, width)]
-    if 1 + len(doubts) + len(folded) + len(more) > FEW_LINES:
+    if 1 + len(doubts) + len(folded) + len(below) > FEW_LINES:
         folded = [show.first_clauses(text, width) for text in rows]
-    foot = [*map(Line, folded), *more]
+    foot = [*map(Line, folded), *below]
     room = FEW_LINES - len(doubts) - len(foot) - bool(at)
     titles = wrapped(title, width)
     titles = titles if len(titles) <= min(room, 2) else [show.first_clauses(title, width)]
     head = [Line(text, "title") for text in titles]
     head += [Line(show.first_clauses(at, width))] if at else []
-    known = _key_figures(outcome) if len(outcomes) == 1 else []
+    key_figures = _key_figures(outcome) if len(outcomes) == 1 else []
     room = max(room - len(titles), 0)
-    figures = _fitting(known, room, width) if tables else _in_full(known, width)
+    figures = _fitting(key_figures, room, width) if tables else _in_full(key_figures, width)
     fails, doubtful = (
         [line for line in doubts if line.style == style] for style in ("fails", "doubt")
     )
@@ -128,14 +128,18 @@ def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     ranked = sorted(chain(*figures.values()), key=lambda figure: figure.order)
     names = dict.fromkeys(figure.name for figure in ranked)
     rows = [
-        {"": name} | {variant: own.get(name, "–") for variant, own in values.items()}
+        {"": name} | {variant: of_variant.get(name, "–") for variant, of_variant in values.items()}
         for name in names
     ]
-    known = {v: "%" in own.get("Efficiency", "") for v, own in values.items()}
-    others = {v: _by_other_laws(outcome) if known[v] else "" for v, outcome in outcomes.items()}
+    has_efficiency = {
+        v: "%" in of_variant.get("Efficiency", "") for v, of_variant in values.items()
+    }
+    others = {
+        v: _by_other_laws(outcome) if has_efficiency[v] else "" for v, outcome in outcomes.items()
+    }
     if any(others.values()):
         at = 1 + [*names].index("Efficiency")
-        rows.insert(at, {"": "by other laws"} | {v: told or "–" for v, told in others.items()})
+        rows.insert(at, {"": "by other laws"} | {v: words or "–" for v, words in others.items()})
     return [*_differing_bases(outcomes), *rows]
 
 
@@ -143,24 +147,28 @@ def _by_other_laws(outcome: Outcome) -> str:
     """Efficiency by the other friction laws that the case names, whether in their range or not."""
     if "operation" not in outcome.parts or of_contact(outcome.parts["operation"]):
         return ""
-    data, first = outcome.parts["operation"], _law(outcome)
+    data, shown_law = outcome.parts["operation"], _law(outcome)
     values = zip(laws(data), data["mean_efficiency"].values[:, 0], strict=True)
-    each = ((law, value) for law, value in values if law != first and isfinite(value))
-    return "; ".join(f"{show.quantity('mean_efficiency', value)} {law}" for law, value in each)
+    efficiencies = ((law, value) for law, value in values if law != shown_law and isfinite(value))
+    return "; ".join(
+        f"{show.quantity('mean_efficiency', value)} {law}" for law, value in efficiencies
+    )
 
 
 def _differing_bases(outcomes: Mapping[str, Outcome]) -> Iterator[dict[str, str]]:
     """Ratios of drives of several meshes; friction law and mean of variants where these are not the same."""
-    if any(one.manifest.get("stages") for one in outcomes.values()):
+    if any(design.manifest.get("stages") for design in outcomes.values()):
         yield {"": "Ratio"} | {v: ratio_words(outcome) or "–" for v, outcome in outcomes.items()}
-    told = {
+    by_basis = {
         "Friction": {variant: _law(outcome) for variant, outcome in outcomes.items()},
         "Mean over": {
             variant: show.pretty(str(outcome.manifest.get("averaging", "–")))
             for variant, outcome in outcomes.items()
         },
     }
-    yield from ({"": name} | each for name, each in told.items() if len({*each.values()}) > 1)
+    yield from (
+        {"": name} | cells for name, cells in by_basis.items() if len({*cells.values()}) > 1
+    )
 
 
 def _law(outcome: Outcome) -> str:
@@ -190,13 +198,13 @@ def _swept(data: xr.Dataset, *, solved: bool) -> Iterator[dict[str, str]]:
     heads = {n: f"{head} [{units[n]}]" if units[n] else head for n, head in SWEPT_HEADS.items()}
     if solved:
         heads["min_lambda_ratio"] = "film ratio by formula"
-    known = {n: head for n, head in heads.items() if n in data and not data[n].isnull().all()}
+    shown_heads = {n: head for n, head in heads.items() if n in data and not data[n].isnull().all()}
     for point in points:
         for law in laws:
             named = {"law": str(data["law"].values[law])} if len(laws) > 1 else {}
-            values = {name: float(data[name].values[law, point]) for name in known}
+            values = {name: float(data[name].values[law, point]) for name in shown_heads}
             cells = {
-                known[name]: marked(name, _cell(name, value, data), data, law, point)
+                shown_heads[name]: marked(name, _cell(name, value, data), data, law, point)
                 for name, value in values.items()
             }
             yield swept_place(data, point) | named | cells
@@ -245,9 +253,9 @@ def _doubts(outcomes: Mapping[str, Outcome], width: int) -> list[Line]:
     shown = every if len(every) <= most else every[: most - 1]
     while sum(map(len, shown)) > _OF_DOUBTS:
         shown = shown[:-1]
-    rest = len(every) - len(shown)
-    more = "1 more of this kind is" if rest == 1 else f"{rest} more of this kind are"
-    return [*chain(*shown), *[Line(f"{more} in the report.", "doubt")] * (rest > 0)]
+    hidden = len(every) - len(shown)
+    remainder = "1 more of this kind is" if hidden == 1 else f"{hidden} more of this kind are"
+    return [*chain(*shown), *[Line(f"{remainder} in the report.", "doubt")] * (hidden > 0)]
 
 
 def _key_figures(outcome: Outcome) -> list[KeyFigure]:
@@ -257,12 +265,12 @@ def _key_figures(outcome: Outcome) -> list[KeyFigure]:
 
 def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
     """Briefs of all variants, each once and the worst of each first, those of some with their variants."""
-    told = told_of_variants(
+    by_text = told_of_variants(
         outcomes, kind, lambda one, text: by_members(one, show.pretty(as_doubt(text).brief))
     )
     return [
         text if len(names) == len(outcomes) else f"{_few(names, len(outcomes))}: {text}"
-        for text, names in told.items()
+        for text, names in by_text.items()
     ]
 
 
@@ -288,8 +296,8 @@ def _left_out(figures: Sequence[KeyFigure], width: int) -> str:
     """Figures that have no line of their own, as many by name as a line holds, and what shows them."""
     names = [show.one_line(f"{figure.name[:1].lower()}{figure.name[1:]}") for figure in figures]
     for count in range(len(names), 0, -1):
-        rest = [f"{len(names) - count} more"] if count < len(names) else []
-        text = f"By --full: {', '.join([*names[:count], *rest])}"
+        hidden = [f"{len(names) - count} more"] if count < len(names) else []
+        text = f"By --full: {', '.join([*names[:count], *hidden])}"
         if len(text) <= width:
             return text
     return f"{len(names)} more by --full"
@@ -323,7 +331,7 @@ def _rows_met(outcomes: Mapping[str, Outcome]) -> Iterator[str]:
     """How many printed numbers each variant meets, of a published case."""
     for variant, outcome in outcomes.items():
         if outcome.rows:
-            several = sum(bool(other.rows) for other in outcomes.values()) > 1
+            several = sum(bool(compared.rows) for compared in outcomes.values()) > 1
             start = f"{variant}: " if several else ""
             yield f"{start}{in_words(outcome.rows)}"
 
@@ -343,8 +351,8 @@ def _missed(outcomes: Mapping[str, Outcome], folder: Path, width: int) -> Iterat
         if row.verdict == "miss" and row.kind != "reference"
     )
     for count in range(len(names), 0, -1):
-        rest = f"and {len(names) - count} more: {command}".replace(" ", "\u00a0")
-        text = f"Missed: {'; '.join([*names][:count])}{f'; {rest}' if count < len(names) else ''}"
+        hidden = f"and {len(names) - count} more: {command}".replace(" ", "\u00a0")
+        text = f"Missed: {'; '.join([*names][:count])}{f'; {hidden}' if count < len(names) else ''}"
         if len(wrapped(text, width)) <= 2:
             yield text
             return

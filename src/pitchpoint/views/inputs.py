@@ -105,8 +105,8 @@ def set_for_run(manifest: Mapping[str, Any]) -> dict[str, str]:
 
 def recorded_units(outcomes: Mapping[str, Outcome]) -> Choice:
     """Units by kind of quantity in which the first of some results asks to be shown."""
-    asked = next((given(one, OUTPUT, "units") for one in outcomes.values()), None)
-    return unit_choice(asked or {})
+    choices = next((given(outcome, OUTPUT, "units") for outcome in outcomes.values()), None)
+    return unit_choice(choices or {})
 
 
 def given(outcome: Outcome, table: str, key: str) -> Any:
@@ -147,8 +147,8 @@ def _label(row: Row) -> str:
     if row["table"] not in _TABLES:
         return key
     *gear, name = key.split(".")
-    told = _LABELS.get(name, name.replace("_", " "))
-    return ", ".join((*(one.replace("_", " ") for one in gear), told))
+    label = _LABELS.get(name, name.replace("_", " "))
+    return ", ".join((*(part.replace("_", " ") for part in gear), label))
 
 
 def _empty(row: Row) -> bool:
@@ -160,11 +160,11 @@ def _words(row: Row) -> str:
     value = row["value"]
     if not isinstance(value, list):
         return _one(value, row)
-    if value and all(isinstance(one, float) for one in value):
+    if value and all(isinstance(entry, float) for entry in value):
         shown = _several(value, row)
         alike = not _path(row).endswith("gears.profile_shift") and len(set(shown)) == 1
         return " / ".join(shown[:1] if alike else shown)
-    return ", ".join(_item(one, row) for one in value) or "none"
+    return ", ".join(_item(entry, row) for entry in value) or "none"
 
 
 def _several(values: list[float], row: Row) -> list[str]:
@@ -172,11 +172,13 @@ def _several(values: list[float], row: Row) -> list[str]:
     kind = row["kind"]
     usual = _unit(row["table"], row["key"], kind) if kind and isinstance(kind, str) else ""
     shown, unit = (
-        handy([units.convert(one, usual, kind) for one in values], usual) if usual else ([], "")
+        handy([units.convert(number, usual, kind) for number in values], usual)
+        if usual
+        else ([], "")
     )
     if unit == usual:
-        return [_one(one, row) for one in values]
-    return [f"{one:.6g} {unit}" for one in shown]
+        return [_one(number, row) for number in values]
+    return [f"{number:.6g} {unit}" for number in shown]
 
 
 def _item(value: Any, row: Row) -> str:
@@ -187,8 +189,8 @@ def _item(value: Any, row: Row) -> str:
     if not _path(row).endswith("models.friction"):
         return " ".join(f"{name} {one}" for name, one in shown.items())
     law = shown.pop("name", "")
-    own = ", ".join(f"{name} {one}" for name, one in shown.items())
-    return f"{law} ({own})" if own else law
+    constants = ", ".join(f"{name} {one}" for name, one in shown.items())
+    return f"{law} ({constants})" if constants else law
 
 
 def _one(value: Any, row: Row, name: str = "") -> str:
@@ -220,8 +222,8 @@ def _shown(value: float, kind: str, unit: str) -> str:
 
 def _unit(table: str, key: str, kind: str) -> str:
     """Unit in which the value at a key is shown, one of its kind."""
-    own = _own_unit(table, key)
-    usual = own if own in units.units_of(kind) else _UNITS.get(kind, units.si_unit(kind))
+    own_unit = _own_unit(table, key)
+    usual = own_unit if own_unit in units.units_of(kind) else _UNITS.get(kind, units.si_unit(kind))
     return unit_in_use(kind, usual)
 
 

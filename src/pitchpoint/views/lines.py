@@ -107,8 +107,8 @@ def overlaid(
     alike = {
         design: data
         for design, data in designs.items()
-        if [show.unit_of(one, data) for one in (across, up)]
-        == [show.unit_of(one, like) for one in (across, up)]
+        if [show.unit_of(variable, data) for variable in (across, up)]
+        == [show.unit_of(variable, like) for variable in (across, up)]
     }
     keys = [
         Key(design, PALETTE[k % len(PALETTE)], DASHES[k // len(PALETTE) % len(DASHES)])

@@ -73,8 +73,8 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
         summed_up = any(table.caption.startswith("Gears") for table in tables)
         tables = [_given_gears(outcome, _SUMMED_UP if summed_up else ()), *tables]
     if page.several:
-        first = next(iter(page.outcomes))
-        tables = [replace(t, head=[f"{t.head[0]}, {first}", *t.head[1:]]) for t in tables]
+        name = next(iter(page.outcomes))
+        tables = [replace(t, head=[f"{t.head[0]}, {name}", *t.head[1:]]) for t in tables]
     remarks = [str(block.words) for block in blocks if isinstance(block, Paragraph)]
     doubts = _doubts(page)
     return {
@@ -109,10 +109,10 @@ def _columns(tables: Sequence[Table]) -> tuple[list[Table], list[Table]]:
 def _cut(table: Table, room: int) -> Table:
     """A table of as many rows as there is room for."""
     rows = list(table.rows)
-    rest = len(rows) - room
-    if rest <= 0:
+    hidden = len(rows) - room
+    if hidden <= 0:
         return replace(table, rows=rows)
-    return replace(table, rows=rows[:room], caption=f"{table.caption}, {rest} more below")
+    return replace(table, rows=rows[:room], caption=f"{table.caption}, {hidden} more below")
 
 
 _SUMMED_UP = ("teeth", "module", "face_width", "profile_shift")
@@ -146,9 +146,9 @@ def _place_of(row: Mapping[str, str]) -> str:
 
 def _of_member(key: str, outcome: Outcome) -> str:
     """Key of a material as the member of a mesh that it is of."""
-    gear, *rest = key.split(".")
+    gear, *inner_keys = key.split(".")
     members = dict(zip(("gear_1", "gear_2"), named_members(outcome), strict=False))
-    return " ".join([members.get(gear, gear), *rest]).replace("_", " ")
+    return " ".join([members.get(gear, gear), *inner_keys]).replace("_", " ")
 
 
 def _facts(outcome: Outcome) -> list[tuple[str, str]]:
@@ -188,8 +188,10 @@ def _standing(page: Page) -> Table | None:
     if not page.designs:
         return None
     facts = {name: dict(_facts(one)) for name, one in few.items()}
-    terms = dict.fromkeys(term for own in facts.values() for term in own if term not in _OF_MODELS)
-    rows = [(term, *(own.get(term, "–") for own in facts.values())) for term in terms]
+    terms = dict.fromkeys(
+        term for standing in facts.values() for term in standing if term not in _OF_MODELS
+    )
+    rows = [(term, *(standing.get(term, "–") for standing in facts.values())) for term in terms]
     return Table(["", *few], rows, caption="Designs")
 
 
@@ -250,17 +252,17 @@ def _assumed(manifest: Mapping[str, Any]) -> str:
         if row["status"] in _CHOSEN
     ]
     usual = sum(row["status"] == "default" for row in rows)
-    rest = len(chosen) - _ASSUMED
-    more = f"; {rest} more under Inputs as resolved" if rest > 0 else ""
-    words = f"Inputs assumed, fitted or corrected: {'; '.join(chosen[:_ASSUMED])}{more}. "
+    hidden = len(chosen) - _ASSUMED
+    remainder = f"; {hidden} more under Inputs as resolved" if hidden > 0 else ""
+    words = f"Inputs assumed, fitted or corrected: {'; '.join(chosen[:_ASSUMED])}{remainder}. "
     return f"{words if chosen else ''}{usual} inputs are not given and taken as usual."
 
 
 def _fingerprints(page: Page) -> str:
     """Fingerprint of the operating point of every variant, of its first part where there is none."""
     parts = (
-        one.parts.get("operation", next(iter(one.parts.values()), None))
-        for one in page.outcomes.values()
+        outcome.parts.get("operation", next(iter(outcome.parts.values()), None))
+        for outcome in page.outcomes.values()
     )
     marks = (str(part.attrs.get("fingerprint", "")) for part in parts if part is not None)
     return ", ".join(dict.fromkeys(filter(None, marks)))

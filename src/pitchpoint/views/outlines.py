@@ -27,11 +27,11 @@ def visible_points(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """
     gaps = ~np.isfinite(x + y)
     pixels = np.stack([_scaled(x, _WIDE), _scaled(y, _HIGH)], axis=1)
-    kept = gaps & ~np.append(gaps[1:], False)  # of a gap its last place
+    visible = gaps & ~np.append(gaps[1:], False)  # of a gap its last place
     for run in np.split(np.arange(x.size), np.flatnonzero(np.diff(gaps)) + 1):
         if run.size and not gaps[run[0]]:
-            kept[run] = _corners(pixels[run], _FINE)
-    return np.flatnonzero(kept)
+            visible[run] = _corners(pixels[run], _FINE)
+    return np.flatnonzero(visible)
 
 
 def _scaled(values: np.ndarray, pixels: float) -> np.ndarray:
@@ -41,20 +41,20 @@ def _scaled(values: np.ndarray, pixels: float) -> np.ndarray:
 
 def _corners(outline: np.ndarray, fine: float) -> np.ndarray:
     """True for corners that stay [corner]."""
-    kept = np.zeros(len(outline), bool)
-    kept[[0, -1]] = True
+    corners = np.zeros(len(outline), bool)
+    corners[[0, -1]] = True
     stack = [(0, len(outline) - 1)]
     while stack:
-        first, last = stack.pop()
-        inside = outline[first + 1 : last]
+        start, end = stack.pop()
+        inside = outline[start + 1 : end]
         if not len(inside):
             continue
-        (dx, dy), (x, y) = outline[last] - outline[first], (inside - outline[first]).T
+        (dx, dy), (x, y) = outline[end] - outline[start], (inside - outline[start]).T
         span = hypot(dx, dy)
         away = np.abs(dx * y - dy * x) / span if span > 0.0 else np.hypot(x, y)
         farthest = int(np.argmax(away))
         if away[farthest] > fine:
-            middle = first + 1 + farthest
-            kept[middle] = True
-            stack += [(first, middle), (middle, last)]
-    return kept
+            middle = start + 1 + farthest
+            corners[middle] = True
+            stack += [(start, middle), (middle, end)]
+    return corners

@@ -149,8 +149,8 @@ class Body:
         if not self.turns:
             return np.stack([self.tooth[[-1, 0], 0], np.full(2, self.levels["rim"])], axis=-1)
         radius = float(np.hypot(*self.tooth[0]))
-        last = float(np.arctan2(self.tooth[-1, 0], self.tooth[-1, 1]))
-        angle = np.linspace(last, -np.sign(last) * pi / self.count, 9)
+        root_angle = float(np.arctan2(self.tooth[-1, 0], self.tooth[-1, 1]))
+        angle = np.linspace(root_angle, -np.sign(root_angle) * pi / self.count, 9)
         return np.stack([radius * np.sin(angle), radius * np.cos(angle)], axis=-1)
 
 
@@ -183,15 +183,15 @@ class Picture:
     @cached_property
     def marks(self) -> list[tuple[str, Place]]:
         """Points with a letter."""
-        each = zip(self.teeth["mark"].values, self.teeth["layer_mark"].values, strict=True)
-        return [(str(name), (float(x), float(y))) for name, (x, y) in each if np.isfinite(x)]
+        marks = zip(self.teeth["mark"].values, self.teeth["layer_mark"].values, strict=True)
+        return [(str(name), (float(x), float(y))) for name, (x, y) in marks if np.isfinite(x)]
 
     def contacts(self, phase: float) -> list[Place]:
         """Points of contact at a phase [m]."""
         start, step = self.teeth["contact_start"].values, self.teeth["contact_step"].values
         entered = phase % 1.0 + np.arange(self.lanes + 1)
-        last = self.path.transverse_ratio * (1.0 + 1e-12)
-        inside = (entered >= self.behind) & (entered - self.behind <= last)
+        path_end = self.path.transverse_ratio * (1.0 + 1e-12)
+        inside = (entered >= self.behind) & (entered - self.behind <= path_end)
         return [(float(x), float(y)) for x, y in start + entered[inside, None] * step]
 
     def svg(self, name: str) -> dict[str, Any]:
@@ -222,12 +222,12 @@ class Picture:
         name, rate = self.driver
         body = next(body for body in self.bodies if body.name == name)
         left = (body.travel[0] < 0.0) != self.path.backwards
-        way = (
+        motion = (
             f"turning {'counter-clockwise' if rate > 0.0 else 'clockwise'}"
             if body.turns
             else f"travelling to the {'left' if left else 'right'}"
         )
-        return f"{name.capitalize()} drives, {way}"
+        return f"{name.capitalize()} drives, {motion}"
 
     def _alike(self) -> bool:
         """True if all bodies turn, and the same way."""
@@ -260,12 +260,12 @@ class Picture:
 
     def _window(self) -> list[float]:
         """View box around the mesh [mm]: path, marks that are near, depth of the teeth."""
-        pitch, first = float(self.teeth["base_pitch"]), self.bodies[0]
-        middle = first.place[1] + first.upwards * first.levels["working"]
+        pitch, driver = float(self.teeth["base_pitch"]), self.bodies[0]
+        middle = driver.place[1] + driver.upwards * driver.levels["working"]
         places = [(x, y) for _, (x, y) in self.marks if hypot(x, y - middle) < 2.6 * pitch]
         heights = [body.root for body in self.bodies]
-        if first.turns and first.levels["tip"] < _SMALL * pitch:
-            heights.append(-first.levels["tip"])
+        if driver.turns and driver.levels["tip"] < _SMALL * pitch:
+            heights.append(-driver.levels["tip"])
         low = min([y for _, y in places] + heights) - 0.25 * pitch
         high = max([y for _, y in places] + heights) + 0.25 * pitch
         left = min([x for x, _ in places] + [-1.2 * pitch]) - 0.45 * pitch
@@ -341,14 +341,14 @@ def _where(body: Body, bodies: tuple[Body, ...]) -> str:
     """Where a body is seen in the picture."""
     if body.ring:
         return "a ring; its rim is cut off"
-    if any(other.ring for other in bodies):
+    if any(body_beside.ring for body_beside in bodies):
         return "inside"
     return "above" if body.place[1] > 0.0 else "below"
 
 
 def _widened(low: float, high: float, least: float) -> tuple[float, float]:
-    more = max(least - (high - low), 0.0) / 2.0
-    return high + more, low - more
+    margin = max(least - (high - low), 0.0) / 2.0
+    return high + margin, low - margin
 
 
 def _mm(place: Any) -> Place:

@@ -75,8 +75,8 @@ class Period:
     def words(self) -> str:
         """How far the driver moves in a period."""
         if self.travels:
-            way = show.number(float(_WAY.displayed(self.angle)))
-            return f"{way} {show.unit(_WAY.display)} of the driver"
+            angle = show.number(float(_WAY.displayed(self.angle)))
+            return f"{angle} {show.unit(_WAY.display)} of the driver"
         turn, unit = show.number(float(_TURN.displayed(self.angle))), show.unit(_TURN.display)
         return f"{turn}{'' if unit == '°' else ' '}{unit} of the driver"
 
@@ -98,8 +98,8 @@ def operating_point(outcome: Outcome) -> OperatingPoint:
 
 def member_names(outcome: Outcome, stage: Label) -> dict[str, str]:
     """Members of a stage, "gear 1" say, and the bodies of a train that they are; else themselves."""
-    known = next(one for one in outcome.manifest["stages"] if one["number"] == stage)
-    return dict(zip(map(str, known["members"]), _by_bodies(known), strict=True))
+    record = next(one for one in outcome.manifest["stages"] if one["number"] == stage)
+    return dict(zip(map(str, record["members"]), _by_bodies(record), strict=True))
 
 
 def named_members(outcome: Outcome) -> list[str]:
@@ -119,7 +119,7 @@ def by_members(outcome: Outcome, text: str) -> str:
         for row in outcome.manifest["inputs"]
     ):
         return text
-    meshes = {str(one["number"]): _by_bodies(one) for one in outcome.manifest["stages"]}
+    meshes = {str(record["number"]): _by_bodies(record) for record in outcome.manifest["stages"]}
     names = {number: _central(bodies) for number, bodies in meshes.items()}
     every = "|".join(map(re.escape, meshes))
 
@@ -148,8 +148,8 @@ def by_bodies(outcome: Outcome, text: str) -> str:
 def of_stage_by_bodies(outcome: Outcome, text: str) -> str:
     """A text that begins with its stage, with the bodies of that in place of the members of its mesh."""
     stages = outcome.manifest.get("stages", ()) if text[1:].startswith("tage ") else ()
-    own = [one for one in stages if text[1:].startswith(f"tage {one['number']}: ")]
-    return _in_bodies(own[0], text) if own else text
+    records = [record for record in stages if text[1:].startswith(f"tage {record['number']}: ")]
+    return _in_bodies(records[0], text) if records else text
 
 
 def _in_bodies(record: Mapping[str, Any], text: str) -> str:
@@ -231,8 +231,8 @@ def of_geometry(outcomes: dict[str, Outcome]) -> list[tuple[str, Outcome]]:
     """
     groups: list[tuple[list[str], Outcome]] = []
     for variant, outcome in outcomes.items():
-        for names, other in groups:
-            if _same_geometry(other, outcome):
+        for names, drawn in groups:
+            if _same_geometry(drawn, outcome):
                 names.append(variant)
                 break
         else:

@@ -90,8 +90,8 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
     bare = Page(outcomes, curves(outcomes), designs=designs)
     lacking = {section: section.lacking(bare) for section in in_order()}
     page = replace(bare, sections=[one for one, why in lacking.items() if why is None])
-    made = [_made(section, page) for section in page.sections]
-    shown = list(panels(block for one in made for block in one["blocks"]))
+    sections = [_made(section, page) for section in page.sections]
+    shown = list(panels(block for one in sections for block in one["blocks"]))
     figures = [figure for panel in shown for figure in panel.figures if figure.drawn]
     return _as_printed(
         environment()
@@ -104,7 +104,7 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
             variants=[*outcomes],
             implausible=told_of_variants(outcomes, "implausible"),
             cited=any(one.manifest["sources"] for one in outcomes.values()),
-            sections=made,
+            sections=sections,
             absent=_absent(bare, lacking),
             version=page.version,
             pictured=None if designs else next((one for one in page.sections if one.picture), None),
@@ -146,8 +146,10 @@ def _captioned(blocks: Iterable[Block], title: str) -> list[Block]:
         elif isinstance(block, Table) and not block.caption:
             block = replace(block, caption=title, repeats=True)
         elif isinstance(block, Variants):
-            each = {name: _captioned(them, f"{title}, {name}") for name, them in block.each.items()}
-            block = Variants(each)
+            captioned = {
+                name: _captioned(them, f"{title}, {name}") for name, them in block.each.items()
+            }
+            block = Variants(captioned)
         elif isinstance(block, Folded):
             block = replace(block, inside=_captioned(block.inside, title))
         done.append(block)
@@ -204,8 +206,8 @@ def _as_text(content: str) -> str:
 
 def _as_printed(html: str) -> str:
     """A page whose numbers and units are those of a book, and stand on one line but for values of tiles."""
-    head, main, rest = html.partition("<main>")
-    shown, end, scripts = rest.partition("</main>")
+    head, main, tail = html.partition("<main>")
+    shown, end, scripts = tail.partition("</main>")
     shown = _SHOWN.sub(lambda text: _number_as_printed(text.group()), shown)
     return "".join((head, main, shown, end, scripts))
 
@@ -258,21 +260,21 @@ def environment() -> "jinja2.Environment":
     """Templates of pages, with what they ask for."""
     import jinja2
 
-    kept = _kept_pages()
-    made = jinja2.Environment(
-        bytecode_cache=None if kept is None else jinja2.FileSystemBytecodeCache(str(kept)),
+    compiled = _kept_pages()
+    jinja = jinja2.Environment(
+        bytecode_cache=None if compiled is None else jinja2.FileSystemBytecodeCache(str(compiled)),
         loader=jinja2.PackageLoader("pitchpoint.views"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters["marked"] = _marked
-    made.filters["typeset"] = _typeset
-    made.filters["sentence"] = show.sentence
-    made.filters["breakable"] = _breakable
-    made.globals["drawn"] = _drawn
-    return made
+    jinja.filters["marked"] = _marked
+    jinja.filters["typeset"] = _typeset
+    jinja.filters["sentence"] = show.sentence
+    jinja.filters["breakable"] = _breakable
+    jinja.globals["drawn"] = _drawn
+    return jinja
 
 
 def _typeset(words: str) -> "markupsafe.Markup":
@@ -291,9 +293,9 @@ def _breakable(words: str, *, symbols: bool = True) -> "markupsafe.Markup":
     """
     from markupsafe import Markup, escape
 
-    whole = _IN_UNIT.sub("\u00a0", str(escape(words)))
-    whole = show.subscripts(whole) if symbols else whole
-    return Markup(_DIGEST.sub(r"\g<0><wbr>", whole.replace("_", "_<wbr>")))
+    text = _IN_UNIT.sub("\u00a0", str(escape(words)))
+    text = show.subscripts(text) if symbols else text
+    return Markup(_DIGEST.sub(r"\g<0><wbr>", text.replace("_", "_<wbr>")))
 
 
 def _marked(words: str) -> "markupsafe.Markup":
@@ -363,9 +365,9 @@ def _steps(values: list[Any]) -> tuple[int | None, ...] | None:
         return None
     numbers = np.array([value for value in values if value is not None], dtype=float)
     for decimals in range(_DECIMALS):
-        whole = np.round(numbers * 10.0**decimals)
-        if np.array_equal(whole / 10.0**decimals, numbers) and np.all(np.abs(whole) < 2**53):
-            steps = iter(np.diff(whole, prepend=0.0).astype(int).tolist())
+        scaled = np.round(numbers * 10.0**decimals)
+        if np.array_equal(scaled / 10.0**decimals, numbers) and np.all(np.abs(scaled) < 2**53):
+            steps = iter(np.diff(scaled, prepend=0.0).astype(int).tolist())
             return (decimals, *(None if value is None else next(steps) for value in values))
     return None
 

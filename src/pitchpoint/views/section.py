@@ -235,10 +235,10 @@ class KeyFigure:
     @property
     def words(self) -> str:
         """Value and what goes with it."""
-        first = self.detail.partition(" ")[0]
-        if not first or first[0] in ",;":
+        opening = self.detail.partition(" ")[0]
+        if not opening or opening[0] in ",;":
             return f"{self.value}{self.detail}"
-        goes_on = first in _GOES_ON or first.startswith("(")
+        goes_on = opening in _GOES_ON or opening.startswith("(")
         return f"{self.value}{' ' if goes_on else ', '}{self.detail}"
 
     def of(self, stage: str) -> "KeyFigure":
@@ -297,38 +297,40 @@ class Page:
     @property
     def cases(self) -> str:
         """Name of the case, or names of those that are compared."""
-        every = (str(one.manifest["case"]) for one in self.outcomes.values())
+        every = (str(outcome.manifest["case"]) for outcome in self.outcomes.values())
         return ", ".join(dict.fromkeys(every)) if self.designs else str(self.first["case"])
 
     @property
     def version(self) -> str:
         """Versions of the package that computed the parts; one, unless an old result was completed."""
-        parts = (data for one in self.outcomes.values() for data in one.parts.values())
+        parts = (data for outcome in self.outcomes.values() for data in outcome.parts.values())
         return ", ".join(dict.fromkeys(str(data.attrs["version"]) for data in parts))
 
     def having(self, *parts: str) -> dict[str, Outcome]:
         """Outcomes that have all of some parts; "teeth.points" is a part that holds an array of that name."""
         return {
-            name: one
-            for name, one in self.outcomes.items()
-            if all(_has(one, part) for part in parts)
+            name: outcome
+            for name, outcome in self.outcomes.items()
+            if all(_has(outcome, part) for part in parts)
         }
 
     def by_mesh(self, *parts: str) -> "Page":
         """The page of what has some parts, of drives each mesh by itself under its name, with its curves."""
         meshes = by_mesh(self.having(*parts), *parts)
-        known = all(self.outcomes.get(name) is one for name, one in meshes.items())
-        return replace(self, outcomes=meshes, curves=self.curves if known else curves(meshes))
+        has_curves = all(self.outcomes.get(name) is outcome for name, outcome in meshes.items())
+        return replace(self, outcomes=meshes, curves=self.curves if has_curves else curves(meshes))
 
     def meshes(self, *parts: str) -> "dict[str, Page]":
         """By name of a mesh the page of those variants that have some parts of it; no name of a lone mesh."""
-        found: dict[str, dict[str, Outcome]] = {}
+        by_label: dict[str, dict[str, Outcome]] = {}
         for variant, outcome in self.having(*parts).items():
             for label, mesh in _meshes(outcome, *parts).items():
-                found.setdefault(label, {})[variant] = mesh
+                by_label.setdefault(label, {})[variant] = mesh
         return {
-            label: replace(self, outcomes=each, curves=curves(each) if label else self.curves)
-            for label, each in found.items()
+            label: replace(
+                self, outcomes=of_variants, curves=curves(of_variants) if label else self.curves
+            )
+            for label, of_variants in by_label.items()
         }
 
     def each(self, part: str) -> Iterator[tuple[int, str, Outcome]]:
@@ -346,15 +348,17 @@ class Page:
 def _with_bodies(stage: str, outcome: Outcome) -> str:
     """Title of a stage with its bodies, where it is a mesh of a train."""
     stages = outcome.manifest.get("stages", ())
-    numbered = (one for one in stages if isinstance(one["number"], int))  # labels have their bodies
-    known = {f"stage {one['number']}": one["bodies"] for one in numbered}
-    return ": ".join(filter(None, (stage, known.get(stage, ""))))
+    numbered = (
+        record for record in stages if isinstance(record["number"], int)
+    )  # labels have their bodies
+    bodies_of = {f"stage {record['number']}": record["bodies"] for record in numbered}
+    return ": ".join(filter(None, (stage, bodies_of.get(stage, ""))))
 
 
 def _bodies(stage: str, page: Page) -> str:
     """Bodies of a stage whose label does not have them, where all outcomes of a page name them alike."""
-    each = {str(one.manifest.get("bodies", "")) for one in page.outcomes.values()}
-    return each.pop() if len(each) == 1 and stage.removeprefix("stage ").isdigit() else ""
+    bodies = {str(outcome.manifest.get("bodies", "")) for outcome in page.outcomes.values()}
+    return bodies.pop() if len(bodies) == 1 and stage.removeprefix("stage ").isdigit() else ""
 
 
 def of_meshes(outcome: Outcome, *parts: str) -> list[tuple[str, Outcome]]:
@@ -366,14 +370,14 @@ def of_meshes(outcome: Outcome, *parts: str) -> list[tuple[str, Outcome]]:
     """
     names = {part.partition(".")[0] for part in parts} & {*outcome.parts}
     labels = dict.fromkeys(label for name in names for label in stages_of(outcome.parts[name]))
-    whole = {name: data for name, data in outcome.parts.items() if stages_of(data)}
-    of_all = {name: data for name, data in outcome.parts.items() if name not in whole}
+    of_stages = {name: data for name, data in outcome.parts.items() if stages_of(data)}
+    of_all = {name: data for name, data in outcome.parts.items() if name not in of_stages}
     return [
         (
             f"stage {label}",
             replace(
                 outcome,
-                parts=of_all | _of_stage(whole, label),
+                parts=of_all | _of_stage(of_stages, label),
                 manifest=_manifest_of(outcome.manifest, label),
             ),
         )
@@ -392,31 +396,31 @@ def by_mesh(outcomes: Mapping[str, Outcome], *parts: str) -> dict[str, Outcome]:
         outcomes: by variant, that have the parts.
         parts: see `Page.having`; of the meshes of a drive those that have them.
     """
-    found = {}
+    meshes = {}
     for variant, outcome in outcomes.items():
         for label, mesh in _meshes(outcome, *parts).items():
-            told = variant if len(outcomes) > 1 or not label else ""
-            found[", ".join(filter(None, [told, label]))] = mesh
-    return found
+            design = variant if len(outcomes) > 1 or not label else ""
+            meshes[", ".join(filter(None, [design, label]))] = mesh
+    return meshes
 
 
 def _meshes(outcome: Outcome, *parts: str) -> dict[str, Outcome]:
     """The meshes of a drive that have some parts, each by itself under its name; without one of one mesh."""
     of_a_drive = [name for name, data in outcome.parts.items() if not stages_of(data)]
-    found = {}
+    meshes = {}
     for stage, mesh in of_meshes(outcome, *parts):
-        own = {name: data for name, data in mesh.parts.items() if name not in of_a_drive}
-        alone = replace(mesh, parts=own) if stage else mesh
+        of_mesh = {name: data for name, data in mesh.parts.items() if name not in of_a_drive}
+        alone = replace(mesh, parts=of_mesh) if stage else mesh
         if all(_has(alone, part) for part in parts):
-            found[stage] = alone
-    return found
+            meshes[stage] = alone
+    return meshes
 
 
 def _manifest_of(manifest: Mapping[str, Any], number: Label) -> dict[str, Any]:
     """Record of a drive as that of one of its meshes: its motion and operating point, its own inputs."""
-    known = next(one for one in manifest["stages"] if one["number"] == number)
-    load = "force" if "loaded" in known["travels"] else "torque"
-    point = {"speed": known["speed"], load: known["load"]}
+    record = next(one for one in manifest["stages"] if one["number"] == number)
+    load = "force" if "loaded" in record["travels"] else "torque"
+    point = {"speed": record["speed"], load: record["load"]}
     inside = (
         f"{str(number).partition(' ')[0]}."  # rows of a set stand for its meshes, but for its gears
     )
@@ -430,7 +434,7 @@ def _manifest_of(manifest: Mapping[str, Any], number: Label) -> dict[str, Any]:
             rows.append({**row, "value": point[row["key"]]})
         elif row["table"] != "gears":
             rows.append(row)
-    return {**manifest, **known, "inputs": rows}
+    return {**manifest, **record, "inputs": rows}
 
 
 def by_variant(
@@ -445,23 +449,25 @@ def by_variant(
 
 def _by_bodies(blocks: Iterable[Block], outcome: Outcome) -> Iterator[Block]:
     """Blocks of a mesh of a train, whose sentences say "the ring", not "gear 2"."""
-    for one in blocks:
-        if isinstance(one, Paragraph) and type(one.words) is str:  # no markup
-            yield replace(one, words=by_bodies(outcome, one.words))
-        elif isinstance(one, Panel):
-            own = [replace(each, note=by_bodies(outcome, each.note)) for each in one.figures]
-            yield replace(one, figures=own)
+    for block in blocks:
+        if isinstance(block, Paragraph) and type(block.words) is str:  # no markup
+            yield replace(block, words=by_bodies(outcome, block.words))
+        elif isinstance(block, Panel):
+            figures = [
+                replace(figure, note=by_bodies(outcome, figure.note)) for figure in block.figures
+            ]
+            yield replace(block, figures=figures)
         else:
-            yield one
+            yield block
 
 
 def tabbed(groups: Iterable[tuple[str, Iterable[Block]]]) -> Iterator[Block]:
     """Blocks by title of their variant, one variant at a time; one alone stands under its title, if any."""
-    each = {title: tuple(naming(title.partition(": ")[0], blocks)) for title, blocks in groups}
-    if len(each) > 1:
-        yield Variants(each)
+    tabs = {title: tuple(naming(title.partition(": ")[0], blocks)) for title, blocks in groups}
+    if len(tabs) > 1:
+        yield Variants(tabs)
         return
-    for title, blocks in each.items():
+    for title, blocks in tabs.items():
         yield from [Heading(title)] if title else []
         yield from blocks
 
@@ -470,8 +476,8 @@ def _told_apart(blocks: Iterable[Block], ending: str) -> Iterator[Block]:
     """Blocks whose figures have names with an ending, so that a page may have the like of them."""
     for block in blocks:
         if isinstance(block, Variants):
-            each = {name: [*_told_apart(them, ending)] for name, them in block.each.items()}
-            yield Variants(each)
+            apart = {name: [*_told_apart(them, ending)] for name, them in block.each.items()}
+            yield Variants(apart)
             continue
         if not isinstance(block, Panel):
             yield block
@@ -492,7 +498,9 @@ def naming(variant: str, blocks: "Iterable[Any]") -> Iterator[Any]:
         if variant and isinstance(block, Variants):
             yield Variants({name: [*naming(variant, them)] for name, them in block.each.items()})
         elif variant and isinstance(block, Panel):
-            figures = [replace(one, title=f"{one.title} · {variant}") for one in block.figures]
+            figures = [
+                replace(figure, title=f"{figure.title} · {variant}") for figure in block.figures
+            ]
             yield replace(block, figures=figures)
         else:
             yield block
@@ -583,13 +591,13 @@ class Section:
         pages = (page.meshes(*self.parts) or {"": page}).items()
         return tabbed(
             (
-                ": ".join(filter(None, (label, _bodies(label, one)))),
+                ": ".join(filter(None, (label, _bodies(label, mesh_page)))),
                 _told_apart(
-                    _by_bodies(self.blocks(one), next(iter(one.outcomes.values()))),
+                    _by_bodies(self.blocks(mesh_page), next(iter(mesh_page.outcomes.values()))),
                     f"_mesh{k}" if k else "",
                 ),
             )
-            for k, (label, one) in enumerate(pages)
+            for k, (label, mesh_page) in enumerate(pages)
         )
 
     def answers(self, outcome: Outcome) -> Iterator[KeyFigure]:
@@ -607,8 +615,8 @@ class Section:
     def prints(self, outcome: Outcome) -> Iterator[Printed]:
         """What the command line prints of one variant, that of each stage under its name."""
         for stage, mesh in of_meshes(outcome, *self.parts):
-            made = partial(self.screen, mesh)
-            for printed in made_of([outcome], made, lambda told: [Printed(line=told)]):
+            screen = partial(self.screen, mesh)
+            for printed in made_of([outcome], screen, lambda told: [Printed(line=told)]):
                 titles = [stage.capitalize(), printed.title]
                 yield replace(printed, title=": ".join(filter(None, titles))) if stage else printed
 
@@ -633,7 +641,9 @@ def made_of(
     except KeyError as error:
         here = surroundings()["code"]
         older = (
-            one.manifest for one in outcomes if one.manifest["surroundings"].get("code") != here
+            outcome.manifest
+            for outcome in outcomes
+            if outcome.manifest["surroundings"].get("code") != here
         )
         for manifest in older:
             return [*instead(_lacking(manifest, error))]
@@ -643,8 +653,8 @@ def made_of(
 def _lacking(manifest: Mapping[str, Any], error: KeyError) -> str:
     """What a result of another build lacks, in a sentence with the command that makes it anew."""
     name = next(iter(re.findall(r"'(\w+)'", str(error))), "")
-    known = VARIABLES.get(name)
-    words = f"{known.long_name} ({name})" if known else name or str(error)
+    variable = VARIABLES.get(name)
+    words = f"{variable.long_name} ({name})" if variable else name or str(error)
     return (
         f"This result was kept by another build of Pitchpoint and lacks: {words}. "
         f"Make it anew: `pitchpoint run FOLDER/{manifest['variant']}/manifest.json`, FOLDER being its folder."
@@ -684,13 +694,13 @@ def told_of_variants(
 
 def key_figures(sections: "Iterable[Section]", outcome: Outcome) -> list[KeyFigure]:
     """What sections answer of an outcome, in the order of the figures; what its case asks for comes first."""
-    each = (figure for section in sections for figure in section.answers(outcome))
+    figures = (figure for section in sections for figure in section.answers(outcome))
     keys = [
         f".{row['table']}.{row['key']}"
         for row in outcome.manifest["inputs"]
         if row["status"] == "given"
     ]
-    return sorted((_as_asked(figure, keys) for figure in each), key=lambda figure: figure.order)
+    return sorted((_as_asked(figure, keys) for figure in figures), key=lambda figure: figure.order)
 
 
 _ASKED = 43.0
@@ -699,9 +709,9 @@ _ASKED = 43.0
 
 def _as_asked(figure: KeyFigure, keys: Sequence[str]) -> KeyFigure:
     """A figure at the place of what a case asks for, if a key does."""
-    asked = any(f".{part}" in key for key in keys for part in figure.asked_by)
+    is_asked = any(f".{part}" in key for key in keys for part in figure.asked_by)
     order = _ASKED + 1e-3 * figure.order
-    return replace(figure, order=order) if asked and figure.order > order else figure
+    return replace(figure, order=order) if is_asked and figure.order > order else figure
 
 
 def figures_by_members(outcome: Outcome, figures: Iterable[KeyFigure]) -> list[KeyFigure]:
@@ -739,8 +749,8 @@ def _of_stages(name: str, figures: Sequence[KeyFigure]) -> KeyFigure:
     if len(stages) < 2:
         return figures[0]
     few = len(stages) < 4 and all(stage.isdigit() for stage in stages)
-    told = f"stages {enumerated(stages)}" if few else f"{len(stages)} meshes alike"
-    return replace(figures[0], name=f"{name}, {told}")
+    label = f"stages {enumerated(stages)}" if few else f"{len(stages)} meshes alike"
+    return replace(figures[0], name=f"{name}, {label}")
 
 
 def of_part(part: str, place: str) -> Callable[..., Any]:
@@ -776,12 +786,12 @@ def without_trains(page: Page) -> str | None:
 
 def reason(page: Page, *parts: str) -> str:
     """Why no outcome has some parts, as their analyses told; empty where nobody asked for them."""
-    told = (
-        one.manifest.get("lacks", {}).get(part.partition(".")[0], "")
-        for one in page.outcomes.values()
+    reasons = (
+        outcome.manifest.get("lacks", {}).get(part.partition(".")[0], "")
+        for outcome in page.outcomes.values()
         for part in parts
     )
-    return next(filter(None, told), "")
+    return next(filter(None, reasons), "")
 
 
 def said(words: Words, page: Page) -> str:

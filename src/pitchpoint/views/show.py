@@ -255,11 +255,11 @@ def handy(values: Sequence[float], display: str) -> tuple[list[float], str]:
     if not sizes:
         return list(values), display
     small, large = min(sizes) < 10.0**_SMALLEST, max(sizes) >= 10.0**_LARGEST
-    other, times = (_LARGER if large else _SMALLER).get(display, (display, 1.0))
-    if small == large or other == display or (small and max(sizes) / times >= 10.0**_LARGEST):
+    other_unit, times = (_LARGER if large else _SMALLER).get(display, (display, 1.0))
+    if small == large or other_unit == display or (small and max(sizes) / times >= 10.0**_LARGEST):
         return list(values), display
     changed = [value / times for value in values]
-    return handy(changed, other) if small else (changed, other)
+    return handy(changed, other_unit) if small else (changed, other_unit)
 
 
 def _with_unit(value: float, display: str) -> str:
@@ -315,11 +315,11 @@ def span(low: str, high: str, values: Sequence[float], of: Any = None) -> str:
         >>> span("min_efficiency", "max_efficiency", (0.9918, 1.0))
         '99.18 to 100 %'
     """
-    first, last = quantity(low, values[0], of=of), quantity(high, values[1], of=of)
-    if first == last:
-        return first
-    (value, _, unit_of_low), (_, _, unit_of_high) = first.partition(" "), last.partition(" ")
-    return f"{value if unit_of_low == unit_of_high else first} to {last}"
+    lower, upper = quantity(low, values[0], of=of), quantity(high, values[1], of=of)
+    if lower == upper:
+        return lower
+    (value, _, unit_of_low), (_, _, unit_of_high) = lower.partition(" "), upper.partition(" ")
+    return f"{value if unit_of_low == unit_of_high else lower} to {upper}"
 
 
 def the(member: str) -> str:
@@ -383,6 +383,8 @@ def whole_clauses(sentence: str, width: int) -> str:
         ''
     """
     sentence = one_line(sentence)
-    ends = [*(found.start() for found in _CLAUSE.finditer(sentence)), len(sentence)]
+    ends = [*(clause.start() for clause in _CLAUSE.finditer(sentence)), len(sentence)]
     begins = [sentence[:end].rstrip() for end in ends if end <= width]
-    return next((one for one in reversed(begins) if one.count("(") == one.count(")")), "")
+    return next(
+        (clauses for clauses in reversed(begins) if clauses.count("(") == clauses.count(")")), ""
+    )

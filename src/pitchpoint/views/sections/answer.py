@@ -80,7 +80,7 @@ AVERAGES = {
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
+    variants = [_variant(page, name, outcome) for name, outcome in page.outcomes.items()]
     values = {
         "variants": variants,
         "warnings": (warnings := told_of_variants(page.outcomes, "warnings", of_stage_by_bodies)),
@@ -115,7 +115,7 @@ def _summed(page: Page) -> tuple[str, ...]:
 
 def _first_operation(page: Page) -> Any:
     there = page.having("operation").values()
-    return next((one.parts["operation"] for one in there), None)
+    return next((outcome.parts["operation"] for outcome in there), None)
 
 
 def _sums_of_curves(page: Page) -> Iterator[tuple[Curve, list[str]]]:
@@ -141,9 +141,9 @@ def _ratio(outcome: Outcome) -> str:
 
 def _travel(outcome: Outcome) -> str:
     """Way of a loaded member that travels in a turn of the driver, in words; empty where it turns."""
-    way = way_in_a_turn(outcome)
+    distance = way_in_a_turn(outcome)
     driver, loaded = (show.the(outcome.manifest[end]) for end in ("driver", "loaded"))
-    return f"{way} of {loaded} in a turn of {driver}" if way else ""
+    return f"{distance} of {loaded} in a turn of {driver}" if distance else ""
 
 
 def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
@@ -219,14 +219,14 @@ def sharing_words(outcome: Outcome) -> str:
     if of_contact(outcome.parts.get("operation", ())):
         return ""
     models = outcome.manifest["models"]
-    each = ((model["effect"].partition(", "), model["title"]) for model in models)
-    named = [(place, title) for (effect, _, place), title in each if effect == "load sharing"]
+    laws = ((model["effect"].partition(", "), model["title"]) for model in models)
+    named = [(place, title) for (effect, _, place), title in laws if effect == "load sharing"]
     return "; ".join(f"{place}: {title}" if place else title for place, title in named)
 
 
 def _averaging(outcome: Outcome) -> str:
-    told = str(outcome.manifest["averaging"])
-    return AVERAGES.get(told, told).format(pitch=outcome.manifest["pitch"])
+    averaging = str(outcome.manifest["averaging"])
+    return AVERAGES.get(averaging, averaging).format(pitch=outcome.manifest["pitch"])
 
 
 def _oil_note(outcome: Outcome) -> str:
@@ -300,38 +300,38 @@ def _range(data: xr.Dataset, name: str, value: Callable[[str], float]) -> str:
 
 def _drag(data: xr.Dataset, law: int) -> str:
     """Loss in and beside the teeth in words; empty where there is none beside."""
-    found = loss_split(data, law)
-    if found is None or not found[1] > 0.0:
+    split = loss_split(data, law)
+    if split is None or not split[1] > 0.0:
         return ""
-    teeth, beside = (show.quantity("mean_loss", value) for value in found)
+    teeth, beside = (show.quantity("mean_loss", value) for value in split)
     return f"{teeth} in the teeth, {beside} beside them"
 
 
 def _bearings(outcome: Outcome, law: int) -> list[tuple[str, str]]:
     """What the teeth put on the shafts, and each bearing beside them bears: names and words."""
     data = outcome.parts["operation"]
-    found = [*_reactions(outcome, law)]
+    rows = [*_reactions(outcome, law)]
     if "bearing_load" in data:
         loads = zip(data["place"].values, data["bearing_load"].values[law, 0], strict=True)
-        found += [
+        rows += [
             (f"load on {place}".replace("_", " "), show.quantity("bearing_load", load))
             for place, load in loads
             if load > 0.0
         ]
-    return [*found, *_lives(data, law)]
+    return [*rows, *_lives(data, law)]
 
 
 def _lives(data: xr.Dataset, law: int) -> list[tuple[str, str]]:
     """Lives of bearings by their ratings: names and words."""
     if "bearing_life" not in data:
         return []
-    each = zip(data["place"].values, data["bearing_life"].values[law, 0], strict=True)
+    lives = zip(data["place"].values, data["bearing_life"].values[law, 0], strict=True)
     return [*_static_safeties(data, law)] + [
         (
             f"life of {place}".replace("_", " "),
             "without load" if np.isinf(life) else show.quantity("bearing_life", life),
         )
-        for place, life in each
+        for place, life in lives
         if not np.isnan(life)
     ]
 
@@ -361,11 +361,11 @@ def _reactions(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
     guided = [manifest[end] for end in manifest.get("travels", ())]
     for name in (name for name in ("radial", "axial") if f"{name}_reaction_1" in data):
         both = [abs(float(data[f"{name}_reaction_{gear}"].values[law, 0])) for gear in (1, 2)]
-        told = [show.quantity(f"{name}_reaction_1", value) for value in both]
+        loads = [show.quantity(f"{name}_reaction_1", value) for value in both]
         if any(both) and not guided:
-            yield f"{name} load on the shafts", " and ".join(dict.fromkeys(told))
+            yield f"{name} load on the shafts", " and ".join(dict.fromkeys(loads))
         elif any(both):
-            for body, value, words in zip(manifest["members"], both, told, strict=True):
+            for body, value, words in zip(manifest["members"], both, loads, strict=True):
                 held = "guides" if body in guided else "shaft"
                 if value > 0.0:  # guides take nothing along the travel
                     yield _ACROSS[held, name].format(body), words
@@ -456,14 +456,14 @@ def _margin(back: xr.Dataset, position: int) -> dict[str, str]:
 
 def _locks(data: xr.Dataset, position: int) -> str:
     limit = float(data["jamming_coefficient"].values[position, 0])
-    told = cell(data, "jamming_coefficient", position)
-    return locks_from(limit, told) if np.isfinite(limit) else told
+    coefficient = cell(data, "jamming_coefficient", position)
+    return locks_from(limit, coefficient) if np.isfinite(limit) else coefficient
 
 
 def teeth_rows(outcome: Outcome) -> list[dict[str, str]]:
     """What flanks bear at the operating point by law; none where nothing is known of it."""
     rows = [
-        {"friction law": law} | {words: told for words, told in _borne(outcome, k)}
+        {"friction law": law} | {words: figure for words, figure in _borne(outcome, k)}
         for k, law in enumerate(laws(outcome.parts["operation"]))
     ]
     return rows if len(rows[0]) > 1 else []
@@ -475,9 +475,9 @@ def _borne(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
     if cycle is not None:
         pressures = _pressures(cycle, law)
         most = max(pressures, key=lambda stage: pressures[stage])
-        told = show.quantity("pressure", pressures[most])
+        pressure = show.quantity("pressure", pressures[most])
         place = by_members(outcome, f" at {most}") if most else ""
-        yield VARIABLES["pressure"].long_name, f"{told}{place}"
+        yield VARIABLES["pressure"].long_name, f"{pressure}{place}"
         yield from _ellipse(cycle, law)
     if torsion is not None and "edge_share" in torsion:
         at = operating_point(outcome).torque
@@ -487,10 +487,12 @@ def _borne(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
 
 def _pressures(cycle: xr.Dataset, law: int) -> dict[str, float]:
     """Largest pressure of each stage by its name under the law in a place, or its last one [Pa]."""
-    each = {f"stage {label}": of_stage(cycle, label) for label in stages_of(cycle)} or {"": cycle}
+    of_stages = {f"stage {label}": of_stage(cycle, label) for label in stages_of(cycle)} or {
+        "": cycle
+    }
     return {
         stage: float(data["pressure"].values[min(law, data.sizes["law"] - 1)].max())
-        for stage, data in each.items()
+        for stage, data in of_stages.items()
     }
 
 
@@ -498,13 +500,16 @@ def _ellipse(cycle: xr.Dataset, law: int) -> Iterator[tuple[str, str]]:
     """The largest ellipse of contact, and how far it is from leaving the face; none for lines."""
     if "contact_room" not in cycle or stages_of(cycle):
         return
-    axes = (float(cycle[f"semi_axis_{way}"].values[law].max()) for way in ("across", "along"))
-    told = [show.quantity("semi_axis_across", axis) for axis in axes]
+    axes = (
+        float(cycle[f"semi_axis_{direction}"].values[law].max())
+        for direction in ("across", "along")
+    )
+    lengths = [show.quantity("semi_axis_across", axis) for axis in axes]
     room, inclination = (
         show.quantity(name, float(cycle[name].values[law].min()))
         for name in ("contact_room", "largest_inclination")
     )
-    yield "semi-axes of the contact, across and along", " and ".join(told)
+    yield "semi-axes of the contact, across and along", " and ".join(lengths)
     yield "room to the end of the face", room
     yield "largest inclination", inclination
 
@@ -585,8 +590,8 @@ def _efficiencies(
     if lacks := _lacks(data):
         yield KeyFigure(10.0, "Efficiency", "not known", f"lacks the {lacks}, see [losses]")
     alone = outcome.manifest.get("stages") and covers(data).startswith("teeth alone")
-    whole = "Efficiency of teeth" if alone else "Efficiency"
-    place, name = (26.0, "Efficiency without it") if lacks else (10.0, whole)
+    title = "Efficiency of teeth" if alone else "Efficiency"
+    place, name = (26.0, "Efficiency without it") if lacks else (10.0, title)
     yield figure(place, name, "mean_efficiency", _certainty(outcome, data))
 
 
@@ -596,16 +601,16 @@ def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
     apart = spread(outcome)
     others = [*_by_other_laws(outcome, data)]
     if not any(holding(outcome.parts)) and data is outcome.parts["operation"]:
-        told = [scope, "no fitted law is in its range here"]
+        clauses = [scope, "no fitted law is in its range here"]
     elif apart and apart["points"]:
-        told = [f"{apart['text']} by the laws in their range", scope]
+        clauses = [f"{apart['text']} by the laws in their range", scope]
     else:
         over = _range(data, "efficiency", lambda name: float(data[name].values[0, 0]))
-        told = [scope, f"over the cycle {over}"]
+        clauses = [scope, f"over the cycle {over}"]
     if not outcome.manifest.get("stages"):  # the line above has the law
-        return _clauses(*others, *told)
+        return _clauses(*others, *clauses)
     law = f"by {data['law'].values[0]}"
-    return _clauses(*others, told.pop(), law, *told)
+    return _clauses(*others, clauses.pop(), law, *clauses)
 
 
 def _shortest_life(data: xr.Dataset) -> Iterator[KeyFigure]:
@@ -641,8 +646,8 @@ def _clauses(*words: str) -> str:
 def _by_other_laws(outcome: Outcome, data: xr.Dataset) -> Iterator[str]:
     """Efficiency under each further law of the case, and whether it is out of its range."""
     operation, outside = outcome.parts["operation"], why_not(outcome.parts)
-    each = zip(laws(operation), operation["mean_efficiency"].values[:, 0], strict=True)
-    for law, value in sorted(each, key=lambda one: one[0] in outside):
+    efficiencies = zip(laws(operation), operation["mean_efficiency"].values[:, 0], strict=True)
+    for law, value in sorted(efficiencies, key=lambda pair: pair[0] in outside):
         if law != laws(data)[0]:
             of_case = "" if any(holding(outcome.parts)) else " of the case"
             outside_here = law in outside and data is not operation

@@ -52,9 +52,9 @@ _WIDE = 30.0
 def _ways(page: Page) -> dict[str, Outcome]:
     """Outcomes whose pairs go a way that is told, and that has no letters."""
     return {
-        name: one
-        for name, one in page.by_mesh("teeth", "cycle").outcomes.items()
-        if "points" not in one.parts["teeth"] and one.parts["cycle"]["path"].attrs["title"]
+        name: outcome
+        for name, outcome in page.by_mesh("teeth", "cycle").outcomes.items()
+        if "points" not in outcome.parts["teeth"] and outcome.parts["cycle"]["path"].attrs["title"]
     }
 
 
@@ -97,8 +97,8 @@ def wave_losses(outcome: Outcome, law: int) -> dict[str, float]:
         law: position of the law.
     """
     data, backwards = outcome.parts["cycle"], period_of(outcome).backwards
-    each = (data["sliding_loss"] + data["rolling_loss"]).values[law]
-    energy = each * data["weight"].values[:, None, None] / data["weight"].values.sum()
+    losses = (data["sliding_loss"] + data["rolling_loss"]).values[law]
+    energy = losses * data["weight"].values[:, None, None] / data["weight"].values.sum()
     place = place_of(data)
     inwards = place > 0.0 if backwards else place < 0.0
     beside = outcome.parts.get("operation")
@@ -116,16 +116,16 @@ def wave_sentence(lost: Mapping[str, float], origin: str) -> str:
         lost: as `wave_losses` gives it.
         origin: what lies in the middle of the way.
     """
-    whole = sum(lost.values())
-    if not whole > 0.0:
+    total = sum(lost.values())
+    if not total > 0.0:
         return "There is no loss."
-    share = {name: f"{100 * value / whole:.0f} %" for name, value in lost.items()}
-    both = f"{100 * (lost['in'] + lost['out']) / whole:.0f} % in the teeth"
-    told = (
+    share = {name: f"{100 * value / total:.0f} %" for name, value in lost.items()}
+    both = f"{100 * (lost['in'] + lost['out']) / total:.0f} % in the teeth"
+    sentence = (
         f"{both}: {share['in']} before they reach {origin}, on their way in, and "
         f"{share['out']} after it, on their way out"
     )
-    return f"{told}; {share['beside']} beside the teeth." if lost["beside"] else f"{told}."
+    return f"{sentence}; {share['beside']} beside the teeth." if lost["beside"] else f"{sentence}."
 
 
 def _seen(
@@ -184,7 +184,7 @@ def _traces(seen: list[tuple[Curve, xr.Dataset, int]], name: str) -> Iterator[Tr
 
 
 def _arc_figure(name: str, seen: list[tuple[Curve, xr.Dataset, int]]) -> Figure:
-    shown, same = merged(list(_traces(seen, name)))
+    shown, remark = merged(list(_traces(seen, name)))
     title = "Loss of a pair" if name == "loss" else titled(name)
     look = layout(
         seen[0][1]["path"].attrs["axis"],
@@ -200,8 +200,8 @@ def _arc_figure(name: str, seen: list[tuple[Curve, xr.Dataset, int]]) -> Figure:
         cut = "The outermost values are outside the figure."
     if name == "lambda_ratio":
         regimes(look, shown)
-    told = seen[0][1]["path"].attrs["sliding"] if name == "sliding_velocity" else _ARC[name]
-    note = " ".join(filter(None, (told, cut, same)))
+    meaning = seen[0][1]["path"].attrs["sliding"] if name == "sliding_velocity" else _ARC[name]
+    note = " ".join(filter(None, (meaning, cut, remark)))
     return Figure(f"arc_{name}", title, shown, look, note, missing="No tooth carries.")
 
 

@@ -35,10 +35,10 @@ def back_driving(outcome: Outcome, law: str) -> str:
     value = float(data["mean_efficiency"].values[position, 0])
     if not np.isfinite(value):
         return "undefined, no power"
-    told = f"{show.quantity('mean_efficiency', value)}, friction does not lock the mesh"
+    efficiency = f"{show.quantity('mean_efficiency', value)}, friction does not lock the mesh"
     if not np.isfinite(_limit(data, position)):
-        return told
-    return f"{told} ({_would(data, position)})"
+        return efficiency
+    return f"{efficiency} ({_would(data, position)})"
 
 
 def back_driving_figure(outcome: Outcome, law: str) -> KeyFigure:

@@ -51,7 +51,7 @@ _BESIDE = Key("beside the teeth", "#9aa5ad", "")
 
 def drag_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
     """Split of the loss, torque without load, torques that start the drive; empty without such losses."""
-    split = [one for one in _split(outcomes, known) if one[2] > 0.0]
+    split = [losses for losses in _split(outcomes, known) if losses[2] > 0.0]
     seen = list(_running(outcomes, known))
     figures = [_shares(list(_split(outcomes, known)))] if split else []
     if seen:
@@ -70,9 +70,9 @@ def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     if data is None or law not in laws(data):
         return []
     at = operating_point(outcome)
-    own = data.isel(law=laws(data).index(law))
+    of_law = data.isel(law=laws(data).index(law))
     # The operating point is on both axes; where it is read from words it is so up to rounding.
-    there = own.sel(speed=at.speed, temperature=at.temperature, method="nearest")
+    there = of_law.sel(speed=at.speed, temperature=at.temperature, method="nearest")
     return [
         (words.format(_load(data, name)), _with_band(data, name, there))
         for words, name in (
@@ -88,7 +88,7 @@ def _with_band(data: xr.Dataset, name: str, there: xr.Dataset) -> str:
     value, ends = _held(data, name, float(there[name])), _ends(data, name)
     if not ends:
         return value
-    low, high = (float(there[one]) for one in ends)
+    low, high = (float(there[variable]) for variable in ends)
     least = shown(ends[0], low, data) if np.isfinite(low) else "friction holds the drive"
     return f"{value}, {least} to {_held(data, ends[1], high)} by breakaway_spread"
 
@@ -96,7 +96,7 @@ def _with_band(data: xr.Dataset, name: str, there: xr.Dataset) -> str:
 def _ends(data: xr.Dataset, name: str) -> list[str]:
     """Names of the ends of the band of a torque from rest; none without a spread."""
     ends = [f"{end}_{name}" for end in ("least", "largest")]
-    return ends if all(one in data for one in ends) else []
+    return ends if all(variable in data for variable in ends) else []
 
 
 def _load(data: xr.Dataset, name: str) -> str:
@@ -139,8 +139,8 @@ def loss_split(data: xr.Dataset, law: int) -> tuple[float, float] | None:
     if "mean_drag_loss" not in data:
         return None
     beside = float(data["mean_drag_loss"].values[law, 0])
-    whole = float(data["mean_loss"].values[law, 0])
-    return (whole - beside, beside) if np.isfinite(whole) else None
+    total = float(data["mean_loss"].values[law, 0])
+    return (total - beside, beside) if np.isfinite(total) else None
 
 
 def _split(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[Curve, float, float]]:
@@ -149,9 +149,9 @@ def _split(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[Cur
             continue
         data = outcome.parts["operation"]
         for position, law in enumerate(laws(data)):
-            found = loss_split(data, position)
-            if found is not None:
-                yield known[variant, law], *found
+            losses = loss_split(data, position)
+            if losses is not None:
+                yield known[variant, law], *losses
 
 
 def _running(
@@ -172,7 +172,7 @@ def _shares(split: list[tuple[Curve, float, float]]) -> Figure:
             "type": "bar",
             "orientation": "h",
             "y": places,
-            "x": rounded(display("mean_loss", [one[part] for one in split])),
+            "x": rounded(display("mean_loss", [losses[part] for losses in split])),
             "marker": {"color": key.colour},
             "width": 0.4,
             "hovertemplate": f"%{{x:.4~r}} {unit} {key.label}<extra></extra>",
@@ -245,10 +245,10 @@ def _starting(name: str, seen: list[tuple[Curve, xr.Dataset, int, Outcome]]) -> 
 def in_smaller_unit(traces: list[Trace], look: dict[str, Any], display: str) -> None:
     """Turns curves and their axis to a smaller unit where all values would need a power of ten."""
     top = max((abs(v) for trace in traces for v in trace["y"] if v is not None), default=0.0)
-    (shown,), other = show.handy([top], display)
-    if other == display:
+    (shown,), smaller_unit = show.handy([top], display)
+    if smaller_unit == display:
         return
-    usual, smaller = show.unit(display), show.unit(other)
+    usual, smaller = show.unit(display), show.unit(smaller_unit)
     for trace in traces:
         trace["y"] = [None if v is None else v * shown / top for v in trace["y"]]
         trace["hovertemplate"] = trace["hovertemplate"].replace(usual, smaller)
@@ -262,7 +262,7 @@ def _look(data: xr.Dataset, axis: str, name: str) -> dict[str, Any]:
 
 
 def _dashed(curve: Curve, data: xr.Dataset, axis: str, name: str, dash: str) -> Trace:
-    x, y = (display(each, data[each], data) for each in (axis, name))
+    x, y = (display(variable, data[variable], data) for variable in (axis, name))
     trace = line(curve, x, y, show.unit_of(name, data))
     return {**trace, "line": {"color": curve.colour, "dash": dash, "width": 2}}
 
@@ -277,8 +277,8 @@ def _chosen(axes: list[np.ndarray]) -> list[float]:
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:
     if rows := running_rows(outcome):
-        told = str(outcome.parts["running"].attrs.get("fitted", ""))
-        yield Printed("Without load: running, and from rest either way", rows, told)
+        remark = str(outcome.parts["running"].attrs.get("fitted", ""))
+        yield Printed("Without load: running, and from rest either way", rows, remark)
 
 
 def _lacks(page: Page) -> str | None:
@@ -316,11 +316,11 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         from_rest = _DOUBTED if doubted else _FROM_REST
         for place, (name, value) in enumerate(starting_answer(outcome, laws(data)[0])):
             brief, _, speed = name.partition(" at ")
-            told, _, band = value.partition(", ")
+            torque, _, band = value.partition(", ")
             detail = f"at {speed}" if speed else band or _TOO_LOW * doubted
             order = 76.0 if speed else from_rest + 0.1 * place
             asked_by = () if speed else ("breakaway",)
-            yield KeyFigure(order, brief.capitalize(), told, detail, asked_by=asked_by)
+            yield KeyFigure(order, brief.capitalize(), torque, detail, asked_by=asked_by)
 
 
 BESIDE = Section(

@@ -64,8 +64,8 @@ def _heads() -> list[str]:
 def _rows(data: xr.Dataset) -> list[tuple[str, ...]]:
     values = zip(*(data[name].values for name in _TITLES), strict=True)
     return [
-        (str(member), *(_cell(name, float(v)) for name, v in zip(_TITLES, each, strict=True)))
-        for member, each in zip(data["member"].values, values, strict=True)
+        (str(member), *(_cell(name, float(v)) for name, v in zip(_TITLES, of_member, strict=True)))
+        for member, of_member in zip(data["member"].values, values, strict=True)
     ]
 
 

@@ -34,7 +34,7 @@ def _closing(page: Page) -> Iterator[Block]:
 
 
 def _none(page: Page) -> str | None:
-    return None if any(one.rows for one in page.outcomes.values()) else ""
+    return None if any(outcome.rows for outcome in page.outcomes.values()) else ""
 
 
 def _rows(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
@@ -63,10 +63,10 @@ def _reasoned(table: list[dict[str, str]]) -> list[dict[str, str]]:
     """Rows of which the last of several with one reason says it for all of them."""
     done = []
     for reason, rows in groupby(table, key=lambda row: row["reason"]):
-        *before, last = rows
+        *before, final_row = rows
         several = f"These {len(before) + 1} rows: " if before and reason else ""
         done += [row | {"because": ""} for row in before]
-        done.append(last | {"because": f"{several}{reason}"})
+        done.append(final_row | {"because": f"{several}{reason}"})
     return done
 
 

@@ -43,14 +43,14 @@ _PAIR_DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 def _blocks(page: Page) -> Iterator[Block]:
     there = page.having(*_PARTS)
     period = period_of(next(iter(there.values())))
-    one = f"{_start(page)} one" if _start(page) else "One"
-    yield Paragraph(f"{one} period is one {period.pitch}: {_cycle_words(there)}.")
+    opening = f"{_start(page)} one" if _start(page) else "One"
+    yield Paragraph(f"{opening} period is one {period.pitch}: {_cycle_words(there)}.")
     yield cycle_panel(there, page.curves)
 
 
 def _start(page: Page) -> str:
     """At which moment a period begins; empty where no point of the way stands out."""
-    paths = [path_of(one) for one in page.having("teeth.points", "cycle").values()]
+    paths = [path_of(outcome) for outcome in page.having("teeth.points", "cycle").values()]
     if not paths:
         return ""
     helical = any(path.helical for path in paths)
@@ -82,8 +82,8 @@ def _choice(axis: str, figures: list[Figure], seen: Timed) -> Choice:
     """One period over the phase, or two over time."""
     others = [_over(name, axis, seen) for name in _COURSES]
     changes = {
-        drawn.name: _change(other)
-        for drawn, other in zip(figures, others, strict=False)
+        drawn.name: _change(traces)
+        for drawn, traces in zip(figures, others, strict=False)
         if drawn.drawn
     }
     return Choice(_axis(axis, seen[0][3]), changes)
@@ -112,7 +112,7 @@ def _timed(
 
 
 def _over(name: str, axis: str, seen: Timed) -> Figure:
-    first = seen[0][3]
+    phase_axis = seen[0][3]
     abscissa = _phase if axis == "phase" else _time
     like = seen[0][1]
     unit = show.unit_of(name, like)
@@ -124,7 +124,7 @@ def _over(name: str, axis: str, seen: Timed) -> Figure:
         f"cycle_{name}",
         f"{titled(name, like)} over the mesh cycle",
         traces,
-        layout(_axis(axis, first), short_axis(name, like)),
+        layout(_axis(axis, phase_axis), short_axis(name, like)),
     )
 
 
@@ -201,7 +201,7 @@ def _count(seen: Timed) -> Figure:
         carrying = (data["load"].values[law].max(axis=-1) > 0.0).sum(axis=-1)
         phase, count = _phase(data, carrying, period)
         traces.append(line(curve, phase, np.rint(count), "pairs"))
-    shown, same = merged(traces)
+    shown, remark = merged(traces)
     for trace in shown:
         trace["line"]["shape"] = "hvh"
     return Figure(
@@ -209,7 +209,7 @@ def _count(seen: Timed) -> Figure:
         "Number of pairs that carry",
         shown,
         layout(seen[0][3].axis, "pairs", yaxis={"rangemode": "tozero"}),
-        same,
+        remark,
     )
 
 
@@ -294,8 +294,8 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         share = data["asperity_load_ratio"].values[0]
         value = show.quantity("asperity_load_ratio", float(np.max(share)))
         law = show.pretty(input_words(outcome, "models", "asperity_load"))
-        told = f"largest part over the cycle, by {law}"
-        yield KeyFigure(38.0, "Load on asperities", value, told, rank=-float(np.max(share)))
+        words = f"largest part over the cycle, by {law}"
+        yield KeyFigure(38.0, "Load on asperities", value, words, rank=-float(np.max(share)))
 
 
 CYCLE = Section(

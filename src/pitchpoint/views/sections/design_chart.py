@@ -52,17 +52,17 @@ def design_charts(outcomes: Mapping[str, Outcome]) -> list[Panel]:
 
 
 def _studies(outcomes: Mapping[str, Outcome]) -> Iterator[tuple[str, Seen]]:
-    found: dict[str, list[tuple[str, xr.Dataset]]] = {}
+    by_name: dict[str, list[tuple[str, xr.Dataset]]] = {}
     for variant, outcome in outcomes.items():
         for name, data in outcome.parts.items():
             if is_study(name) and is_design_chart(data):
-                found.setdefault(name, []).append((variant, data))
-    for name, each in found.items():
+                by_name.setdefault(name, []).append((variant, data))
+    for name, charts in by_name.items():
         yield (
             name,
             [
                 (Key(variant, PALETTE[k % len(PALETTE)]), data)
-                for k, (variant, data) in enumerate(each)
+                for k, (variant, data) in enumerate(charts)
             ],
         )
 
@@ -93,24 +93,24 @@ class _Limits:
         self.shapes: list[dict[str, Any]] = []
         self.annotations: list[dict[str, Any]] = []
         self.least = least
-        told: list[str] = []
+        sentences: list[str] = []
         x = np.sort(data["axis"].values)
         order = np.argsort(data["axis"].values)
-        self._undercut(x, data["undercut_limit_1"].values[0][order], told)
+        self._undercut(x, data["undercut_limit_1"].values[0][order], sentences)
         if least > 0.0 and "tip_thickness_1" in data:
-            self._tips(x, data["tip_thickness_1"].values[0][order], told)
-        self.words = " ".join(told)
+            self._tips(x, data["tip_thickness_1"].values[0][order], sentences)
+        self.words = " ".join(sentences)
 
     def _undercut(self, x: np.ndarray, limit: np.ndarray, told: list[str]) -> None:
         below = x < limit
         if not below.any():
             told.append("No undercut in this range: x1 is above x_min1 throughout.")
             return
-        last = int(np.flatnonzero(below)[-1])
-        edge = float(limit[last]) if last + 1 < x.size else float(x[-1])
+        highest = int(np.flatnonzero(below)[-1])
+        edge = float(limit[highest]) if highest + 1 < x.size else float(x[-1])
         self._region(float(x[0]), edge, _UNDERCUT, "undercut", "left")
         told.append(
-            f"Shaded on the left: the rack undercuts gear 1, x1 below x_min1 = {show.number(limit[last])}."
+            f"Shaded on the left: the rack undercuts gear 1, x1 below x_min1 = {show.number(limit[highest])}."
         )
 
     def _tips(self, x: np.ndarray, thickness: np.ndarray, told: list[str]) -> None:
@@ -121,8 +121,8 @@ class _Limits:
         elif cut.all():
             told.append(f"The tip of gear 1 is cut back to {shown} throughout.")
         else:
-            first = float(x[np.flatnonzero(cut)[0]])
-            self._region(first, float(x[-1]), _CUT_BACK, "tip cut back", "right")
+            lowest = float(x[np.flatnonzero(cut)[0]])
+            self._region(lowest, float(x[-1]), _CUT_BACK, "tip cut back", "right")
             told.append(f"Shaded on the right: the tip of gear 1 is cut back to {shown}.")
 
     def _region(self, low: float, high: float, colour: str, words: str, side: str) -> None:
@@ -178,7 +178,7 @@ def _valid(variable: str, data: xr.Dataset) -> np.ndarray:
 
 def _least_tip(outcome: Outcome, data: xr.Dataset) -> float:
     """Least tip thickness asked for [m]; zero if none was."""
-    asked = given(outcome, "gears", "least_tip_thickness")
-    if asked is None or "module" not in data:
+    thickness = given(outcome, "gears", "least_tip_thickness")
+    if thickness is None or "module" not in data:
         return 0.0
-    return float(asked) * float(data["module"].values.ravel()[0])
+    return float(thickness) * float(data["module"].values.ravel()[0])

@@ -16,8 +16,8 @@ __all__ = ["DESIGNS"]
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    given, *following = (_inputs(*table) for table in differing(page.outcomes).items())
-    yield from given
+    differing_inputs, *following = (_inputs(*table) for table in differing(page.outcomes).items())
+    yield from differing_inputs
     yield Heading("Results")
     yield Paragraph(law_words(page.outcomes))
     results = result_table(page.outcomes)
@@ -39,8 +39,8 @@ def _inputs(title: str, table: Compared) -> Iterator[Block]:
         return
     head, rows = ["input", *table.head[2:]], named_inputs(table)
     yield Table(head, rows[:_OPEN])
-    if rest := rows[_OPEN:]:
-        yield Folded(f"{len(rest)} more inputs that differ", [Table(head, rest)])
+    if hidden := rows[_OPEN:]:
+        yield Folded(f"{len(hidden)} more inputs that differ", [Table(head, hidden)])
 
 
 _OPEN = 10

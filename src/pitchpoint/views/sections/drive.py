@@ -116,12 +116,12 @@ def loaded_arcs(outcome: Outcome) -> list[list[float]]:
     angle, load = np.radians(place_of(data)), data["load"].values[0]
     order = np.argsort(angle.ravel(), kind="stable")
     angle, carries = angle.ravel()[order], load.ravel()[order] > 0.0
-    found = angle[carries]
-    if not found.size:
+    loaded = angle[carries]
+    if not loaded.size:
         return []
     half_pitch = np.pi / float(outcome.parts["teeth"]["teeth"].values[0])
-    cuts = np.flatnonzero(np.diff(found) > half_pitch) + 1
-    return [[round(float(one[0]), 5), round(float(one[-1]), 5)] for one in np.split(found, cuts)]
+    cuts = np.flatnonzero(np.diff(loaded) > half_pitch) + 1
+    return [[round(float(arc[0]), 5), round(float(arc[-1]), 5)] for arc in np.split(loaded, cuts)]
 
 
 def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
@@ -179,8 +179,8 @@ def _depth(teeth: xr.Dataset) -> float:
 def _told_arcs(outcome: Outcome) -> str:
     """Angles between which teeth carry, in words; empty if unknown."""
     arcs = loaded_arcs(outcome)
-    each = [f"{degrees(a):.1f}° to {degrees(b):.1f}°".replace("-", "−") for a, b in arcs]
-    return " and ".join(each)
+    spans = [f"{degrees(a):.1f}° to {degrees(b):.1f}°".replace("-", "−") for a, b in arcs]
+    return " and ".join(spans)
 
 
 def _blocks(page: Page) -> Iterator[Block]:

@@ -47,8 +47,8 @@ def operating_points(name: str, outcome: Outcome) -> Figure:
     law = laws(data).index(str(cycle.attrs["law"]))
     drawn = map_figure("mean_efficiency", outcome, OF_OUTPUT, law, place)
     degree = level("temperature", float(data["temperature"].values[place]))
-    told = f"Dots are the operating points of the cycle{thinned}; oil at {degree}."
-    return replace(drawn, name=name, data=[drawn.data[0], points], note=told)
+    note = f"Dots are the operating points of the cycle{thinned}; oil at {degree}."
+    return replace(drawn, name=name, data=[drawn.data[0], points], note=note)
 
 
 def _points(cycle: xr.Dataset) -> tuple[Trace, str]:
@@ -83,22 +83,22 @@ def actuator_points(name: str, place: int, outcome: Outcome) -> Figure:
     dims = ("law", "output_torque", "output_speed", "temperature")
     axes = {"output_torque": cycle["map_torque"].values, "output_speed": cycle["map_speed"].values}
     mean = float(cycle.attrs["mean_temperature"])
-    known = dataset(
+    of_output = dataset(
         {name: (dims, values)},
         {"law": [str(cycle.attrs["law"])], **axes, "temperature": [mean]},
         travels=[end for end in ("loaded",) if cycle["output_torque"].attrs["units"] == "N"],
         speed_ratio=outcome.parts[OF_OUTPUT.part].attrs["speed_ratio"],
     )
-    parts = {**outcome.parts, OF_OUTPUT.part: known}
+    parts = {**outcome.parts, OF_OUTPUT.part: of_output}
     drawn = map_figure(
         name, replace(outcome, parts=parts), OF_OUTPUT, 0, 0, colour_scale(name, [values])
     )
     points, thinned = _points(cycle)
     oil = show.quantity("temperature", mean, of=cycle)
-    told = (
+    note = (
         f"Dots are the operating points of the cycle{thinned}; drive and motor with oil at {oil}."
     )
-    return replace(drawn, name=f"duty_{name}_{place}", data=[drawn.data[0], points], note=told)
+    return replace(drawn, name=f"duty_{name}_{place}", data=[drawn.data[0], points], note=note)
 
 
 def duty_blocks(page: Page) -> Iterator[Block]:
@@ -154,19 +154,19 @@ def _laws(data: xr.Dataset) -> Table:
         [str(law), *(show.quantity(n, float(v)) for n, v in zip(names, values, strict=True))]
         for law, *values in zip(data["law"].values, *columns, strict=True)
     ]
-    told = "Energies by friction law; all else is by the first one, or by duty.law"
-    return Table(["law", "lost", "driver gives"], rows, caption=told)
+    caption = "Energies by friction law; all else is by the first one, or by duty.law"
+    return Table(["law", "lost", "driver gives"], rows, caption=caption)
 
 
 def duty_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """What is lost over the duty cycle, and what fails first."""
     data = outcome.parts[_PART]
     taken = show.quantity("input_energy", float(data["input_energy"]), of=data)
-    first = first_to_fail(data, 38.0)
-    fails = f"fails first: {first.value}; of {taken} in"
-    told = fails if data.attrs["first_to_fail"] else f"of {taken} in; {cycle_words(data)}"
-    yield KeyFigure(37.0, "Duty cycle", f"{lost_words(data)} lost", told)
-    yield first
+    failing = first_to_fail(data, 38.0)
+    fails = f"fails first: {failing.value}; of {taken} in"
+    detail = fails if data.attrs["first_to_fail"] else f"of {taken} in; {cycle_words(data)}"
+    yield KeyFigure(37.0, "Duty cycle", f"{lost_words(data)} lost", detail)
+    yield failing
 
 
 def duty_printed(outcome: Outcome) -> Iterator[Printed]:

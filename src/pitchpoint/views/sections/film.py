@@ -61,8 +61,8 @@ def _in_order(data: xr.Dataset) -> np.ndarray:
 
 def _choice(data: xr.Dataset, figures: Sequence[Figure], phase: int) -> Choice:
     lines = _film_lines, _pressure_lines, _warm_lines
-    each = zip(figures, lines, strict=False)
-    changes = {figure.name: own(data, phase) for figure, own in each}
+    pairs = zip(figures, lines, strict=False)
+    changes = {figure.name: lines_of(data, phase) for figure, lines_of in pairs}
     label = f"{float(data['phase'][phase]) % 1.0:.3f}"
     return Choice(label, {key: [_points(lines), {}] for key, lines in changes.items()})
 
@@ -76,8 +76,8 @@ def _film_profile(name: str, data: xr.Dataset) -> Figure:
     film = np.take_along_axis(data["profile_film"].values, middle, axis=-1)
     ends = 1.1 * np.nanmin(film, initial=0.0), 2.5 * np.nanmax(film, initial=0.0)
     axes = _across(data, "profile_film", *ends)
-    title, first = titled("profile_film", data), int(_in_order(data)[0])
-    lines = _film_lines(data, first)
+    title, phase = titled("profile_film", data), int(_in_order(data)[0])
+    lines = _film_lines(data, phase)
     return Figure(name, title, lines, axes, "", (*_keys(data), DRY), NONE)
 
 
@@ -88,8 +88,8 @@ def _pressure_profile(name: str, data: xr.Dataset) -> Figure:
     top = 1.08 * np.nanmax(data["profile_pressure"].values, initial=0.0)
     axes = _across(data, "profile_pressure", 0.0, top)
     keys = [*_keys(data), Key("of it on asperities", GREY, "dot"), DRY]
-    title, first = titled("profile_pressure", data), int(_in_order(data)[0])
-    return Figure(name, title, _pressure_lines(data, first), axes, SPIKE, tuple(keys), NONE)
+    title, phase = titled("profile_pressure", data), int(_in_order(data)[0])
+    return Figure(name, title, _pressure_lines(data, phase), axes, SPIKE, tuple(keys), NONE)
 
 
 SPIKE = "A spike is resolved by few nodes: its height changes with the grid."
@@ -104,20 +104,20 @@ def _warm_profile(name: str, data: xr.Dataset) -> Figure:
         Key("surface of body 1", GREY, "dot"),
         Key("surface of body 2", GREY, "dash"),
     ]
-    title, first = "Temperatures above the inlet", int(_in_order(data)[0])
-    return Figure(name, title, _warm_lines(data, first), axes, "", tuple(keys), NONE)
+    title, phase = "Temperatures above the inlet", int(_in_order(data)[0])
+    return Figure(name, title, _warm_lines(data, phase), axes, "", tuple(keys), NONE)
 
 
 def _warm_lines(data: xr.Dataset, phase: int) -> list[Trace]:
     """Mean temperature of every film, and those of its surfaces."""
-    each = {
+    dashes = {
         "profile_rise": "solid",
         "profile_surface_rise_1": "dot",
         "profile_surface_rise_2": "dash",
     }
     return [
         _profile(data, name, phase, k, Key(key.label, key.colour, dash))
-        for name, dash in each.items()
+        for name, dash in dashes.items()
         for k, key in enumerate(_keys(data))
     ]
 
@@ -139,14 +139,14 @@ def _across(data: xr.Dataset, name: str, low: float, top: float) -> dict[str, ob
 def _pressed(data: xr.Dataset) -> np.ndarray:
     """Nodes under pressure [phase, shown, node]."""
     pressure = data["profile_pressure"].values
-    found: np.ndarray = pressure > _SEEN * np.nanmax(pressure, initial=0.0)
-    return found
+    pressed: np.ndarray = pressure > _SEEN * np.nanmax(pressure, initial=0.0)
+    return pressed
 
 
 def _keys(data: xr.Dataset) -> list[Key]:
     """Pairs whose profiles are kept."""
     numbers = enumerate(data["shown_pair"].values)
-    return [Key(pair_key(int(one)).label, PALETTE[k % len(PALETTE)]) for k, one in numbers]
+    return [Key(pair_key(int(pair)).label, PALETTE[k % len(PALETTE)]) for k, pair in numbers]
 
 
 def _film_lines(data: xr.Dataset, phase: int) -> list[Trace]:
@@ -160,22 +160,22 @@ def _film_lines(data: xr.Dataset, phase: int) -> list[Trace]:
 def _pressure_lines(data: xr.Dataset, phase: int) -> list[Trace]:
     """Pressure of every pair, and what asperities carry of it."""
     keys = list(enumerate(_keys(data)))
-    whole = [_profile(data, "profile_pressure", phase, k, key) for k, key in keys]
+    profiles = [_profile(data, "profile_pressure", phase, k, key) for k, key in keys]
     dotted = [(k, Key(key.label, key.colour, "dot")) for k, key in keys]
     some = [_profile(data, "profile_asperity_pressure", phase, k, key) for k, key in dotted]
     top = 0.15 * float(np.nanmax(data["profile_pressure"].values, initial=0.0))
-    return [*whole, *some, *_marks(data, "profile_pressure", phase, top)]
+    return [*profiles, *some, *_marks(data, "profile_pressure", phase, top)]
 
 
 def _marks(data: xr.Dataset, name: str, phase: int, top: float) -> list[Trace]:
     """Ends of the dry contact of every pair."""
     y = display(name, np.array([0.0, top, np.nan, 0.0, top]))
-    found = []
+    lines = []
     for width, key in zip(data["profile_half_width"].values[phase], _keys(data), strict=True):
         x = display("profile_place", np.array([-width, -width, np.nan, width, width]))
         mark = Key(f"±b of {key.label}", key.colour)
-        found.append(plain(mark, x, y, show.unit_of(name)))
-    return found
+        lines.append(plain(mark, x, y, show.unit_of(name)))
+    return lines
 
 
 def _profile(data: xr.Dataset, name: str, phase: int, which: int, key: Key) -> Trace:

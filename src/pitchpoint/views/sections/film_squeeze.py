@@ -103,7 +103,9 @@ def _how(data: xr.Dataset) -> str:
 
 def _table(data: xr.Dataset) -> Table:
     """Thinnest films with squeeze and without."""
-    rows = [(titled(name), told(data, name), told(data, one)) for name, one in _BESIDE.items()]
+    rows = [
+        (titled(name), told(data, name), told(data, steady)) for name, steady in _BESIDE.items()
+    ]
     if np.isfinite(float(data["squeeze_change"])):
         rows.append((titled("squeeze_change"), told(data, "squeeze_change"), ""))
     return Table(["", "with squeeze", "if all were steady"], rows, compact=True)
@@ -156,13 +158,13 @@ def _courses(name: str, data: xr.Dataset) -> Panel:
 
 def _figure(name: str, title: str, data: xr.Dataset, keys: dict[str, Key]) -> Figure:
     x, axis = _abscissa(data)
-    first = next(iter(keys))
+    leading = next(iter(keys))
     lines = [
-        plain(key, x, display(one, data[one].values, data), show.unit_of(one, data))
-        for one, key in keys.items()
+        plain(key, x, display(variable, data[variable].values, data), show.unit_of(variable, data))
+        for variable, key in keys.items()
     ]
-    zero = {} if first == "film_change" else {"yaxis": {"rangemode": "tozero"}}
-    look = layout(axis, short_axis(first, data), **zero)
+    zero = {} if leading == "film_change" else {"yaxis": {"rangemode": "tozero"}}
+    look = layout(axis, short_axis(leading, data), **zero)
     return Figure(name, title, lines, look, "", tuple(keys.values()), NONE)
 
 
@@ -173,7 +175,9 @@ def _thinnest(data: xr.Dataset) -> str:
     """Where in the engagement the film is thinnest, in words."""
     at = int(data["kept_moment"].values[0])
     named = ("time", "load", "minimum_film", "steady_minimum_film")
-    time, load, film, steady = (show.quantity(one, float(data[one].values[at])) for one in named)
+    time, load, film, steady = (
+        show.quantity(figure, float(data[figure].values[at])) for figure in named
+    )
     return (
         f"At {time} after the first moment, under {load}: {film} with squeeze, {steady} if it were steady. "
         "Oil enters from the left where the surfaces run to the right."
@@ -201,9 +205,9 @@ def answer(data: xr.Dataset) -> str:
 def screen(data: xr.Dataset) -> Iterator[Printed]:
     """What the screen shows."""
     row = {head(name, data): shown(name, float(data[name]), data) for name in _HEADLINES}
-    found, every = int(data["solved_moments"]), int(data["loaded_moments"])
+    solved, every = int(data["solved_moments"]), int(data["loaded_moments"])
     yield Printed(
-        "Squeeze of films", [row], f"{found} of {every} moments have a film that was found."
+        "Squeeze of films", [row], f"{solved} of {every} moments have a film that was found."
     )
 
 

@@ -106,8 +106,8 @@ FLAT = 1e-13
 
 def is_rough(data: xr.Dataset) -> bool:
     """True if height maps lie on the contacts that are kept."""
-    known = "field_heights" in data
-    return known and bool(np.nanmax(np.abs(data["field_heights"].values), initial=0.0) > FLAT)
+    has_heights = "field_heights" in data
+    return has_heights and bool(np.nanmax(np.abs(data["field_heights"].values), initial=0.0) > FLAT)
 
 
 def _roughness(name: str, data: xr.Dataset, kept: int) -> Figure:
@@ -126,16 +126,18 @@ def _cut_heights(name: str, data: xr.Dataset, kept: int) -> Figure:
     x, _ = _places(data, kept)
     row = data["field_film"].shape[1] // 2
     keys = {"field_film": Key("film", INK), "field_heights": Key("heights", GREY, "dash")}
-    lines = [_line(key, "kept_x", x, one, data[one].values[kept, row]) for one, key in keys.items()]
+    lines = [
+        _line(key, "kept_x", x, field, data[field].values[kept, row]) for field, key in keys.items()
+    ]
     ends = (
         1.2 * float(np.min(data["field_heights"].values[kept])),
         2.0 * _THIN * _middle_film(data, kept),
     )
-    more = {
+    axes = {
         "xaxis": {"range": _reach(data, kept)},
         "yaxis": {"range": [float(display("field_film", end)) for end in ends]},
     }
-    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis("field_film"), **more)
+    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis("field_film"), **axes)
     title = "Film and heights along the contact, in its middle"
     return Figure(name, title, lines, look, "", tuple(keys.values()), NONE)
 
@@ -212,8 +214,8 @@ def _outline(data: xr.Dataset, kept: int, heat: Trace) -> Trace:
 
 
 def _dry(data: xr.Dataset, kept: int) -> np.ndarray:
-    found: np.ndarray = data["field_dry_pressure"].values[kept]
-    return found
+    pressure: np.ndarray = data["field_dry_pressure"].values[kept]
+    return pressure
 
 
 def _reach(data: xr.Dataset, kept: int) -> list[float]:
@@ -290,12 +292,12 @@ def _cut_across(name: str, data: xr.Dataset, kept: int, variable: str) -> Figure
     x, _ = _places(data, kept)
     values, rows = data[variable].values[kept], [*_rows(data, kept)]
     lines = [_line(key, "kept_x", x, variable, values[row]) for key, row in rows]
-    more = {"xaxis": {"range": _reach(data, kept)}}
+    axes = {"xaxis": {"range": _reach(data, kept)}}
     if variable == "field_film":
         low = min(float(np.nanmin(values)), 0.0)
         ends = 1.1 * low, 2.0 * _THIN * _middle_film(data, kept)
-        more["yaxis"] = {"range": [float(display(variable, end)) for end in ends]}
-    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis(variable), **more)
+        axes["yaxis"] = {"range": [float(display(variable, end)) for end in ends]}
+    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis(variable), **axes)
     what = "Pressure" if variable == "field_pressure" else "Film"
     title = f"{what} along the contact, in the middle and near its ends"
     return Figure(name, title, lines, look, "", tuple(key for key, _ in rows), NONE)
@@ -317,8 +319,8 @@ def _ridge(name: str, data: xr.Dataset, kept: int) -> Figure:
     keys = Key("with oil", INK), Key("dry", GREY, "dash"), Key("of it on asperities", INK, "dot")
     names = ("field_pressure", "field_dry_pressure", "field_asperity_pressure")
     lines = [
-        _line(key, "kept_y", y, "field_pressure", np.max(data[one].values[kept], axis=1))
-        for key, one in zip(keys, names, strict=True)
+        _line(key, "kept_y", y, "field_pressure", np.max(data[variable].values[kept], axis=1))
+        for key, variable in zip(keys, names, strict=True)
     ]
     look = layout(f"y [{show.unit_of('kept_y')}]", short_axis("field_pressure"))
     return Figure(name, "Largest pressure across the contact", lines, look, "", keys, NONE)
@@ -333,7 +335,8 @@ def _valley(name: str, data: xr.Dataset, kept: int) -> Figure:
     keys = Key("in the middle, x = 0", INK, "dash"), Key("smallest of the row", INK)
     values = np.where(held, middle, np.nan), np.where(held, np.min(film, axis=1), np.nan)
     lines = [
-        _line(key, "kept_y", y, "field_film", one) for key, one in zip(keys, values, strict=True)
+        _line(key, "kept_y", y, "field_film", heights)
+        for key, heights in zip(keys, values, strict=True)
     ]
     look = layout(f"y [{show.unit_of('kept_y')}]", short_axis("field_film"))
     return Figure(
@@ -353,11 +356,11 @@ def _warmth_along(name: str, data: xr.Dataset, kept: int) -> Figure:
     )
     names = ("field_rise", "field_surface_rise_1", "field_surface_rise_2")
     lines = [
-        _line(key, "kept_x", x, "field_rise", data[one].values[kept][row])
-        for key, one in zip(keys, names, strict=True)
+        _line(key, "kept_x", x, "field_rise", data[variable].values[kept][row])
+        for key, variable in zip(keys, names, strict=True)
     ]
-    more = {"xaxis": {"range": _reach(data, kept)}}
-    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis("field_rise"), **more)
+    axes = {"xaxis": {"range": _reach(data, kept)}}
+    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis("field_rise"), **axes)
     title = f"Temperature above the inlet, in the warmest row, {_at_row(data, kept, row)}"
     return Figure(name, title, lines, look, "", keys, NONE)
 
@@ -369,16 +372,16 @@ def _pressures(name: str, outcome: Outcome, data: xr.Dataset) -> Figure:
     """Largest pressures over the mesh cycle: in all, near the ends, and of the dry line."""
     near = np.nanmax(data["near_ends"].values, axis=-2, initial=-np.inf)
     near = np.where(np.isfinite(near), near, np.nan)
-    given = {
+    courses_of = {
         Key("largest, with oil", INK): data["film_pressure"].values,
         Key("Hertz", GREY, "dash"): data["pressure"].values,
     }
     for k, far in enumerate(data["distance"].values):
         if np.isfinite(near[..., k]).any():
-            given[Key(f"{far:g} b from an end", PALETTE[k])] = near[..., k]
+            courses_of[Key(f"{far:g} b from an end", PALETTE[k])] = near[..., k]
     lines = [
         (key, course(data, "film_pressure", key, of_most(data, values)))
-        for key, values in given.items()
+        for key, values in courses_of.items()
     ]
     axis = period_of(outcome).axis
     return course_figure(name, "Pressure over the mesh cycle", "film_pressure", lines, axis, MOST)
@@ -393,7 +396,7 @@ def _ends_table(data: xr.Dataset) -> Table:
     here, coarse = data["near_ends"].values[at], data["coarse_near_ends"].values[0]
 
     def cells(values: np.ndarray) -> list[str]:
-        return [_or_nothing("near_ends", float(one)) for one in values]
+        return [_or_nothing("near_ends", float(value)) for value in values]
 
     rows = [
         (
@@ -405,8 +408,8 @@ def _ends_table(data: xr.Dataset) -> Table:
     ]
     largest = float(data["film_pressure"].values[at])
     coarse_largest = _or_nothing("film_pressure", float(data["coarse_largest_pressure"].values[0]))
-    last = "largest of all cells: in the last row a number of the grid"
-    rows.append((last, _or_nothing("film_pressure", largest), "", coarse_largest))
+    caption = "largest of all cells: in the last row a number of the grid"
+    rows.append((caption, _or_nothing("film_pressure", largest), "", coarse_largest))
     rows.append(
         ("Hertz, without ends", _or_nothing("pressure", float(data["pressure"].values[at])), "", "")
     )
@@ -462,8 +465,8 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
     if not still:
         yield Heading("Over the mesh cycle")
         name = f"finite{position}"
-        more = [_pressures(f"{name}_pressures", outcome, data)]
-        yield courses(name, outcome, data, more)
+        figures = [_pressures(f"{name}_pressures", outcome, data)]
+        yield courses(name, outcome, data, figures)
     yield from film_laws(data)
 
 
@@ -474,8 +477,8 @@ def _grid(data: xr.Dataset) -> str:
         "half_space": ", bodies that go on beyond it",
     }
     profile = data.attrs["end_profile"].replace("_", " ")
-    told = f", ends {profile}" if profile else ""
-    return f"{nodes} nodes along and {cells} cells across{ends.get(data.attrs['ends'], '')}{told}"
+    ends_words = f", ends {profile}" if profile else ""
+    return f"{nodes} nodes along and {cells} cells across{ends.get(data.attrs['ends'], '')}{ends_words}"
 
 
 def _of_kept(position: int, data: xr.Dataset) -> Iterator[Block]:

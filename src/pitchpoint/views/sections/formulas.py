@@ -80,20 +80,22 @@ class _Study(NamedTuple):
 
 def _studies(page: Page, beside: Beside) -> list[_Study]:
     """Studies that hold readings, without those whose points all stand in one with as much to tell."""
-    found = [
+    candidates = [
         (variant, _Study(part.removeprefix(PREFIX), str(data.attrs["title"]), data))
         for variant, outcome in page.outcomes.items()
         for part, data in outcome.parts.items()
         if is_study(part) and _rows(data, beside)
     ]
-    kept: list[int] = []
+    chosen: list[int] = []
     seen: list[_Told] = []
-    for place in sorted(range(len(found)), key=lambda one: -len(_rows(found[one][1].data, beside))):
-        points = _points(found[place][1].data, beside)
-        if not all(any(point <= other for other in seen) for point in points):
-            kept.append(place)
+    for place in sorted(
+        range(len(candidates)), key=lambda one: -len(_rows(candidates[one][1].data, beside))
+    ):
+        points = _points(candidates[place][1].data, beside)
+        if not all(any(point <= shown for shown in seen) for point in points):
+            chosen.append(place)
             seen += points
-    left = [found[place] for place in sorted(kept)]
+    left = [candidates[place] for place in sorted(chosen)]
     titles = Counter(study.title for _, study in left)
     return [
         study._replace(title=f"{study.title} ({variant})") if titles[study.title] > 1 else study
@@ -107,7 +109,7 @@ _Told = frozenset[tuple[str, float]]
 def _rows(data: xr.Dataset, beside: Beside) -> dict[str, tuple[str, ...]]:
     """Rows of which a study has all readings."""
     return {
-        told: names for told, names in beside.rows.items() if all(name in data for name in names)
+        label: names for label, names in beside.rows.items() if all(name in data for name in names)
     }
 
 
@@ -135,12 +137,12 @@ def _blocks(page: Page) -> Iterator[Block]:
         ]
         yield from (panel for panel in drawn if panel.figures)
         yield from _solves(studies, beside)
-        first, *others = studies
-        yield from _numbers(first, beside)
+        leading, *others = studies
+        yield from _numbers(leading, beside)
         if others:
             inside = [block for study in others for block in _numbers(study, beside)]
-            more = f"{len(others)} further studies" if len(others) > 1 else "one further study"
-            yield Folded(f"The numbers of {more}", inside)
+            title = f"{len(others)} further studies" if len(others) > 1 else "one further study"
+            yield Folded(f"The numbers of {title}", inside)
 
 
 def _numbers(study: _Study, beside: Beside) -> Iterator[Block]:
@@ -150,18 +152,20 @@ def _numbers(study: _Study, beside: Beside) -> Iterator[Block]:
 
 def _solves(studies: list[_Study], beside: Beside) -> Iterator[Block]:
     """What became of solves that are not plainly solved, and where."""
-    for told, names in beside.solves.items():
-        found: dict[Code, list[str]] = {}
+    for label, names in beside.solves.items():
+        by_code: dict[Code, list[str]] = {}
         for study in studies:
             for column, name in zip(beside.columns, names, strict=True):
                 codes = study.data[name].values[0] if name in study.data else np.zeros(0)
                 for point, code in enumerate(codes):
                     where = f"{column} at" * (len(beside.columns) > 1)
-                    found.setdefault(Code(int(code)), []).append(f"{where} {_point(study, point)}")
-        for code, places in found.items():
+                    by_code.setdefault(Code(int(code)), []).append(
+                        f"{where} {_point(study, point)}"
+                    )
+        for code, places in by_code.items():
             if not code.ok:
-                where = "everywhere" if len(found) == 1 else _listed(places)
-                words = f"{told[0].upper()}{told[1:]}, {where}: {code.sentence}."
+                where = "everywhere" if len(by_code) == 1 else _listed(places)
+                words = f"{label[0].upper()}{label[1:]}, {where}: {code.sentence}."
                 yield Paragraph(words, "warning")
 
 
@@ -178,11 +182,11 @@ _Where = tuple[_Study, int]
 def _panel(name: str, studies: list[_Study], beside: Beside) -> Panel:
     """Courses at a point, with a menu of the points of all studies; it begins where most are known."""
     points = [(study, k) for study in studies for k in range(study.data.sizes["point"])]
-    known = {k: [_known(one, *point) for point in points] for k, one in enumerate(beside.curves)}
-    there = {f"{name}_{k}": beside.curves[k] for k, them in known.items() if any(them)}
+    found_at = {k: [_known(one, *point) for point in points] for k, one in enumerate(beside.curves)}
+    there = {f"{name}_{k}": beside.curves[k] for k, them in found_at.items() if any(them)}
     if not there:
         return Panel("", [])
-    at = int(np.argmax(np.sum([*known.values()], axis=0)))
+    at = int(np.argmax(np.sum([*found_at.values()], axis=0)))
     figures = [_figure(each, one, points[at], beside) for each, one in there.items()]
     choices = [
         Choice(_point(*point), {each: [_at(one, *point), {}] for each, one in there.items()})
@@ -200,7 +204,7 @@ def _known(one: Curves, study: _Study, point: int) -> bool:
 
 
 def _holds(data: xr.Dataset, one: Curves) -> bool:
-    return all(each in data for each in one.names)
+    return all(variable in data for variable in one.names)
 
 
 def _point(study: _Study, point: int) -> str:
@@ -213,7 +217,7 @@ def _at(one: Curves, study: _Study, point: int) -> dict[str, list[Any]]:
     data = study.data
     if not _holds(data, one):
         return dict.fromkeys("xy", [[]] * len(one.names))
-    courses = [_course(each, data, point, one) for each in one.names]
+    courses = [_course(variable, data, point, one) for variable in one.names]
     return {"x": [x for x, _ in courses], "y": [y for _, y in courses]}
 
 
@@ -222,27 +226,33 @@ def _families(name: str, studies: list[_Study], beside: Beside) -> Panel:
     figures = []
     for number, study in enumerate(studies):
         places = _places(study.data)
-        each = [(study, point) for point in range(len(places))]
-        asked = [one for one in beside.families if not one.studies or study.name in one.studies]
-        for k, one in enumerate(asked):
-            if 1 < len(places) <= len(PALETTE) and _holds(study.data, one):
+        places_of = [(study, point) for point in range(len(places))]
+        drawn = [
+            family
+            for family in beside.families
+            if not family.studies or study.name in family.studies
+        ]
+        for k, family in enumerate(drawn):
+            if 1 < len(places) <= len(PALETTE) and _holds(study.data, family):
                 titled = replace(
-                    one, title=f"{one.title}; {study.title[0].lower()}{study.title[1:]}"
+                    family, title=f"{family.title}; {study.title[0].lower()}{study.title[1:]}"
                 )
-                figures.append(_family(f"{name}_{number}_{k}", titled, each, places))
+                figures.append(_family(f"{name}_{number}_{k}", titled, places_of, places))
     return Panel("", figures)
 
 
 def _side_by_side(name: str, studies: list[_Study], beside: Beside) -> Panel:
     """Courses of all studies of one point over each other."""
     figures = []
-    for k, one in enumerate(beside.over_studies):
+    for k, family in enumerate(beside.over_studies):
         alone = [
-            study for study in studies if study.data.sizes["point"] == 1 and _holds(study.data, one)
+            study
+            for study in studies
+            if study.data.sizes["point"] == 1 and _holds(study.data, family)
         ]
         titles = [study.title for study in alone]
         if 1 < len(alone) <= len(PALETTE):
-            figures.append(_family(f"{name}{k}", one, [(study, 0) for study in alone], titles))
+            figures.append(_family(f"{name}{k}", family, [(study, 0) for study in alone], titles))
     return Panel("", figures)
 
 
@@ -297,20 +307,20 @@ def _course(name: str, data: xr.Dataset, point: int, one: Curves) -> tuple[list[
     """Places and values of a course that can be seen; on decades small values keep their digits."""
     x, y = (display(of, data[of].values[point]) for of in (one.along, name))
     with np.errstate(divide="ignore", invalid="ignore"):
-        kept = visible_points(x, np.log10(y) if one.decades else y)
-    heights = rounded(y[kept]) if one.decades else line_heights(y[kept], _LEVELS)
-    return line_heights(x[kept], _LEVELS), heights
+        visible = visible_points(x, np.log10(y) if one.decades else y)
+    heights = rounded(y[visible]) if one.decades else line_heights(y[visible], _LEVELS)
+    return line_heights(x[visible], _LEVELS), heights
 
 
 def _figure(name: str, one: Curves, point: _Where, beside: Beside) -> Figure:
     """Courses over each other at a point; empty where only other studies hold them."""
     columns = one.columns or beside.columns
     keys = [Key(column, PALETTE[k]) for k, column in enumerate(columns)]
-    first, unit = _at(one, *point), show.unit_of(one.names[0])
+    shown, unit = _at(one, *point), show.unit_of(one.names[0])
     traces = [
-        plain(key, x, y, unit) for key, x, y in zip(keys, first["x"], first["y"], strict=True)
+        plain(key, x, y, unit) for key, x, y in zip(keys, shown["x"], shown["y"], strict=True)
     ]
-    if any(_turns(y) > _MANY_TURNS for y in first["y"]):
+    if any(_turns(y) > _MANY_TURNS for y in shown["y"]):
         for trace in traces:
             trace["line"]["width"], trace["opacity"] = 1, 0.75
     return _drawn(name, one, traces, keys)
@@ -329,9 +339,9 @@ def _turns(course: Sequence[float]) -> int:
 def _maps(name: str, studies: list[_Study], beside: Beside) -> Panel:
     """Fields in colours at the first point of the first study that holds them."""
     figures = []
-    for k, one in enumerate(beside.maps):
-        there = [study.data for study in studies if one.name in study.data]
-        figures += [_map(f"{name}{k}", one, data) for data in there[:1]]
+    for k, map_view in enumerate(beside.maps):
+        there = [study.data for study in studies if map_view.name in study.data]
+        figures += [_map(f"{name}{k}", map_view, data) for data in there[:1]]
     return Panel("", figures)
 
 
@@ -358,18 +368,20 @@ def _table(data: xr.Dataset, beside: Beside) -> Table:
     places, rows = _places(data), _rows(data, beside).items()
     if len(places) * len(beside.columns) > _WIDE:
         long = [
-            (f"{_titled(told, names[0])}, {place}", *_cells(data, names, point))
-            for told, names in rows
+            (f"{_titled(label, names[0])}, {place}", *_cells(data, names, point))
+            for label, names in rows
             for point, place in enumerate(places)
         ]
         return Table(["Quantity", *beside.columns], long)
-    heads = [", ".join(filter(None, (place, told))) for place in places for told in beside.columns]
+    heads = [
+        ", ".join(filter(None, (place, label))) for place in places for label in beside.columns
+    ]
     wide = [
         (
-            _titled(told, names[0]),
+            _titled(label, names[0]),
             *(cell for point in range(len(places)) for cell in _cells(data, names, point)),
         )
-        for told, names in rows
+        for label, names in rows
     ]
     return Table(["Quantity", *heads], wide, compact=len(heads) < 4 or len(wide) > _LONG)
 
@@ -382,8 +394,8 @@ def _titled(told: str, name: str) -> str:
 def _cells(data: xr.Dataset, names: tuple[str, ...], point: int) -> Iterator[str]:
     for name in names:
         value = float(data[name].values[0, point])
-        known = np.isfinite(value)
-        yield show.quantity(name, value, with_unit=False) if known else "not found"
+        is_finite = np.isfinite(value)
+        yield show.quantity(name, value, with_unit=False) if is_finite else "not found"
 
 
 def _places(data: xr.Dataset) -> list[str]:

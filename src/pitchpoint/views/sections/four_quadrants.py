@@ -60,19 +60,21 @@ def _blocks(page: Page) -> Iterator[Block]:
         "them; everything is where friction locks the drive against its output."
     )
     yield Paragraph(str(data.attrs["note"]), "note")
-    for told in dict.fromkeys(_errors(one) for one in there.values()):
-        yield Paragraph(told, "note")
-    if any(bool(np.any(one.parts[OF_OUTPUT.part]["locked"].values)) for one in there.values()):
-        told = (
+    for sentence in dict.fromkeys(_errors(design) for design in there.values()):
+        yield Paragraph(sentence, "note")
+    if any(
+        bool(np.any(design.parts[OF_OUTPUT.part]["locked"].values)) for design in there.values()
+    ):
+        sentence = (
             "Friction locks the drive against its output at some of these points, see the warnings."
         )
-        yield Paragraph(told, "note")
-    if alone := covered([one.parts for one in there.values()]):
+        yield Paragraph(sentence, "note")
+    if alone := covered([design.parts for design in there.values()]):
         yield Paragraph(alone, "note")
     yield from map_blocks(map_panel(there, page.curves, OF_OUTPUT))
     yield Heading("Held at rest")
     banded = any(
-        HOLDING_BANDS[HOLDING[0]][0] in one.parts[OF_OUTPUT.part] for one in there.values()
+        HOLDING_BANDS[HOLDING[0]][0] in design.parts[OF_OUTPUT.part] for design in there.values()
     )
     yield Paragraph(f"{AT_REST} {IN_BRACKETS}" if banded else AT_REST)
     yield from by_variant(page, HELD, lambda _, outcome: _held(outcome))
@@ -126,9 +128,9 @@ def _degree(outcome: Outcome) -> str:
 
 def _word(data: xr.Dataset, name: str, at: tuple[int, int]) -> str:
     """A torque, with the ends of its band where it has one."""
-    names = [name, *(one for one in HOLDING_BANDS.get(name, ()) if one in data)]
-    each = [float(data[n].transpose("law", "output_torque", ...).values[at]) for n in names]
-    value, *ends = (shown(name, one, data) if np.isfinite(one) else "locked" for one in each)
+    names = [name, *(end for end in HOLDING_BANDS.get(name, ()) if end in data)]
+    values_of = [float(data[n].transpose("law", "output_torque", ...).values[at]) for n in names]
+    value, *ends = (shown(name, end, data) if np.isfinite(end) else "locked" for end in values_of)
     return f"{value} ({' to '.join(ends)})" if ends else value
 
 
@@ -181,10 +183,10 @@ def _without(least: float) -> str:
 def _of_band(held: dict[str, Any], data: xr.Dataset, load: str) -> str:
     """The narrowest and the widest band by the spread of what holds at rest; empty without any."""
     (widest, least), (largest, most) = HOLDING_BANDS.values()
-    if any(held.get(one) is None for one in (widest, least, largest, most)):
+    if any(held.get(end) is None for end in (widest, least, largest, most)):
         return ""
     narrow, wide = (
-        " to ".join(shown(HOLDING[0], held[one], data) for one in ends)
+        " to ".join(shown(HOLDING[0], held[end], data) for end in ends)
         for ends in ((least, largest), (widest, most))
     )
     return (

@@ -30,7 +30,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         "several": page.several,
         "statuses": STATUSES,
         "source_keys": {
-            s["key"] for one in page.outcomes.values() for s in one.manifest["sources"]
+            s["key"] for outcome in page.outcomes.values() for s in outcome.manifest["sources"]
         },
     }
     yield Drawn("inputs.html.jinja", values)

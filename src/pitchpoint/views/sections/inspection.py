@@ -142,8 +142,8 @@ def _blocks(page: Page) -> Iterator[Block]:
 def _of_members(outcome: Outcome) -> xr.Dataset:
     """Inspection of the gears of a mesh, those of a train by the bodies that they are."""
     data = outcome.parts["inspection"]
-    known = bool(outcome.manifest.get("bodies"))
-    return data.assign_coords(gear=named_members(outcome)) if known else data
+    has_bodies = bool(outcome.manifest.get("bodies"))
+    return data.assign_coords(gear=named_members(outcome)) if has_bodies else data
 
 
 def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
@@ -205,12 +205,12 @@ def _printed(outcome: Outcome) -> Iterator[Printed]:
 
 
 def _on_screen(data: xr.Dataset, gear: str) -> dict[str, str]:
-    own = data.sel(gear=gear)
-    row = {"inspection": gear, head("span_teeth"): _count(float(own["span_teeth"]))}
+    of_gear = data.sel(gear=gear)
+    row = {"inspection": gear, head("span_teeth"): _count(float(of_gear["span_teeth"]))}
     for name in ("span_measurement", "ball_diameter", "over_balls"):
-        values = np.sort(np.atleast_1d(own[name].values)[-2:])
+        values = np.sort(np.atleast_1d(of_gear[name].values)[-2:])
         row[head(name)] = " to ".join(dict.fromkeys(_to_a_micrometre(name, values)))
-    plays = own["backlash_angle"].values
+    plays = of_gear["backlash_angle"].values
     ends = plays if plays.size == 1 else plays[[1, -1]]
     words = [shown("backlash_angle", float(v)) for v in ends]
     return row | {head("backlash_angle"): " to ".join(words)}

@@ -46,13 +46,13 @@ def _side_by_side(page: Page) -> Table:
     lines = [
         (
             show.axis_title(name, columns[0][1].parts["operation"]),
-            *(_told(one.parts["operation"], name, k) for _, one, k, _ in columns),
+            *(_told(design.parts["operation"], name, k) for _, design, k, _ in columns),
         )
         for name in _SIDE_BY_SIDE
-        if any(name in one.parts["operation"] for _, one, *_ in columns)
+        if any(name in design.parts["operation"] for _, design, *_ in columns)
     ]
-    within = [(spread(one) or {"text": "not computed"})["text"] for _, one, *_ in columns]
-    back = [back_driving(one, law) for _, one, _, law in columns]
+    within = [(spread(design) or {"text": "not computed"})["text"] for _, design, *_ in columns]
+    back = [back_driving(design, law) for _, design, _, law in columns]
     return Table(
         [
             "At the operating point",

@@ -66,10 +66,10 @@ _APART = 0.1
 def joint_answer(outcome: Outcome) -> str:
     """Natural frequencies and the critical speed of the strongest wave in words."""
     data = outcome.parts["joint"]
-    (held, speed), (free, other) = _resonances(data)
+    (held, speed), (free, free_speed) = _resonances(data)
     return (
         f"{held} on a motor that holds its speed, {free} on one that runs free; the strongest wave of the "
-        f"error, {data.attrs['strongest']}, meets them at {speed} and {other}"
+        f"error, {data.attrs['strongest']}, meets them at {speed} and {free_speed}"
     )
 
 
@@ -78,8 +78,8 @@ def _resonances(data: xr.Dataset) -> Iterator[tuple[str, str]]:
     strongest = int(np.argmax(data["wave_amplitude"].values))
     pairs = zip(data["natural_frequency"].values, data["critical_speed"].values, strict=True)
     for frequency, critical in pairs:
-        own = show.quantity("natural_frequency", float(frequency), of=data)
-        yield own, show.quantity("critical_speed", float(critical[strongest]), of=data)
+        shown_frequency = show.quantity("natural_frequency", float(frequency), of=data)
+        yield shown_frequency, show.quantity("critical_speed", float(critical[strongest]), of=data)
 
 
 def critical_rows(outcome: Outcome) -> list[dict[str, str]]:
@@ -154,15 +154,15 @@ def _amplitudes(name: str, data: xr.Dataset, variable: str, motors: tuple[int, .
 
 def _marks(data: xr.Dataset, speed: np.ndarray, motors: tuple[int, ...]) -> list[tuple[str, float]]:
     """Critical speeds inside the figure that stand apart, the strongest waves first, by their order."""
-    found: list[tuple[str, float]] = []
+    marks: list[tuple[str, float]] = []
     critical = display("critical_speed", data["critical_speed"].values, data)
     for m in motors:
         for k, order in enumerate(data["wave_order"].values):
             there = float(critical[m, k])
-            near = any(abs(there - other) < _APART * np.ptp(speed) for _, other in found)
+            near = any(abs(there - mark) < _APART * np.ptp(speed) for _, mark in marks)
             if speed.min() <= there <= speed.max() and not near:
-                found.append((show.number(order), there))
-    return found
+                marks.append((show.number(order), there))
+    return marks
 
 
 def _campbell(name: str, data: xr.Dataset) -> Figure:
@@ -202,8 +202,10 @@ def _curve_rows(outcome: Outcome) -> list[dict[str, str]]:
     return [
         {"at the": str(name)}
         | {
-            f"{told} [{show.unit_of(one, data)}]": shown(one, float(data[one].values[k]), data)
-            for one, told in _CURVE.items()
+            f"{label} [{show.unit_of(figure, data)}]": shown(
+                figure, float(data[figure].values[k]), data
+            )
+            for figure, label in _CURVE.items()
         }
         for k, name in enumerate(data["course"].values)
     ]
@@ -223,8 +225,8 @@ def joint_blocks(page: Page) -> Iterator[Block]:
         )
         yield _own_table(outcome)
         rows = critical_rows(outcome)
-        first, *heads = rows[0]
-        yield turned(heads, [[*row.values()] for row in rows], first)
+        corner, *heads = rows[0]
+        yield turned(heads, [[*row.values()] for row in rows], corner)
         yield from naming(title, [joint_panel(f"joint{position}", "", outcome)])
         rows = _curve_rows(outcome)
         yield Paragraph(_whole(data))
@@ -235,13 +237,13 @@ def joint_blocks(page: Page) -> Iterator[Block]:
 def _whole(data: xr.Dataset) -> str:
     """What the integration in time adds."""
     play = float(data["kinematic_play"])
-    told = (
+    words = (
         f"its play of {show.quantity('kinematic_play', play, of=data)}"
         if play > _PLAY
         else "no play"
     )
     return (
-        f"With the whole curve of the wind-up, {told} and both flanks, integrated in time until steady: the "
+        f"With the whole curve of the wind-up, {words} and both flanks, integrated in time until steady: the "
         f"strongest wave, {data.attrs['strongest']}, on a motor that holds its speed."
     )
 

@@ -74,8 +74,8 @@ def _concentrated(data: xr.Dataset) -> str:
 
 def _limits_note(data: xr.Dataset) -> str:
     torques = limit_rows(data)
-    told = "Ratcheting and buckling are not computed"
-    return f"{told}: their torques are {_origin(data)}." if torques else f"{told}."
+    sentence = "Ratcheting and buckling are not computed"
+    return f"{sentence}: their torques are {_origin(data)}." if torques else f"{sentence}."
 
 
 def _origin(data: xr.Dataset) -> str:

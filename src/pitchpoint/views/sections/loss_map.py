@@ -68,7 +68,11 @@ class Chart:
 
     def of(self, outcomes: Mapping[str, Outcome]) -> dict[str, xr.Dataset]:
         """The maps of those outcomes that have one."""
-        return {n: one.parts[self.part] for n, one in outcomes.items() if self.part in one.parts}
+        return {
+            n: outcome.parts[self.part]
+            for n, outcome in outcomes.items()
+            if self.part in outcome.parts
+        }
 
 
 OF_DRIVER = Chart(
@@ -81,8 +85,8 @@ def map_panel(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart = OF_
     choices = list(_choices(outcomes, chart))
     if not choices:
         return Panel(chart.title, [])
-    first = min(range(len(choices)), key=lambda at: choices[at][0])
-    _, variant, position, law = choices[first]
+    shown = min(range(len(choices)), key=lambda at: choices[at][0])
+    _, variant, position, law = choices[shown]
     even = {name: words for name in chart.shown if (words := _even(name, outcomes, chart))}
     drawn = replace(chart, shown=tuple(name for name in chart.shown if name not in even))
     figures = [
@@ -92,9 +96,9 @@ def map_panel(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart = OF_
     menu = [_choice(outcomes, known, drawn, *choice[1:]) for choice in choices]
     menus = _menus(outcomes, known, chart) if len(choices) > 1 else []
     if not figures:
-        menu, menus, first = [], [], 0
-    told = " ".join(even.values())
-    return Panel(chart.title, figures, [], menu, told, menu="Shown for", menus=menus, at=first)
+        menu, menus, shown = [], [], 0
+    note = " ".join(even.values())
+    return Panel(chart.title, figures, [], menu, note, menu="Shown for", menus=menus, at=shown)
 
 
 def map_blocks(panel: Panel) -> Iterator[Block]:
@@ -126,9 +130,9 @@ def _menus(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart) -> list
     labels = [known[name, law].label for name, data in maps.items() for law in laws(data)]
     if len(degrees) > 1:
         return []
-    told = [level("temperature", degree) for degree in degrees.pop()]
-    each = [Menu("Friction", labels), Menu("Oil at", told)]
-    return [menu for menu in each if len(menu.labels) > 1]
+    levels = [level("temperature", degree) for degree in degrees.pop()]
+    menus = [Menu("Friction", labels), Menu("Oil at", levels)]
+    return [menu for menu in menus if len(menu.labels) > 1]
 
 
 def _scale(name: str, outcomes: Mapping[str, Outcome], chart: Chart) -> dict[str, float]:
@@ -215,8 +219,8 @@ def _heat(name: str, data: xr.Dataset, chart: Chart, law: int, temperature: int)
     """Axes and values from where some map has any, thinned where there are more than a page can show."""
     across, up = chart.axes
     every = data[name].transpose("law", "temperature", up, across).values
-    known = np.isfinite(every).any(axis=(0, 1))
-    rows, columns = (_thinned(known.any(axis=axis)) for axis in (1, 0))
+    finite = np.isfinite(every).any(axis=(0, 1))
+    rows, columns = (_thinned(finite.any(axis=axis)) for axis in (1, 0))
     values = every[law, temperature]
     return {
         "x": rounded(display(across, data[across].values[columns], data)),
@@ -251,9 +255,12 @@ def map_figure(
         scale: ends of the colour scale, `zmin` and `zmax`; those of the values unless given.
     """
     data, fact, (across, up) = outcome.parts[chart.part], operating_point(outcome), chart.axes
-    unit, units = show.unit_of(name, data), [show.unit_of(one, data) for one in chart.axes]
+    unit, units = (
+        show.unit_of(name, data),
+        [show.unit_of(variable, data) for variable in chart.axes],
+    )
     speed = fact.speed * float(data.attrs.get("speed_ratio", 1.0))
-    shown, same = _heat(name, data, chart, law, temperature), _same(name, data)
+    shown, uniform = _heat(name, data, chart, law, temperature), _same(name, data)
     lines = {key.partition(".")[2]: value for key, value in _contours(shown["z"]).items()}
     heat = {
         "type": "contour",
@@ -262,7 +269,7 @@ def map_figure(
         "hoverongaps": False,
         **scale,
         "zauto": not scale,
-        "showscale": not same,
+        "showscale": not uniform,
         "autocontour": False,
         "contours": {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11}, **lines},
         "line": {"color": INK, "width": 0.7},
@@ -284,7 +291,7 @@ def map_figure(
         titled(name, data),
         [heat, point],
         layout(show.axis_title(across, data), show.axis_title(up, data)),
-        f"The ring marks the operating point.{_beginning(name, data, chart, shown)}{same}",
+        f"The ring marks the operating point.{_beginning(name, data, chart, shown)}{uniform}",
     )
 
 
@@ -334,9 +341,11 @@ def efficiency_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
     ]
     figures = [
         figure
-        for axis, other in _AXES.items()
+        for axis, level_axis in _AXES.items()
         if _worth(axis, seen)
-        for figure in _on_one_scale({one[0].label: _lines(axis, other, *one) for one in seen})
+        for figure in _on_one_scale(
+            {drawn[0].label: _lines(axis, level_axis, *drawn) for drawn in seen}
+        )
     ]
     return Panel("Efficiency", figures, [curve for curve, *_ in seen] if len(seen) == 1 else [])
 
@@ -413,14 +422,16 @@ def _lossy(outcome: Outcome) -> bool:
 
 def _colours(outcomes: Mapping[str, Outcome]) -> str:
     """What blank cells and the colours of several maps mean, as sentences."""
-    maps = [(one, one.parts["loss_map"]) for one in outcomes.values()]
+    maps = [(outcome, outcome.parts["loss_map"]) for outcome in outcomes.values()]
     locked = any(bool((data["locked"] & (data["torque"] > 0.0)).any()) for _, data in maps)
     blank = " Blank cells: friction locks the mesh there." if locked else ""
     outside = [
-        law_title(one, laws(d)[k]) for one, d in maps for k in np.flatnonzero(~_holds(one, d))
+        law_title(outcome, laws(d)[k])
+        for outcome, d in maps
+        for k in np.flatnonzero(~_holds(outcome, d))
     ]
     shared = f"{blank} All choices share one colour scale"
-    if not outside or not any(_holds(one, data).any() for one, data in maps):
+    if not outside or not any(_holds(outcome, data).any() for outcome, data in maps):
         return f"{shared}."
     return (
         f"{shared}, that of the laws in their range: under {', '.join(dict.fromkeys(outside))} values "
@@ -436,10 +447,12 @@ def _blocks(page: Page) -> Iterator[Block]:
         f"Mean loss and mean efficiency over driver speed and {load}. At zero {load.split()[-1]} or zero "
         f"speed no power is transmitted and the efficiency is undefined.{_colours(there)}"
     )
-    if alone := covered([one.parts for one in there.values()]):
+    if alone := covered([outcome.parts for outcome in there.values()]):
         yield Paragraph(alone, "note")
     yield from map_blocks(map_panel(there, page.curves))
-    lines = efficiency_panel({n: one for n, one in there.items() if _lossy(one)}, page.curves)
+    lines = efficiency_panel(
+        {n: outcome for n, outcome in there.items() if _lossy(outcome)}, page.curves
+    )
     if lines.figures:
         yield Heading("Efficiency against load, speed and temperature")
         yield lines

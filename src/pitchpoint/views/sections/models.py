@@ -15,19 +15,19 @@ def _blocks(page: Page) -> Iterator[Block]:
 
 def _models(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     """Laws and models of all variants, each with the variants that use it."""
-    found: dict[str, dict[str, str]] = {}
+    by_model: dict[str, dict[str, str]] = {}
     for variant, outcome in outcomes.items():
         manifest = outcome.manifest
         named = [("friction", law) for law in manifest["laws"]]
         named += [(model["effect"], model) for model in manifest["models"]]
         for effect, model in named:
-            entry = found.setdefault(
+            entry = by_model.setdefault(
                 f"{effect} {model['name']}",
                 {"effect": effect, "name": model["name"], "title": model["title"]}
                 | {"note": model["note"], "variants": ""},
             )
             entry["variants"] += ", " * bool(entry["variants"]) + variant
-    return list(found.values())
+    return list(by_model.values())
 
 
 MODELS = Section(

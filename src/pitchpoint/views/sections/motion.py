@@ -132,7 +132,7 @@ def motion_panel(name: str, outcome: Outcome) -> Panel:
     figures = [
         _course(f"{name}_error", data, "transmission_error"),
         _speeds(f"{name}_speed", data),
-        *(_pairs(f"{name}_{one}", data, one) for one in _OF_PAIRS),
+        *(_pairs(f"{name}_{variable}", data, variable) for variable in _OF_PAIRS),
         _course(f"{name}_efficiency", data, "efficiency", _NOW),
         _spectrum(f"{name}_spectrum", data),
     ]
@@ -174,7 +174,7 @@ def _speeds(name: str, data: xr.Dataset) -> Figure:
 def _labelled(name: str, data: xr.Dataset, variable: str, axis: str) -> Figure:
     """A quantity of everything that an axis names."""
     names = enumerate(data[axis].values)
-    keys = [Key(str(one), PALETTE[k % len(PALETTE)]) for k, one in names]
+    keys = [Key(str(label), PALETTE[k % len(PALETTE)]) for k, label in names]
     return _lines(name, data, variable, keys, display(variable, data[variable].values, data))
 
 
@@ -218,13 +218,13 @@ def _bearing_spectrum(name: str, data: xr.Dataset) -> Figure:
 def _orders(data: xr.Dataset, variable: str, values: np.ndarray, key: Key) -> Trace:
     """Amplitudes of the orders of the mesh frequency; that of order zero is the mean."""
     orders = data["order"].values
-    kept = (orders > 0.0) & (orders <= 20.0)
+    shown = (orders > 0.0) & (orders <= 20.0)
     return {
         "type": "bar",
         "name": text(key.label),
         "meta": "",
-        "x": orders[kept].tolist(),
-        "y": rounded(display(variable, values[kept])),
+        "x": orders[shown].tolist(),
+        "y": rounded(display(variable, values[shown])),
         "marker": {"color": key.colour},
         "hovertemplate": f"%{{y:.4~r}} {show.unit_of(variable)}<br>order %{{x}}",
     }
@@ -249,11 +249,16 @@ def _table(data: xr.Dataset) -> Table:
 def _modes(data: xr.Dataset) -> Table:
     """Natural frequencies with the mean stiffness, what yields in them, and how they are damped."""
     rows = [
-        (str(name), *(show.quantity(one, float(data[one][k]), of=data) for one in _OF_MODES))
+        (
+            str(name),
+            *(show.quantity(variable, float(data[variable][k]), of=data) for variable in _OF_MODES),
+        )
         for k, name in enumerate(data["mode"].values)
     ]
     return Table(
-        ["Mode: elastic energy in", *(titled(one, data) for one in _OF_MODES)], rows, compact=True
+        ["Mode: elastic energy in", *(titled(variable, data) for variable in _OF_MODES)],
+        rows,
+        compact=True,
     )
 
 
@@ -282,7 +287,7 @@ def _works(data: xr.Dataset) -> Table:
 def speeds_panel(name: str, outcome: Outcome) -> Panel:
     """Figures against speed, the orders over speed, and the diagram of Campbell."""
     data = outcome.parts["motion_against_speed"]
-    figures = [_against(f"{name}_{one}", data, one) for one in _AGAINST_SPEED]
+    figures = [_against(f"{name}_{variable}", data, variable) for variable in _AGAINST_SPEED]
     figures.insert(2, _efficiencies(f"{name}_efficiency", data))
     if data["largest_bearing_force"].notnull().any():
         figures.append(_against(f"{name}_bearing", data, "largest_bearing_force"))
@@ -294,14 +299,14 @@ def _branches(data: xr.Dataset, variable: str, colour: str) -> tuple[list[Trace]
     speed, unit = display("speed", data["speed"].values, data), show.unit_of(variable, data)
     traces, keys = [], []
     courses = display(variable, _steady(data, variable))
-    same = len(courses) > 1 and np.allclose(courses[0], courses[1], rtol=1e-6, equal_nan=True)
+    alike = len(courses) > 1 and np.allclose(courses[0], courses[1], rtol=1e-6, equal_nan=True)
     looks = zip(data["direction"].values, ("solid", "dash"), strict=False)
-    for (way, dash), values in zip(looks, courses[:1] if same else courses, strict=False):
-        key = Key(f"speed {way}", colour, dash)
+    for (direction, dash), values in zip(looks, courses[:1] if alike else courses, strict=False):
+        key = Key(f"speed {direction}", colour, dash)
         dots = {"mode": "lines+markers", "marker": {"size": 4, "color": colour}}
         traces.append(plain(key, speed, values, unit, **dots))
         keys.append(key)
-    return traces, keys, "Speed rising and falling give the same." if same else ""
+    return traces, keys, "Speed rising and falling give the same." if alike else ""
 
 
 def _steady(data: xr.Dataset, variable: str) -> np.ndarray:
@@ -322,7 +327,7 @@ def _against(name: str, data: xr.Dataset, variable: str) -> Figure:
 
 def _efficiencies(name: str, data: xr.Dataset) -> Figure:
     """Mean efficiency in motion beside that without vibration."""
-    traces, keys, same = _branches(data, "mean_efficiency", PALETTE[0])
+    traces, keys, remark = _branches(data, "mean_efficiency", PALETTE[0])
     still = Key("without vibration", GREY, "dot")
     speed = display("speed", data["speed"].values, data)
     values = display("quasi_static_efficiency", data["quasi_static_efficiency"].values)
@@ -330,7 +335,7 @@ def _efficiencies(name: str, data: xr.Dataset) -> Figure:
     if len(keys) == 1:
         keys = [Key("in motion", PALETTE[0])]
     axes = layout(show.axis_title("speed", data), short_axis("mean_efficiency"))
-    note = f"Of the teeth, pairs sharing the load as they yield. {same}".rstrip()
+    note = f"Of the teeth, pairs sharing the load as they yield. {remark}".rstrip()
     title = "Mean efficiency against speed"
     return Figure(name, title, traces, axes, note, (*keys, still), NONE)
 
@@ -338,13 +343,13 @@ def _efficiencies(name: str, data: xr.Dataset) -> Figure:
 def _waterfall(name: str, data: xr.Dataset) -> Figure:
     """Amplitude of every order over speed, rising."""
     orders, unit = data["order"].values, show.unit_of("spectrum")
-    kept = (orders > 0.0) & (orders <= 12.0)
+    shown = (orders > 0.0) & (orders <= 12.0)
     codes = data["vibration_status"].values[0]
-    amplitude = np.where(codes[:, None] == 0, data["spectrum"].values[0], np.nan)[:, kept]
+    amplitude = np.where(codes[:, None] == 0, data["spectrum"].values[0], np.nan)[:, shown]
     heat: Trace = {
         "type": "heatmap",
         "x": rounded(display("speed", data["speed"].values, data)),
-        "y": orders[kept].tolist(),
+        "y": orders[shown].tolist(),
         "z": [rounded(row) for row in display("spectrum", amplitude).T],
         "colorscale": RISING,
         "hoverongaps": False,
@@ -361,7 +366,7 @@ def _campbell(name: str, outcome: Outcome) -> Figure:
     data, cycle = outcome.parts["motion_against_speed"], period_of(outcome).angle
     orders = [(Key(str(one), PALETTE[0]), one / cycle) for one in range(1, CAMPBELL + 1)]
     natural = data["natural_frequency"].values
-    found = campbell(
+    diagram = campbell(
         f"{name}_campbell",
         data,
         orders,
@@ -374,7 +379,7 @@ def _campbell(name: str, outcome: Outcome) -> Figure:
         Key("natural frequencies", GREY, "dash"),
     )
     note = "Where an order crosses a natural frequency, with the mean stiffness, lies a critical speed."
-    return replace(found, title="Campbell's diagram", note=note, keys=keys, missing=NONE)
+    return replace(diagram, title="Campbell's diagram", note=note, keys=keys, missing=NONE)
 
 
 def _critical(data: xr.Dataset) -> Iterator[Block]:
@@ -402,10 +407,11 @@ def _crossing(data: xr.Dataset, number: int) -> tuple[str, ...]:
         "natural_frequency": data["natural_frequency"][mode],
         **{name: data[name][number] for name in ("critical_speed", "half_power_width")},
     }
-    told = (
-        show.quantity(name, float(one), with_unit=False, of=data) for name, one in values.items()
+    cells = (
+        show.quantity(name, float(value), with_unit=False, of=data)
+        for name, value in values.items()
     )
-    return str(data["mode"].values[mode]), f"{float(data['critical_order'][number]):g}", *told
+    return str(data["mode"].values[mode]), f"{float(data['critical_order'][number]):g}", *cells
 
 
 # ---- from a start
@@ -416,7 +422,7 @@ def _start_table(data: xr.Dataset) -> Table:
     names = ["largest_mesh_force", *(["largest_bearing_force"] if "bearing" in data else [])]
     rows = [(titled(name, data), _cell(data, name)) for name in names]
     rows.append(("Time at the end", show.quantity("time", float(data["time"][-1]), of=data)))
-    rows += [(f"Speed of {body} at the end", told) for body, told in _last_speeds(data)]
+    rows += [(f"Speed of {body} at the end", speed) for body, speed in _last_speeds(data)]
     lost = ("work_put_in", "work_friction", "work_rolling", "work_damping", "kinetic_energy")
     rows += [
         (f"{titled(name, data)}, at the end", show.quantity(name, float(data[name][-1]), of=data))
@@ -432,7 +438,7 @@ def start_panel(name: str, outcome: Outcome) -> Panel:
     figures = [
         _speeds(f"{name}_speed", data),
         _course(f"{name}_error", data, "transmission_error"),
-        *(_pairs(f"{name}_{one}", data, one) for one in ("load", "friction_force")),
+        *(_pairs(f"{name}_{variable}", data, variable) for variable in ("load", "friction_force")),
     ]
     return Panel("", [*figures, *_bearings(name, data)])
 
@@ -495,12 +501,14 @@ def _of_period(position: int, outcome: Outcome) -> Iterator[Block]:
 
 def _gaps(data: xr.Dataset) -> Iterator[Block]:
     """Speeds without a steady motion, and why."""
-    told: Sequence[str] = json.loads(data.attrs["sentences"])
-    for way, codes in zip(data["direction"].values, data["vibration_status"].values, strict=True):
+    sentences: Sequence[str] = json.loads(data.attrs["sentences"])
+    for direction, codes in zip(
+        data["direction"].values, data["vibration_status"].values, strict=True
+    ):
         for code in np.unique(codes[codes != 0]):
             count = np.count_nonzero(codes == code)
             yield Paragraph(
-                f"Speed {way}: {count} of {codes.size} speeds are left out, {told[int(code)]}.",
+                f"Speed {direction}: {count} of {codes.size} speeds are left out, {sentences[int(code)]}.",
                 "warning",
             )
 
@@ -516,8 +524,8 @@ def motion_printed(outcome: Outcome) -> Iterator[Printed]:
         )
         return
     row = {head(name, data): shown(name, float(data[name]), data) for name in _ON_SCREEN}
-    told = f"{motion_answer(outcome)}; natural frequencies {_frequencies(data)}."
-    yield Printed("Motion with friction", [row], told)
+    sentence = f"{motion_answer(outcome)}; natural frequencies {_frequencies(data)}."
+    yield Printed("Motion with friction", [row], sentence)
     if "start_up" in outcome.parts:
         yield Printed(line=f"{_end_of_start(outcome.parts['start_up'])}.")
 
@@ -526,10 +534,10 @@ def _end_of_start(data: xr.Dataset) -> str:
     """Speeds at the end of a start, in words."""
     if not np.isfinite(data["largest_mesh_force"]):
         return f"Start: no values are shown: {data.attrs['sentence']}"
-    told = ", ".join(f"{body} {speed}" for body, speed in _last_speeds(data))
+    speeds = ", ".join(f"{body} {speed}" for body, speed in _last_speeds(data))
     force = show.quantity("largest_mesh_force", float(data["largest_mesh_force"]), of=data)
     after = show.quantity("time", float(data["time"][-1]), of=data)
-    return f"Start, after {after}: {told}; largest normal force {force}"
+    return f"Start, after {after}: {speeds}; largest normal force {force}"
 
 
 def _last_speeds(data: xr.Dataset) -> Iterator[tuple[str, str]]:
@@ -541,8 +549,8 @@ def _last_speeds(data: xr.Dataset) -> Iterator[tuple[str, str]]:
 
 def _frequencies(data: xr.Dataset) -> str:
     values = ", ".join(
-        show.number(float(one))
-        for one in display("natural_frequency", data["natural_frequency"].values, data)
+        show.number(float(frequency))
+        for frequency in display("natural_frequency", data["natural_frequency"].values, data)
     )
     return f"{values} {show.unit_of('natural_frequency', data)}"
 

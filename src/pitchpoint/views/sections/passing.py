@@ -50,26 +50,26 @@ def _clearance(name: str, outcome: Outcome) -> Figure:
     """Clearance of unloaded flanks, with the teeth that carry at one moment."""
     teeth = outcome.parts["teeth"]
     angle = display("clearance_angle", teeth["clearance_angle"].values)
-    given = np.maximum(teeth["clearance"].values, _LEAST)
+    clearance = np.maximum(teeth["clearance"].values, _LEAST)
     unit = show.unit(VARIABLES["clearance"].display)
     key = Key("clearance of the unloaded flanks", PALETTE[0])
-    traces = [plain(key, angle, display("clearance", given), unit)]
+    traces = [plain(key, angle, display("clearance", clearance), unit)]
     keys = [key]
     least = f"{show.number(float(display('clearance', _LEAST)))} {unit}"
-    told = f"Clearances below {least} are drawn there: flanks without one slide on each other."
+    note = f"Clearances below {least} are drawn there: flanks without one slide on each other."
     places = _carrying(outcome)
     if places.size:
-        there = np.interp(places, angle, display("clearance", given))
+        there = np.interp(places, angle, display("clearance", clearance))
         traces.append(
             plain(_TEETH, places, there, unit)
             | {"mode": "markers", "marker": {"size": 7, "color": _TEETH.colour}}
         )
         keys.append(_TEETH)
-        told = (
+        note = (
             f"Dots: the teeth of one end of the long axis that carry at "
-            f"{_torque(outcome)} at one moment; load has closed their clearance. {told}"
+            f"{_torque(outcome)} at one moment; load has closed their clearance. {note}"
         )
-    ends = angle[np.isfinite(given)][[0, -1]].tolist()
+    ends = angle[np.isfinite(clearance)][[0, -1]].tolist()
     return Figure(
         name,
         "Clearance along the wave",
@@ -81,7 +81,7 @@ def _clearance(name: str, outcome: Outcome) -> Figure:
             yaxis={"type": "log", "dtick": 1, "exponentformat": "none"},
             shapes=[at_origin()],
         ),
-        told,
+        note,
         tuple(keys),
     )
 

@@ -74,8 +74,8 @@ def _loss_words(outcome: Outcome, law: int) -> str:
 def path_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
     """Quantities of one pair on its way from A to E."""
     seen = list(_seen(outcomes, known))
-    first = path_of(next(iter(outcomes.values())))
-    figures = [_along_figure(name, seen, first) for name in _ALONG] if seen else []
+    path = path_of(next(iter(outcomes.values())))
+    figures = [_along_figure(name, seen, path) for name in _ALONG] if seen else []
     return Panel("Along the path of contact", figures, [curve for curve, *_ in seen])
 
 
@@ -135,12 +135,12 @@ _UNDER_LOAD = ("film_thickness", "lambda_ratio", "friction")
 def _at_middle(data: xr.Dataset, values: np.ndarray, place: np.ndarray) -> np.ndarray:
     """Values [node, pair] between those of the slices, at a place on the path [node, pair]."""
     flat = (-1, data.sizes["slice"])
-    paths, each = data["path"].values.reshape(flat), values.reshape(flat)
-    found = [
+    paths, of_rows = data["path"].values.reshape(flat), values.reshape(flat)
+    at_middle = [
         _between(x, path[::-1], value[::-1])
-        for x, path, value in zip(place.ravel(), paths, each, strict=True)
+        for x, path, value in zip(place.ravel(), paths, of_rows, strict=True)
     ]
-    return np.array(found).reshape(place.shape)
+    return np.array(at_middle).reshape(place.shape)
 
 
 def _between(x: float, path: np.ndarray, values: np.ndarray) -> float:
@@ -149,8 +149,8 @@ def _between(x: float, path: np.ndarray, values: np.ndarray) -> float:
     path, values = path[apart], values[apart]
     if path.size < 2 or path[0] <= x <= path[-1]:
         return float(np.interp(x, path, values))
-    first = slice(0, 2) if x < path[0] else slice(-2, None)
-    (low, high), (start, end) = path[first], values[first]
+    nearest = slice(0, 2) if x < path[0] else slice(-2, None)
+    (low, high), (start, end) = path[nearest], values[nearest]
     return float(start + (end - start) * (x - low) / (high - low))
 
 
@@ -173,7 +173,7 @@ def _along_figure(
     for curve, data, law, path in seen:
         x, y = along(data, name, law, path)
         traces.append(line(curve, x, display(name, y), unit))
-    shown, same = merged(traces)
+    shown, remark = merged(traces)
     of_line = first.helical and name in _WHOLE
     end = first.contact_ratio if of_line else first.transverse_ratio
     look = layout(
@@ -189,7 +189,7 @@ def _along_figure(
     note = _LINES.get(name, _ALONG[name]) if first.helical else _ALONG[name]
     if name == "sliding_velocity":
         note = str(seen[0][1]["path"].attrs["sliding"])
-    note, missing = " ".join(filter(None, (note, same))), _MISSING.get(name, NO_POWER)
+    note, missing = " ".join(filter(None, (note, remark))), _MISSING.get(name, NO_POWER)
     return Figure(f"along_{name}", title, shown, look, note, missing=missing)
 
 
@@ -202,22 +202,24 @@ def loss_sentence(shares: Mapping[tuple[str, str], float], path: PathOfContact) 
     """
     if not shares:
         return "There is no loss."
-    told = ", ".join(f"{100 * share:.0f} % between {a} and {b}" for (a, b), share in shares.items())
+    shares_words = ", ".join(
+        f"{100 * share:.0f} % between {a} and {b}" for (a, b), share in shares.items()
+    )
     if "C" not in path.points:
-        return f"{told}. The pitch point lies outside the path."
+        return f"{shares_words}. The pitch point lies outside the path."
     middle = path.points["C"]
     before = sum(share for (_, end), share in shares.items() if path.points[end] <= middle + 1e-9)
     approach, recess = (1.0 - before, before) if path.backwards else (before, 1.0 - before)
     return (
-        f"{told}: {100 * approach:.0f} % before the pitch point C (approach) and "
+        f"{shares_words}: {100 * approach:.0f} % before the pitch point C (approach) and "
         f"{100 * recess:.0f} % after it (recess)."
     )
 
 
 def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
     """What the letters mean for this contact ratio and driver."""
-    first = next(iter(outcomes.values()))
-    path, members = path_of(first), named_members(first)
+    sample = next(iter(outcomes.values()))
+    path, members = path_of(sample), named_members(sample)
     notes = [_letters(path, members[1])]
     if path.helical:
         notes.append(
@@ -232,11 +234,11 @@ def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
         )
     else:
         notes.append("Between B and D one pair carries the load, outside two share it.")
-    cycles = [one.parts["cycle"] for one in outcomes.values() if "cycle" in one.parts]
+    cycles = [outcome.parts["cycle"] for outcome in outcomes.values() if "cycle" in outcome.parts]
     if not path.helical and any(cycle.sizes["slice"] > 1 for cycle in cycles):
         notes.append("What differs over the face is shown where the load on it is highest.")
     if path.backwards:
-        driver = show.the(str(first.manifest["driver"]))
+        driver = show.the(str(sample.manifest["driver"]))
         notes.append(
             f"{driver[0].upper()}{driver[1:]} drives, so every pair runs from E to A, and the phase runs "
             "backwards."

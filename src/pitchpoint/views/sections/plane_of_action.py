@@ -75,8 +75,8 @@ class PlaneOfAction:
 
     def total_length(self, phase: float) -> float:
         """Length of all contact lines together at a phase [m]."""
-        each = (self.ends(phase % 1.0 + lane) for lane in range(self.lanes + 1))
-        share = sum(ends[1] - ends[0] for ends in each if ends)
+        contact_ends = (self.ends(phase % 1.0 + lane) for lane in range(self.lanes + 1))
+        share = sum(ends[1] - ends[0] for ends in contact_ends if ends)
         return share * self.face_width / cos(self.base_helix_angle)
 
     @property
@@ -101,10 +101,10 @@ class PlaneOfAction:
             return floor(a + _EDGE) * self.face_width, ceil(a - _EDGE) * self.face_width
         n_a, n_b = a % 1.0, b % 1.0
         less = (1.0 - n_a) * (1.0 - n_b) if n_a + n_b > 1.0 else n_a * n_b
-        more = min(n_a * (1.0 - n_b), n_b * (1.0 - n_a))
+        excess = min(n_a * (1.0 - n_b), n_b * (1.0 - n_a))
         return (
             self.mean_length * (1.0 - less / (a * b)),
-            self.mean_length * (1.0 + more / (a * b)),
+            self.mean_length * (1.0 + excess / (a * b)),
         )
 
     def picture(self) -> dict[str, Any]:

@@ -77,8 +77,8 @@ def _drawn(data: xr.Dataset) -> list[tuple[str, ...]]:
 def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """The mesh load factor where no rating takes it: by tolerance about errors given, or by these alone."""
     rated = outcome.parts.get("strength")
-    for label, one in of_meshes(outcome, "planet_sharing"):
-        yield from _fact(one.parts["planet_sharing"], rated, f", {label}" if label else "")
+    for label, mesh in of_meshes(outcome, "planet_sharing"):
+        yield from _fact(mesh.parts["planet_sharing"], rated, f", {label}" if label else "")
 
 
 def _fact(data: xr.Dataset, rated: xr.Dataset | None, of_stage: str) -> Iterator[KeyFigure]:

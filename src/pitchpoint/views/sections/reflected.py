@@ -32,8 +32,8 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     if "output_backlash" in data:
         unit = show.unit_of("output_backlash")
         backlash = zip(data["case"].values, data["output_backlash"].values, strict=True)
-        known = [(str(case), _cell("output_backlash", float(value))) for case, value in backlash]
-        heads, cells = zip(*(known if _by_tolerances(data) else known[:1]), strict=True)
+        plays = [(str(case), _cell("output_backlash", float(value))) for case, value in backlash]
+        heads, cells = zip(*(plays if _by_tolerances(data) else plays[:1]), strict=True)
         row = (f"turn of the output, the input held [{unit}]", *cells)
         yield Table(["backlash", *heads], [row], compact=True)
     yield Table(_heads(data), _rows(data), compact=True)
@@ -47,7 +47,7 @@ def _by_tolerances(data: xr.Dataset) -> bool:
 
 
 def _carriers(data: xr.Dataset) -> str:
-    return " and ".join(show.the(one) for one in json.loads(data.attrs["carriers"]))
+    return " and ".join(show.the(carrier) for carrier in json.loads(data.attrs["carriers"]))
 
 
 def _of_planets(data: xr.Dataset) -> Iterator[str]:
@@ -93,16 +93,16 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
             asked_by=("gears.inspection",),
         )
     inertias = zip(data["end"].values, data["reflected_inertia"].values, strict=True)
-    known = [
+    inertias_known = [
         (str(end), show.quantity("reflected_inertia", float(value)))
         for end, value in inertias
         if np.isfinite(value)
     ]
-    for (end, value), *others in [known] if known else []:
-        more = "".join(f"{inertia} at the {name}; " for name, inertia in others)
+    for (end, value), *others in [inertias_known] if inertias_known else []:
+        further = "".join(f"{inertia} at the {name}; " for name, inertia in others)
         mass = show.quantity("drive_mass", float(data["drive_mass"]))
         without = f", without {_carriers(data)}" if _carriers(data) else ""
-        detail = f"{more}gears {mass}{without}"
+        detail = f"{further}gears {mass}{without}"
         yield KeyFigure(75.0, f"Inertia at the {end}", value, detail, asked_by=INERTIA)
     if '"from_stiffness" do' in outcome.manifest["lacks"].get("torsion", ""):
         how = 'load_sharing = "from_stiffness" has it'
@@ -149,8 +149,10 @@ def _columns(data: xr.Dataset) -> list[tuple[str, list[str]]]:
         unit, cells = show.quantities(
             "body_inertia", [*part.tolist(), *([] if drive is None else [drive])]
         )
-        told = [cell if cell != "undefined" else "–" for cell in cells]
-        columns.append((f"{title} [{unit}]", told if drive is not None else [*told, ""]))
+        shown_cells = [cell if cell != "undefined" else "–" for cell in cells]
+        columns.append(
+            (f"{title} [{unit}]", shown_cells if drive is not None else [*shown_cells, ""])
+        )
     return columns
 
 
@@ -162,8 +164,8 @@ def _rows(data: xr.Dataset) -> list[Row]:
     without = f", without {_carriers(data)}" if _carriers(data) else ""
     bodies = [*map(str, data["body"].values), f"drive{without}"]
     masses = [*data["body_mass"].values.tolist(), float(data["drive_mass"])]
-    told = [_cell("body_mass", mass) for mass in masses]
-    return [*zip(bodies, told, *(cells for _, cells in _columns(data)), strict=True)]
+    shown_masses = [_cell("body_mass", mass) for mass in masses]
+    return [*zip(bodies, shown_masses, *(cells for _, cells in _columns(data)), strict=True)]
 
 
 def _cell(name: str, value: float) -> str:

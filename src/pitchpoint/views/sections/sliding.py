@@ -26,8 +26,8 @@ def sliding_figure(name: str, outcome: Outcome) -> Figure:
     place = np.linspace(0.0, path.transverse_ratio, 121)
     start, pitch = float(teeth["points"].values[0]), float(teeth["base_pitch"])
     values = specific_sliding(teeth, start + place * pitch)
-    first, second = named_members(outcome)
-    keys = (Key(first, PALETTE[0]), Key(second, PALETTE[1], "dash"))
+    gear_1, gear_2 = named_members(outcome)
+    keys = (Key(gear_1, PALETTE[0]), Key(gear_2, PALETTE[1], "dash"))
     end = path.transverse_ratio
     lowest = float(np.nanmin(values))
     cut = {"range": [_LOWEST, 1.5]} if lowest < _LOWEST else {}

@@ -12,7 +12,7 @@ __all__ = ["SOURCES"]
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    sources = sources_of([one.manifest for one in page.outcomes.values()])
+    sources = sources_of([outcome.manifest for outcome in page.outcomes.values()])
     if sources:
         yield Drawn("sources.html.jinja", {"sources": sources})
     yield Drawn(
@@ -20,7 +20,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         {
             "version": page.version,
             "case": page.cases,
-            "settings": {n: set_for_run(one.manifest) for n, one in page.outcomes.items()},
+            "settings": {n: set_for_run(outcome.manifest) for n, outcome in page.outcomes.items()},
             "several": page.several,
             "parts": _parts(page.outcomes),
         },

@@ -22,31 +22,35 @@ def spread(outcome: Outcome) -> dict[str, Any] | None:
     if data is None:
         return None
     outside = [
-        (law_title(outcome, str(one["law"])), _efficiency(one), "; ".join(one["reasons"]))
-        for one in json.loads(data.attrs.get("outside", "[]"))
+        (
+            law_title(outcome, str(excluded["law"])),
+            _efficiency(excluded),
+            "; ".join(excluded["reasons"]),
+        )
+        for excluded in json.loads(data.attrs.get("outside", "[]"))
     ]
     if not data.sizes["law"]:
         text = "none of the library is in its range"
         return {"text": text, "rows": [], "points": "", "outside": outside} if outside else None
     locked = data["locked"].values[:, 0].astype(bool)
     values = data["mean_efficiency"].values[:, 0]
-    known = values[np.isfinite(values) & ~locked]
-    known = np.append(known, _chosen(outcome)) if known.size else known
+    computed = values[np.isfinite(values) & ~locked]
+    computed = np.append(computed, _chosen(outcome)) if computed.size else computed
     rows = [
         (law_title(outcome, law), *(_cell(data, name, k) for name in _SHOWN))
         for k, law in enumerate(laws(data))
     ]
-    if not known.size:
+    if not computed.size:
         text = "all lock the mesh" if locked.all() else "undefined, no power"
         return {"text": text, "rows": rows, "points": "", "outside": outside}
-    ends = [*dict.fromkeys(show.number(100 * end) for end in (known.min(), known.max()))]
+    ends = [*dict.fromkeys(show.number(100 * end) for end in (computed.min(), computed.max()))]
     text = f"{' to '.join(ends)} %"
     if locked.any():
         names = [law_title(outcome, law) for law, so in zip(laws(data), locked, strict=True) if so]
         text += f"; locked by {', '.join(names)}"
     if outcome.manifest.get("plastic"):
         text += ", by laws for steel on steel; none was fitted to plastic teeth"
-    points = show.number(100 * np.ptp(known)) if len(ends) > 1 else ""
+    points = show.number(100 * np.ptp(computed)) if len(ends) > 1 else ""
     return {"text": text, "rows": rows, "points": points, "outside": outside}
 
 
@@ -59,8 +63,8 @@ def _chosen(outcome: Outcome) -> np.ndarray:
     """Efficiencies by the laws of the case, those in their range under which the mesh moves."""
     data = outcome.parts["operation"]
     values = data["mean_efficiency"].values[:, 0]
-    told = json.loads(outcome.parts["laws"].attrs.get("outside", "[]"))
-    inside = ~np.isin(laws(data), [one["law"] for one in told])
+    outside = json.loads(outcome.parts["laws"].attrs.get("outside", "[]"))
+    inside = ~np.isin(laws(data), [entry["law"] for entry in outside])
     return np.asarray(
         values[np.isfinite(values) & inside & ~data["locked"].values[:, 0].astype(bool)]
     )
@@ -120,7 +124,7 @@ def _percent(efficiency: float) -> str:
 
 def _apart(outcome: Outcome) -> Iterator[str]:
     """A sentence for each law that is out of its range."""
-    for one in out_of_range(outcome.parts["laws"]):
-        value = one["mean_efficiency"]
+    for outside in out_of_range(outcome.parts["laws"]):
+        value = outside["mean_efficiency"]
         gives = "" if value is None else f" (it would give {_percent(value)})"
-        yield f"Out of its range is {one['law']}{gives}: {'; '.join(one['reasons'])}."
+        yield f"Out of its range is {outside['law']}{gives}: {'; '.join(outside['reasons'])}."

@@ -56,7 +56,9 @@ def _quantity(name: str, value: float, data: Any) -> str:
 
 def stage_words(outcome: Outcome, at: int, stage: Any) -> str:
     """Number of a stage, with its bodies where it is a mesh of a train."""
-    bodies = [one["bodies"] for one in outcome.manifest.get("stages", ())][at : at + 1]
+    bodies = [stage_record["bodies"] for stage_record in outcome.manifest.get("stages", ())][
+        at : at + 1
+    ]
     return f"{stage}: {bodies[0]}" if bodies and bodies[0] else str(stage)
 
 

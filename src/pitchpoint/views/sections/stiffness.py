@@ -47,15 +47,15 @@ _MEAN = Key("mesh, mean", GREY, "dot")
 def stiffness_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
     """Figures for each variant whose stiffness is there."""
     return [
-        _panel(f"stiffness{position}", name if len(outcomes) > 1 else "", one)
-        for position, (name, one) in enumerate(outcomes.items())
-        if "stiffness" in one.parts
+        _panel(f"stiffness{position}", name if len(outcomes) > 1 else "", outcome)
+        for position, (name, outcome) in enumerate(outcomes.items())
+        if "stiffness" in outcome.parts
     ]
 
 
 def _table(page: Page) -> Table:
     """Means and variations, a column for each variant."""
-    parts = {name: one.parts["stiffness"] for name, one in page.outcomes.items()}
+    parts = {name: outcome.parts["stiffness"] for name, outcome in page.outcomes.items()}
     rows = [
         (_title(name), *(_cell(data, name) for data in parts.values()))
         for name in _ROWS
@@ -89,8 +89,8 @@ def _cell(data: xr.Dataset, name: str) -> str:
 
 def _panel(name: str, variant: str, outcome: Outcome) -> Panel:
     data, period = outcome.parts["stiffness"], period_of(outcome)
-    told = "; ".join(_outside_standard(data))
-    note = f"The estimate of ISO 6336-1 is outside its range: {told}." if told else ""
+    reasons = "; ".join(_outside_standard(data))
+    note = f"The estimate of ISO 6336-1 is outside its range: {reasons}." if reasons else ""
     return Panel(
         variant, [_over_phase(name, data, period), _of_a_pair(name, data, period)], note=note
     )
@@ -112,14 +112,14 @@ def _over_phase(name: str, data: xr.Dataset, period: Period) -> Figure:
     total["line"] = {**total["line"], "width": 3}
     standard = _OUTSIDE if _outside_standard(data) else _STANDARD
     levels = {_MEAN: "mean_stiffness", standard: "standard_stiffness"}
-    told = {key: variable for key, variable in levels.items() if variable in data}
-    traces += [total, *(_level(key, float(data[v]), unit) for key, v in told.items())]
+    shown_levels = {key: variable for key, variable in levels.items() if variable in data}
+    traces += [total, *(_level(key, float(data[v]), unit) for key, v in shown_levels.items())]
     return Figure(
         f"{name}_phase",
         "Stiffness of the pairs and of the mesh",
         traces,
         layout(period.axis, f"k [{unit}]", xaxis={"range": [0, 1]}, yaxis={"rangemode": "tozero"}),
-        keys=(*keys, _TOTAL, *told),
+        keys=(*keys, _TOTAL, *shown_levels),
     )
 
 
@@ -166,13 +166,13 @@ def stiffness_blocks(page: Page) -> Iterator[Block]:
         "Along the transverse line of action: force there over the approach of the teeth. Pair I entered in "
         "this period, II one period before, and so on; the mesh is their sum."
     )
-    if told := _of_publication(page.first.get("source", "")):
-        yield Paragraph(told, "note")
+    if note := _of_publication(page.first.get("source", "")):
+        yield Paragraph(note, "note")
     of_drives, page = page.outcomes, page.by_mesh("stiffness")
     yield _table(page)
     having = page.outcomes
     if page.designs and len(having) > 1:
-        parts = {name: one.parts["stiffness"] for name, one in having.items()}
+        parts = {name: outcome.parts["stiffness"] for name, outcome in having.items()}
         title = "Mesh stiffness over the mesh cycle"
         figure = overlaid("stiffness_of_designs", title, "phase", "mesh_stiffness", parts)
         yield Panel("Designs on the same axes", [figure])
@@ -194,7 +194,7 @@ def _of_variant(it: Panel) -> Iterator[Block]:
 
 def stiffness_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """Stiffness of the mesh, and how much it varies."""
-    other = _of_publication(outcome.manifest.get("source", ""))
-    title = "Mesh stiffness of the library, not of the motion" if other else "Mesh stiffness"
+    published = _of_publication(outcome.manifest.get("source", ""))
+    title = "Mesh stiffness of the library, not of the motion" if published else "Mesh stiffness"
     figure = key_figure(72.0, title, stiffness_answer(outcome), " in the mean")
     yield replace(figure, asked_by=("models.tooth_compliance", "models.line_stiffness"))

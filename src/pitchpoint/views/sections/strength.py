@@ -114,7 +114,7 @@ def strength_rows(outcome: Outcome) -> list[dict[str, str]]:
     return [
         ({"stage": name.removeprefix("stage ")} if name else {})
         | {"gear": str(gear)}
-        | {head(one, data): _cell(data, one, at) for one in (*_FORCES, *_STRESSES)}
+        | {head(variable, data): _cell(data, variable, at) for variable in (*_FORCES, *_STRESSES)}
         for name, data in _pairs(outcome)
         for at, gear in enumerate(data["gear"].values)
     ]
@@ -149,12 +149,12 @@ def _caveats(data: xr.Dataset) -> list[str]:
 
 
 def _table(title: str, names: tuple[str, ...], data: xr.Dataset) -> Table:
-    known = [
+    variables = [
         name
         for name in names
         if name not in _WHERE_ASKED or (name in data and data[name].notnull().any())
     ]
-    rows = [(_words(name, data), *_values(name, data)) for name in known]
+    rows = [(_words(name, data), *_values(name, data)) for name in variables]
     return Table([title, *(str(gear) for gear in data["gear"].values)], rows, compact=True)
 
 
@@ -180,11 +180,11 @@ def _by_gear(rows: Sequence[Mapping[str, str]]) -> Table:
 
 
 def _blocks_of(_: int, outcome: Outcome) -> Iterator[Block]:
-    whole = outcome.parts["strength"]
+    strength = outcome.parts["strength"]
     yield _by_gear(strength_rows(outcome))
-    for text in chain(*_doubts(whole).values()):
+    for text in chain(*_doubts(strength).values()):
         yield Paragraph(text, "warning")
-    for text in _caveats(whole):
+    for text in _caveats(strength):
         yield Paragraph(text, "note")
     for name, data in _pairs(outcome):
         tables = [
@@ -207,19 +207,19 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
     data = outcome.parts.get("strength")
     if data is None:
         return
-    asked = any(
+    is_asked = any(
         row["status"] == "given" and row["table"].endswith("strength")
         for row in outcome.manifest["inputs"]
     )
-    first = _ASKED if asked else _UNASKED
+    rank = _ASKED if is_asked else _UNASKED
     for order, where, part, stress, limit in (
-        (first, "flanks", "flank", "contact_stress", "hlim"),
-        (first + 1.0, "roots", "root", "root_stress", "flim"),
+        (rank, "flanks", "flank", "contact_stress", "hlim"),
+        (rank + 1.0, "roots", "root", "root_stress", "flim"),
     ):
-        known = data[f"{part}_safety"].where(np.isfinite(data[f"{part}_safety"]))
-        if not known.isnull().all():
-            at = known.argmin([*known.dims])
-            least = known.isel(at)
+        safeties = data[f"{part}_safety"].where(np.isfinite(data[f"{part}_safety"]))
+        if not safeties.isnull().all():
+            at = safeties.argmin([*safeties.dims])
+            least = safeties.isel(at)
             place, duty = f"at {_place(least, outcome)}", _duty(outcome, at, f"{part}_cycles")
             detail = "; ".join([place, *_doubted(outcome, least, stress), duty])
             value = show.number(float(least))
@@ -233,8 +233,8 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
             lacks = [f"no safety: {key} has no limits", f"largest {place}"]
             if "stage" in most.coords:
                 lacks = [place, lacks[0]]  # other stages may not be rated
-            more = f"name one that has them, or give strength.sigma_{limit}"
-            detail = "; ".join([*_doubted(outcome, most, stress), *lacks, more])
+            cure = f"name one that has them, or give strength.sigma_{limit}"
+            detail = "; ".join([*_doubted(outcome, most, stress), *lacks, cure])
             yield KeyFigure(order, f"Stress of {where}", value, detail)
     planets = int(data.attrs.get("planets", 1))
     if planets > 1:
@@ -254,9 +254,9 @@ def _doubted(outcome: Outcome, value: xr.DataArray, stress: str) -> list[str]:
     if "stage" not in value.coords:
         return []
     begin = f"Stage {value['stage'].values}: "
-    told = chain(*(doubts_of(part.attrs) for part in outcome.parts.values()))
-    briefs = (one.brief for one in told if stress in one.about)
-    return [one.removeprefix(begin).rstrip(".") for one in briefs if one.startswith(begin)]
+    doubts = chain(*(doubts_of(part.attrs) for part in outcome.parts.values()))
+    briefs = (brief.brief for brief in doubts if stress in brief.about)
+    return [brief.removeprefix(begin).rstrip(".") for brief in briefs if brief.startswith(begin)]
 
 
 def _duty(outcome: Outcome, place: Mapping[Hashable, xr.DataArray], cycles: str) -> str:

@@ -89,7 +89,7 @@ def study_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:
     for name, seen in _studies(outcomes, known):
         if "axis" in seen[0][1] and not _brief(seen):
             kinds.setdefault(_kind(seen), []).append((name, seen))
-    return [_panel(each) for each in kinds.values()]
+    return [_panel(group) for group in kinds.values()]
 
 
 def _brief(seen: Seen) -> bool:
@@ -114,20 +114,20 @@ def _tables(page: Page) -> Iterator[Block]:
         elif _brief(seen):
             sweeps.setdefault(str(seen[0][1].attrs["sweep_key"]), []).append(seen)
     if alone:
-        (first, *others) = (str(seen[0][1].attrs["title"]) for seen in alone)
-        yield from _split("Studies of one point" if others else first, "", alone)
+        (heading, *others) = (str(seen[0][1].attrs["title"]) for seen in alone)
+        yield from _split("Studies of one point" if others else heading, "", alone)
     for key, studies in sweeps.items():
         yield from _split(f"Few values: {_words_of(key)}", f"Swept: {key}.", studies)
 
 
 def _split(title: str, note: str, studies: list[Seen]) -> Iterator[Block]:
     """Tables of studies, rows without any loss apart: all that tells of it is the same in them."""
-    for lossless, more in ((False, ""), (True, ", without friction")):
-        rows = [[one for one in seen if _lossless(*one[1:]) == lossless] for seen in studies]
+    for lossless, suffix in ((False, ""), (True, ", without friction")):
+        rows = [[row for row in seen if _lossless(*row[1:]) == lossless] for seen in studies]
         if these := [seen for seen in rows if seen]:
-            told = " ".join(filter(None, (note, _WITHOUT if lossless else "")))
-            yield Heading(f"{title}{more}")
-            yield from _table(these, told, lossless=lossless, named=len(studies) > 1)
+            remarks = " ".join(filter(None, (note, _WITHOUT if lossless else "")))
+            yield Heading(f"{title}{suffix}")
+            yield from _table(these, remarks, lossless=lossless, named=len(studies) > 1)
 
 
 def _lossless(data: xr.Dataset, law: int) -> bool:
@@ -141,7 +141,7 @@ def _lossless(data: xr.Dataset, law: int) -> bool:
 def _table(studies: list[Seen], note: str, *, lossless: bool, named: bool) -> Iterator[Block]:
     """Every point of studies of the same key under every law, without the columns that do not vary."""
     like = studies[0][0][1]
-    every = [one for seen in studies for one in seen]
+    every = [study_point for seen in studies for study_point in seen]
     columns = [*_columns(every)]
     if any("tip_thickness_1" in data for _, data, _ in every) and is_design_chart(like):
         columns.append("tip_thickness_1")
@@ -153,15 +153,17 @@ def _table(studies: list[Seen], note: str, *, lossless: bool, named: bool) -> It
     rows = [row for seen in studies for row in _rows(seen, columns)]
     note = " ".join(filter(None, (note, extrapolated_note(rows))))
     shown = [k for k in range(len(heads)) if (named or swept or k) and (swept or k != _PLACE)]
-    same = [k for k in shown if k != _PLACE and len(rows) > 1 and len({r[k] for r in rows}) == 1]
-    kept = [k for k in shown if k not in same]
-    if same:
-        told = ", ".join(f"{heads[k]} {rows[0][k]}" for k in same)
-        note = " ".join(filter(None, (note, f"The same in all rows: {told}.")))
+    constant = [
+        k for k in shown if k != _PLACE and len(rows) > 1 and len({r[k] for r in rows}) == 1
+    ]
+    varying = [k for k in shown if k not in constant]
+    if constant:
+        values_words = ", ".join(f"{heads[k]} {rows[0][k]}" for k in constant)
+        note = " ".join(filter(None, (note, f"The same in all rows: {values_words}.")))
     if note:
         yield Paragraph(note, "note")
-    names = [k for k in kept if k <= _PLACE]
-    numbers = np.array(kept[len(names) :], dtype=int)
+    names = [k for k in varying if k <= _PLACE]
+    numbers = np.array(varying[len(names) :], dtype=int)
     for part in np.array_split(numbers, max(-(-numbers.size // _MOST), 1)):
         of_part = [*names, *part]
         yield Table(
@@ -199,20 +201,20 @@ def _studies(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[s
 
 def _columns(seen: Seen) -> list[str]:
     """Quantities of the table of a study of a single point."""
-    more = ["mean_stiffness", "stiffness_variation", *_MOVING[1:]]
+    further = ["mean_stiffness", "stiffness_variation", *_MOVING[1:]]
     if of_contact(seen[0][1]):
         return [*CONTACT]
-    found = [name for name in (*_TABLE, *more) if any(name in data for _, data, _ in seen)]
-    return found + _of_strength([data for _, data, _ in seen], vary=False)
+    columns = [name for name in (*_TABLE, *further) if any(name in data for _, data, _ in seen)]
+    return columns + _of_strength([data for _, data, _ in seen], vary=False)
 
 
 def _cells(data: xr.Dataset, law: int, columns: list[str], point: int = 0) -> list[str]:
     values = {name: float(_valid(data, name)[law, point]) for name in columns}
-    told = {
+    cells = {
         name: _endless(name, value) or show.quantity(name, value, with_unit=False, of=data)
         for name, value in values.items()
     }
-    return [marked(name, words, data, law, point) for name, words in told.items()]
+    return [marked(name, words, data, law, point) for name, words in cells.items()]
 
 
 def _endless(name: str, value: float) -> str:
@@ -238,21 +240,21 @@ def _axes(data: xr.Dataset) -> list[Any]:
 def _shown(seen: Seen) -> list[str]:
     """Quantities that have a figure."""
     data = seen[0][1]
-    more = _MOVING[2:] if is_design_chart(data) else _MOVING
-    first = CONTACT if of_contact(data) else _SHOWN
-    found = [*first, *(name for name in more if any(name in each for _, each, _ in seen))]
-    return found + _of_strength([each for _, each, _ in seen], vary=True)
+    further = _MOVING[2:] if is_design_chart(data) else _MOVING
+    leading = CONTACT if of_contact(data) else _SHOWN
+    shown = [*leading, *(name for name in further if any(name in study for _, study, _ in seen))]
+    return shown + _of_strength([study for _, study, _ in seen], vary=True)
 
 
 def _of_strength(every: Sequence[xr.Dataset], *, vary: bool) -> list[str]:
     """Least safeties, without them largest stresses, where there are some, or where they vary."""
 
     def told(name: str) -> bool:
-        each = [one[name].values for one in every if name in one]
-        known = [values[~np.isnan(values)] for values in each]
+        arrays = [study[name].values for study in every if name in study]
+        finite = [values[~np.isnan(values)] for values in arrays]
         return any(
             not vary or not np.allclose(values, values.flat[0], rtol=ROUNDING, atol=0.0)
-            for values in known
+            for values in finite
             if values.size
         )
 
@@ -350,11 +352,11 @@ def _blocks(page: Page) -> Iterator[Block]:
         ),
         "note",
     )
-    if alone := covered([one.parts for one in page.outcomes.values()]):
+    if alone := covered([outcome.parts for outcome in page.outcomes.values()]):
         yield Paragraph(alone, "note")
-    told = _warnings(page)
-    if told:
-        yield Drawn("study_warnings.html.jinja", {"study_warnings": told})
+    warnings = _warnings(page)
+    if warnings:
+        yield Drawn("study_warnings.html.jinja", {"study_warnings": warnings})
     for it in (*design_charts(page.outcomes), *study_panels(page.outcomes, page.curves)):
         yield Heading(it.title)
         yield Paragraph(it.note, "note")
@@ -368,7 +370,7 @@ def _warnings(page: Page) -> list[str]:
     for variant, outcome in page.outcomes.items():
         for title, sentence in _warns(outcome):
             about.setdefault(sentence, {}).setdefault(title, []).append(variant)
-    return [f"{_about(titles, page.several)}: {told}" for told, titles in about.items()]
+    return [f"{_about(titles, page.several)}: {sentences}" for sentences, titles in about.items()]
 
 
 def _about(of_titles: dict[str, list[str]], several: bool) -> str:
@@ -449,18 +451,18 @@ def swept_rows(data: xr.Dataset) -> list[dict[str, str]]:
 
 def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
     names = CONTACT if of_contact(data) else (*SWEPT, *_of_strength([data], vary=True))
-    if idle := all(_lossless(data, each) for each in range(data.sizes["law"])):
+    if idle := all(_lossless(data, law_number) for law_number in range(data.sizes["law"])):
         names = tuple(name for name in names if name not in _OF_LOSS)
     cells = {
         head(n, data): marked(n, _endless(n, value) or shown(n, value, data), data, law, point)
         for n, value in ((n, float(data[n].values[law, point])) for n in names if n in data)
     }
-    told = {} if idle else efficiency_of(data)
+    efficiency = {} if idle else efficiency_of(data)
     return {
         **swept_place(data, point),
         "friction law": str(data["law"].values[law]),
         **cells,
-        **told,
+        **efficiency,
     }
 
 
@@ -471,7 +473,7 @@ def _place(value: float, key: str) -> str:
 
 
 def _lacks(page: Page) -> str | None:
-    there = any(is_study(name) for one in page.outcomes.values() for name in one.parts)
+    there = any(is_study(name) for outcome in page.outcomes.values() for name in outcome.parts)
     return None if there else ""
 
 

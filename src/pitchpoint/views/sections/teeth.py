@@ -80,9 +80,9 @@ def _plane(outcome: Outcome) -> dict[str, Any]:
     """Plane of action, its lines in the colours of the pairs, lengths in words."""
     picture = plane_of_action(outcome.parts["teeth"]).picture()
     keys = [pair_key(lane) for lane in range(picture["lanes"] + 1)]
-    told = {name: _length(picture[name]) for name in ("mean", "least", "most")}
-    told |= {name: _length(picture[name]) for name in ("width", "height")}
-    return {**picture, "pairs": keys, "told": told}
+    lengths = {name: _length(picture[name]) for name in ("mean", "least", "most")}
+    lengths |= {name: _length(picture[name]) for name in ("width", "height")}
+    return {**picture, "pairs": keys, "told": lengths}
 
 
 def _length(millimetres: float) -> str:
@@ -212,9 +212,9 @@ def _number(value: float, digits: int) -> str:
 
 def _given(outcome: Outcome, key: str, title: str) -> list[Row]:
     """Row of an input as the case gives it."""
-    found = words(outcome, "gears", key).replace(" deg", "°").split(" / ")
-    each = [show.pretty(one).replace("-", "−") for one in found if one]
-    return [(title, *each)] if each else []
+    entries = words(outcome, "gears", key).replace(" deg", "°").split(" / ")
+    shown = [show.pretty(entry).replace("-", "−") for entry in entries if entry]
+    return [(title, *shown)] if shown else []
 
 
 def _angle(teeth: xr.Dataset, name: str, title: str) -> list[Row]:

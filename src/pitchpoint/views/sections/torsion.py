@@ -70,9 +70,9 @@ _PLAY = 1e-3
 def torsion_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:
     """Figures for each variant whose wind-up is there."""
     return [
-        _panel(f"torsion{position}", name, len(outcomes) > 1, one, known)
-        for position, (name, one) in enumerate(outcomes.items())
-        if "torsion" in one.parts
+        _panel(f"torsion{position}", name, len(outcomes) > 1, outcome, known)
+        for position, (name, outcome) in enumerate(outcomes.items())
+        if "torsion" in outcome.parts
     ]
 
 
@@ -91,11 +91,11 @@ def torsion_answer(outcome: Outcome) -> str:
     }
     if not np.isfinite([*values.values()]).all():
         return "no equilibrium was found at the operating point"
-    told = {name: level(name, value, data) for name, value in values.items()}
+    words = {name: level(name, value, data) for name, value in values.items()}
     return (
-        f"{told['torsional_stiffness']} at the operating point{_slope(values, told)}, where the drive has "
-        f"{_words(data).yielded} by {told['wind_up']}"
-        + _carrying(told.get("loaded_pairs", ""))
+        f"{words['torsional_stiffness']} at the operating point{_slope(values, words)}, where the drive has "
+        f"{_words(data).yielded} by {words['wind_up']}"
+        + _carrying(words.get("loaded_pairs", ""))
         + _free(data)
         + (f"; {note}" if (note := str(data.attrs.get("brief", ""))) else "")
     )
@@ -173,11 +173,11 @@ class _Words:
 
 def _words(data: xr.Dataset) -> _Words:
     """Words for a member that turns, or for one that travels."""
-    load, way = (show.unit_of(name, data) for name in ("torque", "wind_up"))
+    load, twist = (show.unit_of(name, data) for name in ("torque", "wind_up"))
     if show.described("torque", data).unit == "N":
-        axes = (f"force F [{load}]", "deflection", f"deflection Δs [{way}]")
+        axes = (f"force F [{load}]", "deflection", f"deflection Δs [{twist}]")
         return _Words("force", *axes, "Stiffness", "yielded", "travel", "travel")
-    axes = (f"torque T [{load}]", "wind-up", f"wind-up Δθ [{way}]")
+    axes = (f"torque T [{load}]", "wind-up", f"wind-up Δθ [{twist}]")
     return _Words("torque", *axes, "Torsional stiffness", "wound up", "turn", "rotation")
 
 
@@ -366,14 +366,16 @@ def part_rows(outcome: Outcome) -> list[dict[str, str]]:
     if "wind_up_part" not in data:
         return []
     at = operating_point(outcome).torque
-    each = [float(np.interp(at, data["torque"], values)) for values in data["wind_up_part"].values]
-    order = sorted(range(len(each)), key=lambda k: -each[k])
+    wind_ups = [
+        float(np.interp(at, data["torque"], values)) for values in data["wind_up_part"].values
+    ]
+    order = sorted(range(len(wind_ups)), key=lambda k: -wind_ups[k])
     words = f"at {level('torque', at, data)} [{show.unit_of('wind_up_part')}]"
     return [
         {
             "part of the wind-up": str(data["part"].values[k]),
-            words: shown("wind_up_part", each[k]),
-            "share [%]": show.number(100.0 * each[k] / sum(each)),
+            words: shown("wind_up_part", wind_ups[k]),
+            "share [%]": show.number(100.0 * wind_ups[k] / sum(wind_ups)),
         }
         for k in order
     ]
@@ -423,7 +425,7 @@ def torsion_blocks(page: Page) -> Iterator[Block]:
     """Blocks of the section."""
     panels, having = torsion_panels(page.outcomes, page.curves), page.having("torsion")
     if page.designs and len(having) > 1:
-        yield _of_designs({name: one.parts["torsion"] for name, one in having.items()})
+        yield _of_designs({name: design.parts["torsion"] for name, design in having.items()})
     there = zip(panels, having.values(), strict=True)
     yield from tabbed((it.title, _of_variant(it, outcome)) for it, outcome in there)
 
@@ -468,8 +470,8 @@ def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     slopes = _slopes(data)
     rigid = _rigid(data)
     detail = figure.detail.replace(f"; {rigid} are not in it", "")
-    each = (slopes, _assumed(data), f"without {rigid}" if rigid else "", detail)
-    yield replace(figure, detail="; ".join(filter(None, each)), asked_by=("gears.yielding",))
+    clauses = (slopes, _assumed(data), f"without {rigid}" if rigid else "", detail)
+    yield replace(figure, detail="; ".join(filter(None, clauses)), asked_by=("gears.yielding",))
     if "catalogue_lost_motion" in data:
         values = data["catalogue_lost_motion"].values
         shown = dict.fromkeys(show.quantity("catalogue_lost_motion", float(v)) for v in values)
@@ -486,9 +488,9 @@ def _rigid(data: xr.Dataset) -> str:
 
 def _assumed(data: xr.Dataset) -> str:
     """On how many sizes that nobody gave a stiffness rests, in few words; empty if on none."""
-    told = str(data.attrs.get("brief", "")).partition(" are not in it; ")[2]
-    count = told.partition(" ")[0]
-    return f"{count} size{'s' * (count != '1')} assumed" if told else ""
+    sizes = str(data.attrs.get("brief", "")).partition(" are not in it; ")[2]
+    count = sizes.partition(" ")[0]
+    return f"{count} size{'s' * (count != '1')} assumed" if sizes else ""
 
 
 _OF_SLOPES = 3
@@ -499,12 +501,14 @@ def _slopes(data: xr.Dataset) -> str:
     """Stiffness in three slopes, in the unit of the stiffness itself; empty where catalogues have none."""
     if "slope_stiffness" not in data:
         return ""
-    names, each = data["slope"].values, data["slope_stiffness"]
-    values = np.asarray(show.displayed(variable_of(data, "slope_stiffness"), each.values), float)
-    told = ", ".join(show.number(float(value), _OF_SLOPES) for value in values)
+    names, stiffnesses = data["slope"].values, data["slope_stiffness"]
+    values = np.asarray(
+        show.displayed(variable_of(data, "slope_stiffness"), stiffnesses.values), float
+    )
+    shown_slopes = ", ".join(show.number(float(value), _OF_SLOPES) for value in values)
     units = {show.unit_of(name, data) for name in ("slope_stiffness", "torsional_stiffness")}
     unit = f" {show.unit_of('slope_stiffness', data)}" if len(units) > 1 else ""
-    return f"{names[0]}–{names[-1]} {told}{unit}"
+    return f"{names[0]}–{names[-1]} {shown_slopes}{unit}"
 
 
 def torsion_printed(outcome: Outcome) -> list[Printed]:

@@ -63,14 +63,14 @@ def _words(train: Record) -> str:
     """Ends and ratio of a set in words."""
     turned, loaded, *held = train["ends"]
     rate = train["rates"][loaded] / train["rates"][turned]
-    way = "the same way" if rate > 0.0 else "the other way"
+    sense = "the same way" if rate > 0.0 else "the other way"
     stands = f", {' and '.join(held)} held" if held else ""
-    return f"{turned} drives, {loaded} turns {way}{stands}: ratio {show.number(1.0 / rate, 6)}"
+    return f"{turned} drives, {loaded} turns {sense}{stands}: ratio {show.number(1.0 / rate, 6)}"
 
 
 def _carrier(train: Record) -> float:
     """Rate of the carrier for one of the input; zero where there is none."""
-    carriers = [one["carrier"] for one in train["meshes"] if one["carrier"] in train["rates"]]
+    carriers = [mesh["carrier"] for mesh in train["meshes"] if mesh["carrier"] in train["rates"]]
     return float(train["rates"][carriers[0]]) if carriers else 0.0
 
 
@@ -80,7 +80,7 @@ def _bodies(train: Record) -> list[tuple[str, ...]]:
     return [
         (
             body,
-            *(show.number(sense * one * minute, 5) for one in (rate, rate - carrier)),
+            *(show.number(sense * body_rate * minute, 5) for body_rate in (rate, rate - carrier)),
             show.number(sense * rate, 5),
         )
         for body, rate in train["rates"].items()
@@ -89,18 +89,18 @@ def _bodies(train: Record) -> list[tuple[str, ...]]:
 
 def _meshes(train: Record) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
-    for one in train["meshes"]:
-        first, second = (round(teeth) for teeth in one["teeth"])
-        against = train["rates"][one["bodies"][0]] - train["rates"].get(one["carrier"], 0.0)
-        divisor = gcd(first, second)
-        turns = second // divisor
+    for mesh in train["meshes"]:
+        teeth_1, teeth_2 = (round(teeth) for teeth in mesh["teeth"])
+        against = train["rates"][mesh["bodies"][0]] - train["rates"].get(mesh["carrier"], 0.0)
+        divisor = gcd(teeth_1, teeth_2)
+        turns = teeth_2 // divisor
         rows.append(
             (
-                " and ".join(one["bodies"]),
-                show.number(abs(against) * first * train["speed"] / (2.0 * pi), 5),
-                f"{first} and {second}",
+                " and ".join(mesh["bodies"]),
+                show.number(abs(against) * teeth_1 * train["speed"] / (2.0 * pi), 5),
+                f"{teeth_1} and {teeth_2}",
                 "none, hunting" if divisor == 1 else str(divisor),
-                f"{turns} turn{'s' * (turns != 1)} of the {one['bodies'][0]}",
+                f"{turns} turn{'s' * (turns != 1)} of the {mesh['bodies'][0]}",
             )
         )
     return rows

@@ -37,11 +37,11 @@ def train_period_blocks(page: Page) -> Iterator[Block]:
     for position, (variant, outcome) in enumerate(there.items()):
         data = outcome.parts[_PART]
         turn = show.quantity("driver_angle", float(data.attrs["driver_period"]))
-        first = f" by {laws(data)[0]}" if data.sizes["law"] > 1 else ""
+        by_law = f" by {laws(data)[0]}" if data.sizes["law"] > 1 else ""
         yield Paragraph(
             f"All meshes come together again after {turn} of the driving body. Equilibrium leaves open how "
             "planets share a load: of all forces that hold the train those of the least sum of squares are "
-            f"shown{first}."
+            f"shown{by_law}."
         )
         if rows := _torques(data):
             yield Table(_OUTSIDE, rows, compact=True)

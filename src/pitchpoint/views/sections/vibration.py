@@ -70,9 +70,9 @@ _FEW = 6
 def vibration_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
     """Figures for each variant whose vibration is there."""
     return [
-        _panel(f"vibration{position}", name if len(outcomes) > 1 else "", one)
-        for position, (name, one) in enumerate(outcomes.items())
-        if "vibration" in one.parts
+        _panel(f"vibration{position}", name if len(outcomes) > 1 else "", outcome)
+        for position, (name, outcome) in enumerate(outcomes.items())
+        if "vibration" in outcome.parts
     ]
 
 
@@ -82,8 +82,8 @@ def vibration_answer(outcome: Outcome) -> list[tuple[str, str]]:
     if data is None:
         return []
     return [
-        _error(data, k, torque) if ok else (told, f"at {torque}")
-        for k, (torque, ok, told) in enumerate(
+        _error(data, k, torque) if ok else (reason, f"at {torque}")
+        for k, (torque, ok, reason) in enumerate(
             zip(_torques(data), _found(data), sentences(data), strict=True)
         )
     ]
@@ -96,7 +96,7 @@ def _error(data: xr.Dataset, index: int, torque: str) -> tuple[str, str]:
 
 def sentences(data: xr.Dataset) -> list[str]:
     """What became of the steady state, for each torque."""
-    return [str(one) for one in json.loads(data.attrs.get("status", "[]"))]
+    return [str(sentence) for sentence in json.loads(data.attrs.get("status", "[]"))]
 
 
 def _found(data: xr.Dataset) -> list[bool]:
@@ -132,7 +132,7 @@ def _status(data: xr.Dataset) -> str:
     shared: dict[str, list[str]] = {}
     for torque, sentence in zip(_torques(data), sentences(data), strict=True):
         shared.setdefault(sentence, []).append(torque)
-    return "; ".join(f"at {', '.join(torques)} {told}" for told, torques in shared.items())
+    return "; ".join(f"at {', '.join(torques)} {status}" for status, torques in shared.items())
 
 
 def _title(name: str) -> str:
@@ -152,12 +152,12 @@ def _panel(name: str, variant: str, outcome: Outcome) -> Panel:
 
 def _missing(data: xr.Dataset) -> str:
     """Torques without a steady state that could be drawn, in words."""
-    told = [
+    lines = [
         f"At {torque} no dynamic values are shown: {sentence}."
         for torque, ok, sentence in zip(_torques(data), _found(data), sentences(data), strict=True)
         if not ok
     ]
-    return " ".join(told)
+    return " ".join(lines)
 
 
 def _keys(data: xr.Dataset) -> list[Key]:
@@ -227,7 +227,9 @@ def _spectrum(name: str, data: xr.Dataset) -> Figure:
     """Amplitudes of the orders of the mesh frequency."""
     wanted = np.isin(data["order"].values, ORDERS)
     keys = [key for key, ok in zip(_keys(data), _found(data), strict=True) if ok]
-    each = [values for values, ok in zip(data["spectrum"].values, _found(data), strict=True) if ok]
+    spectra = [
+        values for values, ok in zip(data["spectrum"].values, _found(data), strict=True) if ok
+    ]
     traces = [
         {
             "type": "bar",
@@ -238,7 +240,7 @@ def _spectrum(name: str, data: xr.Dataset) -> Figure:
             "marker": {"color": key.colour},
             "hovertemplate": f"%{{y:.4~r}} {show.unit_of('spectrum')}<br>order %{{x}}",
         }
-        for key, values in zip(keys, each, strict=True)
+        for key, values in zip(keys, spectra, strict=True)
     ]
     return Figure(
         f"{name}_spectrum",
@@ -261,11 +263,14 @@ def resonance_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
     return [
         Panel(
             name if len(outcomes) > 1 else "",
-            [_against_speed(f"resonance{position}", variable, one) for variable in _AGAINST_SPEED],
-            note=" ".join(_gaps(one.parts["resonance"])),
+            [
+                _against_speed(f"resonance{position}", variable, outcome)
+                for variable in _AGAINST_SPEED
+            ],
+            note=" ".join(_gaps(outcome.parts["resonance"])),
         )
-        for position, (name, one) in enumerate(outcomes.items())
-        if "resonance" in one.parts
+        for position, (name, outcome) in enumerate(outcomes.items())
+        if "resonance" in outcome.parts
     ]
 
 
@@ -274,12 +279,12 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
     values = np.where(data["vibration_status"].values == 0, data[variable].values, np.nan)
     rising, falling = display(variable, values)
     speed, unit = display("speed", data["speed"].values, data), show.unit_of(variable)
-    same = np.allclose(rising, falling, rtol=1e-6, equal_nan=True)
+    alike = np.allclose(rising, falling, rtol=1e-6, equal_nan=True)
     traces = []
     for key, up, down in zip(_keys(data), rising, falling, strict=True):
         branches = (
             {"rising": ("solid", up)}
-            if same
+            if alike
             else {"rising": ("solid", up), "falling": ("dash", down)}
         )
         for branch, (dash, course) in branches.items():
@@ -287,7 +292,7 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
             traces.append(plain(look, speed, course, unit, **_dots(key.colour, branch)))
     keys = _keys(data)
     note = "Speed rising and falling give the same."
-    if not same:
+    if not alike:
         keys += [Key("speed rising", "#5b6873"), Key("speed falling", "#5b6873", "dash")]
         note = "Where only the solid line is seen, both branches lie on each other."
     marks = _resonances(outcome, speed)
@@ -320,30 +325,30 @@ def _resonances(outcome: Outcome, speed: np.ndarray) -> list[tuple[str, float]]:
         return []
     natural = float(outcome.parts["vibration"]["natural_frequency"].values[-1])
     angle = period_of(outcome).angle
-    found: list[tuple[str, float]] = []
+    marks: list[tuple[str, float]] = []
     for part in range(1, _FEW + 1):
         there = float(display("speed", natural / part * angle, outcome.parts["resonance"]))
-        near = found and abs(found[-1][1] - there) < 0.13 * np.ptp(speed)
+        near = marks and abs(marks[-1][1] - there) < 0.13 * np.ptp(speed)
         if speed.min() <= there <= speed.max() and not near:
-            found.append(("f_n" if part == 1 else f"f_n/{part}", there))
-    return found
+            marks.append(("f_n" if part == 1 else f"f_n/{part}", there))
+    return marks
 
 
 def _gaps(data: xr.Dataset) -> Iterator[str]:
     """For each torque how many speeds have no steady state, and why; one sentence where directions agree."""
     ways: dict[tuple[str, str], list[str]] = {}
-    told = json.loads(data.attrs.get("sentences", "[]"))
+    sentences = json.loads(data.attrs.get("sentences", "[]"))
     codes = data["vibration_status"].values
     speed, unit = display("speed", data["speed"].values, data), show.unit_of("speed", data)
-    for way, by_torque in zip(data["direction"].values, codes, strict=True):
-        for torque, found in zip(_torques(data), by_torque, strict=True):
-            for code in np.unique(found[found != 0]):
-                where = speed[found == code]
+    for direction, by_torque in zip(data["direction"].values, codes, strict=True):
+        for torque, statuses in zip(_torques(data), by_torque, strict=True):
+            for code in np.unique(statuses[statuses != 0]):
+                where = speed[statuses == code]
                 ends = f"{show.number(where[0])} to {show.number(where[-1])} {unit}"
                 words = ends if where.size > 1 else f"{show.number(where[0])} {unit}"
-                why = told[int(code)] if int(code) < len(told) else "not solved"
+                why = sentences[int(code)] if int(code) < len(sentences) else "not solved"
                 left_out = f"{where.size} of {speed.size} speeds ({words}) are left out, {why}."
-                ways.setdefault((torque, left_out), []).append(str(way))
+                ways.setdefault((torque, left_out), []).append(str(direction))
     for (torque, left_out), those in ways.items():
         yield f"At {torque}, speed {' and '.join(those)}: {left_out}"
 
@@ -382,9 +387,9 @@ def _lacks(page: Page) -> str | None:
 
 def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
     """Transmission error at each torque, as the gears vibrate."""
-    if told := vibration_answer(outcome):
-        (value, detail), *others = told
-        details = [detail, *(" ".join(other) for other in others)]
+    if answers := vibration_answer(outcome):
+        (value, detail), *others = answers
+        details = [detail, *(" ".join(answer) for answer in others)]
         yield KeyFigure(35.0, "Transmission error", value, "; ".join(details))
         yield _natural(outcome)
 

@@ -107,8 +107,8 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
 
 def _said(data: xr.Dataset, words: str) -> str:
     """The warning of a result that has some words in it."""
-    told = [one for one in doubts_of(data.attrs) if words in one]
-    return told[0] if told else ""
+    doubts = [doubt for doubt in doubts_of(data.attrs) if words in doubt]
+    return doubts[0] if doubts else ""
 
 
 def _how(data: xr.Dataset) -> str:
@@ -179,11 +179,11 @@ def _of_members(outcome: Outcome) -> xr.Dataset:
     """Wear of the flanks of a mesh, of a train by the bodies that its members are."""
     data = outcome.parts["wear"]
     names = dict(zip(outcome.manifest["members"], named_members(outcome), strict=True))
-    own = {
-        "members": json.dumps([names.get(one, one) for one in _members(data)]),
+    member_names = {
+        "members": json.dumps([names.get(member, member) for member in _members(data)]),
         "driver": names.get(data.attrs["driver"], data.attrs["driver"]),
     }
-    return data.assign_attrs(own)
+    return data.assign_attrs(member_names)
 
 
 def _members(data: xr.Dataset) -> list[str]:
@@ -218,8 +218,8 @@ def _flanks(name: str, data: xr.Dataset) -> Panel:
     if "flank_height" in data:
         figures += [_tooth(f"{name}_tooth{k}", data, k) for k in range(2)]
     choices = [_choice(figures, data, step) for step in range(data.sizes["step"])]
-    last = len(choices) - 1
-    return Panel("", figures, choices=choices, menu="Turns", slides=True, at=last)
+    final_step = len(choices) - 1
+    return Panel("", figures, choices=choices, menu="Turns", slides=True, at=final_step)
 
 
 def _choice(figures: list[Figure], data: xr.Dataset, step: int) -> Choice:
@@ -290,7 +290,9 @@ def _tooth(name: str, data: xr.Dataset, member: int) -> Figure:
 
 def _as_wide_as_high(lines: list[Trace]) -> list[float]:
     """Ends of an axis across outlines that leave room for its numbers, however slender these are."""
-    across, upwards = ([x for one in lines for x in one[name] if x is not None] for name in "xy")
+    across, upwards = (
+        [x for outline in lines for x in outline[name] if x is not None] for name in "xy"
+    )
     middle = 0.5 * (max(across) + min(across))
     half = 0.5 * max(1.1 * (max(across) - min(across)), max(upwards) - min(upwards))
     return [round(middle - half, 3), round(middle + half, 3)]
@@ -327,7 +329,7 @@ def _magnified(data: xr.Dataset) -> float:
     height = float(np.ptp(data["flank_height"].values, axis=1).min())
     wanted = max(_DRAWN * height / deepest, 1.0)
     power = 10.0 ** np.floor(np.log10(wanted))
-    return float(power * max(one for one in (1.0, 2.0, 5.0) if one * power <= wanted))
+    return float(power * max(factor for factor in (1.0, 2.0, 5.0) if factor * power <= wanted))
 
 
 def _map(name: str, data: xr.Dataset, member: int) -> Figure:
@@ -368,16 +370,16 @@ def _life(name: str, data: xr.Dataset) -> Panel:
 
 def _marks(data: xr.Dataset) -> dict[str, object]:
     """Ends of the stages, as far as there are any."""
-    known = {"run-in ends": "run_in_cycles", "severe": "severe_cycles"}
-    each = [(words, float(data[name])) for words, name in known.items()]
-    return verticals([(words, at) for words, at in each if np.isfinite(at) and at > 0.0])
+    ends = {"run-in ends": "run_in_cycles", "severe": "severe_cycles"}
+    marks = [(words, float(data[name])) for words, name in ends.items()]
+    return verticals([(words, at) for words, at in marks if np.isfinite(at) and at > 0.0])
 
 
 def _course(name: str, data: xr.Dataset, variable: str, keys: tuple[Key, ...]) -> Figure:
     """A variable over the cycles, a line for each key."""
     x, unit = data["cycles"].values, show.unit_of(variable, data)
     courses = display(variable, data[variable].values).reshape(x.size, -1).T
-    lines = [plain(key, x, one, unit) for key, one in zip(keys, courses, strict=True)]
+    lines = [plain(key, x, course, unit) for key, course in zip(keys, courses, strict=True)]
     look = layout(
         f"turns of {data.attrs['driver']}, N",
         short_axis(variable, data),
@@ -389,8 +391,8 @@ def _course(name: str, data: xr.Dataset, variable: str, keys: tuple[Key, ...]) -
 
 def _sensitive(data: xr.Dataset) -> list[tuple[str, ...]]:
     """Changes with 1 % of each input, the largest first; what changes nothing is left out."""
-    found = json.loads(data.attrs["sensitivities"])
-    order = sorted(found.items(), key=lambda one: -abs(one[1]["life"]))
+    sensitivities = json.loads(data.attrs["sensitivities"])
+    order = sorted(sensitivities.items(), key=lambda one: -abs(one[1]["life"]))
     return [
         (name, *(f"{show.signed(one[of], 3)} %" for of in ("life", "depth", "rate")))
         for name, one in order
