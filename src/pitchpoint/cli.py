@@ -1235,6 +1235,8 @@ def _values_over(texts: list[str], case: "Case") -> dict[str, Any]:
     """Values by key of a study: a range of numbers, two ends, or a list."""
     from pitchpoint.input.quantities import shown
 
+    if not texts:
+        raise InputError(f"a study needs the values of a key: {_OPTIONS['--over']}")
     values: dict[str, Any] = {}
     for text in texts:
         key, equals, given = (part.strip() for part in text.partition("="))

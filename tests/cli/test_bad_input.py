@@ -1676,7 +1676,7 @@ OTHER_CALLS = {
     "run pair.toml --set": '; write --set operation.torque="50 N m"',
     "run pair.toml other.toml": "it takes one case, pitchpoint compare several",
     "show": "a name out of pitchpoint cases",
-    "study pair.toml": "run CASE --sweep KEY=START:STOP:COUNT",
+    "study tian2024": 'a study needs the values of a key: --over operation.torque="20 N m:90 N m:8"',
     "models steel oil": "it takes one kind or name, such as friction",
     "cases tian": "pitchpoint show CASE has the inputs of one",
     "new wolfrom": "did you mean 3K?",

@@ -2,13 +2,11 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from pitchpoint.errors import InputError
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
@@ -73,47 +71,35 @@ def exported(data: xr.Dataset, *, si: bool = False) -> xr.Dataset:
 
 def _given(data: xr.Dataset, name: str, si: bool) -> xr.Variable:
     """A variable in the unit in which it is given, NaN where no pair touches."""
-    array, description = data[name].variable, _described(data, name)
-    words = {"long_name": description.long_name, "units": _unit(description, si)}
-    if array.dtype.kind != "f":
-        return xr.Variable(array.dims, array.values, words)
+    array, description = data[name].variable, _registered(data, name)
     values = np.asarray(array.values)
-    if "active" in data and set(data["active"].dims) <= set(array.dims):
-        values = data[name].where(data["active"]).transpose(*array.dims).values
-    if not si:
-        values = _shown(values, description)
+    if array.dtype.kind == "f":
+        if "active" in data and set(data["active"].dims) <= set(array.dims):
+            values = data[name].where(data["active"]).transpose(*array.dims).values
+        if description is not None and not si:
+            values = _shown(values, description)
+    if description is None:
+        long_name = array.attrs.get("long_name", name.replace("_", " "))
+        unit = array.attrs.get("units", "1")
+    else:
+        long_name, unit = description.long_name, description.unit if si else description.display
+    words = {"long_name": long_name, "units": "" if unit == "1" else unit}
     return xr.Variable(array.dims, values, words)
 
 
-def _shown(values: np.ndarray, told: Variable) -> np.ndarray:
+def _shown(values: np.ndarray, variable: Variable) -> np.ndarray:
     """Values in the unit of report and screen."""
-    if told.display == told.unit:
+    if variable.display == variable.unit:
         return values
-    return np.asarray(told.displayed(values))
+    return np.asarray(variable.displayed(values))
 
 
-def _unit(told: Variable, si: bool) -> str:
-    unit = told.unit if si else told.display
-    return "" if unit == "1" else unit
-
-
-def _described(data: xr.Dataset, name: str) -> Variable:
-    """What a variable is."""
+def _registered(data: xr.Dataset, name: str) -> Variable | None:
+    """What a variable is; None for that of a publication, which describes its own in the data."""
     try:
         return variable_of(data, name)
-    except KeyError:  # of a publication, which describes its own in the data
-        return _of_attributes(name, data[name].attrs)
-
-
-def _of_attributes(name: str, attributes: Mapping[str, Any]) -> Variable:
-    long_name, unit = (
-        attributes.get("long_name", name.replace("_", " ")),
-        attributes.get("units", "1"),
-    )
-    try:
-        return Variable(long_name=long_name, symbol="", unit=unit)
-    except ValueError:
-        raise InputError(f"{name} of the result is in {unit!r}, which is no unit of SI") from None
+    except KeyError:
+        return None
 
 
 def sheets(outcome: Outcome, *, si: bool = False) -> Iterator[Sheet]:
