@@ -18,7 +18,7 @@ from pitchpoint._jax import double_precision
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case, run
 from pitchpoint.sizing.sizing import Sizing, size
-from pitchpoint.views.sizing_screen import as_json, sizing_screen
+from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
 
 pytestmark = pytest.mark.whole
 
@@ -87,7 +87,7 @@ def test_the_screen_answers_in_eighty_columns(sizing: Sizing) -> None:
     assert max(map(len, lines)) <= 80 and len(lines) <= 20
     for first in ("least mass", "least loss", "least diameter", "least backlash", "balanced"):
         assert any(line.startswith(first) for line in lines)
-    json.dumps(as_json(sizing), allow_nan=True)
+    json.dumps(sizing_as_json(sizing), allow_nan=True)
 
 
 def test_cases_are_written_once(sizing: Sizing, tmp_path: Path) -> None:

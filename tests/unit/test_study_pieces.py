@@ -20,7 +20,7 @@ from pitchpoint.analyses.designs import Designs
 from pitchpoint.errors import InputError
 from pitchpoint.results import store
 from pitchpoint.results.netcdf import encode
-from pitchpoint.results.pieces import ALONG, Pieces, as_whole, summary_of
+from pitchpoint.results.pieces import ALONG, StudyPieces, as_whole, summary_of
 from pitchpoint.runs import workers
 from pitchpoint.runs.described import StudyDescription, piece_elsewhere
 from pitchpoint.runs.layouts import layout_of
@@ -91,9 +91,9 @@ def _piece(first: int, stop: int, *, figures: bool = True) -> xr.Dataset:
 
 
 @pytest.fixture(params=["memory", "folder"])
-def pieces(request: pytest.FixtureRequest, tmp_path: Path) -> Pieces:
+def pieces(request: pytest.FixtureRequest, tmp_path: Path) -> StudyPieces:
     folder = tmp_path if request.param == "folder" else None
-    made = Pieces(folder, "designs", "mark", 12, 4)
+    made = StudyPieces(folder, "designs", "mark", 12, 4)
     for number in (2, 0, 1):  # in whatever order
         made.keep(number, _piece(*made.range(number), figures=number < 2))
     return made
@@ -103,7 +103,7 @@ def _codes(piece: xr.Dataset) -> np.ndarray:
     return np.zeros(piece.sizes[ALONG], int)
 
 
-def test_pieces_are_read_as_one_dataset(pieces: Pieces) -> None:
+def test_pieces_are_read_as_one_dataset(pieces: StudyPieces) -> None:
     assert pieces.missing() == []
     summary = summary_of(pieces, _codes)
     assert summary.reasons == {"no 8.5 mm": 4, "too thin": 1}
@@ -119,7 +119,7 @@ def test_pieces_are_read_as_one_dataset(pieces: Pieces) -> None:
     assert data.mean_loss.attrs == {"units": "W"}
 
 
-def test_designs_of_a_grid_have_a_dimension_for_each_key(pieces: Pieces) -> None:
+def test_designs_of_a_grid_have_a_dimension_for_each_key(pieces: StudyPieces) -> None:
     data = as_whole(pieces, summary_of(pieces, _codes), {"a": 3, "b": 4}, lambda part: part)
     flat = np.arange(12.0) + 0.5
     flat[[2, *range(8, 12)]] = np.nan
@@ -131,7 +131,7 @@ def test_designs_of_a_grid_have_a_dimension_for_each_key(pieces: Pieces) -> None
 
 @pytest.mark.parametrize("harm", ["gone", "cut", "of another study"])
 def test_a_piece_that_is_not_whole_is_missing(harm: str, tmp_path: Path) -> None:
-    pieces = Pieces(tmp_path, "designs", "mark", 8, 4)
+    pieces = StudyPieces(tmp_path, "designs", "mark", 8, 4)
     for number in (0, 1):
         pieces.keep(number, _piece(*pieces.range(number)))
     path = pieces.path(1)
@@ -207,7 +207,7 @@ def test_pieces_of_workers_are_those_of_this_process(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     def backwards(
-        study: StudyDescription, pieces: Pieces, missing: list[int], *_: Any
+        study: StudyDescription, pieces: StudyPieces, missing: list[int], *_: Any
     ) -> Generator[tuple[int, bytes], None, None]:
         for number in reversed(missing):
             made = piece_elsewhere(study.packed, study.mark, *pieces.range(number))
@@ -268,7 +268,7 @@ def test_a_copied_error_shares_nothing_though_a_package_pickles_tracebacks() -> 
 
 
 def test_a_piece_is_its_file_bit_for_bit(tmp_path: Path) -> None:
-    made = [Pieces(tmp_path / name, "designs", "mark", 4, 4) for name in ("dataset", "bytes")]
+    made = [StudyPieces(tmp_path / name, "designs", "mark", 4, 4) for name in ("dataset", "bytes")]
     made[0].keep(0, _piece(0, 4))
     made[1].keep(0, encode(_piece(0, 4)))
     first, second = (pieces.path(0) for pieces in made)
@@ -326,7 +326,7 @@ def test_values_of_a_grid_are_ranges_and_lists(
         (("--over", "torque"), '--over: "torque" is not KEY=VALUES, such as --over operation.tor'),
         (("--over", "torque=[5]", "--over", "torque=[6]"), '--over: "torque" was given twice'),
         (("--over", "torque=5:6:0"), "is not KEY=START:STOP:COUNT with a count of 1 to 100000"),
-        ((), "error: a study needs the values of one key at least"),
+        ((), 'error: a study needs the values of a key: --over operation.torque="20 N m:90 N m:8"'),
         ((*DRAWN, "--scheduler", "tcp://127.0.0.1:1"), "Connection refused; `dask scheduler` star"),
         ((*DRAWN, "--workers", "0"), "workers: 0 was given where a whole number from 1 on belongs"),
     ],
