@@ -55,7 +55,7 @@ def turned_rates(mesh: Any, driver: Rates) -> Rates:
 
 
 def _sign(value: Float[Numbers, ""]) -> Float[Numbers, ""]:
-    return 1.0 * (value > 0.0) - 1.0 * (value < 0.0)
+    return jnp.sign(value) if isinstance(value, Array) else np.sign(value)
 
 
 def nominal_motion(mesh: Mesh, driver: Rates, loaded: Rates) -> Rates:
