@@ -487,8 +487,8 @@ def _overlaps(
 ) -> Bool[Array, "*b"]:
     """True where what may carry of a flank reaches into the circular spline's teeth."""
     flank = motion.flank
-    end = motion.place(flank.length if edges_carry else flank.plain, angle)
-    return jnp.asarray(jnp.real(end) > groove.low)
+    end = flank.place(flank.length) if edges_carry else flank.rounding_start
+    return jnp.asarray(jnp.real(motion.carried(end, angle)) > groove.low)
 
 
 def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Shaped[Arrays, "pair 1 ..."]:

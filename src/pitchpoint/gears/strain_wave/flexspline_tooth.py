@@ -50,6 +50,16 @@ class Flank(eqx.Module):
     def lengths(self) -> tuple[Float[Array, ""], ...]:
         """Arc lengths of the smooth pieces from root to tip [m]; the rounding of the tip is the last."""
 
+    @property
+    @abc.abstractmethod
+    def rounding_start(self) -> Place:
+        """Place where the rounding of the tip begins [m].
+
+        That at the arc length `plain` as well, but for rounding: there a piece is chosen by an order of two
+        equal numbers, and a compiler that works them out anew beside each use may take the arc of one piece
+        with the angle of another.
+        """
+
     @abc.abstractmethod
     def place(self, along: Along) -> Place:
         """Place at an arc length from the root [m]."""
@@ -154,6 +164,11 @@ class ArcChain(Flank):
     def lengths(self) -> tuple[Float[Array, ""], ...]:
         """Arc lengths of the pieces [m]."""
         return tuple(self.pieces)
+
+    @property
+    def rounding_start(self) -> Place:
+        """Place where the last piece begins [m]."""
+        return self.places[-1]
 
     def _piece(self, along: Along) -> tuple[Array, Along]:
         """Piece at an arc length, and the way from its beginning [m]."""
@@ -285,6 +300,11 @@ class DoubleArcFlank(Flank):
         bends.append(1.0 / self.tip_rounding)
         return ArcChain.beyond(root, self.root_angle, self.lengths, bends, self)
 
+    @property
+    def rounding_start(self) -> Place:
+        """Place where the rounding of the tip begins [m]."""
+        return self.prepared().rounding_start
+
     def place(self, along: Along) -> Place:
         """Place at an arc length from the root [m]."""
         return self.prepared().place(along)
@@ -400,6 +420,11 @@ class InvoluteFlank(Flank):
     def lengths(self) -> tuple[Float[Array, ""], ...]:
         """Arc lengths of involute, relief and rounding [m]."""
         return self._rolled, *self._beyond.lengths
+
+    @property
+    def rounding_start(self) -> Place:
+        """Place where the rounding of the tip begins [m]."""
+        return self._beyond.rounding_start
 
     def place(self, along: Along) -> Place:
         """Place at an arc length from the root [m]."""

@@ -203,7 +203,7 @@ def swept(motion: ToothMotion, low: Float[Array, ""], tips: Tips) -> Groove:
     heights = _heights(low, jnp.real(deepest))
     generated = _generated(motion, heights, *_outermost(motion, heights))
     width, slope, curvature, lost = _farther(*generated)
-    joint = jnp.real(motion.place(motion.flank.plain, jnp.zeros(())))
+    joint = jnp.real(motion.carried(motion.flank.rounding_start, jnp.zeros(())))
     bottom = joint, tips.bottom
     groove = Groove(low, heights[-1], width, slope, curvature, jnp.sum(lost * 1.0), *bottom)
     reach = jnp.where(tips.relief_length > 0.0, tips.relief_length, 1.0)

@@ -106,8 +106,12 @@ class ToothMotion(eqx.Module):
 
     def place(self, along: Each, angle: Each) -> Place:
         """Where a point of the flank is [m]."""
+        return self.carried(self.flank.place(along), angle)
+
+    def carried(self, of_tooth: Place, angle: Each) -> Place:
+        """Where a point is that is given from the foot of the tooth [m]."""
         foot, axis = self.foot(angle)
-        return foot + unit(axis) * self.flank.place(along)
+        return foot + unit(axis) * of_tooth
 
     def passed(
         self, stations: Float[Array, " station"], angle: Float[Array, "*b"]
