@@ -89,7 +89,10 @@ def by_themselves(built, gears, found):
 
 
 def of(built, analysis):
-    return ANALYSES[analysis].compute(built, {}, lambda *_: None)
+    """A part of a drive; of stages or sets with all of them."""
+    (part,) = ANALYSES[analysis].parts(Subject(None, built))
+    pieces = [part.compute(built, piece, lambda *_: None) for piece in part.pieces(built)]
+    return part.joined(built, pieces)
 
 
 def test_two_sets_in_a_row_are_as_good_as_their_product():
@@ -237,11 +240,8 @@ def test_meshes_of_sets_in_a_row_are_those_of_each_set_by_itself():
     for name in ("tangential_force", "contact_stress", "root_stress", "mesh_load_factor"):
         each = np.concatenate([one[name].values for one in apart])
         assert whole[name].values == pytest.approx(each, rel=1e-12), name
-    (inspection,) = ANALYSES["inspection"].parts(Subject(None, built))
-    spans = inspection.joined(built, [of_piece(inspection, built, n) for n in range(4)])
+    spans, ring = of(built, "inspection"), of(sets[1], "inspection")
     assert stages_of(spans) == (*labels,)
-    (by_itself,) = ANALYSES["inspection"].parts(Subject(None, sets[1]))
-    ring = by_itself.joined(sets[1], [of_piece(by_itself, sets[1], n) for n in range(2)])
     for variable in ("span_measurement", "over_balls"):
         got, want = of_stage(spans, labels[3])[variable], of_stage(ring, 2)[variable]
         assert got.values == pytest.approx(want.values, rel=1e-12, nan_ok=True)
@@ -583,22 +583,33 @@ def test_one_of_two_sets_may_have_pins_out_of_place():
     assert "ask for it" in ANALYSES["planet_sharing"].why_not(two_sets())
 
 
-def of_piece(analysis, built, number):
-    """A piece of an analysis by its number."""
-    return analysis.compute(built, [*analysis.pieces(built)][number], lambda *_: None)
-
-
-def test_what_a_set_in_a_row_does_not_have_is_told_with_its_operating_point():
-    """Sharing of planets is in a file of its own, at the torque and speed that stand in the sentence."""
+def test_periods_of_sets_in_a_row_are_those_of_each_set_by_itself():
+    """Torques and forces over the period, under the load that each carries with all losses."""
     built = two_sets()
-    told = [text for text in built.warnings if "is a planetary set" in text]
-    assert len(told) == 2
-    assert "torque 9.25926 N m and speed 3000 rpm" in told[0]
-    assert "torque 40 N m and speed 666.667 rpm" in told[1]
-    assert "file of its own" in ANALYSES["train_period"].why_not(built)
-    data = of(pair_before_set(), "strength")
+    loads = built.carried_by_meshes(figures(built))
+    speeds = SPEED, SPEED / RATIOS[0]
+    whole = of(built, "train_period")
+    assert stages_of(whole) == (1, 2)
+    for number, gears, load, speed in zip((1, 2), SETS, loads.tolist(), speeds, strict=True):
+        got, want = of_stage(whole, number), of(alone(gears, load, speed), "train_period")
+        assert {*got.data_vars} == {*want.data_vars}
+        for name in want.data_vars:
+            np.testing.assert_allclose(got[name], want[name], rtol=1e-9, atol=1e-12)
+        assert got.attrs["driver_period"] == pytest.approx(want.attrs["driver_period"], rel=1e-12)
+    assert loads[0] > 1.005 * LOAD / RATIOS[1]
+    second = of_stage(whole, 2)
+    mean = second["input_torque"].values[0] @ second["weight"].values
+    assert mean == pytest.approx(loads[0], rel=1e-9)
+
+
+def test_a_pair_beside_a_set_has_a_cycle_and_the_set_a_period():
+    """What turns together once more is told of a pair; its rating is that of each mesh."""
+    built = pair_before_set()
+    assert ANALYSES["train_period"].why_not(built) is None
+    assert "do not turn together" in ANALYSES["train_period"].why_not(built.stages[0])
+    data = of(built, "strength")
     assert data["stage"].values.tolist() == ["1", "2 (sun and planet)", "2 (planet and ring)"]
-    assert unlikely(pair_before_set(), {"strength": data}) == []
+    assert unlikely(built, {"strength": data}) == []
 
 
 @pytest.mark.parametrize(

@@ -78,6 +78,32 @@ def test_friction_of_stages_ripples_at_the_orders_of_each() -> None:
     assert waves.amplitude == pytest.approx([0.3, 0.1, 0.3, 0.1], rel=1e-6)
 
 
+def test_friction_of_a_set_behind_a_pair_ripples_over_the_period_of_the_set() -> None:
+    """Its meshes, which have cycles by their bodies, turn together; the pair keeps its own cycle."""
+    pair, turn = rippling()["cycle"], 2.0 * np.pi
+    angle = pair["phase"].values * turn / 10.0
+    of_set = xr.Dataset(
+        {"driver_angle": ("node", angle), "weight": pair["weight"].variable}
+        | {"input_torque": pair["input_torque"].variable},
+        {"law": pair["law"].values},
+        attrs=pair.attrs | {"driver_period": turn / 10.0},
+    )
+    parts = {
+        "cycle": by_stage({1: pair, "2 (sun and planet)": pair, "2 (planet and ring)": pair}),
+        "train_period": by_stage({2: of_set}),
+    }
+    made = made_joint(more=rippling() | parts)
+    each = {"bodies": "", "period": turn / 40.0}
+    made.manifest["stages"] = [
+        {**each, "number": number, "speed": speed}
+        for number, speed in ((1, 100.0), (2, -20.0), ("2 (sun and planet)", -15.0))
+    ]
+    waves = joint_model(made).friction_waves
+    assert waves is not None
+    assert waves.order == pytest.approx([2.0, 4.0, 40.0, 80.0])
+    assert waves.amplitude == pytest.approx([0.3, 0.1, 0.3, 0.1], rel=1e-6)
+
+
 def test_inertia_is_that_at_the_output_with_the_rotor_by_value() -> None:
     bodies = xr.Dataset({"reflected_inertia": ("end", [4e-5, 0.1])}, {"end": ["input", "output"]})
     made = made_joint(more={"bodies": bodies})

@@ -49,6 +49,10 @@ class Unasked(str):
     """A reason why a part does not exist that lies in what the case file asks for, not in its gears."""
 
 
+def _is_unasked(why: str | None) -> bool:
+    return isinstance(why, Unasked)
+
+
 def has_key(built: Built, key: str) -> bool:
     """True if the table `[gears]` of a mesh has a key, given or not."""
     return key in type(built.case.gears).model_fields
@@ -106,9 +110,10 @@ class Entry:
         title: for progress and figures.
         lacks: None, or why the part does not exist for a case: what its gears do not have, or its file
             does not ask for (`Unasked`).
-        of: what it is of: "mesh", and a drive of several has it of each along a dimension `stage`; or
-            "drive", of one mesh or several.
-        under_load: True where it hangs on the load: in a drive on that which a mesh carries with all losses.
+        of: what it is of: "mesh", or "train", meshes that turn together, and a drive of several has it of
+            each along a dimension `stage`; or "drive", of one mesh or several.
+        under_load: True where it hangs on the load: in a drive on that which a mesh or a set carries with all
+            losses.
         of_no_train: why the meshes of a train do not have it each by itself; empty where they do.
         main: variables that are shown first.
         figures: entries of `--json` from all parts that exist; by default the main variables under the
@@ -119,7 +124,7 @@ class Entry:
     name: str
     title: str
     lacks: Callable[[Any], str | None] = lambda built: None
-    of: Literal["mesh", "drive"] = "mesh"
+    of: Literal["mesh", "train", "drive"] = "mesh"
     under_load: bool = False
     of_no_train: str = ""
     main: tuple[str, ...] = ()
@@ -132,13 +137,12 @@ class Entry:
         """Why the part does not exist for a case; None where it does."""
         if self.of_no_train and built.averaging == TRAIN_PERIOD:
             return self.of_no_train
-        if self.of == "drive":
-            return self.lacks(built)
-        reasons = [*map(self.lacks, built.meshes)]
-        return None if None in reasons else reasons[0]
+        members = {"mesh": built.meshes, "train": [*built.trains.values()]}.get(self.of)
+        reasons = [*map(self.lacks, members or [built])]
+        return None if None in reasons else min(reasons, key=_is_unasked)
 
     def shown(self, parts: Mapping[str, xr.Dataset]) -> Mapping[str, Any]:
-        """Entries of `--json`; of a part of the meshes of a drive by stage."""
+        """Entries of `--json`; of a part of the meshes or sets of a drive by stage."""
         data = parts.get(self.name)
         stages = {} if data is None else {n: of_stage(data, n) for n in stages_of(data)}
         per_stage = {
@@ -190,35 +194,41 @@ class Analysis(Entry):
         """The analysis itself, unless a case lacks something that it needs; of a drive see `of_stages`."""
         if self.why_not(subject.built):
             return ()
-        return (of_stages(self) if self.of == "mesh" and subject.built.numbers else self,)
+        whole = {"mesh": not subject.built.numbers, "train": 0 in subject.built.trains}
+        return (self if whole.get(self.of, True) else of_stages(self),)
 
 
 def of_stages(analysis: Analysis) -> Analysis:
-    """An analysis of a mesh as one of a drive: of each mesh that has it, along a dimension `stage`.
+    """An analysis of a mesh or a set as one of a drive: of each that has it, along a dimension `stage`.
 
     Stages are computed one after the other, a march of one to its end before that of the next begins.
 
     Args:
-        analysis: of a mesh.
+        analysis: of a mesh, or of a train.
     """
 
-    def meshes(built: BuiltDrive) -> dict[Label, Built]:
-        all_meshes = built.at_work if analysis.under_load else built.meshes
-        labelled = zip(built.mesh_labels, all_meshes, strict=True)
-        return {label: mesh for label, mesh in labelled if analysis.lacks(mesh) is None}
+    def members(built: BuiltDrive) -> dict[Label, Ready]:
+        every: dict[Label, Ready]
+        if analysis.of == "train":
+            trains = built.trains_at_work if analysis.under_load else built.trains
+            every = {number: train for number, train in trains.items()}
+        else:
+            meshes = built.at_work if analysis.under_load else built.meshes
+            every = dict(zip(built.mesh_labels, meshes, strict=True))
+        return {label: member for label, member in every.items() if analysis.lacks(member) is None}
 
     def pieces(built: BuiltDrive) -> Iterator[Piece]:
-        for label, mesh in meshes(built).items():
-            yield from ({"stage": label, **piece} for piece in analysis.pieces(mesh))
+        for label, member in members(built).items():
+            yield from ({"stage": label, **piece} for piece in analysis.pieces(member))
             if analysis.onward is not None:
                 return
 
     def compute(built: BuiltDrive, piece: Piece, progress: Progress) -> xr.Dataset:
         label = piece["stage"]
-        return _labelled(analysis.compute(meshes(built)[label], piece, progress), label)
+        return _labelled(analysis.compute(members(built)[label], piece, progress), label)
 
     def onward(built: BuiltDrive, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
-        there, label = meshes(built), as_label(last.attrs[_OF_STAGE])
+        there, label = members(built), as_label(last.attrs[_OF_STAGE])
         march = analysis.onward
         further = None if march is None else march(there[label], last, progress)
         if further is not None:
@@ -228,12 +238,12 @@ def of_stages(analysis: Analysis) -> Analysis:
         return next((compute(built, {"stage": n, **piece}, progress) for n, piece in begun), None)
 
     def joined(built: BuiltDrive, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-        there = meshes(built)
+        there = members(built)
         groups = groupby(parts, key=lambda part: as_label(part.attrs[_OF_STAGE]))
-        of_meshes = {label: analysis.joined(there[label], [*group]) for label, group in groups}
-        for data in of_meshes.values():
+        of_members = {label: analysis.joined(there[label], [*group]) for label, group in groups}
+        for data in of_members.values():
             data.attrs.pop(_OF_STAGE, None)
-        drive_data = by_stage(of_meshes)
+        drive_data = by_stage(of_members)
         if analysis.under_load and built.locked:
             drive_data.attrs.update(stored([*doubts_of(drive_data.attrs), _UNDER_NO_LOSSES]))
         return drive_data

@@ -2,7 +2,7 @@
 
 from pitchpoint.analyses.analysis import Unasked, has_key
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltTrain, Ready
+from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
@@ -98,35 +98,22 @@ def of_one_mesh(built: Ready) -> str | None:
 
 def without_train(built: Ready) -> str | None:
     """Why there is no period in which all meshes come together again."""
-    if built.averaging == TRAIN_PERIOD:
-        return None
-    if built.trains:
-        return (
-            "stages do not come together again; a planetary set in a file of its own has its period"
-        )
-    return Unasked("its bodies do not turn together as those of a train do")
+    return (
+        None if built.trains else Unasked("its bodies do not turn together as those of a train do")
+    )
 
 
 def no_pins(built: Ready) -> str | None:
-    """Why nothing is computed of how planets share a load; of stages where no set has it."""
-    reasons = {number: _no_pins(train) for number, train in built.trains.items()}
-    if not reasons:
+    """Why nothing is computed of how planets share a load; of a drive with sets each is asked."""
+    if not built.trains:
         return Unasked("it has no planets")
-    if None in reasons.values():
-        return None
-    lacking = {n: why for n, why in reasons.items() if why and not isinstance(why, Unasked)}
-    sentences = (f"stage {number}: {why}" if number else why for number, why in lacking.items())
-    return next(sentences, next(iter(reasons.values())))
-
-
-def _no_pins(built: BuiltTrain) -> str | None:
-    """The same of one set."""
-    if not _out_of_place(built):
+    (train,) = built.trains.values()
+    if not _out_of_place(train):
         return Unasked("pin_errors, pin_tolerance and the like of a planetary set ask for it")
-    on_planets = [mesh for mesh in built.design.meshes if mesh.carrier != HOUSING]
-    if built.case.operation.load == 0.0:
+    on_planets = [mesh for mesh in train.design.meshes if mesh.carrier != HOUSING]
+    if train.case.operation.load == 0.0:
         return "planets share no load where there is none"
-    if built.planets < 2 or len(on_planets) != 2:
+    if train.planets < 2 or len(on_planets) != 2:
         return "planets that share a load by their pins are several, each in two meshes"
     return None
 

@@ -9,15 +9,13 @@ import xarray as xr
 from jaxtyping import Float
 
 from pitchpoint.analyses.analysis import Piece, Progress
-from pitchpoint.analyses.lacking import no_pins
 from pitchpoint.analyses.torsion import mesh_slopes
-from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain
+from pitchpoint.cases.built_drive import BuiltTrain
 from pitchpoint.cases.schema import TrainTable
 from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.kinematics import HOUSING, Ends
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.loading.planets import PinEquivalents, path_stiffness, planet_forces
-from pitchpoint.results.by_stage import Label, by_stage
 from pitchpoint.results.store import dataset
 
 __all__ = ["Sharing", "shared", "sharing_of"]
@@ -152,26 +150,11 @@ def _equivalents(built: BuiltTrain) -> PinEquivalents | None:
     return PinEquivalents(sun, ring, normal, base_helix, float(at_ring / at_sun))
 
 
-def sharing_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
-    """Dataset of the part, of stages with a dimension `stage`: of every set whose pins are out of place.
+def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
+    """Dataset of the part, of a set whose pins are out of place.
 
-    A set that is a stage shares the load that it has without losses behind it, as it is rated.
-
-    Args:
-        built: a set, or stages with sets among them.
-    """
-    sets: dict[Label, xr.Dataset] = {
-        number: _sharing_of_set(train)
-        for number, train in built.trains.items()
-        if no_pins(train) is None
-    }
-    return sets[0] if 0 in sets else by_stage(sets)
-
-
-def _sharing_of_set(built: BuiltTrain) -> xr.Dataset:
-    """Dataset of one set.
-
-    From the equilibrium of springs that only push, see `planet_forces`: teeth at the load of the operating
+    A set that is a stage shares the load that it has without losses behind it, as it is rated. From the
+    equilibrium of springs that only push, see `planet_forces`: teeth at the load of the operating
     point in series with the pin, without friction, weight and centrifugal force.
     """
     sharing, table = shared(built), built.case.train

@@ -73,14 +73,15 @@ REFLECTED = Analysis(
 TRAIN_OVER_PERIOD = Analysis(
     name="train_period",
     title="period of the train",
-    of="drive",
+    of="train",
+    under_load=True,
     lacks=without_train,
     compute="pitchpoint.analyses.train_period:train_period_of",
 )
 PLANET_SHARING = Analysis(
     name="planet_sharing",
     title="sharing of planets",
-    of="drive",
+    of="train",
     lacks=no_pins,
     compute="pitchpoint.analyses.planet_sharing:sharing_of",
     main=("planet_load_factor", "planet_share"),

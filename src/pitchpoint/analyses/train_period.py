@@ -46,8 +46,8 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
 
     forces = np.full((len(cycles), len(built.copies), planets, phase.size), np.nan)
     for law, cycle in enumerate(cycles):
-        for stage, count in enumerate(built.copies):
-            forces[law, stage, :count] = _over_period(train, cycle["forces"][stage][:count])
+        for mesh, count in enumerate(built.copies):
+            forces[law, mesh, :count] = _over_period(train, cycle["forces"][mesh][:count])
     codes, residuals = (
         np.stack([cycle[name] for cycle in cycles]) for name in ("code", "residual")
     )
@@ -60,14 +60,14 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
             "input_torque": (("law", "node"), whole("input_torque")),
             "efficiency": (("law", "node"), whole("efficiency")),
             "loss": (("law", "node"), whole("loss")),
-            "contact_force": (("law", "stage", "planet", "node"), forces),
+            "contact_force": (("law", "mesh", "planet", "node"), forces),
             "outside_torque": (("law", "outer_body"), np.transpose([*outside.values()])),
             "body_thrust": (("body",), [*thrusts.values()]),
             "planet_tilting_moment": ((), tilting),
         },
         {
             "law": built.law_names,
-            "stage": [*built.numbers],
+            "mesh": built.stage_bodies,
             "planet": np.arange(1, planets + 1),
             "outer_body": [*outside],
             "body": [*thrusts],

@@ -413,8 +413,21 @@ class BuiltDrive:
         """
         if self.locked:
             return self.meshes
+        return tuple(mesh for stage in self._loaded_stages for mesh in stage.at_work)
+
+    @property
+    def trains_at_work(self) -> "dict[int, BuiltTrain]":
+        """See `trains`: under the mean torques that they carry with all losses, as `at_work`."""
+        numbered = zip(self.numbers, self._loaded_stages, strict=True)
+        return {number: train for number, stage in numbered for train in stage.trains.values()}
+
+    @cached_property
+    def _loaded_stages(self) -> "tuple[Built | BuiltTrain, ...]":
+        """Stages under the mean torques that they carry; without losses where friction locks the drive."""
+        if self.locked:
+            return self.stages
         loaded = zip(self.stages, self._carried, strict=True)
-        return tuple(mesh for stage, torque in loaded for mesh in stage.carrying(torque).at_work)
+        return tuple(stage.carrying(torque) for stage, torque in loaded)
 
     def carried_by_meshes(self, figures: Mapping[str, np.ndarray]) -> np.ndarray:
         """Torque on the loaded member of each mesh with all losses: what drives the stage behind it.
@@ -515,6 +528,11 @@ class BuiltTrain(BuiltDrive):
     def trains(self) -> "dict[int, BuiltTrain]":
         """Sets of meshes that turn together: itself, which is no stage."""
         return {0: self}
+
+    @property
+    def trains_at_work(self) -> "dict[int, BuiltTrain]":
+        """Itself: it carries its load."""
+        return self.trains
 
     @property
     def planets(self) -> int:

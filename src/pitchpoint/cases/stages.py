@@ -25,7 +25,6 @@ from pitchpoint.cases.document import STAGES, Document, Provenance, Tree, settin
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import (
     OF_SET,
-    SPEED,
     TEMPERATURE,
     UNRATED,
     Case,
@@ -285,7 +284,6 @@ def _together(
         *_few_meetings(built),
         *_adding_thrusts(built),
         *_on_one_place(case, built),
-        *_on_sets(built),
         *_on_vibration(case),
     )
     drive = _drive(case, built)
@@ -561,20 +559,6 @@ def _few_meetings(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
                 moves=REMARKED,
                 about=("torque_ripple",),
                 brief=f"Shaft {shaft}: the ripple is that of the worst meeting of phases.",
-            )
-
-
-def _on_sets(built: Sequence[Built | BuiltTrain]) -> Iterator[str]:
-    """Planetary sets of which not all is computed that a file of them alone has."""
-    for number, stage in enumerate(built, 1):
-        for point in (train.case.operation for train in stage.trains.values()):
-            yield Doubt(
-                f"Stage {number} is a planetary set: its state over a period is not computed here. A file of "
-                f"this set alone has it, with torque "
-                f"{stage.carried.show(point.load)} and speed {SPEED.show(point.speed)}, which is the set "
-                "without losses behind it.",
-                moves=REMARKED,
-                brief=f"Stage {number}: its period in a file of this set alone.",
             )
 
 

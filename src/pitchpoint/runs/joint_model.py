@@ -25,7 +25,7 @@ from pitchpoint.efficiency.loss_table import LossTable, Rest
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
-from pitchpoint.results.by_stage import of_stage
+from pitchpoint.results.by_stage import of_stage, stages_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.units import degrees_celsius
 
@@ -659,14 +659,14 @@ def _held(data: xr.Dataset, law: str, torque: np.ndarray) -> np.ndarray:
     return half.clip(0.0)
 
 
-def _friction_waves(data: xr.Dataset, outcome: Outcome, law: str, load: float) -> AngleWaves | None:
+def _friction_waves(_: xr.Dataset, outcome: Outcome, law: str, load: float) -> AngleWaves | None:
     """Waves of the torque of the driver over the torque that is lost, under the load of operation."""
     record, point = outcome.manifest, outcome.parts.get("operation")
     if point is None or "mean_input_torque" not in point:
         return None
     mean = float(point["mean_input_torque"].sel(law=law).values.ravel()[0])
     lost = mean - load / abs(_ratio(record))
-    each = [*_torque_cycles(data, record, law)]
+    each = [*_torque_cycles(outcome, law)]
     if not each or not lost > LEAST_WAVE**2 * mean:
         return None
     rows = np.concatenate([_harmonics(*one) for one in each])
@@ -681,27 +681,40 @@ def _friction_waves(data: xr.Dataset, outcome: Outcome, law: str, load: float) -
 
 
 def _torque_cycles(
-    data: xr.Dataset, record: Mapping[str, Any], law: str
+    outcome: Outcome, law: str
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, float]]:
     """Torque of a driver over the phase of a cycle, weights, and cycles in a turn of the driver of all.
 
-    Of drives of several meshes each one's own: their phases meet freely.
+    Of stages each one's own, of a set over the period of its meshes: their phases meet freely.
     """
-    if "driver_angle" in data and data["driver_angle"].ndim == 1:
-        period = float(data.attrs["driver_period"])
-        torque = data["input_torque"].sel(law=law).values
-        yield torque, data["driver_angle"].values / period, data["weight"].values, TURN / period
-    elif "phase" in data and not record["stages"]:
-        torque = data["input_torque"].sel(law=law).values
-        turns = TURN / abs(float(record["period"]))
-        yield torque, data["phase"].values, data["weight"].values, turns
-    elif "phase" in data and not any(stage["bodies"] for stage in record["stages"]):
-        first = abs(float(record["stages"][0]["speed"]))
-        for stage in record["stages"]:
-            one = of_stage(data, stage["number"])
-            turns = TURN / abs(float(stage["period"])) * abs(float(stage["speed"])) / first
-            torque = one["input_torque"].sel(law=law).values
-            yield torque, one["phase"].values, one["weight"].values, turns
+    record, parts = (
+        outcome.manifest,
+        (outcome.parts.get(name) for name in ("train_period", "cycle")),
+    )
+    there = [data for data in parts if data is not None]
+    stages = [
+        one for one in record["stages"] if isinstance(one["number"], int) and not one["bodies"]
+    ]
+    if not stages:
+        yield _torque_cycle(there[0], record, law)
+        return
+    first = abs(float(stages[0]["speed"]))
+    for stage in stages:
+        data = next(
+            of_stage(one, number) for one in there if (number := stage["number"]) in stages_of(one)
+        )
+        torque, phase, weight, turns = _torque_cycle(data, stage, law)
+        yield torque, phase, weight, turns * abs(float(stage["speed"])) / first
+
+
+def _torque_cycle(
+    data: xr.Dataset, record: Mapping[str, Any], law: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """The same of one mesh or set: cycles in a turn of its own driver."""
+    torque = data["input_torque"].sel(law=law).values
+    period = abs(float(data.attrs.get("driver_period", record["period"])))
+    phase = data["phase"].values if "phase" in data else data["driver_angle"].values / period
+    return torque, phase, data["weight"].values, TURN / period
 
 
 def _harmonics(
@@ -822,7 +835,7 @@ _READERS: Mapping[str, tuple[tuple[str, ...], Any, str]] = {
     "friction_waves": (
         ("train_period", "cycle"),
         _friction_waves,
-        "over a mesh cycle it changes by less than 1 %, or that of a train among other stages is not known",
+        "over a mesh cycle it changes by less than 1 %",
     ),
 }
 """By attribute: the parts that may have it, how it is read, and what is told where none has."""

@@ -44,9 +44,10 @@ def matrix() -> list[dict[str, str]]:
     ]
     extras: list[Mapping[str, Any]] = [*map(_films, FILM_SOLVERS["line"]), _WEAR]
     drives = [_drive(sample_of(table), _sharing(*samples[tag(table)][:1])) for table in turning]
-    samples["several stages"] = drives + [_drive(sample_of(turning[0]), extra) for extra in extras]
     deviating = {"gears.deviations.iso_class": 6}
     pins = {"gears.pin_tolerance": "20 um"}
+    drives += [_drive(sample_of(turning[0]), extra) for extra in extras]
+    samples["several stages"] = [*drives, _sets_in_a_row(pins)]
     samples["planetary"] = [*map(_set, (pins, *extras)), _train(deviating)]
     return [
         {"analysis": analysis.name, "title": analysis.title}
@@ -72,6 +73,14 @@ def _drive(sample: Path, settings: Mapping[str, Any] = MappingProxyType({})) -> 
 def _set(settings: Mapping[str, Any]) -> Ready:
     """A planetary set in a file of its own."""
     return load_case(str(_PLANETARY), settings=_OF_OUTPUT | {**settings})
+
+
+def _sets_in_a_row(settings: Mapping[str, Any]) -> Ready:
+    """Two planetary sets one behind the other, the second one with tables by these settings."""
+    tree = tomllib.loads(_PLANETARY.read_text("utf-8"))
+    stages = [{key: tree.pop(key) for key in ("gears", "losses")}] * 2
+    inside = {f"stages.2.{key}": value for key, value in settings.items()}
+    return load_case({**tree, "stages": stages}, settings=inside)
 
 
 def _train(settings: Mapping[str, Any]) -> Ready:

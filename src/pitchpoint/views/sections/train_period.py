@@ -23,8 +23,7 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.lines import gapped, titled
-from pitchpoint.views.section import Block, Page, Paragraph, Printed, Table, naming
-from pitchpoint.views.sections.stages import stage_words
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Table, naming
 
 __all__ = ["train_period_blocks", "train_period_printed"]
 
@@ -33,9 +32,12 @@ _PART = "train_period"
 
 def train_period_blocks(page: Page) -> Iterator[Block]:
     """Blocks of the section."""
-    there = page.having(_PART)
-    for position, (variant, outcome) in enumerate(there.items()):
+    variants, page = page.having(_PART), page.by_mesh(_PART)
+    alone = len(variants) == 1 and [*variants] == [*page.outcomes]
+    for position, (variant, outcome) in enumerate(page.outcomes.items()):
         data = outcome.parts[_PART]
+        title = "" if alone else variant
+        yield from [Heading(title)] if title else []
         turn = show.quantity("driver_angle", float(data.attrs["driver_period"]))
         by_law = f" by {laws(data)[0]}" if data.sizes["law"] > 1 else ""
         yield Paragraph(
@@ -54,10 +56,9 @@ def train_period_blocks(page: Page) -> Iterator[Block]:
                 _over_angle(f"train{position}_{name}", name, variant, data, page.curves)
                 for name in ("input_torque", "efficiency")
             ),
-            *_forces(f"train{position}_force", outcome),
+            *_forces(f"train{position}_force", data),
         ]
         curves = [page.curves[variant, law] for law in laws(data)]
-        title = variant if len(there) > 1 else ""
         yield from naming(title, [Panel(title, figures, curves)])
 
 
@@ -138,12 +139,11 @@ def _legible(data: xr.Dataset) -> dict[str, Any]:
     return {"range": [0.0, float(angle[jumps[_PIECES]])]} if len(jumps) > _PIECES else {}
 
 
-def _forces(name: str, outcome: Outcome) -> Iterator[Figure]:
+def _forces(name: str, data: xr.Dataset) -> Iterator[Figure]:
     """Normal force of each planet in each mesh under the first law."""
-    data = outcome.parts[_PART]
     angle = display("driver_angle", data["driver_angle"].values)
     unit = show.unit_of("contact_force", data)
-    for at, stage in enumerate(data["stage"].values):
+    for at, mesh in enumerate(data["mesh"].values):
         forces = display("contact_force", data["contact_force"].values[0, at], data)
         copies = int(np.isfinite(forces).any(axis=-1).sum())
         keys = tuple(
@@ -157,7 +157,7 @@ def _forces(name: str, outcome: Outcome) -> Iterator[Figure]:
         )
         yield Figure(
             f"{name}{at}",
-            f"Normal force of the teeth, stage {stage_words(outcome, at, stage)}",
+            f"Normal force of the teeth, {mesh}",
             [plain(key, *gapped(angle, forces[k]), unit) for k, key in enumerate(keys)],
             layout(
                 short_axis("driver_angle"),
