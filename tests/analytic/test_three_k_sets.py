@@ -113,29 +113,39 @@ def mean_of_pair(teeth, shifts, tips, friction=0.1):
     return three_k.mesh_efficiency((z[:1], z[1:]), (parts[:1], parts[1:]), friction).item()
 
 
-def test_derivatives_are_those_of_pairs_with_other_shifts(sets):
-    """The shift of the planet in the output ring, away from its best one, moved on pairs as built."""
-    chosen = sets.isel(set=0)
-    z, x = chosen["teeth"].values.tolist(), chosen["profile_shift"].values.tolist()
-    tip = float(chosen["tip_alteration"])
-    x[3:] = [x[3] - 0.3, x[4] + 0.3]
-    others = [
-        mean_of_pair((z[0], z[1]), (x[0], x[1]), (tip, tip)),
-        mean_of_pair((z[1], -z[2]), (x[1], x[2]), (tip, 0.0)),
+def built_at(z, distance, first, second):
+    """Both efficiencies of pairs as built at a centre distance, with these shifts of the planet's gears."""
+
+    def mate(planet, other, shift):
+        working = np.arccos(abs(planet + other) * np.cos(radians(20.0)) / (2.0 * distance))
+        angles = np.array([working, radians(20.0)])
+        opened = -np.diff(np.tan(angles) - angles).item()
+        return (planet + other) * opened / (2.0 * np.tan(radians(20.0))) - shift
+
+    sun, ring = mate(z[1], z[0], first), mate(z[1], -z[2], first)
+    tip = distance - (z[0] + z[1]) / 2.0 - sun - first
+    meshes = [
+        mean_of_pair((z[0], z[1]), (sun, first), (tip, tip)),
+        mean_of_pair((z[1], -z[2]), (first, ring), (tip, 0.0)),
+        mean_of_pair((z[3], -z[4]), (second, mate(z[3], -z[4], second)), (0.0, 0.0)),
     ]
-    ways = []
-    for step in (-1e-3, 1e-3):
-        last = mean_of_pair((z[3], -z[4]), (x[3] + step, x[4] - step), (0.0, 0.0))
-        ways.append(three_k.three_k_efficiencies(np.array(z, float), np.array([*others, last])))
-    slope = (np.array(ways[1]) - np.array(ways[0])) / 2e-3
+    return np.array(three_k.three_k_efficiencies(np.array(z, float), np.array(meshes)))
+
+
+def test_derivatives_are_those_of_pairs_with_other_centre_distances_and_shifts(sets):
+    """Each is moved on pairs as built, with the shift of the planet in the output ring beside its best."""
+    chosen = sets.isel(set=0)
+    z, x = chosen["teeth"].values.tolist(), chosen["profile_shift"].values
+    place = np.array([chosen["centre_distance"].item(), x[1], x[3] - 0.3])
+    steps = 1e-3 * np.eye(3)
+    slopes = [(built_at(z, *(place + h)) - built_at(z, *(place - h))) / 2e-3 for h in steps]
     none = np.full(1, np.nan)
-    point = three_k._Points(
-        none, chosen["centre_distance"].values[None], np.array([x]), none, none, none, none
-    )
-    found = three_k._slopes(np.array([z], float), point, 0.1)[:, 0, 2]
-    assert found == pytest.approx(slope, rel=1e-3)
-    assert slope.min() > 5e-3
-    # At the best one the derivative vanishes, where nothing is in the way.
+    shifts = np.array([[np.nan, place[1], np.nan, place[2], np.nan]])
+    point = three_k._Points(none, place[:1], shifts, none, none, none, none)
+    found = three_k._slopes(np.array([z], float), point, 0.1)[:, 0]
+    assert found == pytest.approx(np.transpose(slopes), rel=1e-3)
+    assert np.abs(slopes).min() > 1e-3
+    # At the best one the derivative vanishes by the shift that goes with every other, if none is in the way.
     at_best = chosen[["efficiency_slope", "back_driving_slope"]].isel(variable=2)
     assert max(abs(float(one)) for one in at_best.data_vars.values()) < 2e-4
 
