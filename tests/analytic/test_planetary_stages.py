@@ -675,6 +675,41 @@ def test_second_gears_with_as_many_teeth_as_the_first_are_gears_of_their_own():
     assert names == ["sun", "planet, gear 1 of 36 teeth", "planet, gear 2 of 36 teeth", "ring"]
     same = load_case({"gears": SETS[0], **TABLES, "operation": operation(60.0, SPEED)})
     assert [one.case.strength.mean_stress_factor for one in same.meshes] == [(1.0, 0.7), (0.7, 1.0)]
+    written = spelt_out_with_equal_gears()
+    spelt_out = load_case(written)
+    assert [member.body for mesh in spelt_out.member_motions for member in mesh] == names
+    assert [one.case.strength.mean_stress_factor for one in spelt_out.meshes] == factors
+    assert figures(spelt_out)["mean_efficiency"] == pytest.approx(
+        figures(built)["mean_efficiency"], rel=1e-12
+    )
+
+
+def spelt_out_with_equal_gears(**second):
+    """A stepped set whose planets have two gears of 36 teeth, written as meshes with a train."""
+    width = {"module": "1 mm", "fillet_radius": 0.2}
+    sun = {"teeth": [18, 36], "face_width": "12 mm", **width, "fillet_radius": [0.38, 0.2]}
+    shifts = [0.1, "from centre distance"]
+    ring = {"teeth": [36, -90], "face_width": "10 mm", "profile_shift": shifts, **width}
+    ring["centre_distance"] = "27 mm"
+    return {
+        "stages": [
+            {"bodies": ["sun", "planet"], "gears": sun},
+            {"bodies": ["planet", "ring"], "gears": ring, **{"planet_gear": 2, **second}},
+        ],
+        "train": {"input": "sun", "output": "carrier", "held": "ring"},
+        "operation": operation(60.0, SPEED),
+        **TABLES,
+    }
+
+
+def test_a_second_gear_of_written_planets_is_told_from_the_first_by_its_number():
+    """Without it the planets would have two shifts; it counts for planets of a train alone."""
+    with pytest.raises(InputError, match=r"it is one gear; a second one .* has planet_gear = 2"):
+        load_case(spelt_out_with_equal_gears(planet_gear=1))
+    with pytest.raises(InputError, match=r"stages.1.planet_gear: was given for a mesh without"):
+        drive({"gears": PAIR, "planet_gear": 2}, PAIR)
+    with pytest.raises(InputError, match=r"stages.2.planet_gear: .* whole"):
+        load_case(spelt_out_with_equal_gears(planet_gear=1.5))
 
 
 def test_an_output_that_stands_still_is_told_with_the_table_of_the_set():

@@ -109,14 +109,14 @@ class _PlanetGears:
         """Of a case with a train."""
         train = case.train
         assert train is not None
-        which = case.gears.planet_gears if case.gears else (1,) * len(case.stages)
         places: dict[tuple[str, float, int], list[tuple[str, int]]] = {}
         teeth: dict[tuple[str, float, int], int] = {}
         pairs, modules = [], []
-        for (number, stage), gear in zip(case.stages.items(), which, strict=True):
+        for number, stage in case.stages.items():
             if train.planet not in stage.bodies:
                 continue
             table: Any = stage.gears
+            gear = round(stage.planet_gear)
             both = [(body, abs(z), gear) for body, z in zip(stage.bodies, table.teeth, strict=True)]
             for place, (key, z) in enumerate(zip(both, table.teeth, strict=True)):
                 teeth[key] = round(z)

@@ -1676,6 +1676,9 @@ MOST_STAGES = 5
 """Stages of a drive: the meetings of their phases multiply."""
 
 
+PLANET_GEAR = Quantity("dimensionless", 1, MOST_STAGES, whole=True)
+
+
 class StageTable(Table):
     """One mesh or planetary set of a drive; what it leaves out is as the tables of the same name say for all.
 
@@ -1689,6 +1692,8 @@ class StageTable(Table):
     """Member that the stage before drives; the first one that is not fixed unless given."""
     bodies: Annotated[tuple[BodyName, ...], Field(max_length=3)] = ()
     """Bodies of a [train] that its members are, in their order; a stage of a chain has none."""
+    planet_gear: Annotated[float, PLANET_GEAR] = 1.0
+    """Which gear of the planets meshes; 2 for a second one, where it has as many teeth as the first."""
     materials: DriveMaterials = DriveMaterials()
     """Materials of its gears; those of the drive unless given."""
     lubricant: Oil | None = None
@@ -1901,6 +1906,11 @@ def _check_train(case: DriveCase) -> None:
         if train is None and stage.bodies:
             message = "was given without a table [train], which says who is turned, loaded and held"
             wrong.add(InputError(message, key=key))
+        if "planet_gear" in stage.model_fields_set and (
+            train is None or train.planet not in stage.bodies
+        ):
+            message = "was given for a mesh without planets; leave it out"
+            wrong.add(InputError(message, key=f"stages.{number}.planet_gear"))
         if train is not None and not isinstance(stage.gears, CylindricalGears):
             message = (
                 "meshes of a train are pairs of cylindrical gears; gears of another family before or behind "

@@ -43,11 +43,14 @@ __all__ = ["USUAL_BEARING", "about_trains", "rates_of", "train_of", "turning_tog
 
 def _links(case: DriveCase, train: TrainTable, meshes: Sequence[Mesh]) -> list[Link]:
     """Meshes with their bodies; the axes of those of planets sit on the carrier."""
-    gears = case.gears.planet_gears if case.gears else (1,) * len(meshes)
-    meshings = zip(meshes, case.stages.values(), gears, strict=True)
     return [
-        Link(mesh, stage.bodies, train.carrier if train.planet in stage.bodies else HOUSING, gear)
-        for mesh, stage, gear in meshings
+        Link(
+            mesh,
+            stage.bodies,
+            train.carrier if train.planet in stage.bodies else HOUSING,
+            round(stage.planet_gear),
+        )
+        for mesh, stage in zip(meshes, case.stages.values(), strict=True)
     ]
 
 
@@ -316,13 +319,15 @@ def _check_planets(case: DriveCase, built: Sequence[Built]) -> None:
         before, earlier = teeth_of.setdefault(link.gears[member], (number, gear))
         different = next((key for key, value in gear.items() if value != earlier[key]), None)
         if different is not None:
+            advice = _IN_SETS if case.gears else _IN_MESHES
             raise InputError(
                 f"{different} of the planet with {teeth:.0f} teeth is {gear[different]} here and "
-                f"{earlier[different]} in stage {before}; it is one gear{_IN_SETS if case.gears else ''}",
+                f"{earlier[different]} in stage {before}; it is one gear{advice}",
                 key=f"{STAGES}.{number}.gears",
             )
 
 
+_IN_MESHES = "; a second one with as many teeth has planet_gear = 2 in its stage"
 _IN_SETS = (
     ". Of a set gear 1 is sun and planet, gear 2 planet and ring: give both the same; materials may be "
     "those of sun, planet and ring"

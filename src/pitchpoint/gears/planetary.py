@@ -423,12 +423,6 @@ class PlanetaryGears(Table):
         """True if second gears of the planets mesh with a second ring."""
         return self.second is not None and not self.stepped
 
-    @property
-    def planet_gears(self) -> tuple[int, ...]:
-        """Which gear of the planets is in each of its meshes."""
-        on_first_gear = (1,) if self.stepped else (1, 1)
-        return (*on_first_gear, 2) if self.second is not None else on_first_gear
-
     @model_validator(mode="after")
     def _whole(self) -> "PlanetaryGears":
         given_keys = {*self.model_fields_set}
@@ -593,7 +587,8 @@ class PlanetaryGears(Table):
         ]
         if self.second is not None:
             ring = "ring" if self.stepped else SECOND
-            tables.append({"bodies": ["planet", ring], "gears": self._second_pair(self.second)})
+            gears = self._second_pair(self.second)
+            tables.append({"bodies": ["planet", ring], "planet_gear": 2, "gears": gears})
         return tables
 
     def _second_pair(self, second: SecondGears) -> Tree:
