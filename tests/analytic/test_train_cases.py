@@ -12,6 +12,7 @@ from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.tooth_life import mesh_member_names
+from pitchpoint.analyses.train_period import over_period
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import doubts_of
 from pitchpoint.drive.kinematics import Ends, Link
@@ -55,6 +56,14 @@ THREE_K = {
     **TABLES,
 }
 
+
+SHIFTED = {"teeth": [24, 29, 84], "profile_shift": [0.3, 0.3, "from centre distance"]}
+STEPPED = {
+    "teeth": [18, 36],
+    "helix_angle": "15 deg",
+    "second": {"teeth": [24, 78], "face_width": "10 mm"},
+}
+FRICTIONLESS = {"models.friction.coefficient": 0.0}
 
 PIN = {
     "between": ["planet", "carrier"],
@@ -241,6 +250,30 @@ def test_bearings_of_planets_and_seals_take_their_part():
     assert start > 0.03
     back = data["back_driving_torque"].sel(temperature=built.case.operation.temperature).item()
     assert back > start * 108 / 24
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize("changes", [SHIFTED, STEPPED])
+def test_teeth_push_planets_along_their_circle_outwards_and_along_the_axis(changes):
+    """Without friction F_t along, F_t tan of the working angle apart, 2 T sin β/(z m) along the axis."""
+    built = load_case({"gears": SET | changes, **TABLES}, settings=FRICTIONLESS)
+    train, point = built.design, built.operation
+    on_planet = over_period(built, point, built.models[0])["on_planet"]
+    (radius,) = {round(float(mesh.dimensions["centre_distance"]), 12) for mesh in built.meshes}
+    ends = Ends({"sun": 314.0}, train.held, train.loaded)
+    shares = train_torques([one.link for one in train.meshes], ends, 60.0, [1.0, 1.0]).shares
+    pushed = np.zeros(3)
+    for place, share, apart in zip(train.meshes, shares, (1.0, -1.0), strict=True):
+        mesh, member = place.design.mesh, place.bodies.index("planet")
+        torque, teeth = share["planet"] / 3.0, np.asarray(mesh.teeth)
+        working = np.arccos(abs(np.sum(np.asarray(mesh.base_radii))) / abs(mesh.centre_distance))
+        force = torque / (apart * radius * abs(teeth[member] / teeth.sum()))
+        axial = 2.0 * torque * np.sin(mesh.helix_angle) / (abs(teeth[member]) * mesh.module)
+        pushed += [apart * abs(force) * np.tan(working), force, axial]
+    assert np.abs(on_planet) == pytest.approx(np.abs(pushed), rel=1e-9, abs=1e-6)
+    assert on_planet[0] == pytest.approx(pushed[0], rel=1e-9, abs=1e-6)
+    assert abs(on_planet[1]) == pytest.approx(60.0 / 3 / radius, rel=1e-9)
+    assert abs(on_planet[0 if changes is SHIFTED else 2]) > 10.0
 
 
 def test_life_of_planet_bearings():

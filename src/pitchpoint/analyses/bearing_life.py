@@ -1,16 +1,17 @@
 """Life of the rolling bearings of a drive by their dynamic load ratings: ISO 281."""
 
 from collections.abc import Callable
-from math import acos, inf, nan, sin, sqrt, tan
+from dataclasses import replace
+from functools import lru_cache
+from math import inf, nan, sqrt
 from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
+from pitchpoint._jax import array
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.cases.schema import Loss
-from pitchpoint.drive.kinematics import HOUSING, Ends
-from pitchpoint.drive.torques import train_torques
 from pitchpoint.duty_cycle.history import load_steps
 from pitchpoint.duty_cycle.life import BALL, RatedBearing
 
@@ -116,7 +117,8 @@ def rated_bearings(
                 continue
             rate_a, rate_b = (rates.get(body, 0.0) * step for body in loss.between)
             pull = _pull(level, loss)
-            outward, along, axial = _of_teeth(level, loss, borne - loss.preload, pull)
+            on_level = load * output / (float(level.operation.speed) * level.output_rate)
+            outward, along, axial = _of_teeth(level, loss, borne - loss.preload, pull, on_level)
             per = load if load > 0.0 else inf
             rated[name] = RatedBearing(
                 loss.dynamic_load_rating,
@@ -157,20 +159,21 @@ def _pull(level: Any, loss: Loss) -> float:
     return float(level.design.pull) * speed**2
 
 
-def _of_teeth(level: Any, loss: Loss, borne: float, pull: float) -> Vector:
-    """Force of the teeth on a bearing at the operating point: outwards, along its circle, along its axis [N].
+def _of_teeth(level: Any, loss: Loss, borne: float, pull: float, load: float) -> Vector:
+    """Force of the teeth on a bearing: outwards, along its circle, along its axis [N].
 
     Args:
         level: drive or stage.
         loss: the place.
         borne: all that it bears but its preload, of several planets the mean.
         pull: centrifugal force.
+        load: of the level without losses behind it.
 
-    On planets it has the direction that it has without friction, and the size that makes up what is borne.
+    On planets it has the direction that it has in equilibrium, and the size that makes up what is borne.
     """
     if not _in_planets(level, loss):
         return 0.0, borne, 0.0
-    along = _on_planet(level)
+    along = _on_planet(level, load) if load > 0.0 else np.zeros(3)
     size = float(along @ along)
     if size == 0.0:
         return 0.0, 0.0, 0.0
@@ -182,36 +185,10 @@ def _of_teeth(level: Any, loss: Loss, borne: float, pull: float) -> Vector:
     return radial, tangential, axial
 
 
-def _on_planet(built: BuiltTrain) -> Float[np.ndarray, " 3"]:
-    """Force on a planet for a unit load, by all meshes without friction, in equal shares [N per N m or N]."""
-    train = built.design
-    links = [mesh.link for mesh in train.meshes]
-    ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
-    shares = train_torques(links, ends, 1.0, [1.0] * len(links)).shares
-    force = np.zeros(3)
-    for link, share, copies in zip(links, shares, built.copies, strict=True):
-        if link.carrier != HOUSING:
-            (planet,) = {*link.bodies} & {*train.planets}
-            torque = share[planet] / copies
-            force += _of_mesh(link.mesh, link.bodies.index(planet), torque)
-    return force
+@lru_cache(maxsize=4)
+def _on_planet(built: BuiltTrain, load: float) -> Float[np.ndarray, " 3"]:
+    """Mean force of the teeth on a planet over the period under a load, by the first friction law [N]."""
+    from pitchpoint.analyses.train_period import over_period  # few cases ask for it
 
-
-def _of_mesh(mesh: Any, planet: int, torque: float) -> Float[np.ndarray, " 3"]:
-    """Force on a planet by one mesh that puts this torque on it: see `_of_teeth` [N].
-
-    The sun touches it inwards of its axis and pushes it outwards, a ring the other way round.
-    """
-    teeth, distance = np.asarray(mesh.teeth, float), abs(float(mesh.centre_distance))
-    radius = distance * abs(float(teeth[planet] / teeth.sum()))
-    side = 1.0 if bool(mesh.internal) else -1.0
-    cosine = abs(float(np.sum(mesh.base_radii))) / distance
-    along = torque / (side * radius)
-    axial = 2.0 * torque * sin(float(mesh.helix_angle))
-    return np.array(
-        [
-            -side * abs(along) * tan(acos(cosine)),
-            along,
-            axial / (abs(float(teeth[planet])) * float(mesh.module)),
-        ]
-    )
+    point = replace(built.operation, load=array(load))
+    return np.asarray(over_period(built, point, built.models[0])["on_planet"])

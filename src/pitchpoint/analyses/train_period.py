@@ -8,7 +8,7 @@ import xarray as xr
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Piece, Progress
-from pitchpoint.cases.built_drive import BuiltTrain
+from pitchpoint.cases.built_drive import Acting, BuiltTrain
 from pitchpoint.drive.kinematics import Ends
 from pitchpoint.drive.thrusts import axial_loads
 from pitchpoint.drive.torques import train_torques
@@ -23,7 +23,7 @@ from pitchpoint.status import told as told_of
 if TYPE_CHECKING:
     from pitchpoint.efficiency.train import Train
 
-__all__ = ["train_period_of"]
+__all__ = ["over_period", "train_period_of"]
 
 
 def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
@@ -32,10 +32,7 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     From `train_cycle`, whose means are those of the operating point.
     """
     train = built.design
-    cycles: list[dict[str, Any]] = [
-        jax.device_get(_period(train.without_names(), built.operation, tuple(acting.stages)))
-        for acting in built.models
-    ]
+    cycles = [over_period(built, built.operation, acting) for acting in built.models]
     first_cycle, planets = cycles[0], max(built.copies)
     turns, driver_period = round(float(train.turns)), _driver_period(train)
     phase = first_cycle["phase"] + np.arange(turns)[:, None] / turns
@@ -78,6 +75,19 @@ def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
     )
 
 
+def over_period(built: BuiltTrain, operation: Operation, acting: Acting) -> dict[str, Any]:
+    """What is read of the states of a set over its period at a point, by laws that act together.
+
+    Args:
+        built: the set.
+        operation: load of its output, speed of its input, temperature of the oil.
+        acting: laws.
+    """
+    period = _period(built.design.without_names(), operation, tuple(acting.stages))
+    read: dict[str, Any] = jax.device_get(period)
+    return read
+
+
 @program
 def _period(train: "Train", operation: Operation, laws: tuple[Models, ...]) -> dict[str, Any]:
     """What is read of the states of a train over its period, whatever the names of its ends."""
@@ -91,6 +101,7 @@ def _period(train: "Train", operation: Operation, laws: tuple[Models, ...]) -> d
         "loss": cycle.loss,
         "torques": {body: cycle.weight @ torque for body, torque in cycle.torques.items()},
         "forces": [mesh.force for mesh in cycle.meshes],
+        "on_planet": cycle.on_planet @ cycle.weight,
         "code": cycle.status.code,
         "residual": cycle.status.residual,
     }

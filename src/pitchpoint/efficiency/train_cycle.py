@@ -121,6 +121,7 @@ class TrainCycle(eqx.Module):
             body, rounding on those that are free [N m or N].
         drag_loss: power lost beside the teeth [W].
         pressed: load on the bearing of each place, of several planets the mean [N].
+        on_planet: mean force of the teeth on a planet, outwards, along its circle and along its axis [N].
         input_power, output_power: at the nodes [W].
         levers: of a unit of normal force in each mesh on each body in equilibrium, with each planet as if it
             were alone: of its normal part, and of its friction for a coefficient of one.
@@ -134,6 +135,7 @@ class TrainCycle(eqx.Module):
     torques: Mapping[str, Nodes]
     drag_loss: Nodes
     pressed: tuple[Nodes, ...]
+    on_planet: Float[Array, "3 node"]
     input_torque: Nodes
     input_power: Nodes
     output_power: Nodes
@@ -243,6 +245,7 @@ def train_cycle(
         {body: torque for body, torque in torques.items() if body not in balanced},
         sum((place.lost for place in places), jnp.zeros_like(weight)),
         tuple(place.pressed for place in places),
+        _mean_on_planet(train, every, forces),
         driving,
         driving * operation.speed,
         jnp.where(lost, jnp.nan, power_out),
@@ -638,16 +641,10 @@ def _borne(
     """
     nothing = jnp.zeros((1, forces[0].shape[-1]))
     pairs = list(zip(every, forces, strict=True))
-    on_planets = [
-        meshing.pressed(body, force)
-        for meshing, force in pairs
-        for body in meshing.mesh.bodies
-        if body in train.planets
-    ]
     if any(body in train.planets for body in bodies):
         carrier = next(meshing.mesh.carrier for meshing in every if meshing.mesh.carrier != HOUSING)
         outward = train.pull * (train.rates[carrier] * speed) ** 2
-        return _size(sum(on_planets[1:], on_planets[0]).at[0].add(outward))
+        return _size(_on_planets(train, every, forces).at[0].add(outward))
     if HOUSING not in bodies:
         return nothing
     (body,) = (name for name in bodies if name != HOUSING)
@@ -655,8 +652,29 @@ def _borne(
         meshing.pressed(body, force) for meshing, force in pairs if body in meshing.mesh.bodies
     ]
     if any(meshing.mesh.carrier == body for meshing in every):
-        around.append(sum(on_planets[1:], on_planets[0]))
+        around.append(_on_planets(train, every, forces))
     return sum((_size(_around(force, train.angles)) for force in around), nothing)
+
+
+def _on_planets(train: Train, every: Sequence[_Meshing], forces: Sequence[Copies]) -> Vectors:
+    """Force of the teeth on each planet by all its meshes, see `_Meshing.pressed` [N]."""
+    first, *others = [
+        meshing.pressed(body, force)
+        for meshing, force in zip(every, forces, strict=True)
+        for body in meshing.mesh.bodies
+        if body in train.planets
+    ]
+    return sum(others, first)
+
+
+def _mean_on_planet(
+    train: Train, every: Sequence[_Meshing], forces: Sequence[Copies]
+) -> Float[Array, "3 node"]:
+    """See `TrainCycle.on_planet`; nothing where there are no planets."""
+    counts = [meshing.mesh.count for meshing in every if {*meshing.mesh.bodies} & {*train.planets}]
+    if not counts:
+        return jnp.zeros((3, forces[0].shape[-1]))
+    return jnp.sum(_on_planets(train, every, forces), axis=1) / counts[0]
 
 
 def _around(vectors: Vectors, angles: Float[Array, " copy"]) -> Float[Array, "3 1 node"]:
