@@ -275,6 +275,13 @@ def test_a_piece_is_its_file_bit_for_bit(tmp_path: Path) -> None:
     assert first is not None and second is not None and first.read_bytes() == second.read_bytes()
 
 
+def test_a_file_of_a_piece_is_held_in_memory_where_there_is_no_folder() -> None:
+    pieces = StudyPieces(None, "designs", "mark", 4, 4)
+    pieces.keep(0, encode(_piece(0, 4)))
+    assert pieces.missing() == []
+    xr.testing.assert_identical(pieces.read(0), _piece(0, 4))
+
+
 def _command(*given: str) -> int:
     with pytest.MonkeyPatch.context() as patched, pytest.raises(SystemExit) as ended:
         patched.setattr(sys, "argv", ["pitchpoint", "study", *given])

@@ -15,7 +15,7 @@ from xarray.core import indexing
 
 from pitchpoint.doubts import doubts_of
 from pitchpoint.errors import InputError
-from pitchpoint.results.netcdf import encode
+from pitchpoint.results.netcdf import decode, encode
 from pitchpoint.results.store import load, save_image
 
 __all__ = ["ALONG", "StudyPieces", "Summary", "as_whole", "summary_of"]
@@ -67,8 +67,8 @@ class StudyPieces:
         path = self.path(number)
         if path is not None:
             save_image(piece if isinstance(piece, bytes) else encode(piece), path)
-        elif isinstance(piece, xr.Dataset):
-            self.held[number] = piece
+        else:
+            self.held[number] = decode(piece) if isinstance(piece, bytes) else piece
 
     def read(self, number: int, only: Collection[str] | None = None) -> xr.Dataset:
         """A piece, or some of its variables."""
