@@ -54,6 +54,8 @@ def test_every_design_opens_and_does_what_is_asked(sizing: Sizing) -> None:
         assert abs(design.ratio / 60.0 - 1.0) <= 0.03
         if design.family != "strain wave":
             assert design.flank_safety >= 1.2 and design.root_safety >= 1.5
+        else:
+            assert design.length == pytest.approx(float(built.meshes[0].design.mesh.rim.cup_length))
 
 
 def test_none_of_the_front_is_beaten(sizing: Sizing) -> None:

@@ -104,6 +104,32 @@ def test_strain_wave_gears_bear_the_torque_for_the_life_that_is_asked():
     )
 
 
+def test_strain_wave_gears_turn_no_faster_than_a_catalogue_allows():
+    fast = Task.read(**(TASK | {"torque": "5 N m", "speed": "300 rpm"}))
+    assert strain_wave_sizes(fast, 100.0) == []
+    assert why_no_size(fast, 100.0) == (
+        "the smallest of a catalogue's sizes that bears it turns at up to 8500 rpm at its input, 30000 rpm "
+        "are asked"
+    )
+    slower = Task.read(**(TASK | {"torque": "5 N m", "speed": "60 rpm"}))
+    sizes = strain_wave_sizes(slower, 100.0)
+    assert sizes and all(60.0 * 100.0 * np.pi / 30.0 <= size.most_speed for size in sizes)
+
+
+def test_ratios_of_strain_wave_gears_are_as_near_as_is_asked():
+    near = Task.read(**(TASK | {"ratio": 100.3, "ratio_tolerance": 0.0003}))
+    assert strain_wave_sizes(near, 100.3) == []
+    assert why_no_size(near, 100.3) == "a ratio of 100.5 is the nearest one"
+    assert strain_wave_sizes(
+        Task.read(**(TASK | {"ratio": 100.5, "ratio_tolerance": 0.0003})), 100.5
+    )
+
+
+def test_the_cup_of_a_strain_wave_gear_is_within_the_length_that_is_asked():
+    with pytest.raises(InputError, match="and a cup of 30 mm length, more than is allowed"):
+        size(**(TASK | {"ratio": 100}), families="strain wave", length="20 mm")
+
+
 def test_why_a_family_does_not_reach_a_ratio_is_told_with_how_far_it_goes():
     task = Task.read(**TASK)
     assert reach_words(task, "one stage") == "reaches ratios of 1.25 to 8, 60 is asked"

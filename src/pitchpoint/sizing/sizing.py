@@ -20,7 +20,6 @@ from pitchpoint.analyses.summaries import summaries
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import GUESSED
 from pitchpoint.errors import InputError
-from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
 from pitchpoint.registry import enumerated
 from pitchpoint.results.store import make_folder
 from pitchpoint.runs.run import load_case
@@ -29,7 +28,6 @@ from pitchpoint.sizing.front import non_dominated
 from pitchpoint.sizing.stage_forms import case_of
 from pitchpoint.sizing.strain_wave import (
     SIZES,
-    WIDTH,
     StrainWaveSize,
     strain_wave_case,
     strain_wave_sizes,
@@ -364,28 +362,16 @@ def _strain_waves(task: Task, family: str) -> tuple[list[SizedDrive], int]:
         raise NoDriveError(why_no_size(task, task.ratio))
     small = [one for one in sizes if _fits(task, one)]
     if not small:
-        around, along = _outside(sizes[0]), WIDTH * sizes[0].diameter
         raise NoDriveError(
-            f"the smallest one has a diameter of {1e3 * around:.4g} mm and a face of {1e3 * along:.3g} mm, "
-            "more than is allowed"
+            f"the smallest one has a diameter of {1e3 * sizes[0].outside:.4g} mm and a cup of "
+            f"{1e3 * sizes[0].length:.3g} mm length, more than is allowed"
         )
     made = _waves_designed(task, family, small)
     return made, len(SIZES)
 
 
-def _cup(built: Ready) -> float:
-    """Length of the cup of a strain wave gear [m]."""
-    mesh: Any = built.meshes[0].design.mesh
-    return float(mesh.rim.cup_length)
-
-
-def _outside(gear: StrainWaveSize) -> float:
-    """Outer diameter of the circular spline by usual proportions [m]."""
-    return float(PROPORTIONS.behind(gear.diameter)["outside_diameter"])
-
-
 def _fits(task: Task, gear: StrainWaveSize) -> bool:
-    limits = ((task.diameter, _outside(gear)), (task.length, WIDTH * gear.diameter))
+    limits = ((task.diameter, gear.outside), (task.length, gear.length))
     return all(most is None or value <= most for most, value in limits)
 
 
@@ -405,8 +391,8 @@ def _waves_designed(task: Task, family: str, sizes: Sequence[StrainWaveSize]) ->
                 ratio=gear.ratio,
                 mass=float(bodies["body_mass"].sum()),
                 loss=1.0 - float(data["mean_efficiency"][0, number]),
-                diameter=_outside(gear),
-                length=_cup(one),
+                diameter=gear.outside,
+                length=gear.length,
                 backlash=0.0,
                 inertia=float(bodies["reflected_inertia"].sel(end="input")),
                 flank_safety=nan,

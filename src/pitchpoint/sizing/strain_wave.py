@@ -1,14 +1,16 @@
 """Strain wave gears in the sizes of catalogues, by a maker's rating and the life of their bearing."""
 
 from dataclasses import dataclass
+from math import pi
 from typing import Any
 
+from pitchpoint import units
 from pitchpoint.gears.strain_wave.load_limits import bearing_life, of_other_size
+from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
 from pitchpoint.sizing.task import Task
 
 __all__ = [
     "SIZES",
-    "WIDTH",
     "StrainWaveSize",
     "strain_wave_case",
     "strain_wave_sizes",
@@ -17,8 +19,26 @@ __all__ = [
 
 Tree = dict[str, Any]
 
-SIZES = (8, 11, 14, 17, 20, 25, 32, 40, 45, 50, 58, 65, 80, 90, 100)
-"""Sizes of catalogues; the pitch diameter is 2.4 mm times that."""
+SIZES = {
+    8: 8500.0,
+    11: 8500.0,
+    14: 8500.0,
+    17: 7300.0,
+    20: 6500.0,
+    25: 5600.0,
+    32: 4800.0,
+    40: 4000.0,
+    45: 3800.0,
+    50: 3500.0,
+    58: 3000.0,
+    65: 2800.0,
+    80: 2300.0,
+    90: 2000.0,
+    100: 1800.0,
+}
+"""Sizes of catalogues, and the largest input speed of each with grease [rpm]; the pitch diameter is 2.4 mm
+times the size. Speeds are those of the rating tables of Harmonic Drive's series CSF and HFUC, as recalled:
+the tables were not at hand."""
 
 PER_SIZE = 2.4e-3
 RATED_DIAMETER, RATED_TORQUE = 60e-3, 67.0
@@ -34,6 +54,9 @@ WIDTH = 1.0 / 6.0
 
 KEPT = 3
 
+TURN = 2.0 * pi / 60.0
+"""A turn a minute [rad/s]."""
+
 
 @dataclass(frozen=True)
 class StrainWaveSize:
@@ -43,16 +66,28 @@ class StrainWaveSize:
         teeth: of flexspline and circular spline.
         diameter: pitch diameter [m].
         rated: torque [N m].
+        most_speed: largest one of the wave generator with grease [rad/s].
     """
 
     teeth: tuple[int, int]
     diameter: float
     rated: float
+    most_speed: float
 
     @property
     def ratio(self) -> float:
         """Speed of the wave generator over that of the flexspline, without its sense."""
         return self.teeth[0] / 2.0
+
+    @property
+    def outside(self) -> float:
+        """Outer diameter of the circular spline by usual proportions [m]."""
+        return float(PROPORTIONS.behind(self.diameter)["outside_diameter"])
+
+    @property
+    def length(self) -> float:
+        """Length of the cup [m]: half of the pitch diameter, as cases take it that do not give one."""
+        return self.diameter / 2.0
 
     @property
     def gears(self) -> Tree:
@@ -74,14 +109,14 @@ class StrainWaveSize:
 
 
 def strain_wave_sizes(task: Task, ratio: float) -> list[StrainWaveSize]:
-    """The smallest sizes that bear the torque of a task for its life.
+    """The smallest sizes that bear the torque of a task for its life, and turn as fast with grease.
 
     Args:
-        task: torque, output speed and life count.
+        task: torque, output speed, life and the tolerance of the ratio count.
         ratio: of the gear.
 
     Source: torque by the cube of the size, life by Harmonic Drive AG, Engineering Data CSD-2A (2014), eq.
-    20.2; see `bearing_life`.
+    20.2, see `bearing_life`; largest input speeds as recalled from catalogues, see `SIZES`.
 
     Example:
         >>> from pitchpoint.sizing.task import Task
@@ -89,10 +124,11 @@ def strain_wave_sizes(task: Task, ratio: float) -> list[StrainWaveSize]:
         >>> [round(1e3 * size.diameter, 1) for size in strain_wave_sizes(task, 100.0)]
         [60.0, 76.8, 96.0]
     """
-    if not RATIOS[0] <= ratio <= RATIOS[1]:
+    if not RATIOS[0] <= ratio <= RATIOS[1] or not _near(task, ratio):
         return []
-    sizes = [size for size in _every(ratio) if size.rated >= task.torque]
-    return [size for size in sizes if _life(task, size) >= task.life][:KEPT]
+    return [size for size in _enduring(task, ratio) if _input_speed(task, size) <= size.most_speed][
+        :KEPT
+    ]
 
 
 def why_no_size(task: Task, ratio: float) -> str:
@@ -100,6 +136,15 @@ def why_no_size(task: Task, ratio: float) -> str:
     low, high = RATIOS
     if not low <= ratio <= high:
         return f"reaches ratios of {low:g} to {high:g}, {ratio:.6g} is asked"
+    if not _near(task, ratio):
+        return f"a ratio of {_every(ratio)[0].ratio:.6g} is the nearest one"
+    if enduring := _enduring(task, ratio):
+        speeds = enduring[0].most_speed, _input_speed(task, enduring[0])
+        most, asked = (units.convert(speed, "rpm", "rotational speed") for speed in speeds)
+        return (
+            f"the smallest of a catalogue's sizes that bears it turns at up to {most:.6g} rpm at its input, "
+            f"{asked:.6g} rpm are asked"
+        )
     largest = _every(ratio)[-1]
     part = (_life(task, largest) / task.life) ** (1.0 / 3.0)  # it goes with the cube of the torque
     most = min(largest.rated, part * task.torque)
@@ -109,15 +154,30 @@ def why_no_size(task: Task, ratio: float) -> str:
     )
 
 
+def _near(task: Task, ratio: float) -> bool:
+    """True where whole teeth come as near to a ratio as is asked."""
+    return abs(_every(ratio)[0].ratio / ratio - 1.0) <= task.ratio_tolerance
+
+
+def _enduring(task: Task, ratio: float) -> list[StrainWaveSize]:
+    """Sizes that bear the torque for the life, the smallest one first."""
+    sizes = [size for size in _every(ratio) if size.rated >= task.torque]
+    return [size for size in sizes if _life(task, size) >= task.life]
+
+
+def _input_speed(task: Task, size: StrainWaveSize) -> float:
+    return task.speed * size.ratio
+
+
 def _every(ratio: float) -> list[StrainWaveSize]:
     """All sizes at a ratio, the smallest one first."""
     teeth = round(2.0 * ratio)
     sizes = []
-    for size in SIZES:
+    for size, speed in SIZES.items():
         diameter = PER_SIZE * size
         rated = of_other_size(RATED_TORQUE, size=diameter, known=RATED_DIAMETER)
         rated *= min(ratio / FULL_RATIO, 1.0)
-        sizes.append(StrainWaveSize((teeth, teeth + 2), diameter, rated))
+        sizes.append(StrainWaveSize((teeth, teeth + 2), diameter, rated, speed * TURN))
     return sizes
 
 
@@ -126,14 +186,10 @@ def _life(task: Task, size: StrainWaveSize) -> float:
     return bearing_life(
         rated_life=3600.0 * RATED_LIFE,
         rated_torque=size.rated,
-        rated_speed=RATED_SPEED * TURNS,
+        rated_speed=RATED_SPEED * TURN,
         torque=task.torque,
         speed=task.speed * (size.ratio + 1.0),
     )
-
-
-TURNS = 0.10471975511965977
-"""A turn a minute [rad/s]."""
 
 
 def strain_wave_case(task: Task, size: StrainWaveSize, speed: float) -> Tree:
