@@ -139,6 +139,17 @@ def test_an_infeasible_task_says_what_stands_against_it_and_by_how_much(
     assert capsys.readouterr().err == "error: ratio: 1.0 is out of range; allowed is 1.2 to 2000\n"
 
 
+def test_centre_distances_that_cannot_go_together_are_told_with_those_that_do() -> None:
+    task = TASK | {"ratio": 20.0, "centre_distances": "24 mm, 46 mm"}
+    with pytest.raises(InputError) as caught:
+        size(**task, families="two stages")
+    assert str(caught.value) == (
+        "no drive does this: two stages: its stages need centre distances of 23.29 and 48.04 mm together, "
+        "24 and 46 mm are allowed"
+    )
+    assert size(**task | {"centre_distances": "24 mm, 48.1 mm"}, families="two stages").designs
+
+
 BUILT = (
     ((23, 67), 1.0, 30.0, 11.0, (0.581, 0.5131), 53.0),
     ((13, 76), 1.25, 10.0, 15.0, (0.521, -0.094), 57.0),

@@ -7,7 +7,7 @@ import pytest
 
 from pitchpoint.errors import InputError
 from pitchpoint.sizing.arrangements import reach_words
-from pitchpoint.sizing.front import CHUNK, evenly_spread, non_dominated
+from pitchpoint.sizing.front import CHUNK, non_dominated, representatives
 from pitchpoint.sizing.sizing import size
 from pitchpoint.sizing.stage_forms import tooth_loss
 from pitchpoint.sizing.strain_wave import strain_wave_sizes, why_no_size
@@ -71,11 +71,14 @@ def test_a_front_is_that_of_every_pair_compared():
     assert non_dominated(np.zeros((0, 2))).shape == (0,)
 
 
-def test_a_few_stand_for_many_with_both_ends():
-    values = np.random.default_rng(1).normal(size=50)
-    few = evenly_spread(values, 7)
-    assert len(few) == 7 and values[few[0]] == values.min() and values[few[-1]] == values.max()
-    assert len(evenly_spread(values, 80)) == 50
+def test_a_few_stand_for_many_with_the_best_by_each_aim():
+    costs = np.random.default_rng(1).normal(size=(50, 3))
+    few = representatives(costs, 7)
+    assert 5 <= len(few) <= 7 and np.all(np.diff(costs[few, 0]) > 0.0)
+    assert costs[few[-1], 0] == costs[:, 0].max()
+    assert {*costs.argmin(axis=0)} <= {*few}
+    assert len(representatives(costs, 80)) == 50
+    assert len(representatives(costs[:0], 7)) == 0
 
 
 def test_losses_of_helical_teeth_are_the_mean_over_lines_that_fill_the_path():

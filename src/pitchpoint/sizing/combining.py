@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 
 from pitchpoint.sizing.arrangements import Arrangement, arrangements, reach_words
 from pitchpoint.sizing.for_ratio import MODULES
-from pitchpoint.sizing.front import evenly_spread, non_dominated
+from pitchpoint.sizing.front import non_dominated, representatives
 from pitchpoint.sizing.stage_forms import Form, Forms, Sized
 from pitchpoint.sizing.task import Task
 
@@ -69,9 +69,9 @@ class Drives:
         return np.stack([self.mass, self.loss, self.diameter], axis=1)
 
     def few(self, count: int) -> "Drives":
-        """At most so many of those that no other one beats, evenly by their mass."""
+        """At most so many of those that no other one beats: the best by each cost, others evenly by mass."""
         front = self[non_dominated(self.costs)]
-        return front[evenly_spread(front.mass, count)]
+        return front[representatives(front.costs, count)]
 
 
 class NoDriveError(Exception):
@@ -105,10 +105,14 @@ def drives_of(task: Task, family: str) -> Drives:
     for one in every:
         for load, stage in zip(_loads(task, one), one.stages, strict=True):
             loads[load] = stage
-    options, tried = _options(task, forms, number, loads, len(every[0].stages))
+    options, least, tried = _options(task, forms, number, loads, len(every[0].stages))
     parts = [_combined(forms, [options[load] for load in _loads(task, one)]) for one in every]
     arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     drives = Drives(forms=forms, tried=tried, **arrays)
+    if not len(drives):
+        raise NoDriveError(
+            _apart(task, [[least[load] for load in _loads(task, one)] for one in every])
+        )
     off = np.abs(drives.ratio / task.ratio - 1.0)
     if not (off <= task.ratio_tolerance).any():
         near = float(drives.ratio[off.argmin()])
@@ -156,8 +160,8 @@ def _options(
     number: dict[Form, int],
     loads: dict[Load, tuple[Form, ...]],
     stages: int,
-) -> tuple[dict[Load, Sized], int]:
-    """Sizes for each load that no other one beats, and how many were rated."""
+) -> tuple[dict[Load, Sized], dict[Load, float], int]:
+    """Sizes by load that no other one beats, the least centre distance that bears it; how many were rated."""
     rows = [
         (place, number[form], module, torque, speed)
         for place, ((_, torque, speed), stage) in enumerate(loads.items())
@@ -173,17 +177,19 @@ def _options(
         | (sizes.flank <= LARGE * task.flank_safety)
         | (sizes.root <= LARGE * task.root_safety)
     )
-    options = {}
+    options, least = {}, {}
     for place, load in enumerate(loads):
         most = task.most_distance(load[0], stages)
+        least[load] = float(sizes.distance[(of_load == place) & bears].min(initial=np.inf))
         some = sizes[(of_load == place) & bears & sound & (~of_pairs | (sizes.distance <= most))]
-        some = some[non_dominated(np.stack([some.mass, some.loss, some.diameter], 1))]
-        options[load] = some[evenly_spread(some.mass, KEPT[stages])]
+        costs = np.stack([some.mass, some.loss, some.diameter], 1)
+        front = non_dominated(costs)
+        options[load] = some[front][representatives(costs[front], KEPT[stages])]
     for stage in range(stages):
         if not any(len(options[load]) for load in loads if load[0] == stage):
             of_stage = np.isin(of_load, [k for k, load in enumerate(loads) if load[0] == stage])
             raise NoDriveError(_unborne(task, sizes[of_stage], bears[of_stage], stage, stages))
-    return options, len(rows)
+    return options, least, len(rows)
 
 
 def _unborne(task: Task, sizes: Sized, bears: np.ndarray, stage: int, stages: int) -> str:
@@ -203,6 +209,27 @@ def _unborne(task: Task, sizes: Sized, bears: np.ndarray, stage: int, stages: in
     return (
         f"{where} needs a centre distance of {1e3 * least:.4g} mm, {1e3 * most:.4g} mm are allowed"
     )
+
+
+def _apart(task: Task, least: Sequence[Sequence[float]]) -> str:
+    """Why no sharing of the ratio has sizes for all its stages, though each stage has some in one of them.
+
+    Args:
+        task: what is asked.
+        least: centre distances of the stages by sharing [m]; infinite where no size bears the load.
+    """
+    distances = np.array(least)
+    most = np.array([task.most_distance(k, distances.shape[1]) for k in range(distances.shape[1])])
+    over = (distances / most).max(axis=1)
+    if not np.isfinite(over).any() or not np.isfinite(most).all():
+        return (
+            "no sharing of the ratio among its stages has gears that bear the load in all of them"
+        )
+    near = distances[over.argmin()]
+    needed, allowed = (
+        " and ".join(f"{1e3 * value:.4g}" for value in part) for part in (near, most)
+    )
+    return f"its stages need centre distances of {needed} mm together, {allowed} mm are allowed"
 
 
 def _combined(forms: Forms, stages: Sequence[Sized]) -> dict[str, np.ndarray]:

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-__all__ = ["evenly_spread", "non_dominated"]
+__all__ = ["non_dominated", "representatives"]
 
 CHUNK = 512
 """Designs that are held against all others at once, which bounds memory."""
@@ -42,22 +42,23 @@ def _beaten(some: np.ndarray, front: np.ndarray) -> np.ndarray:
     return np.asarray(np.any(np.all(front[None] <= some[:, None], axis=2), axis=1))
 
 
-def evenly_spread(values: Float[np.ndarray, " design"], count: int) -> Int[np.ndarray, " _"]:
-    """Numbers of at most so many designs, evenly among all in the order of a value, both ends with them.
+def representatives(costs: Float[np.ndarray, "design aim"], count: int) -> Int[np.ndarray, " _"]:
+    """Numbers of at most so many designs: the best by each aim, others evenly in the order of the first one.
 
     Args:
-        values: one of each design.
-        count: of designs, at most.
+        costs: of each design, less is better.
+        count: of designs, at most; more than there are aims.
 
     Example:
         >>> import numpy as np
-        >>> evenly_spread(np.array([5.0, 1.0, 2.0, 4.0, 3.0]), 3).tolist()
-        [1, 4, 0]
+        >>> costs = np.array([[5.0, 1.0], [1.0, 9.0], [2.0, 2.0], [4.0, 0.0], [3.0, 2.0]])
+        >>> representatives(costs, 4).tolist()
+        [1, 4, 3, 0]
     """
-    order = np.argsort(values, kind="stable")
+    order = np.argsort(costs[:, 0], kind="stable")
     if len(order) <= count:
         return order
-    some: Int[np.ndarray, " _"] = order[
-        np.unique(np.round(np.linspace(0, len(order) - 1, count)).astype(int))
-    ]
+    even = np.linspace(0, len(order) - 1, count - costs.shape[1] + 1)
+    best = costs[order].argmin(axis=0)
+    some: Int[np.ndarray, " _"] = order[np.union1d(np.round(even).astype(int), best)]
     return some
