@@ -1,14 +1,16 @@
 """From a task to designs: what a task may be, fronts, losses of teeth, sizes of catalogues, refusals."""
 
+import errno
 import re
 
 import numpy as np
 import pytest
 
 from pitchpoint.errors import InputError
+from pitchpoint.results import store
 from pitchpoint.sizing.arrangements import reach_words
 from pitchpoint.sizing.front import CHUNK, non_dominated, representatives
-from pitchpoint.sizing.sizing import size
+from pitchpoint.sizing.sizing import SizedDrive, Sizing, size
 from pitchpoint.sizing.stage_forms import tooth_loss
 from pitchpoint.sizing.strain_wave import strain_wave_sizes, why_no_size
 from pitchpoint.sizing.task import SIZED_FAMILIES, Task
@@ -131,6 +133,38 @@ def test_ratios_of_strain_wave_gears_are_as_near_as_is_asked():
 def test_the_cup_of_a_strain_wave_gear_is_within_the_length_that_is_asked():
     with pytest.raises(InputError, match="and a cup of 30 mm length, more than is allowed"):
         size(**(TASK | {"ratio": 100}), families="strain wave", length="20 mm")
+
+
+def test_an_oil_outside_of_its_range_is_told_as_such():
+    with pytest.raises(
+        InputError, match=r"^temperature: 300 degC is outside the range of pao-vg-150; allowed"
+    ):
+        size(**TASK, families="two stages", temperature="300 degC")
+
+
+def test_cases_of_a_front_are_written_all_or_none(tmp_path, monkeypatch):
+    numbers = dict.fromkeys(
+        ("ratio", "mass", "loss", "diameter", "length", "backlash", "inertia"), 1.0
+    )
+    numbers |= {"flank_safety": 2.0, "root_safety": 2.0}
+    designs = {name: SizedDrive(name=name, family="3K", tree={}, **numbers) for name in ("a", "b")}
+    sizing = Sizing(Task.read(**TASK), designs, ("a", "b"), {"3K": 2}, {})
+    whole = store._renamed
+
+    def full(path, content, *, lasting):
+        if path.name == "b.toml":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        whole(path, content, lasting=lasting)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(store, "_renamed", full)
+        with pytest.raises(OSError, match="No space left on device"):
+            sizing.write(tmp_path / "front")
+    assert [*(tmp_path / "front").iterdir()] == []
+    assert [path.name for path in sizing.write(tmp_path / "front")] == ["a.toml", "b.toml"]
+    assert {*(tmp_path / "front").iterdir()} == {
+        tmp_path / "front" / name for name in ("a.toml", "b.toml")
+    }
 
 
 def test_why_a_family_does_not_reach_a_ratio_is_told_with_how_far_it_goes():

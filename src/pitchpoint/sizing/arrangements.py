@@ -71,12 +71,12 @@ def arrangements(task: Task, family: str) -> Iterator[Arrangement]:
     many = {"one stage": 1, "two stages": 2, "three stages": 3}
     if family in many:
         for ratios in _shared(task.ratio, many[family], PAIR_RATIOS):
-            pairs = tuple(_pairs(task, ratio, many[family]) for ratio in ratios)
+            pairs = tuple(_pairs(task, ratio) for ratio in ratios)
             yield Arrangement(family, ratios, pairs)
     elif family in ("planetary", "two planetary sets"):
         count = 1 if family == "planetary" else 2
         for ratios in _shared(task.ratio, count, SET_RATIOS):
-            yield Arrangement(family, ratios, tuple(_sets(task, ratio, count) for ratio in ratios))
+            yield Arrangement(family, ratios, tuple(_sets(task, ratio) for ratio in ratios))
     else:
         forms = _stepped(task) if family == "stepped planets" else _three_k(task)
         yield Arrangement(family, (task.ratio,), (forms,))
@@ -108,7 +108,7 @@ def _shared(ratio: float, count: int, limits: tuple[float, float]) -> Iterator[t
 
 
 @lru_cache(maxsize=256)
-def _pairs(task: Task, ratio: float, stages: int) -> tuple[Form, ...]:
+def _pairs(task: Task, ratio: float) -> tuple[Form, ...]:
     """Pairs near a ratio."""
     forms = []
     for pinion, helix, shifts in product(PINIONS, HELICES, SHIFT_SUMS):
@@ -134,7 +134,7 @@ LEAST_WHEEL = 30
 
 
 @lru_cache(maxsize=256)
-def _sets(task: Task, ratio: float, stages: int) -> tuple[Form, ...]:
+def _sets(task: Task, ratio: float) -> tuple[Form, ...]:
     """Planetary sets near a ratio from sun to carrier, of a few suns for each number of planets."""
     forms = []
     for planets in PLANETS:

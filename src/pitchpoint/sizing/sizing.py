@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import nan
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import GUESSED
 from pitchpoint.errors import InputError
 from pitchpoint.registry import enumerated
-from pitchpoint.results.store import make_folder
+from pitchpoint.results.store import make_folder, write_text
 from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.combining import Drives, NoDriveError, drives_of, exactly_loaded
 from pitchpoint.sizing.front import non_dominated
@@ -149,13 +150,14 @@ class Sizing:
         )
 
     def write(self, folder: Path | str) -> list[Path]:
-        """Write each design of the front as a case file.
+        """Write each design of the front as a case file, all of them or none.
 
         Args:
             folder: made if it is not there.
 
         Raises:
             InputError: files of these names are there.
+            OSError: the disk is full, say.
         """
         place = Path(folder)
         make_folder(place)
@@ -163,8 +165,11 @@ class Sizing:
         for path in paths:
             if path.exists():
                 raise InputError("is there already; name another folder", file=str(path))
-        for path, name in zip(paths, self.front, strict=True):
-            path.write_text(self.designs[name].case, encoding="utf-8")
+        with TemporaryDirectory(prefix=".front-", dir=place) as beside:
+            for path, name in zip(paths, self.front, strict=True):
+                write_text(Path(beside) / path.name, self.designs[name].case)
+            for path in paths:
+                (Path(beside) / path.name).rename(path)
         return paths
 
 
@@ -226,6 +231,7 @@ def size(
     """
     given = dict(locals())
     task = Task.read(**given)
+    _demand_oil(task)
     designs: list[SizedDrive] = []
     tried, without = {}, {}
     for family in task.families:
@@ -239,6 +245,15 @@ def size(
     front = non_dominated(np.array([_costs(design, task.aims) for design in designs]))
     names = tuple(design.name for design, on in zip(designs, front, strict=True) if on)
     return Sizing(task, {design.name: design for design in designs}, names, tried, without)
+
+
+def _demand_oil(task: Task) -> None:
+    """InputError where cases of the task are refused whatever their teeth, before gears are blamed for it."""
+    pair = {"teeth": [20, 40], "module": "1 mm", "face_width": "10 mm"}
+    try:
+        load_case(case_of(task, [pair], task.torque, task.speed))
+    except InputError as error:
+        raise InputError(error.message, key=(error.key or "").rpartition(".")[2]) from None
 
 
 def _costs(design: SizedDrive, aims: Sequence[str]) -> list[float]:

@@ -104,8 +104,7 @@ class Task:
     def most_distance(self, stage: int, stages: int) -> float:
         """Largest centre distance of a stage, counted from zero at the input [m].
 
-        Raises:
-            InputError: several are given, and not for so many stages.
+        Zero where several are given and not for so many stages: such a drive is none of those asked for.
         """
         given = self.centre_distances
         if not given:
