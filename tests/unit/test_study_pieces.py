@@ -17,7 +17,7 @@ import xarray as xr
 import pitchpoint as pp
 from pitchpoint import cli
 from pitchpoint.analyses.designs import Designs
-from pitchpoint.errors import InputError
+from pitchpoint.errors import InputError, PitchpointError
 from pitchpoint.results import store
 from pitchpoint.results.netcdf import encode
 from pitchpoint.results.pieces import ALONG, StudyPieces, as_whole, summary_of
@@ -56,6 +56,82 @@ def test_any_range_of_designs_is_made_without_the_others(
     ends = [0, 1, 3, layout.count]
     parts = [layout.changes(first, stop) for first, stop in pairwise(ends)]
     assert [design for part in parts for design in part] == every
+
+
+def test_whole_numbers_are_drawn_alike_from_end_to_end() -> None:
+    for how in ("latin_hypercube", "sobol"):
+        drawn = layout_of(VARIANT, {"gears.teeth.1": [20, 23]}, how, 4096, 3).columns(0, 4096)
+        values, counts = np.unique(
+            [float(value) for value in drawn["gears.teeth.1"]], return_counts=True
+        )
+        assert values.tolist() == [20.0, 21.0, 22.0, 23.0]
+        np.testing.assert_allclose(counts, 1024, atol=2)
+
+
+@pytest.mark.parametrize("how", ["grid", "zip"])
+def test_values_that_are_given_take_no_number_of_designs(how: str) -> None:
+    with pytest.raises(
+        InputError, match=r"^n: 8 was given, and a (grid|zip) has as many designs as its val"
+    ):
+        layout_of(VARIANT, LISTS, how, 8, 3)
+
+
+def test_what_draws_the_designs_is_in_the_mark(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = StudyDescription(VARIANT, RANGES, "sobol", 4, 0, 4).mark
+    monkeypatch.setattr("pitchpoint.runs.described.version", lambda package: "another")
+    assert StudyDescription(VARIANT, RANGES, "sobol", 4, 0, 4).mark != first
+    theirs = piece_elsewhere(
+        StudyDescription(VARIANT, RANGES, "sobol", 4, 0, 4).packed, first, 0, 4
+    )
+    monkeypatch.undo()
+    assert isinstance(theirs, dict)
+    assert workers._other(theirs).startswith(
+        "a worker has what gives other numbers than here: scipy another"
+    )
+
+
+class Failed:
+    """What a worker made of a piece: an error."""
+
+    def __init__(self, failure: BaseException) -> None:
+        self.failure = failure
+
+    def exception(self) -> BaseException:
+        return self.failure
+
+    def result(self) -> bytes:
+        raise self.failure
+
+
+@pytest.mark.parametrize(
+    ("failure", "kind", "told"),
+    [
+        (
+            OSError(errno.ENOSPC, "No space left"),
+            PitchpointError,
+            "a worker that computed designs 4 to 7 failed: ",
+        ),
+        (ZeroDivisionError("by zero"), ZeroDivisionError, "by zero"),
+        (TypeError("unsupported operand"), TypeError, "unsupported operand"),
+        (
+            TypeError("piece_elsewhere() takes 3"),
+            InputError,
+            "scheduler: a worker has no pitchpoint, or ano",
+        ),
+        (
+            ModuleNotFoundError("No module named 'pitchpoint'"),
+            InputError,
+            "scheduler: a worker has no pit",
+        ),
+    ],
+)
+def test_what_a_worker_fails_at_is_told_as_its_own(
+    failure: BaseException, kind: type[BaseException], told: str
+) -> None:
+    pytest.importorskip("distributed")
+    with pytest.raises(kind) as caught:
+        workers._image(Failed(failure), (4, 8))  # type: ignore[arg-type]
+    assert type(caught.value) is kind and str(caught.value).startswith(told)
 
 
 @pytest.mark.parametrize(("over", "how", "n"), [(LISTS, "grid", None), (RANGES, "sobol", 1 << 20)])

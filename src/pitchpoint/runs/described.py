@@ -5,6 +5,7 @@ import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from pitchpoint.results.store import fingerprint
 from pitchpoint.runs.layouts import StudyLayout, layout_of
 from pitchpoint.runs.run import mark_of
 
-__all__ = ["StudyDescription", "piece_elsewhere"]
+__all__ = ["StudyDescription", "decisive", "piece_elsewhere"]
 
 _PART = "designs"
 _OF_VARIANT = ("tree", "name", "variant", "settings", "recorded")
@@ -85,7 +86,7 @@ class StudyDescription:
         """Digest of the description, of the code and of what it runs on: equal ones give equal bits."""
         tree = self.variant.document().tree
         case = {key: table for key, table in tree.items() if key != OUTPUT}
-        return fingerprint(mark_of(self.variant, _PART), case, self._layout)
+        return fingerprint(mark_of(self.variant, _PART), case, self._layout, decisive())
 
     def computed(self, first: int, stop: int, progress: AnalysisProgress = silent) -> xr.Dataset:
         """Figures [law, design] of a range of designs, with their values as coordinates.
@@ -108,6 +109,11 @@ class StudyDescription:
         )
 
 
+def decisive() -> dict[str, str]:
+    """What decides about the numbers of a study beside its description: its designs are drawn by SciPy."""
+    return {**surroundings(), "scipy": version("scipy")}
+
+
 @double_precision()
 def piece_elsewhere(packed: bytes, mark: str, first: int, stop: int) -> bytes | dict[str, str]:
     """The file of a piece, computed in a process that shares nothing with the one that asks.
@@ -122,5 +128,5 @@ def piece_elsewhere(packed: bytes, mark: str, first: int, stop: int) -> bytes | 
     """
     study = StudyDescription.read(packed)
     if study.mark != mark:
-        return surroundings()
+        return decisive()
     return encode(study.computed(first, stop))

@@ -1,6 +1,7 @@
 """How the designs of a study are laid out: values of any of them out of a description of a few numbers."""
 
 import warnings
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -95,11 +96,13 @@ class StudyAxis:
         return low, high
 
     def drawn(self, share: np.ndarray) -> list[Any]:
-        """Values at shares of the range, whole ones for a count."""
+        """Values at shares of the range; of a count whole ones, each with the same part of it."""
         low, high = self.ends
-        si = low + share * (high - low)
-        whole = self.quantity is not None and self.quantity.whole
-        return [*written(self.key, np.round(si) if whole else si)]
+        if self.quantity is not None and self.quantity.whole:
+            return [
+                *written(self.key, np.minimum(low + np.floor(share * (high - low + 1.0)), high))
+            ]
+        return [*written(self.key, low + share * (high - low))]
 
 
 def _demand_value(value: Any, quantity: Quantity | None) -> None:
@@ -111,37 +114,54 @@ def _demand_value(value: Any, quantity: Quantity | None) -> None:
 
 
 @dataclass(frozen=True)
-class StudyLayout:
+class StudyLayout(ABC):
     """Designs of a study, of which any range is made without the others.
 
     Attributes:
         axes: by key.
-        count: of designs.
         n: asked for, see `study`.
         seed: of what is drawn.
     """
 
     axes: Mapping[str, StudyAxis]
-    count: int
     n: int | None
     seed: int
+
+    @property
+    @abstractmethod
+    def count(self) -> int:
+        """Of designs; InputError where values and number of designs do not go together."""
 
     @property
     def dims(self) -> dict[str, int]:
         """Dimensions of the result and their lengths."""
         return {"design": self.count}
 
+    @abstractmethod
     def columns(self, first: int, stop: int) -> dict[str, list[Any]]:
         """Values of a range of designs by key, as a case file has them."""
-        raise NotImplementedError
 
     def changes(self, first: int, stop: int) -> list[dict[str, Any]]:
         """The same by design."""
         columns = self.columns(first, stop)
         return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
+    def _demand_no_number(self, what: str) -> None:
+        if self.n is not None:
+            told = f"{self.n} was given, and {what} has as many designs as its values make; leave it out"
+            raise InputError(f"{told}, or draw by latin_hypercube or sobol", key="n")
+
+    def _demand_ranges(self) -> None:
+        for axis in self.axes.values():
+            _ = axis.ends
+
 
 class _Grid(StudyLayout):
+    @cached_property
+    def count(self) -> int:
+        self._demand_no_number("a grid")
+        return prod(self.dims.values())
+
     @property
     def dims(self) -> dict[str, int]:
         return {key: len(axis.values) for key, axis in self.axes.items()}
@@ -155,14 +175,23 @@ class _Grid(StudyLayout):
 
 
 class _Zip(StudyLayout):
+    @cached_property
+    def count(self) -> int:
+        self._demand_no_number("a zip")
+        lengths = {key: len(axis.values) for key, axis in self.axes.items()}
+        if len({*lengths.values()}) > 1:
+            told = ", ".join(f"{count} of {key}" for key, count in lengths.items())
+            raise InputError(f"values that go together are equally many; given were {told}")
+        return next(iter(lengths.values()))
+
     def columns(self, first: int, stop: int) -> dict[str, list[Any]]:
         return {key: [*axis.values[first:stop]] for key, axis in self.axes.items()}
 
 
 class _Drawn(StudyLayout):
+    @abstractmethod
     def shares(self, first: int, stop: int) -> Float[np.ndarray, "design key"]:
         """Shares of the ranges of a range of designs."""
-        raise NotImplementedError
 
     def columns(self, first: int, stop: int) -> dict[str, list[Any]]:
         shares = self.shares(first, stop)
@@ -170,6 +199,13 @@ class _Drawn(StudyLayout):
 
 
 class _LatinHypercube(_Drawn):
+    @cached_property
+    def count(self) -> int:
+        if self.n is None:
+            raise InputError("a Latin hypercube needs the number of designs, n")
+        self._demand_ranges()
+        return self.n
+
     @cached_property
     def _whole(self) -> Float[np.ndarray, "design key"]:
         from scipy.stats import qmc
@@ -182,6 +218,12 @@ class _LatinHypercube(_Drawn):
 
 
 class _Sobol(_Drawn):
+    @cached_property
+    def count(self) -> int:
+        count = _power_of_two(self.n)
+        self._demand_ranges()
+        return count
+
     def shares(self, first: int, stop: int) -> Float[np.ndarray, "design key"]:
         return sobol_shares(self.count, len(self.axes), self.seed, first=first, stop=stop)
 
@@ -209,51 +251,15 @@ def layout_of(
     """
     axes = {key: StudyAxis.of(variant, key, values) for key, values in over.items()}
     _demand_way(how)
-    return _LAYOUTS[how](axes, _COUNTED[how](axes, n), n, seed)
+    layout = _LAYOUTS[how](axes, n, seed)
+    _possible(layout.count)
+    return layout
 
 
 def _demand_way(how: str) -> None:
     if how not in get_args(How):
         known = ", ".join(f'"{name}"' for name in get_args(How))
         raise InputError(f"{shown(how)} is no way to lay out a study; use one of {known}")
-
-
-def _of_grid(axes: Mapping[str, StudyAxis], _: int | None) -> int:
-    return _possible(prod(len(axis.values) for axis in axes.values()))
-
-
-def _of_zip(axes: Mapping[str, StudyAxis], _: int | None) -> int:
-    lengths = {key: len(axis.values) for key, axis in axes.items()}
-    if len({*lengths.values()}) > 1:
-        told = ", ".join(f"{count} of {key}" for key, count in lengths.items())
-        raise InputError(f"values that go together are equally many; given were {told}")
-    return _possible(next(iter(lengths.values())))
-
-
-def _of_latin_hypercube(axes: Mapping[str, StudyAxis], n: int | None) -> int:
-    if n is None:
-        raise InputError("a Latin hypercube needs the number of designs, n")
-    _demand_ranges(axes)
-    return _possible(n)
-
-
-def _of_sobol(axes: Mapping[str, StudyAxis], n: int | None) -> int:
-    count = _power_of_two(n)
-    _demand_ranges(axes)
-    return count
-
-
-_COUNTED = {
-    "grid": _of_grid,
-    "zip": _of_zip,
-    "latin_hypercube": _of_latin_hypercube,
-    "sobol": _of_sobol,
-}
-
-
-def _demand_ranges(axes: Mapping[str, StudyAxis]) -> None:
-    for axis in axes.values():
-        _ = axis.ends
 
 
 def _possible(count: int) -> int:

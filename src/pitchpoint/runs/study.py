@@ -69,7 +69,7 @@ def study(
         how: "grid" takes every value with every other, "zip" the first ones together, then the second
             ones, "latin_hypercube" draws designs that fill the ranges evenly, "sobol" those of a scrambled
             Sobol' sequence.
-        n: number of designs to draw; a power of two of a Sobol' sequence.
+        n: number of designs to draw, of those two ways alone; a power of two of a Sobol' sequence.
         seed: the same one draws the same designs.
         units: of the result, "si", those in which values are "shown", or some by kind of quantity,
             {"angle": "arcmin"}, and the others as shown.

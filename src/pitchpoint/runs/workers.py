@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from pitchpoint.errors import InputError, PitchpointError, shorten
 from pitchpoint.input.quantities import shown
-from pitchpoint.programs import surroundings
 from pitchpoint.results.pieces import StudyPieces
-from pitchpoint.runs.described import StudyDescription, piece_elsewhere
+from pitchpoint.runs.described import StudyDescription, decisive, piece_elsewhere
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -119,6 +118,7 @@ def _demand_answer(address: str) -> None:
     try:
         host, port = get_address_host_port(address, strict=True)
         socket.create_connection((host, port), PATIENCE).close()
+    # "inproc" addresses have no host and port, which distributed says by NotImplementedError.
     except (OSError, ValueError, TypeError, NotImplementedError) as error:
         why = (
             error.strerror or "no answer" if isinstance(error, OSError) else shorten(str(error), 80)
@@ -206,7 +206,7 @@ def _landing(
         done = _finished(asked)
         for future in done:
             number = asked.pop(future)
-            yield number, _image(future, study, pieces.range(number))
+            yield number, _image(future, pieces.range(number))
             future.release()
 
 
@@ -243,30 +243,42 @@ def _finished(asked: Collection["Future[Any]"]) -> "list[Future[Any]]":
     return []
 
 
-def _image(future: "Future[Any]", study: StudyDescription, designs: tuple[int, int]) -> bytes:
+def _image(future: "Future[Any]", designs: tuple[int, int]) -> bytes:
     """The file that a worker made of a piece."""
-    from distributed import KilledWorker
-
-    first, stop = designs
-    try:
-        with _reachable():
-            made = future.result()
-    except KilledWorker:
-        told = f"several workers ended while they computed designs {first} to {stop - 1}"
-        raise PitchpointError(f"{told}; {GOES_ON}") from None
-    except (ImportError, AttributeError, TypeError) as error:
-        raise InputError(
-            f"a worker has no pitchpoint, or another version of it: {shorten(str(error), 120)}",
-            key="scheduler",
-        ) from None
+    with _reachable():
+        failure = future.exception()
+    if failure is not None:
+        raise _of_worker(failure, f"designs {designs[0]} to {designs[1] - 1}") from None
+    with _reachable():
+        made = future.result()
     if isinstance(made, dict):
         raise InputError(_other(made), key="scheduler")
     return bytes(made)
 
 
+def _of_worker(failure: BaseException, designs: str) -> BaseException:
+    """What a worker that failed is told as; errors that are none of its own stay what they are."""
+    from distributed import KilledWorker
+
+    if isinstance(failure, KilledWorker):
+        return PitchpointError(f"several workers ended while they computed {designs}; {GOES_ON}")
+    if isinstance(failure, OSError):
+        return PitchpointError(f"a worker that computed {designs} failed: {failure}; {GOES_ON}")
+    # Another version has no such function, or one that takes other arguments.
+    called = any(name in str(failure) for name in ("pitchpoint", piece_elsewhere.__name__))
+    if isinstance(failure, ImportError) or (
+        isinstance(failure, AttributeError | TypeError) and called
+    ):
+        why = shorten(str(failure), 120)
+        return InputError(
+            f"a worker has no pitchpoint, or another version of it: {why}", key="scheduler"
+        )
+    return failure
+
+
 def _other(theirs: Mapping[str, str]) -> str:
     """What a worker has that gives other bits than this process."""
-    here = surroundings()
+    here = decisive()
     differ = [name for name in here if here[name] != theirs.get(name)]
     if not differ:
         return "a worker does not have the files that the case names"
