@@ -102,6 +102,7 @@ PYTHON = {
     ("guide/sizing.md", "def next_speed"),
     ("guide/sizing.md", "pp.size"),
     ("guide/simulators.md", "renewed_friction"),
+    ("guide/simulators.md", "simulate_fmu"),
 }
 """Blocks of Python by page and by what they alone hold; each is run by a test."""
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from documentation import block
 from made_joints import RATIO, error, locking, made_joint, plain, rippling, torsion
 from scipy.integrate import cumulative_trapezoid, solve_ivp
 
@@ -304,6 +305,21 @@ def test_wind_up_play_and_error_move_as_in_the_product(torque: float, tmp_path: 
     for column, values in ((2, expected.torque), (1, expected.output_rate)):
         size = float(np.ptp(values))
         np.testing.assert_allclose(found[:, column], values[1:], atol=1e-3 * size)
+
+
+def test_the_program_of_the_guide_lifts_its_arm(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = tmp_path / "joint_files" / "fmu_joint"
+    path = handed(made_joint(more=with_play()), place).paths[0]
+    path.rename(place / "pair_joint.fmu")
+    monkeypatch.chdir(tmp_path)
+    values: dict[str, Any] = {}
+    exec(block("guide/simulators.md", "python", "simulate_fmu"), values)
+    moved = values["moved"]
+    assert moved["time"][-1] == 0.5 and not moved["sticks"].all()
+    speed = moved["output_speed"]
+    assert speed[0] == 0.0 and speed[-1] > speed[100] > 0.0
 
 
 MOVES = Path(__file__).parents[2] / "examples" / "spur_motion.toml"
