@@ -236,7 +236,7 @@ def lost_lines(given: Simulated, law: LossLaw, beside: str) -> list[str]:
     if given.within is not None:
         rows += [("range", error) for error in joint.errors(law, given.within)]
     lines = [f"What is lost: torque of the driver, this file against the loss map [{unit}]"]
-    lines.append(f"{'in':8}{'quadrants':26}{'largest':>11}{'mean':>11}{'of most':>11}{'points':>8}")
+    lines.append(f"{'in':8}{'quadrants':26}{'largest':>11}{'mean':>11}{'of peak':>11}{'points':>8}")
     lines += [_row(place, error) for place, error in rows]
     if given.within is not None:
         lines.append(_range_words(given))
