@@ -96,6 +96,10 @@ Variants = Annotated[
         "--variant", help="Run this variant only; may be repeated.", autocompletion=_variants_from
     ),
 ]
+OneVariant = Annotated[
+    str | None,
+    typer.Option("--variant", help="The first one by default.", autocompletion=_variants_from),
+]
 Settings = Annotated[
     list[str] | None,
     typer.Option(
@@ -390,10 +394,7 @@ def explore(
         Path | None,
         typer.Option("-o", "--output", metavar="FILE", help="Default: results/CASE/explorer.html."),
     ] = None,
-    variant: Annotated[
-        str | None,
-        typer.Option("--variant", help="The first one by default.", autocompletion=_variants_from),
-    ] = None,
+    variant: OneVariant = None,
     set_: Settings = None,
     over: Annotated[
         list[str] | None,
@@ -455,10 +456,7 @@ def study(
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Default: results/CASE/study."),
     ] = None,
-    variant: Annotated[
-        str | None,
-        typer.Option("--variant", help="The first one by default.", autocompletion=_variants_from),
-    ] = None,
+    variant: OneVariant = None,
     set_: Settings = None,
     workers: Annotated[
         int | None,

@@ -1,6 +1,6 @@
 """Arrangements that reach a ratio: how it is shared among stages, and which gears each of them may have."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -110,12 +110,17 @@ def _shared(ratio: float, count: int, limits: tuple[float, float]) -> Iterator[t
 @lru_cache(maxsize=256)
 def _pairs(task: Task, ratio: float) -> tuple[Form, ...]:
     """Pairs near a ratio."""
-    forms = []
+    tables = []
     for pinion, helix, shifts in product(PINIONS, HELICES, SHIFT_SUMS):
         wheel = round(ratio * pinion)
-        if abs(wheel / pinion / ratio - 1.0) > task.ratio_tolerance:
-            continue
-        forms.append(formed(task, "pair", _pair(pinion, wheel, helix, shifts)))
+        if abs(wheel / pinion / ratio - 1.0) <= task.ratio_tolerance:
+            tables.append(_pair(pinion, wheel, helix, shifts))
+    return _runnable(task, "pair", tables)
+
+
+def _runnable(task: Task, kind: str, tables: Iterable[Tree]) -> tuple[Form, ...]:
+    """Forms of tables of gears, as far as they can run."""
+    forms = (formed(task, kind, table) for table in tables)
     return tuple(form for form in forms if form is not None)
 
 
@@ -136,7 +141,7 @@ LEAST_WHEEL = 30
 @lru_cache(maxsize=256)
 def _sets(task: Task, ratio: float) -> tuple[Form, ...]:
     """Planetary sets near a ratio from sun to carrier, of a few suns for each number of planets."""
-    forms = []
+    tables = []
     for planets in PLANETS:
         near = [
             teeth
@@ -155,13 +160,13 @@ def _sets(task: Task, ratio: float) -> tuple[Form, ...]:
                 "profile_shift": [without_undercut(close[0]), in_planet_ring(close[1])],
                 **INSPECTION,
             }
-            forms.append(formed(task, "planetary", gears))
-    return tuple(form for form in forms if form is not None)
+            tables.append(gears)
+    return _runnable(task, "planetary", tables)
 
 
 def _stepped(task: Task) -> tuple[Form, ...]:
     """Sets of stepped planets of the ratio."""
-    forms = []
+    tables = []
     for planets in PLANETS[:2]:
         near, suns = [], set()
         for gears, met in stepped_gears(task.ratio, planets):
@@ -174,14 +179,13 @@ def _stepped(task: Task) -> tuple[Form, ...]:
                 break
         for gears in near:
             second = gears["second"] | INSPECTION
-            table = gears | {"family": PLANETARY, "second": second, **INSPECTION}
-            forms.append(formed(task, "stepped", table))
-    return tuple(form for form in forms if form is not None)
+            tables.append(gears | {"family": PLANETARY, "second": second, **INSPECTION})
+    return _runnable(task, "stepped", tables)
 
 
 def _three_k(task: Task) -> tuple[Form, ...]:
     """3K sets of the ratio that lose least."""
-    forms = []
+    tables = []
     for planets in PLANETS[:2] if task.ratio >= LEAST_THREE_K else ():
         try:
             sets = three_k_sets(task.reaches, planets=planets, count=THREE_K)
@@ -191,6 +195,5 @@ def _three_k(task: Task) -> tuple[Form, ...]:
             gears = three_k_tables(sets.isel(set=number), "1 mm", "1 mm")["gears"]
             del gears["module"], gears["face_width"]
             second = {key: value for key, value in gears["second"].items() if key != "face_width"}
-            table = gears | {"second": second | INSPECTION, **INSPECTION}
-            forms.append(formed(task, "3K", table))
-    return tuple(form for form in forms if form is not None)
+            tables.append(gears | {"second": second | INSPECTION, **INSPECTION})
+    return _runnable(task, "3K", tables)

@@ -36,7 +36,7 @@ from pitchpoint.sizing.strain_wave import (
 )
 from pitchpoint.sizing.task import Task
 
-__all__ = ["SizedDrive", "Sizing", "size"]
+__all__ = ["SizedDrive", "Sizing", "families_by_reason", "size"]
 
 Tree = dict[str, Any]
 
@@ -241,7 +241,7 @@ def size(
         except NoDriveError as error:
             without[family] = error.words
     if not designs:
-        raise _infeasible(task, without)
+        raise _infeasible(without)
     front = non_dominated(np.array([_costs(design, task.aims) for design in designs]))
     names = tuple(design.name for design, on in zip(designs, front, strict=True) if on)
     return Sizing(task, {design.name: design for design in designs}, names, tried, without)
@@ -260,13 +260,27 @@ def _costs(design: SizedDrive, aims: Sequence[str]) -> list[float]:
     return [float(getattr(design, aim)) for aim in aims]
 
 
-def _infeasible(task: Task, without: Mapping[str, str]) -> InputError:
+def _infeasible(without: Mapping[str, str]) -> InputError:
     """What stands against every family, each with how much it misses."""
+    told = "; ".join(f"{names}: {words}" for words, names in families_by_reason(without).items())
+    return InputError(f"no drive does this: {told}")
+
+
+def families_by_reason(without: Mapping[str, str]) -> dict[str, str]:
+    """Families without a design, listed in words, by what stands against them.
+
+    Args:
+        without: reasons by family.
+
+    Example:
+        >>> from pitchpoint.sizing.sizing import families_by_reason
+        >>> families_by_reason({"planetary": "too large", "3K": "too slow", "one stage": "too large"})
+        {'too large': 'planetary and one stage', 'too slow': '3K'}
+    """
     families: dict[str, list[str]] = {}
     for family, words in without.items():
         families.setdefault(words, []).append(family)
-    told = "; ".join(f"{enumerated(names)}: {words}" for words, names in families.items())
-    return InputError(f"no drive does this: {told}")
+    return {words: enumerated(names) for words, names in families.items()}
 
 
 def _of_stages(task: Task, family: str) -> tuple[list[SizedDrive], int]:

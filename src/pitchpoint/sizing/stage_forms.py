@@ -31,7 +31,7 @@ from pitchpoint.sizing.task import Task
 from pitchpoint.sizing.three_k import mesh_efficiency, three_k_efficiencies
 from pitchpoint.strength.rating import ROWS, ratings
 
-__all__ = ["FIELD", "Form", "Forms", "Sized", "case_of", "formed"]
+__all__ = ["FIELD", "Form", "Forms", "Sized", "case_of", "formed", "running_tables"]
 
 Tree = dict[str, Any]
 Values = Float[np.ndarray, " option"]
@@ -40,7 +40,8 @@ Numbers = Int[np.ndarray, " option"]
 FIELD, CENTRE_FIELD = "e24", "js7"
 """Fields of tooth thickness (DIN 3967) and of centre distance (ISO 286) of all gears."""
 
-ROUGHNESS = "0.4 um"
+ROUGHNESS = 0.4e-6
+"""Ra of all flanks [m]."""
 
 MODULE, WIDTH, TORQUE, SPEED = 1e-3, 10e-3, 100.0, 10.0
 """Module and face width [m], torque at the output [N m] and speed of the input [rad/s] of forms as built."""
@@ -100,14 +101,21 @@ def case_of(task: Task, stages: Sequence[Tree], torque: float, speed: float) -> 
         **gears,
         "materials": {"gear_1": task.material, "gear_2": task.material},
         "strength": {"life": f"{task.life / 3600.0:.12g} h"},
+        **running_tables(task, torque, speed),
+        "models": {"friction": "iso_tr_14179_2"},
+    }
+
+
+def running_tables(task: Task, torque: float, speed: float) -> Tree:
+    """Tables of a case of any family that say how it runs: oil, roughness, operation; see `case_of`."""
+    return {
         "lubricant": {"name": task.lubricant},
-        "roughness": {"ra": ROUGHNESS},
+        "roughness": {"ra": f"{1e6 * ROUGHNESS:g} um"},
         "operation": {
             "torque": f"{torque:.12g} N m",
             "speed": f"{speed:.12g} rad/s",
             "temperature": f"{task.temperature - 273.15:.12g} degC",
         },
-        "models": {"friction": "iso_tr_14179_2"},
     }
 
 
@@ -211,6 +219,7 @@ class Forms:
             self._driver[numbers], self._rims[numbers] = duty.driver, mesh.rim_ratio
             self._distances[numbers] = mesh.centre_distance
         self.first = np.array(first, int)
+        self._end = np.append(self.first[1:], count)
         self.distance = self._distances[self.first]
 
     def efficiency(
@@ -228,7 +237,7 @@ class Forms:
         scale, (eta, oil) = module / MODULE, self._oil
         for place in range(3):
             row = self.first[form] + place
-            has = row < np.append(self.first, len(self._of_form))[form + 1]
+            has = row < self._end[form]
             row = np.where(has, row, self.first[form])
             loaded = np.sum((1.0 - self._driver[row]) * self._bases[row], axis=1) * scale
             force = self._load[row] * torque / TORQUE / loaded
@@ -240,7 +249,7 @@ class Forms:
                     ),
                     reference_radius=jnp.asarray(self._radius[row] * scale),
                     viscosity=jnp.asarray(eta),
-                    roughness_ra=jnp.asarray(0.4e-6),
+                    roughness_ra=jnp.asarray(ROUGHNESS),
                     lubricant_factor=jnp.asarray(oil),
                 )
             )
@@ -285,7 +294,7 @@ class Forms:
             place[numbers] = np.arange(len(numbers))
             for mesh in range(3):
                 at = self.first[form] + mesh
-                has = at < np.append(self.first, len(self._of_form))[form + 1]
+                has = at < self._end[form]
                 at = np.where(has, at, 0)
                 which = np.flatnonzero(has & (place[at] >= 0))
                 if not len(which):
@@ -378,7 +387,7 @@ class Forms:
 
     def _extents(self, form: int) -> tuple[float, float]:
         """Diameter around the gears of a form as built [m], and its length in face widths."""
-        row, last = self.first[form], np.append(self.first, len(self._of_form))[form + 1]
+        row, last = self.first[form], self._end[form]
         kind = self.forms[form].kind
         tips, a = np.abs(self._tips[row:last]), self._distances[row]
         if kind == "pair":

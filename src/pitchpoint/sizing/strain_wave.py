@@ -1,12 +1,12 @@
 """Strain wave gears in the sizes of catalogues, by a maker's rating and the life of their bearing."""
 
 from dataclasses import dataclass
-from math import pi
 from typing import Any
 
 from pitchpoint import units
 from pitchpoint.gears.strain_wave.load_limits import bearing_life, of_other_size
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
+from pitchpoint.sizing.stage_forms import running_tables
 from pitchpoint.sizing.task import Task
 
 __all__ = [
@@ -54,7 +54,7 @@ WIDTH = 1.0 / 6.0
 
 KEPT = 3
 
-TURN = 2.0 * pi / 60.0
+TURN = units.parse("1 rpm", "rotational speed")
 """A turn a minute [rad/s]."""
 
 
@@ -126,9 +126,8 @@ def strain_wave_sizes(task: Task, ratio: float) -> list[StrainWaveSize]:
     """
     if not RATIOS[0] <= ratio <= RATIOS[1] or not _near(task, ratio):
         return []
-    return [size for size in _enduring(task, ratio) if _input_speed(task, size) <= size.most_speed][
-        :KEPT
-    ]
+    enduring = _enduring(task, ratio)
+    return [size for size in enduring if _input_speed(task, size) <= size.most_speed][:KEPT]
 
 
 def why_no_size(task: Task, ratio: float) -> str:
@@ -203,12 +202,6 @@ def strain_wave_case(task: Task, size: StrainWaveSize, speed: float) -> Tree:
     return {
         "gears": size.gears,
         "losses": {"set": "strain_wave_component"},
-        "lubricant": {"name": task.lubricant},
-        "roughness": {"ra": "0.4 um"},
-        "operation": {
-            "torque": f"{task.torque:.12g} N m",
-            "speed": f"{speed:.12g} rad/s",
-            "temperature": f"{task.temperature - 273.15:.12g} degC",
-        },
+        **running_tables(task, task.torque, speed),
         "models": {"friction": {"name": "constant", "coefficient": 0.08}},
     }

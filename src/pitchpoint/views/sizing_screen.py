@@ -8,7 +8,7 @@ from typing import Any
 from pitchpoint import units
 from pitchpoint.doubts import GUESSED, in_percent
 from pitchpoint.registry import enumerated
-from pitchpoint.sizing.sizing import SizedDrive, Sizing
+from pitchpoint.sizing.sizing import SizedDrive, Sizing, families_by_reason
 from pitchpoint.sizing.task import Task
 from pitchpoint.views.columns import lines_of
 from pitchpoint.views.first_screen import Line, wrapped
@@ -120,11 +120,8 @@ def _doubts(sizing: Sizing) -> Iterator[str]:
 
 
 def _foot(sizing: Sizing, written: Path | None) -> Iterator[str]:
-    reasons: dict[str, list[str]] = {}
-    for family, words in sizing.without.items():
-        reasons.setdefault(words, []).append(family)
-    for words, families in reasons.items():
-        yield f"Without a design: {enumerated(families)} ({words})."
+    for words, families in families_by_reason(sizing.without).items():
+        yield f"Without a design: {families} ({words})."
     balanced = sizing.best["balanced"]
     if written is None:
         yield f"-o FOLDER writes the {len(sizing.front)} as case files; --json has all designs."
