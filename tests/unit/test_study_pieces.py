@@ -4,6 +4,7 @@ import copy
 import errno
 import hashlib
 import json
+import logging
 import sys
 from collections.abc import Generator
 from itertools import pairwise
@@ -88,6 +89,15 @@ def test_what_draws_the_designs_is_in_the_mark(monkeypatch: pytest.MonkeyPatch) 
     assert workers._other(theirs).startswith(
         "a worker has what gives other numbers than here: scipy another"
     )
+
+
+def test_what_is_logged_of_lost_connections_does_not_stand_before_the_sentence() -> None:
+    pytest.importorskip("distributed")
+    logs = [logging.getLogger(name) for name in ("distributed", "distributed.client")]
+    before = [log.level for log in logs]
+    with workers._quiet():
+        assert not any(log.isEnabledFor(logging.ERROR) for log in logs)
+    assert [log.level for log in logs] == before
 
 
 class Failed:

@@ -82,13 +82,17 @@ def _quiet() -> "Iterator[None]":
     """Keep what `distributed` logs of lost connections from standing before the sentence about them."""
     import logging
 
-    log = logging.getLogger("distributed")
-    before, log.level = log.level, logging.CRITICAL
-    log.setLevel(logging.CRITICAL)
+    # Its configuration gives levels of their own to some below the first one.
+    every = [name for name in logging.root.manager.loggerDict if name.startswith("distributed.")]
+    logs = [logging.getLogger(name) for name in ("distributed", *every)]
+    before = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL)
     try:
         yield
     finally:
-        log.setLevel(before)
+        for log, level in zip(logs, before, strict=True):
+            log.setLevel(level)
 
 
 @contextmanager
