@@ -14,8 +14,6 @@ import xarray as xr
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.analysis import silent
 from pitchpoint.analyses.bodies import bodies_of
-from pitchpoint.analyses.inspection import inspection_part
-from pitchpoint.analyses.registry import REFLECTED
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import summaries
 from pitchpoint.cases.built_drive import Ready
@@ -26,7 +24,7 @@ from pitchpoint.results.store import make_folder, write_text
 from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.combining import Drives, NoDriveError, drives_of, exactly_loaded
 from pitchpoint.sizing.front import non_dominated
-from pitchpoint.sizing.stage_forms import case_of
+from pitchpoint.sizing.stage_forms import case_of, gears_as_discs
 from pitchpoint.sizing.strain_wave import (
     SIZES,
     StrainWaveSize,
@@ -354,7 +352,7 @@ def _designed(
         tree, built: its case, and what that opens as.
     """
     rated = ratings_of([built], 1)
-    mass, inertia, backlash = _bodies(built)
+    mass, inertia, backlash = gears_as_discs(built)
     return SizedDrive(
         name=name,
         family=family,
@@ -369,19 +367,6 @@ def _designed(
         flank_safety=float(rated["least_flank_safety"][1][0, 0]),
         root_safety=float(rated["least_root_safety"][1][0, 0]),
     )
-
-
-def _bodies(built: Ready) -> tuple[float, float, float]:
-    """Mass [kg], inertia at the input [kg m2], and mean backlash at the output [rad] of gears."""
-    if REFLECTED.why_not(built) is None:
-        data = REFLECTED.compute(built, {}, silent)
-        play = float(data["output_backlash"].sel(case="mean"))
-        inertia = float(data["reflected_inertia"].sel(end="input"))
-        return float(data["drive_mass"]), inertia, play
-    data = inspection_part(built.meshes[0])
-    wheel = float(data["disc_inertia"][1]) * built.output_rate**2
-    play = float(data["backlash_angle"].sel(case="mean")[1])
-    return float(data["disc_mass"].sum()), float(data["disc_inertia"][0]) + wheel, play
 
 
 def _strain_waves(task: Task, family: str) -> tuple[list[SizedDrive], int]:

@@ -31,7 +31,16 @@ from pitchpoint.sizing.task import Task
 from pitchpoint.sizing.three_k import mesh_efficiency, three_k_efficiencies
 from pitchpoint.strength.rating import ROWS, ratings
 
-__all__ = ["FIELD", "Form", "Forms", "Sized", "case_of", "formed", "running_tables"]
+__all__ = [
+    "FIELD",
+    "Form",
+    "Forms",
+    "Sized",
+    "case_of",
+    "formed",
+    "gears_as_discs",
+    "running_tables",
+]
 
 Tree = dict[str, Any]
 Values = Float[np.ndarray, " option"]
@@ -184,7 +193,7 @@ class Forms:
         flat = [(k, row) for k, rows in enumerate(self._rows) for row in rows]
         self._of_form = np.array([k for k, _ in flat])
         self._batches = [*_alike([row for _, row in flat])]
-        self.mass = np.array([_mass(form.built) for form in forms])
+        self.mass = np.array([gears_as_discs(form.built)[0] for form in forms])
         self._measure()
 
     def _measure(self) -> None:
@@ -480,8 +489,18 @@ def _thinnest(diameters: np.ndarray) -> np.ndarray:
     return np.array([_thinnest_of(int(um)) for um in values])[back].reshape(diameters.shape)
 
 
-def _mass(built: Ready) -> float:
-    """Mass of all gears of a drive as discs [kg]."""
+def gears_as_discs(built: Ready) -> tuple[float, float, float]:
+    """Mass [kg], inertia at the input [kg m2], and mean backlash at the output [rad] of all gears of a drive.
+
+    Args:
+        built: with fields of thickness and of centre distance.
+    """
     if REFLECTED.why_not(built) is None:
-        return float(REFLECTED.compute(built, {}, silent)["drive_mass"])
-    return float(inspection_part(built.meshes[0])["disc_mass"].sum())
+        data = REFLECTED.compute(built, {}, silent)
+        play = float(data["output_backlash"].sel(case="mean"))
+        inertia = float(data["reflected_inertia"].sel(end="input"))
+        return float(data["drive_mass"]), inertia, play
+    data = inspection_part(built.meshes[0])
+    wheel = float(data["disc_inertia"][1]) * built.output_rate**2
+    play = float(data["backlash_angle"].sel(case="mean")[1])
+    return float(data["disc_mass"].sum()), float(data["disc_inertia"][0]) + wheel, play
