@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.drive.assembly import (
     check_neighbours,
     equal_angles,
@@ -19,7 +19,7 @@ from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.efficiency.train import gear_train
-from pitchpoint.efficiency.train_cycle import train_cycle
+from pitchpoint.efficiency.train_cycle import _least, train_cycle
 from pitchpoint.efficiency.train_summary import _figures, train_figures
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
@@ -298,6 +298,19 @@ def test_planets_fit_in_at_as_many_places_as_are_counted(pairs, places):
         planet_phases(links, ("planet",), np.array([0.0, np.pi / places]))
 
 
+def test_forces_of_the_least_sum_of_squares_are_those_of_numpy():
+    """Two central rows, three planets of which each has two forces of its own, and a place without one."""
+    random = np.random.default_rng(9)
+    arms, wanted = random.normal(size=(6, 8, 4)), random.normal(size=(6, 4))
+    own = np.arange(8) % 4 == np.arange(4)[:, None]
+    arms[2:] *= own[..., None]
+    arms[:, 3::4], wanted[5] = 0.0, 0.0
+    found = jax.jit(_least, static_argnums=2)(arms, wanted, 4)
+    for node in range(4):
+        expected = np.linalg.lstsq(arms[:, :, node], wanted[:, node])[0]
+        np.testing.assert_allclose(found[:, node], expected, rtol=1e-12, atol=1e-12)
+
+
 def test_planets_that_run_into_each_other_are_refused():
     _, links = meshes(24, 30, 84)
     check_neighbours(links, ("planet",), equal_angles(4))
@@ -311,3 +324,5 @@ def test_other_flanks_and_losses_beside_teeth_are_refused():
         gear_train(links, designs, TO_CARRIER)
     with pytest.raises(InputError, match="2 bodies are turned"):
         gear_train(links, designs, Ends({"sun": 1.0, "ring": 0.2}, (), "carrier"))
+    with pytest.raises(InputError, match="planets are neither turned nor loaded nor held"):
+        gear_train(links, designs, Ends({"sun": 1.0}, ("planet",), "carrier"), planets=("planet",))

@@ -95,7 +95,7 @@ class Roles(eqx.Module):
 
     Attributes:
         turned, loaded: among `Train.bodies`.
-        balanced: those in equilibrium, among the same, the loaded one first.
+        balanced: those in equilibrium, among the same, the loaded one first and planets last.
         rows: the same among `Train.rows`, each planet by itself.
     """
 
@@ -240,13 +240,15 @@ def gear_train(
         pull: mass of a planet times the radius on which it goes around [kg m].
 
     Raises:
-        InputError: see `train_torques`; a mesh that would press its other flanks, or has losses of its
-            own, periods of meshes that hardly ever come together again.
+        InputError: see `train_torques`; planets that are turned, loaded or held, a mesh that would press its
+            other flanks, or has losses of its own, periods of meshes that hardly ever come together again.
     """
     demand_double()
     if len(ends.turned) != 1:
         raise InputError(f"{len(ends.turned)} bodies are turned; the state of a train asks for one")
     ((turned, rate),) = ends.turned.items()
+    if {*planets} & {turned, ends.loaded, *ends.held}:
+        raise InputError("planets are neither turned nor loaded nor held; their carrier may be")
     unit = replace(ends, turned={turned: float(np.sign(rate))})
     ideal = train_torques(links, unit, 1.0, [1.0] * len(links))
     meshes = []
@@ -319,7 +321,7 @@ def _roles(
     """What bodies do by their numbers."""
     bodies = sorted({*rates} - {HOUSING})
     free = [body for body in bodies if body not in {turned, ends.loaded, *ends.held}]
-    balanced = [ends.loaded, *free]
+    balanced = [ends.loaded, *sorted(free, key=lambda body: body in planets)]
     rows = _rows(bodies, meshes, planets)
     return Roles(
         array(bodies.index(turned)),
