@@ -349,8 +349,11 @@ def test_tables_and_files_have_units_in_their_heads(tmp_path: Path) -> None:
             {"time": [0, 1], "torque": 1, "speed": 1, "temperature": 40.0},
             "40 K, which are -233.15 degC, .* plain numbers are in K",
         ),
-        ({"duration": [-1, 1], "torque": 1, "speed": 1}, "durations are not negative"),
-        ({"duration": [0, 0], "torque": 1, "speed": 1}, "one at least is above 0"),
+        ({"duration": [-1, 1], "torque": 1, "speed": 1}, "sample 1 lasts -1 s; durations"),
+        (
+            {"duration": [0, 0], "torque": 1, "speed": 1},
+            "every sample lasts 0 s; one at least is above",
+        ),
     ],
 )
 def test_what_is_no_duty_cycle_is_told(columns: dict[str, object], says: str) -> None:
@@ -362,6 +365,37 @@ def test_an_empty_file_is_told_what_its_heads_are(tmp_path: Path) -> None:
     (tmp_path / "empty.csv").write_text(" \n")
     with pytest.raises(InputError, match=r"empty.csv: is empty; .* heads, such as time"):
         read_history(tmp_path / "empty.csv", WARM)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (
+            "time [s],torque [N m],speed\n0,1,0\n1,1,3\n",
+            r"speed: 'speed' has no unit; .* speed \[rpm\]",
+        ),
+        ("time [s],torque [N m],speed\n0,1,1\n1,1\n", "speed: 'speed' has no unit"),
+        (
+            "time [s],torque [N m],speed [rpm]\n0,1,1\n1,,1\n",
+            "torque: sample 2 is nan or empty, no finite number",
+        ),
+        (
+            "time [s],torque [N m],speed [rpm]\n0,1,1\n1,1,1,4\n",
+            "line 3 has 4 values, and there are 3 heads$",
+        ),
+    ],
+)
+def test_a_file_without_units_or_with_ragged_lines_is_told(
+    text: str, says: str, tmp_path: Path
+) -> None:
+    (tmp_path / "cycle.csv").write_text(text)
+    with pytest.raises(InputError, match=f"cycle.csv: .*{says}"):
+        read_history(tmp_path / "cycle.csv", WARM)
+
+
+def test_a_column_of_zeros_needs_no_unit(tmp_path: Path) -> None:
+    (tmp_path / "rest.csv").write_text("duration [s],torque [N m],speed\n2,5,0\n")
+    assert read_history(tmp_path / "rest.csv", WARM).speed.tolist() == [0.0]
 
 
 @pytest.mark.parametrize(

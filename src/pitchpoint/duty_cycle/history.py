@@ -1,5 +1,6 @@
 """Torque, speed and temperature of an output over time."""
 
+import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
@@ -139,8 +140,13 @@ def load_steps(
         [0.5, 2.5]
     """
     lasting = np.atleast_1d(_numbers("duration", duration))
-    if (lasting < 0.0).any() or not lasting.sum() > 0.0:
-        raise InputError("durations are not negative, and one at least is above 0", key="duration")
+    if (lasting < 0.0).any():
+        at = int(np.argmax(lasting < 0.0))
+        raise InputError(
+            f"sample {at + 1} lasts {lasting[at]:.6g} s; durations are not negative", key="duration"
+        )
+    if not lasting.sum() > 0.0:
+        raise InputError("every sample lasts 0 s; one at least is above", key="duration")
     return LoadHistory(
         np.cumsum(lasting) - 0.5 * lasting,
         lasting,
@@ -187,8 +193,9 @@ def read_history(path: Path, temperature: float, *, travels: bool = False) -> Lo
     """The history in a file of comma separated values, with heads as in `history_of_table`.
 
     Args:
-        path: of the file; its first line has the heads. Semicolons and tabs part columns too, and then
-            commas are decimal ones where there is no point.
+        path: of the file; its first line has the heads, each with its unit unless all of the column is 0.
+            Semicolons and tabs part columns too, and then commas are decimal ones where there is no
+            point.
         temperature: where no column has it [K].
         travels: as there.
 
@@ -210,12 +217,35 @@ def read_history(path: Path, temperature: float, *, travels: bool = False) -> Lo
         table = pd.read_csv(
             io.StringIO(text), sep=apart, skipinitialspace=True, decimal="," if comma else "."
         )
+        _demand_units(table, travels)
         return history_of_table(table, temperature, travels=travels)
     except InputError as error:
         raise error.at(file=str(path)) from None
     except ValueError as error:
-        why = str(error).splitlines()[0]
+        why = _parting(str(error).splitlines()[0])
         raise InputError(f"is no table of comma separated values: {why}", file=str(path)) from None
+
+
+def _parting(why: str) -> str:
+    """What a reader of tables complains of, in words of ours where it is the usual."""
+    counts = re.search(r"Expected (\d+) fields in line (\d+), saw (\d+)", why)
+    if counts is None:
+        return why
+    heads, line, values = counts.groups()
+    return f"line {line} has {values} values, and there are {heads} heads"
+
+
+def _demand_units(table: "pd.DataFrame", travels: bool) -> None:
+    """InputError for a column of a file without a unit; a file does not say whether it is in rpm or rad/s."""
+    usual = {"time": "s", "duration": "s", "torque": "N m", "speed": "rpm", "temperature": "degC"}
+    usual |= {"torque": "N", "speed": "m/s"} if travels else {}
+    for head in map(str, table):
+        name = head.strip().lower()
+        if name in usual and (table[head] != 0).any():
+            raise InputError(
+                f"{head!r} has no unit; write it in brackets, such as {name} [{usual[name]}]",
+                key=name,
+            )
 
 
 def _columns(table: "Mapping[str, ArrayLike] | pd.DataFrame", travels: bool) -> dict[str, Floats]:
@@ -269,7 +299,9 @@ def _numbers(name: str, values: Any) -> Floats:
         raise InputError(f"is not made of numbers alone{_first_text(values)}", key=name) from None
     if not np.isfinite(numbers).all():
         at = int(np.argmin(np.isfinite(np.ravel(numbers))))
-        raise InputError(f"sample {at + 1} is {np.ravel(numbers)[at]}, no finite number", key=name)
+        value = np.ravel(numbers)[at]
+        what = "nan or empty" if np.isnan(value) else str(value)
+        raise InputError(f"sample {at + 1} is {what}, no finite number", key=name)
     return numbers
 
 
