@@ -164,6 +164,21 @@ def test_hostile_texts_of_a_result_stay_texts(target: str, tmp_path: Path) -> No
         assert statements(path) == statements(twin), path.name
 
 
+@pytest.mark.parametrize("target", TARGETS)
+def test_a_map_of_other_temperatures_than_operation_is_taken_at_its_nearest(
+    target: str, tmp_path: Path
+) -> None:
+    made = made_joint()
+    made.parts["four_quadrants"].attrs["degree"] = 273.15 + 61.5
+    paths, lost = handed(made, tmp_path, target, ROTOR)
+    told = "of the 61.5 degC of operation: what has one temperature has its nearest, 60 degC"
+    assert told in " ".join(lost)
+    texts = [
+        path.read_text("utf-8") for one in paths for path in unpacked(one) if path.suffix != ".mat"
+    ]
+    assert any(" the 61.5 degC of operation" in re.sub(r"[\s%/*#]+", " ", text) for text in texts)
+
+
 def test_a_unit_that_somebody_made_up_is_refused(tmp_path: Path) -> None:
     made = made_joint()
     made.parts["four_quadrants"]["output_torque"].attrs["units"] = 'N m""" \nimport os'

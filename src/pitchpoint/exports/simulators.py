@@ -153,7 +153,9 @@ def hand_over(
             place = (folder / name if several else folder) / target
             simulated = _simulated(outcome, asked or Asked(), "--" + target.replace("_", "-"))
             make_folder(place)
-            written[f"{name}: {target}" if several else target] = _writer(target)(simulated, place)
+            paths, lost = _writer(target)(simulated, place)
+            lines = [*lost, *wrap(_beside_map(simulated.joint), 78)]
+            written[f"{name}: {target}" if several else target] = HandedOver(paths, lines)
     return written
 
 
@@ -180,16 +182,32 @@ def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
         raise InputError(_OF_OTHERS, key=key)
     load = quantity_of(asked.load, joint.units["torque"], "--load")
     warm = quantity_of(asked.temperature, "K", "--temperature")
+    degrees = joint.table.temperatures
     degree = float(degrees_celsius(np.asarray(joint.temperature if warm is None else warm)))
+    if warm is None:  # a map may be of other temperatures than operation, see `_beside_map`
+        degree = min(max(degree, degrees[0]), degrees[-1])
     for value, axis, of, text in (
         (load or 0.0, joint.table.torques, "--load", asked.load),
-        (degree, joint.table.temperatures, "--temperature", asked.temperature),
+        (degree, degrees, "--temperature", asked.temperature),
     ):
         if not axis[0] <= value <= axis[-1]:
             ends = f"{max(axis[0], 0.0):.6g} to {axis[-1]:.6g}"
             raise InputError(f"{shown(text)} is beyond the map, which goes from {ends}", key=of)
     within = part_of_map(joint, asked.torque_range, asked.speed_range, warm)
     return Simulated(outcome, joint, joint.load if load is None else load, degree, within)
+
+
+def _beside_map(joint: JointModel) -> str:
+    """A sentence where the map has nothing of the temperature of operation."""
+    coldest, hottest = joint.table.temperatures[0], joint.table.temperatures[-1]
+    degree = float(degrees_celsius(np.asarray(joint.temperature)))
+    if coldest <= degree <= hottest:
+        return ""
+    edge = coldest if degree < coldest else hottest
+    return (
+        f"The map has nothing of the {degree:.4g} degC of operation: what has one temperature has its "
+        f"nearest, {edge:.4g} degC, unless --temperature says another."
+    )
 
 
 def heading(given: Simulated, what: str) -> Iterator[str]:
@@ -208,7 +226,7 @@ def heading(given: Simulated, what: str) -> Iterator[str]:
     yield inert(
         f"The loss map goes to {joint.limits['largest_torque']:.6g} {unit['torque']} and "
         f"{joint.limits['largest_speed']:.6g} {unit['speed']} of the output, and from "
-        f"{joint.table.temperatures[0]:g} to {joint.table.temperatures[-1]:g} degC."
+        f"{joint.table.temperatures[0]:g} to {joint.table.temperatures[-1]:g} degC. {_beside_map(joint)}"
     )
     if joint.part_limits:
         yield (
