@@ -1,9 +1,11 @@
-"""Exports the joint of every example and family: `python tests/long/every_export.py FOLDER [NAME ...]`.
+"""Exports the joint of every example, published case and family.
+
+    python tests/long/every_export.py FOLDER [NAME ...]
 
 Results with a small loss map in four quadrants, and with all else that a joint has, are kept in FOLDER, one
-folder a case; what is there is not computed again. Each is handed over to every simulator, as an evaluator
-and as tables. An error is told, more than two seconds, and a program that is compiled; status 1 if there is
-any. Seconds of each export stand behind its name.
+folder a case, of its first variant; what is there is not computed again. Each is handed over to every
+simulator, as an evaluator and as tables. An error is told, more than two seconds, and a program that is
+compiled; status 1 if there is any. Seconds of each export stand behind its name.
 """
 
 import sys
@@ -16,11 +18,13 @@ import jax.monitoring
 
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.cases import library
 from pitchpoint.errors import PitchpointError
 from pitchpoint.exports.files import EVALUATOR, export
 from pitchpoint.exports.simulators import TARGETS, Asked, hand_over
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.tables import tag
+from pitchpoint.runs.case import held
 from pitchpoint.runs.run import Outcome, load_case, open_result, run
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -41,10 +45,11 @@ FORMATS = (EVALUATOR, "csv", "mat")
 
 
 def cases() -> dict[str, str]:
-    """Examples by name of their file, and the sample of each family."""
+    """Examples by name of their file, published cases, and the sample of each family."""
     files = sorted(EXAMPLES.glob("*.toml"))
     samples = {f"sample of {tag(table)}": str(sample_of(table)) for table in TABLES}
-    return {file.stem: str(file) for file in files} | samples
+    published = {name: name for name in library.names()}
+    return {file.stem: str(file) for file in files} | published | samples
 
 
 def computed(case: str, folder: Path) -> dict[str, Outcome]:
@@ -52,7 +57,8 @@ def computed(case: str, folder: Path) -> dict[str, Outcome]:
     if not (folder / "run.json").exists():
         built = load_case(case, settings=ASKED)
         parts = [name for name in PARTS if ANALYSES[name].why_not(built) is None]
-        run(case, folder=folder, settings=ASKED, analyses=parts)
+        first = held(case, [], ASKED)[0].variant
+        run(case, folder=folder, only=[first], settings=ASKED, analyses=parts)
     return open_result(folder)
 
 
