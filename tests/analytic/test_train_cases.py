@@ -761,6 +761,10 @@ def test_stiffness_at_the_output_is_that_of_the_springs_of_all_planets():
             {"gears.planets": 6},
             r"run into each other: 27 mm apart, and their tip circles measure 32",
         ),
+        (
+            {"gears.teeth": [24, 30, 85]},
+            r"runs with gears.teeth = \[24, 30, 84\] \(ratio 4.5, here 4.54",
+        ),
         ({"gears.planets": 0}, r"gears.planets: 0 is out of range; allowed is 1 to 24"),
         ({"gears.planets": 1.5}, r"gears.planets: 1.5 is not a whole number; allowed is 1 to 24"),
         ({"gears.planets": 100}, r"gears.planets: 100 is out of range; allowed is 1 to 24"),

@@ -259,9 +259,11 @@ def test_teeth_that_do_not_bear_their_stress_stand_first(pair_file: Path) -> Non
     )
     assert second.startswith("Fails: the flanks of gear 2 have ")
     both = told(strength_of(pair_file, {"operation.torque": "9000 N m"}))
-    assert [text.split(" have ")[0] for text in both] == [
+    assert {text.split(" have ")[0] for text in both} == {
         f"Fails: the {part} of gear {gear}" for gear in (1, 2) for part in ("flanks", "roots")
-    ]
+    }
+    safeties = [float(text.split("(safety ")[1].split(")")[0]) for text in both]
+    assert safeties == sorted(safeties)
     assert all(text.endswith("sooner or later.") for text in both)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 from math import nan
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -306,9 +307,12 @@ def _remarks(built: Built) -> Iterator[str]:
         yield _SHAFT
 
 
-def _failing(built: Built, found: Numbers) -> Iterator[str]:
-    """Which teeth do not bear their stress."""
+def _failing(built: Built, found: Numbers) -> list[str]:
+    """Which teeth do not bear their stress, the least safety first."""
     endless = built.case.strength is None or built.case.strength.life is None
+    by_safety: list[tuple[float, str]] = []
+    shared = float(built.rated.table.mesh_load_factor or 1.0)
+    uneven = f", K_γ {shared:.3g}" if shared > max(MESH_LOAD.values()) else ""
     for at, gear in enumerate(("gear 1", "gear 2")):
         for part, (safety, stress, limit, how) in _PARTS.items():
             reached = float(found[safety][at])
@@ -318,11 +322,14 @@ def _failing(built: Built, found: Numbers) -> Iterator[str]:
                     cycles = float(found["root_cycles"][at])
                     when = when if np.isnan(cycles) else f"within {cycles:g} load cycles"
                 bears, has = (found[name][at] / 1e6 for name in (limit, stress))
-                yield fails(
+                reaches = f"safety {reached:.3g}{uneven}"
+                sentence = fails(
                     f"the {part} of {gear} have a stress of {has:.4g} MPa, of which {bears:.4g} MPa are "
-                    f"permissible (safety {reached:.3g}): they {how} {when}.",
-                    f"{part} of {gear} {how} {when}, safety {reached:.3g}.",
+                    f"permissible ({reaches}): they {how} {when}.",
+                    f"{part} of {gear} {how} {when}, {reaches}.",
                 )
+                by_safety.append((reached, sentence))
+    return [sentence for _, sentence in sorted(by_safety, key=itemgetter(0))]
 
 
 def _doubts(built: Built, found: Numbers) -> Iterator[str]:

@@ -29,7 +29,7 @@ MOST_OFF = {3: 5, 4: 4, 5: 3}
 MOST_TRIED = 8
 
 OF_TOOTH, OF_DISTANCE = 0.003, 0.05
-"""What a tooth more, and a module of distance between two meshes of a planet, count beside the ratio."""
+"""What a tooth more, and a module more of distance between two meshes of a planet, count beside the ratio."""
 
 
 def with_fitting(error: InputError, case: DriveCase, ratio: float, attempt: Attempt) -> InputError:
@@ -168,7 +168,8 @@ def _nearest_teeth(case: DriveCase, ratio: float) -> Iterator[Cure]:
     )
     apart = (distances - distances[0]) / gears.modules[0] / 2.0
     now = apart[:, np.flatnonzero((off == 0).all(axis=0))]
-    cost = OF_TOOTH * np.abs(off).sum(axis=0) + OF_DISTANCE * np.abs(apart - now).sum(axis=0)
+    farther = np.maximum(np.abs(apart) - np.abs(now), 0.0)
+    cost = OF_TOOTH * np.abs(off).sum(axis=0) + OF_DISTANCE * farther.sum(axis=0)
     if (ratios := gears.ratios(teeth, train)) is not None:
         with np.errstate(divide="ignore", invalid="ignore"):
             cost = cost + np.abs(np.log(ratios / ratio))
