@@ -735,8 +735,8 @@ def test_a_joint_is_handed_over_with_what_is_lost_on_the_screen(
             ("--law", "xu_2006"),
             '"xu_2006" is not a friction law of this result; did you mean xu_2007?',
         ),
-        (("--load", "900 N m"), '"900 N m" is beyond the map, which goes from 0 to 75'),
-        (("--temperature", "5 degC"), '"5 degC" is beyond the map, which goes from 40 to 60'),
+        (("--load", "900 N m"), '"900 N m" is beyond the map, which goes from 0 to 75 N m'),
+        (("--temperature", "5 degC"), '"5 degC" is beyond the map, which goes from 40 to 60 degC'),
         (("--rotor-inertia", "3 mm"), '"3 mm" is a length, but a moment of inertia is needed'),
         (("--speed-range", "9 rpm"), '"9 rpm" is no range'),
     ],
@@ -750,8 +750,15 @@ def test_wishes_that_a_joint_cannot_fulfil(
 ) -> None:
     assert command("export", folder, "--mujoco", "-o", tmp_path, *wishes) == 2
     found = " ".join(capsys.readouterr().err.split())
-    assert told in found and wishes[0].removeprefix("--").replace("-", "_") in found.replace(
-        "-", "_"
+    assert f"error: {wishes[0]}: {told}" in found
+
+
+def test_an_export_of_nothing_names_simulators_too(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command("export", folder) == 2
+    assert "--evaluator, --mujoco, --urdf, --ros2-control" in capsys.readouterr().err.replace(
+        "\n", " "
     )
 
 

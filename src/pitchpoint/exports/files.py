@@ -13,6 +13,7 @@ import xarray as xr
 
 from pitchpoint.errors import InputError, visible
 from pitchpoint.exports.evaluator import evaluator
+from pitchpoint.exports.simulators import TARGETS
 from pitchpoint.exports.tables import Sheet, exported, sheets
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import make_folder, without_nan, write_bytes, write_text
@@ -75,7 +76,8 @@ def _exported(
     outcomes: Mapping[str, Outcome], folder: Path, formats: list[str], *, si: bool
 ) -> list[Path]:
     if not formats:
-        options = ", ".join(f"--{name}" for name in (*FORMATS, EVALUATOR))
+        names = (*FORMATS, EVALUATOR, *TARGETS)
+        options = ", ".join("--" + name.replace("_", "-") for name in names)
         raise InputError(f"no format was given; give one or several of {options}")
     written: list[Path] = []
     for name, outcome in outcomes.items():

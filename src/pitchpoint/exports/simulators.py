@@ -171,12 +171,16 @@ _UNITS = {"N m", "N", "rad/s", "m/s"}
 """Units of a loss map, which stand in sources as they are."""
 
 
+_OPTIONS = {"law": "--law", "rotor_inertia": "--rotor-inertia"}
+"""Where somebody gave what a joint is asked for, by the name that it has in Python."""
+
+
 def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
     try:
         joint = joint_model(outcome, law=asked.law, rotor_inertia=asked.rotor_inertia)
     except (AttributeError, LookupError, TypeError, ValueError) as error:
         if isinstance(error, InputError):
-            raise (error if error.key else error.at(key=key)) from None
+            raise error.at(key=_OPTIONS.get(error.key or "", error.key or key)) from None
         raise InputError(_OF_OTHERS, key=key) from None
     if not {*joint.table.units} <= _UNITS:
         raise InputError(_OF_OTHERS, key=key)
@@ -186,12 +190,12 @@ def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
     degree = float(degrees_celsius(np.asarray(joint.temperature if warm is None else warm)))
     if warm is None:  # a map may be of other temperatures than operation, see `_beside_map`
         degree = min(max(degree, degrees[0]), degrees[-1])
-    for value, axis, of, text in (
-        (load or 0.0, joint.table.torques, "--load", asked.load),
-        (degree, degrees, "--temperature", asked.temperature),
+    for value, axis, of, text, unit in (
+        (load or 0.0, joint.table.torques, "--load", asked.load, joint.units["torque"]),
+        (degree, degrees, "--temperature", asked.temperature, "degC"),
     ):
         if not axis[0] <= value <= axis[-1]:
-            ends = f"{max(axis[0], 0.0):.6g} to {axis[-1]:.6g}"
+            ends = f"{max(axis[0], 0.0):.6g} to {axis[-1]:.6g} {unit}"
             raise InputError(f"{shown(text)} is beyond the map, which goes from {ends}", key=of)
     within = part_of_map(joint, asked.torque_range, asked.speed_range, warm)
     return Simulated(outcome, joint, joint.load if load is None else load, degree, within)
