@@ -149,6 +149,8 @@ def test_temperatures_of_two_bodies_follow_their_equations() -> None:
     stepped = solve_ivp(rates, (0.0, 7200.0), start, method="DOP853", rtol=1e-11, atol=1e-9)
     course = NETWORK.course(start, np.full(72, 100.0), np.tile(heat, (72, 1)))
     np.testing.assert_allclose(course[-1], stepped.y[:, -1], rtol=1e-9)
+    from_cold = NETWORK.course(np.full(2, 293.15), np.array([7200.0]), heat[None])
+    np.testing.assert_allclose(from_cold[-1] - 293.15, [40.307, 31.317], atol=5e-4)
     # Steps of any length: what decays below the last bit, and what hardly decays.
     uneven = np.array([1e-3, 6e6, 7200.0 - 1e-3])
     again = NETWORK.course(start, uneven, np.array([heat, [0.0, 0.0], heat]))
