@@ -132,7 +132,7 @@ OF_THE_SITE = ("{toctree}", "{cards}", "{teeth}")
 
 def test_every_block_is_known() -> None:
     kinds = re.findall(r"^```([^`\s]+)$", "\n".join(PAGES.values()), re.MULTILINE)
-    assert set(kinds) <= {"sh", "toml", "python", *OF_THE_SITE}
+    assert set(kinds) <= {"sh", "toml", "python", "text", *OF_THE_SITE}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
     assert sum(len(blocks(page, "toml")) for page in PAGES) == 30
