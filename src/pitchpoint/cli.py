@@ -1090,6 +1090,12 @@ def size(
     material: Annotated[str | None, typer.Option(help="Of gears; case-hardened-mq.")] = None,
     flank_safety: Annotated[str | None, typer.Option(help="Least one; 1.2 unless given.")] = None,
     root_safety: Annotated[str | None, typer.Option(help="Least one; 1.5 unless given.")] = None,
+    application_factor: Annotated[
+        str | None, typer.Option(help="K_A of the rating of teeth; 1 unless given.")
+    ] = None,
+    face_load_factor: Annotated[
+        str | None, typer.Option(help="K_Hβ of the rating of teeth; 1 unless given.")
+    ] = None,
     slenderness: Annotated[
         str | None,
         typer.Option(help="Largest face width over the pinion's diameter; 1.2 unless given."),
@@ -1124,6 +1130,8 @@ def size(
         "material": material,
         "flank_safety": flank_safety,
         "root_safety": root_safety,
+        "application_factor": application_factor,
+        "face_load_factor": face_load_factor,
         "slenderness": slenderness,
         "aims": aims,
         "lubricant": lubricant,

@@ -82,6 +82,20 @@ def test_a_case_that_runs_says_the_same(sizing: Sizing, family: str) -> None:
     assert design.loss == pytest.approx(loss, rel=LOSS)
 
 
+def test_load_factors_are_in_the_rating_and_in_the_cases() -> None:
+    light = {"torque": "5 N m", "ratio": 4.0, "speed": "100 rpm", "life": "1000 h"}
+    factors = {"application_factor": 1.25, "face_load_factor": 1.3}
+    sizing = size(**light, families="one stage", **factors)
+    design = sizing.designs[sizing.best["mass"]]
+    assert design.tree["strength"] == {"life": "1000 h", **factors}
+    data = run(tomllib.loads(design.case), analyses=("strength",))["default"].parts["strength"]
+    assert float(data["least_flank_safety"]) == pytest.approx(design.flank_safety, rel=1e-9)
+    assert float(data["least_root_safety"]) == pytest.approx(design.root_safety, rel=1e-9)
+    assert design.flank_safety >= 1.2 and design.root_safety >= 1.5
+    text = " ".join(line.text for line in sizing_screen(sizing, 80))
+    assert "K_A is 1.25 and K_Hβ 1.3." in text
+
+
 def test_the_screen_answers_in_eighty_columns(sizing: Sizing) -> None:
     lines = [line.text for line in sizing_screen(sizing, 80)]
     assert lines[0].startswith("Drives for 60 N m at 30 rpm for 5000 h, ratio 60 within 3 %")

@@ -36,6 +36,7 @@ def test_a_task_is_read_in_si_and_families_keep_their_order():
         ("torque", "0 N m", "allowed is above 0 N m"),
         ("speed", "30", "has no unit where a rotational speed is needed"),
         ("life", "5000 rpm", "is a rotational speed, but a time is needed"),
+        ("application_factor", 0.9, "0.9 is out of range; allowed is 1 to 10"),
         ("families", "cycloid", "is no family that is sized; known are one stage"),
         ("families", "", "names none"),
         ("aims", "price", "is no aim; known are mass, loss, diameter and backlash"),

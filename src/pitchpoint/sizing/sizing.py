@@ -186,6 +186,8 @@ def size(
     material: str | None = None,
     flank_safety: float | None = None,
     root_safety: float | None = None,
+    application_factor: float | None = None,
+    face_load_factor: float | None = None,
     slenderness: float | None = None,
     aims: str | Sequence[str] | None = None,
     lubricant: str | None = None,
@@ -204,6 +206,7 @@ def size(
         families: those that are tried, all of `SIZED_FAMILIES` unless given.
         material: of all gears, "case-hardened-mq" unless given.
         flank_safety, root_safety: least ones, 1.2 and 1.5 unless given.
+        application_factor, face_load_factor: K_A and K_Hbeta by which teeth are rated, 1 unless given.
         slenderness: largest face width over the diameter of the pinion or sun, 1.2 unless given.
         aims: what counts, some of mass, loss, diameter and backlash, all unless given.
         lubricant: "pao-vg-150" unless given.
@@ -215,10 +218,11 @@ def size(
     Raises:
         InputError: a value that is wrong; no design does it, with what stands against it and by how much.
 
-    Validity: spur and helical teeth, planetary, stepped and 3K sets are rated by ISO 6336-2 and -3 with K_A =
-    K_Halpha = K_Hbeta = 1 and K_v by method C, planets with their mesh load factor; losses are those of teeth
-    by ISO/TR 14179-2. Shafts, bearings, seals, oil that is churned, housings and carriers are in nothing.
-    Strain wave gears have the proportions and the rating of a catalogue, and no rated teeth.
+    Validity: spur and helical teeth, planetary, stepped and 3K sets are rated by ISO 6336-2 and -3 with K_A
+    and K_Hbeta as given, K_Halpha = 1 and K_v by method C, planets with their mesh load factor; losses are
+    those of teeth by ISO/TR 14179-2. Shafts, bearings, seals, oil that is churned, housings and carriers
+    are in nothing. Strain wave gears have the proportions and the rating of a catalogue, and no rated
+    teeth.
 
     Example:
         >>> from pitchpoint.sizing.sizing import size

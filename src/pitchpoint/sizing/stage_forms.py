@@ -109,10 +109,16 @@ def case_of(task: Task, stages: Sequence[Tree], torque: float, speed: float) -> 
     return {
         **gears,
         "materials": {"gear_1": task.material, "gear_2": task.material},
-        "strength": {"life": f"{task.life / 3600.0:.12g} h"},
+        "strength": {"life": f"{task.life / 3600.0:.12g} h", **_load_factors(task)},
         **running_tables(task, torque, speed),
         "models": {"friction": "iso_tr_14179_2"},
     }
+
+
+def _load_factors(task: Task) -> Tree:
+    """Keys of [strength] for the load factors of a task that are not 1."""
+    factors = {name: getattr(task, name) for name in ("application_factor", "face_load_factor")}
+    return {name: value for name, value in factors.items() if value != 1.0}
 
 
 def running_tables(task: Task, torque: float, speed: float) -> Tree:

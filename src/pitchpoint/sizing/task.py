@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
-from pitchpoint.cases.schema import LIFE, LOADED, SPEED, TEMPERATURE
+from pitchpoint.cases.schema import LIFE, LOAD_FACTOR, LOADED, SPEED, TEMPERATURE
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.table import DISTANCE
 from pitchpoint.input.quantities import Quantity, shown
@@ -50,6 +50,7 @@ class Task:
         families: of `SIZED_FAMILIES`.
         material: of all gears but those of strain wave gears.
         flank_safety, root_safety: least ones by ISO 6336.
+        application_factor, face_load_factor: K_A and K_Hbeta of that rating.
         slenderness: largest face width over the reference diameter of the pinion or sun.
         aims: of `AIMS`, what counts.
         lubricant: by name.
@@ -68,6 +69,8 @@ class Task:
     material: str = "case-hardened-mq"
     flank_safety: float = 1.2
     root_safety: float = 1.5
+    application_factor: float = 1.0
+    face_load_factor: float = 1.0
     slenderness: float = 1.2
     aims: tuple[str, ...] = AIMS
     lubricant: str = "pao-vg-150"
@@ -181,6 +184,8 @@ _READ: dict[str, Callable[[Any], Any]] = {
     "material": _steel,
     "flank_safety": SAFETY.read,
     "root_safety": SAFETY.read,
+    "application_factor": LOAD_FACTOR.read,
+    "face_load_factor": LOAD_FACTOR.read,
     "slenderness": SLENDER.read,
     "aims": _names(AIMS, "aim"),
     "lubricant": _oil,

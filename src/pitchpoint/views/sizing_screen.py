@@ -23,12 +23,10 @@ _WORDS = {
     "balanced": "balanced",
 }
 
-_LEFT_OUT = (
-    "Shafts, bearings, seals, churned oil, housings and carriers are in no figure; K_A, K_Hα and K_Hβ "
-    "are 1."
-)
+_LEFT_OUT = "Shafts, bearings, seals, churned oil, housings and carriers are in no figure"
 _OF_TEETH = (
-    f"Losses are those of teeth by ISO/TR 14179-2; laws differ by {in_percent(GUESSED)} or so."
+    f"Losses are those of teeth by ISO/TR 14179-2; laws differ by {in_percent(GUESSED)} or so, and films "
+    "thinner than the roughness may more than double them."
 )
 _OF_STRAIN_WAVES = (
     "Strain wave gears go by a maker's rating, with bearing and grease in their loss; they count as free of "
@@ -112,9 +110,10 @@ def _row(first: str, design: SizedDrive) -> dict[str, str]:
 
 def _doubts(sizing: Sizing) -> Iterator[str]:
     families = {design.family for design in sizing.designs.values()}
-    if families - {"strain wave"}:
-        yield _OF_TEETH
-    yield _LEFT_OUT
+    factors = sizing.task.application_factor, sizing.task.face_load_factor
+    on_factors = "K_A is {:.6g} and K_Hβ {:.6g}.".format(*factors)
+    of_teeth = f"{_OF_TEETH} " if families - {"strain wave"} else ""
+    yield f"{of_teeth}{_LEFT_OUT}; {on_factors}"
     if "strain wave" in families:
         yield _OF_STRAIN_WAVES
 
