@@ -431,7 +431,7 @@ def boundary_warning(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarra
         "boundary",
         times,
         moves=times - 1.0,
-        brief=f"film down to {thinnest:.2g} Rq, loss up to {times:.2g} times",
+        brief=f"loss up to {times:.2g} times, film down to {thinnest:.2g} Rq",
     )
     return told_of_law(law, [doubt]) if times > 1.0 else []
 
@@ -493,7 +493,7 @@ def friction_beyond(
                 f"its friction up to {highest:.2g} is an extrapolation; the film is down to {thinnest:.2g} "
                 "of the composite roughness Rq, and the law describes contacts with a full film",
                 moves=GUESSED,
-                brief=f"film down to {thinnest:.2g} Rq, friction extrapolated",
+                brief=f"friction extrapolated, film down to {thinnest:.2g} Rq",
             )
         )
     elif highest > law.largest:
