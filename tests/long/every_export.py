@@ -32,6 +32,8 @@ MOST_SECONDS = 2.0
 COMPILED = "/jax/core/compile/backend_compile_duration"
 ASKED = {"loss_map.quadrants": 4, "loss_map.count": 5}
 PARTS = [
+    "cycle",
+    "train_period",
     "operation",
     "inspection",
     "load_limits",

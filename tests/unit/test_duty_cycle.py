@@ -377,6 +377,11 @@ def test_an_empty_file_is_told_what_its_heads_are(tmp_path: Path) -> None:
             r"speed: 'speed' has no unit; .* speed \[rpm\]",
         ),
         ("time [s],torque [N m],speed\n0,1,1\n1,1\n", "speed: 'speed' has no unit"),
+        ("duration [s],torque [N m],speed []\n1,5,10\n", r"speed: 'speed \[\]' has no unit"),
+        (
+            "duration [s],torque [N m],speed [rpm]\n1,5,10,30\n2,6,20,40\n",
+            "has lines of more values than heads, 3$",
+        ),
         (
             "time [s],torque [N m],speed [rpm]\n0,1,1\n1,,1\n",
             "torque: sample 2 is nan or empty, no finite number",

@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 import xarray as xr
+from documentation import ROOT
 from made_joints import RATIO, error, locking, made_joint, plain, rippling, strengths, torsion
 
+from pitchpoint.cases.built_drive import MEETINGS
 from pitchpoint.errors import InputError
-from pitchpoint.results.by_stage import by_stage
+from pitchpoint.results.by_stage import by_stage, of_stage
 from pitchpoint.runs.joint_model import joint_model, part_of_map
+from pitchpoint.runs.run import run
 
 
 def test_torques_are_those_of_the_map_in_all_quadrants() -> None:
@@ -93,15 +96,43 @@ def test_friction_of_a_set_behind_a_pair_ripples_over_the_period_of_the_set() ->
         "train_period": by_stage({2: of_set}),
     }
     made = made_joint(more=rippling() | parts)
-    each = {"bodies": "", "period": turn / 40.0}
+    made.manifest["averaging"] = MEETINGS
     made.manifest["stages"] = [
-        {**each, "number": number, "speed": speed}
-        for number, speed in ((1, 100.0), (2, -20.0), ("2 (sun and planet)", -15.0))
+        {"number": number, "bodies": bodies, "speed": speed, "period": turn / 40.0}
+        for number, bodies, speed in (
+            (1, "", 100.0),
+            (2, "planetary set", -20.0),
+            ("2 (sun and planet)", "sun and planet", -15.0),
+        )
     ]
     waves = joint_model(made).friction_waves
     assert waves is not None
     assert waves.order == pytest.approx([2.0, 4.0, 40.0, 80.0])
     assert waves.amplitude == pytest.approx([0.3, 0.1, 0.3, 0.1], rel=1e-6)
+    del made.parts["train_period"]
+    assert joint_model(made).friction_waves is None
+
+
+@pytest.mark.whole
+def test_friction_of_sets_in_a_row_ripples_over_the_period_of_each() -> None:
+    """From the record of a run: orders are those of the periods of a set in a turn of the first sun."""
+    settings = {"loss_map.quadrants": 4}
+    parts = ("operation", "train_period", "four_quadrants")
+    drive = run(ROOT / "examples" / "two_planetary_sets.toml", analyses=parts, settings=settings)
+    (outcome,) = drive.values()
+    waves = joint_model(outcome).friction_waves
+    assert waves is not None
+    data, stages = outcome.parts["train_period"], outcome.manifest["stages"]
+    speeds = {stage["number"]: abs(float(stage["speed"])) for stage in stages}
+    lowest = [
+        2.0 * np.pi / of_stage(data, number).attrs["driver_period"] * speeds[number] / speeds[1]
+        for number in (1, 2)
+    ]
+    over = waves.order[:, None] / np.array(lowest)
+    assert np.all(np.any(np.abs(over - np.round(over)) < 1e-9, axis=1))
+    assert {*np.argmin(np.abs(over - np.round(over)), axis=1).tolist()} == {0, 1}
+    del outcome.parts["train_period"]
+    assert joint_model(outcome).friction_waves is None
 
 
 def test_inertia_is_that_at_the_output_with_the_rotor_by_value() -> None:

@@ -1,6 +1,7 @@
 """Torque, speed and temperature of an output over time."""
 
 import re
+import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
@@ -202,21 +203,12 @@ def read_history(path: Path, temperature: float, *, travels: bool = False) -> Lo
     Raises:
         InputError: there is no such file, it is no table of numbers, and as `history_of_table`.
     """
-    import io
-
-    import pandas as pd
-
     text = content(path, LARGEST).decode("utf-8-sig", "replace")
     if not text.strip():
         heads = "time [s], torque [N m], speed [rpm]"
         raise InputError(f"is empty; its first line has heads, such as {heads}", file=str(path))
-    heads_line = text.partition("\n")[0]
-    apart = max(",;\t", key=heads_line.count)
-    comma = apart != "," and "." not in text
     try:
-        table = pd.read_csv(
-            io.StringIO(text), sep=apart, skipinitialspace=True, decimal="," if comma else "."
-        )
+        table = _table_of(text)
         _demand_units(table, travels)
         return history_of_table(table, temperature, travels=travels)
     except InputError as error:
@@ -224,6 +216,30 @@ def read_history(path: Path, temperature: float, *, travels: bool = False) -> Lo
     except ValueError as error:
         why = _parting(str(error).splitlines()[0])
         raise InputError(f"is no table of comma separated values: {why}", file=str(path)) from None
+
+
+def _table_of(text: str) -> "pd.DataFrame":
+    """The table that a file has in its text; ValueError where it is none."""
+    import io
+
+    import pandas as pd
+
+    heads = text.partition("\n")[0]
+    apart = max(",;\t", key=heads.count)
+    comma = apart != "," and "." not in text
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", pd.errors.ParserWarning)
+        try:
+            return pd.read_csv(
+                io.StringIO(text),
+                sep=apart,
+                skipinitialspace=True,
+                decimal="," if comma else ".",
+                index_col=False,  # or longer lines have their first value as a name
+            )
+        except pd.errors.ParserWarning:
+            count = heads.count(apart) + 1
+            raise InputError(f"has lines of more values than heads, {count}") from None
 
 
 def _parting(why: str) -> str:
@@ -240,8 +256,9 @@ def _demand_units(table: "pd.DataFrame", travels: bool) -> None:
     usual = {"time": "s", "duration": "s", "torque": "N m", "speed": "rpm", "temperature": "degC"}
     usual |= {"torque": "N", "speed": "m/s"} if travels else {}
     for head in map(str, table):
-        name = head.strip().lower()
-        if name in usual and (table[head] != 0).any():
+        name, _, unit = (part.strip().lower() for part in head.partition("["))
+        nothing = name != "temperature" and (table[head] == 0).all()
+        if name in usual and not unit.strip("] ") and not nothing:
             raise InputError(
                 f"{head!r} has no unit; write it in brackets, such as {name} [{usual[name]}]",
                 key=name,

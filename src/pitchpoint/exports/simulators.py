@@ -154,7 +154,7 @@ def hand_over(
             simulated = _simulated(outcome, asked or Asked(), "--" + target.replace("_", "-"))
             make_folder(place)
             paths, lost = _writer(target)(simulated, place)
-            lines = [*lost, *wrap(_beside_map(simulated.joint), 78)]
+            lines = [*lost, *wrap(_beside_map(simulated), 78)]
             written[f"{name}: {target}" if several else target] = HandedOver(paths, lines)
     return written
 
@@ -201,13 +201,13 @@ def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
     return Simulated(outcome, joint, joint.load if load is None else load, degree, within)
 
 
-def _beside_map(joint: JointModel) -> str:
-    """A sentence where the map has nothing of the temperature of operation."""
-    coldest, hottest = joint.table.temperatures[0], joint.table.temperatures[-1]
-    degree = float(degrees_celsius(np.asarray(joint.temperature)))
-    if coldest <= degree <= hottest:
+def _beside_map(given: Simulated) -> str:
+    """A sentence where the nearest of the map stands for the temperature of operation."""
+    coldest, hottest = given.joint.table.temperatures[0], given.joint.table.temperatures[-1]
+    degree = float(degrees_celsius(np.asarray(given.joint.temperature)))
+    edge = min(max(degree, coldest), hottest)
+    if edge == degree or given.temperature != edge:
         return ""
-    edge = coldest if degree < coldest else hottest
     return (
         f"The map has nothing of the {degree:.4g} degC of operation: what has one temperature has its "
         f"nearest, {edge:.4g} degC, unless --temperature says another."
@@ -230,7 +230,7 @@ def heading(given: Simulated, what: str) -> Iterator[str]:
     yield inert(
         f"The loss map goes to {joint.limits['largest_torque']:.6g} {unit['torque']} and "
         f"{joint.limits['largest_speed']:.6g} {unit['speed']} of the output, and from "
-        f"{joint.table.temperatures[0]:g} to {joint.table.temperatures[-1]:g} degC. {_beside_map(joint)}"
+        f"{joint.table.temperatures[0]:g} to {joint.table.temperatures[-1]:g} degC. {_beside_map(given)}"
     )
     if joint.part_limits:
         yield (

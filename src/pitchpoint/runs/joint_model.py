@@ -1,7 +1,7 @@
 """A drive as a joint of a robot: what a simulator has to know of it, at its output, from a result alone."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -11,6 +11,7 @@ import xarray as xr
 from pitchpoint import units
 from pitchpoint.analyses.four_quadrants import table_of
 from pitchpoint.analyses.registry import FOUR_QUADRANTS
+from pitchpoint.cases.built_drive import TRAIN_PERIOD
 from pitchpoint.duty_cycle.history import demand_kelvins
 from pitchpoint.efficiency.friction_fit import (
     FrictionFit,
@@ -666,7 +667,7 @@ def _friction_waves(_: xr.Dataset, outcome: Outcome, law: str, load: float) -> A
         return None
     mean = float(point["mean_input_torque"].sel(law=law).values.ravel()[0])
     lost = mean - load / abs(_ratio(record))
-    each = [*_torque_cycles(outcome, law)]
+    each = _torque_cycles(outcome, law)
     if not each or not lost > LEAST_WAVE**2 * mean:
         return None
     rows = np.concatenate([_harmonics(*one) for one in each])
@@ -682,29 +683,28 @@ def _friction_waves(_: xr.Dataset, outcome: Outcome, law: str, load: float) -> A
 
 def _torque_cycles(
     outcome: Outcome, law: str
-) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, float]]:
+) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, float]]:
     """Torque of a driver over the phase of a cycle, weights, and cycles in a turn of the driver of all.
 
-    Of stages each one's own, of a set over the period of its meshes: their phases meet freely.
+    Of stages each one's own, of a set over the period of its meshes: their phases meet freely. None at all
+    where that of one stage is not known.
     """
-    record, parts = (
-        outcome.manifest,
-        (outcome.parts.get(name) for name in ("train_period", "cycle")),
-    )
-    there = [data for data in parts if data is not None]
-    stages = [
-        one for one in record["stages"] if isinstance(one["number"], int) and not one["bodies"]
-    ]
-    if not stages:
-        yield _torque_cycle(there[0], record, law)
-        return
-    first = abs(float(stages[0]["speed"]))
+    record, parts = outcome.manifest, outcome.parts
+    cycles = {name: parts[name] for name in ("train_period", "cycle") if name in parts}
+    alone = record.get("averaging") == TRAIN_PERIOD
+    stages = [stage for stage in record["stages"] if isinstance(stage["number"], int)]
+    if alone or not stages:
+        data = cycles.get("train_period" if alone else "cycle")
+        return [] if data is None else [_torque_cycle(data, record, law)]
+    of_stages = []
     for stage in stages:
-        data = next(
-            of_stage(one, number) for one in there if (number := stage["number"]) in stages_of(one)
-        )
+        number, part = stage["number"], abs(float(stage["speed"]) / float(stages[0]["speed"]))
+        data = next((of_stage(d, number) for d in cycles.values() if number in stages_of(d)), None)
+        if data is None:
+            return []
         torque, phase, weight, turns = _torque_cycle(data, stage, law)
-        yield torque, phase, weight, turns * abs(float(stage["speed"])) / first
+        of_stages.append((torque, phase, weight, turns * part))
+    return of_stages
 
 
 def _torque_cycle(

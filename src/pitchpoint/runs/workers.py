@@ -270,9 +270,7 @@ def _of_worker(failure: BaseException, designs: str) -> BaseException:
         return PitchpointError(f"a worker that computed {designs} failed: {failure}; {GOES_ON}")
     # Another version has no such function, or one that takes other arguments.
     called = any(name in str(failure) for name in ("pitchpoint", piece_elsewhere.__name__))
-    if isinstance(failure, ImportError) or (
-        isinstance(failure, AttributeError | TypeError) and called
-    ):
+    if isinstance(failure, ImportError | AttributeError | TypeError) and called:
         why = shorten(str(failure), 120)
         return InputError(
             f"a worker has no pitchpoint, or another version of it: {why}", key="scheduler"

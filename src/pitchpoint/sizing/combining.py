@@ -180,7 +180,7 @@ def _options(
     options, least = {}, {}
     for place, load in enumerate(loads):
         most = task.most_distance(load[0], stages)
-        least[load] = float(sizes.distance[(of_load == place) & bears].min(initial=np.inf))
+        least[load] = float(sizes.distance[(of_load == place) & bears & sound].min(initial=np.inf))
         some = sizes[(of_load == place) & bears & sound & (~of_pairs | (sizes.distance <= most))]
         costs = np.stack([some.mass, some.loss, some.diameter], 1)
         front = non_dominated(costs)

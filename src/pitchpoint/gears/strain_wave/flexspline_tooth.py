@@ -55,9 +55,9 @@ class Flank(eqx.Module):
     def rounding_start(self) -> Place:
         """Place where the rounding of the tip begins [m].
 
-        That at the arc length `plain` as well, but for rounding: there a piece is chosen by an order of two
-        equal numbers, and a compiler that works them out anew beside each use may take the arc of one piece
-        with the angle of another.
+        The place at the arc length `plain` is the same to the last digits alone: there a piece is chosen by
+        an order of two equal numbers, and a compiler that works them out anew beside each use may take the
+        arc of one piece with the angle of another.
         """
 
     @abc.abstractmethod
