@@ -1,8 +1,7 @@
 """Life of the rolling bearings of a drive by their dynamic load ratings: ISO 281."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from math import inf, nan, sqrt
 from typing import Any
 
@@ -10,7 +9,9 @@ import numpy as np
 from jaxtyping import Float
 
 from pitchpoint._jax import array
-from pitchpoint.cases.built_drive import BuiltTrain, Ready
+from pitchpoint.analyses.strength import mesh_load_of
+from pitchpoint.analyses.train_period import over_period
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.schema import Loss
 from pitchpoint.duty_cycle.history import load_steps
 from pitchpoint.duty_cycle.life import BALL, RatedBearing
@@ -35,7 +36,7 @@ def bearing_lives(
     speed = float(built.operation.speed) * built.output_rate
     load = built.case.operation.load
     there = load_steps(1.0, load, speed, float(built.operation.temperature))
-    rated = [rated_bearings(built, row, load) for row in loads]
+    rated = rated_bearings(built, loads, load)
 
     def of_places(value: Callable[[RatedBearing], float]) -> Float[np.ndarray, "law place"]:
         names = built.places
@@ -64,7 +65,7 @@ def bearing_limits(
     """
     torque = float(built.case.operation.load)
     speed = float(built.operation.speed) * built.output_rate
-    each = [rated_bearings(built, row, torque) for row in loads if torque > 0.0]
+    each = rated_bearings(built, loads if torque > 0.0 else loads[:0], torque)
     found = {
         name: np.array([[of(row[n]) if n in row else nan for n in built.places] for row in each])
         for name, of in _limiting(built, torque, speed).items()
@@ -92,23 +93,37 @@ def _limiting(
 
 
 def rated_bearings(
-    built: Ready, loads: Float[np.ndarray, " place"], load: float
-) -> dict[str, RatedBearing]:
-    """Bearings that have a dynamic load rating, by the name of their place.
+    built: Ready, loads: Float[np.ndarray, "law place"], load: float
+) -> list[dict[str, RatedBearing]]:
+    """Bearings that have a dynamic load rating, by the name of their place, under each friction law.
 
     Args:
         built: the drive.
         loads: on the bearing of each place at the speed of the operating point [N], in the order of
-            `built.places`.
+            `built.places`, by friction law.
         load: torque or force of the output under which these are [N m or N].
 
     The load of the teeth is taken to grow with that of the output, and so are losses: take them under a load
     like those that a life is asked for.
     """
+    output = float(built.operation.speed) * built.output_rate
+    levels = built.with_losses if output > 0.0 else ()
+    on_planets = [_on_planet(level, load * output) for level in levels if len(loads)]
+    return [_under_law(built, levels, on_planets, row, load) for row in loads]
+
+
+def _under_law(
+    built: Ready,
+    levels: Sequence[Any],
+    on_planets: Sequence[np.ndarray],
+    loads: Float[np.ndarray, " place"],
+    load: float,
+) -> dict[str, RatedBearing]:
+    """Bearings under one friction law; see `_on_planet` for the force on a planet of each level."""
     places = iter(zip(built.places, _beyond_rounding(loads), strict=True))
     output = float(built.operation.speed) * built.output_rate
     rated: dict[str, RatedBearing] = {}
-    for level in built.with_losses if output > 0.0 else ():
+    for level, on_planet in zip(levels, on_planets, strict=True):
         rates = dict(zip(level.case.bodies, level.motion, strict=True))
         step = float(level.operation.speed) / output
         for loss in level.case.losses.values():
@@ -117,8 +132,7 @@ def rated_bearings(
                 continue
             rate_a, rate_b = (rates.get(body, 0.0) * step for body in loss.between)
             pull = _pull(level, loss)
-            on_level = load * output / (float(level.operation.speed) * level.output_rate)
-            outward, along, axial = _of_teeth(level, loss, borne - loss.preload, pull, on_level)
+            outward, along, axial = _of_teeth(level, loss, borne - loss.preload, pull, on_planet)
             per = load if load > 0.0 else inf
             rated[name] = RatedBearing(
                 loss.dynamic_load_rating,
@@ -159,7 +173,7 @@ def _pull(level: Any, loss: Loss) -> float:
     return float(level.design.pull) * speed**2
 
 
-def _of_teeth(level: Any, loss: Loss, borne: float, pull: float, load: float) -> Vector:
+def _of_teeth(level: Any, loss: Loss, borne: float, pull: float, on_planet: np.ndarray) -> Vector:
     """Force of the teeth on a bearing: outwards, along its circle, along its axis [N].
 
     Args:
@@ -167,28 +181,31 @@ def _of_teeth(level: Any, loss: Loss, borne: float, pull: float, load: float) ->
         loss: the place.
         borne: all that it bears but its preload, of several planets the mean.
         pull: centrifugal force.
-        load: of the level without losses behind it.
+        on_planet: force of the teeth on a planet in equilibrium, see `_on_planet`.
 
     On planets it has the direction that it has in equilibrium, and the size that makes up what is borne.
     """
     if not _in_planets(level, loss):
         return 0.0, borne, 0.0
-    along = _on_planet(level, load) if load > 0.0 else np.zeros(3)
-    size = float(along @ along)
+    size = float(on_planet @ on_planet)
     if size == 0.0:
         return 0.0, 0.0, 0.0
-    inwards = -float(along[0]) * pull
+    inwards = -float(on_planet[0]) * pull
     part = (inwards + sqrt(max(inwards**2 + size * (borne**2 - pull**2), 0.0))) / size
-    from pitchpoint.analyses.strength import mesh_load_of  # few cases ask for it
-
-    radial, tangential, axial = (mesh_load_of(level) * part * along).tolist()
+    radial, tangential, axial = (mesh_load_of(level) * part * on_planet).tolist()
     return radial, tangential, axial
 
 
-@lru_cache(maxsize=4)
-def _on_planet(built: BuiltTrain, load: float) -> Float[np.ndarray, " 3"]:
-    """Mean force of the teeth on a planet over the period under a load, by the first friction law [N]."""
-    from pitchpoint.analyses.train_period import over_period  # few cases ask for it
+def _on_planet(level: Any, power: float) -> Float[np.ndarray, " 3"]:
+    """Mean force of the teeth on a planet over the period, by the first friction law [N].
 
-    point = replace(built.operation, load=array(load))
-    return np.asarray(over_period(built, point, built.models[0])["on_planet"])
+    Args:
+        level: drive or stage; zero where none of its planets has a rated bearing.
+        power: through it without losses behind it [W].
+    """
+    rated = [loss for loss in level.case.losses.values() if loss.dynamic_load_rating is not None]
+    load = power / (float(level.operation.speed) * level.output_rate)
+    if not any(_in_planets(level, loss) for loss in rated) or load <= 0.0:
+        return np.zeros(3)
+    point = replace(level.operation, load=array(load))
+    return np.asarray(over_period(level, point, level.models[0])["on_planet"])

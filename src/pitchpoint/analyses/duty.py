@@ -108,7 +108,8 @@ def rated_lives(built: Ready, history: LoadHistory) -> dict[str, RatedBearing]:
     figures = kind.figures_of([(built.design, point)], built.models[0])
     if bool(figures["locked"][0]):
         return {}
-    return rated_bearings(built, figures["bearing_load"][0], load)
+    (of_bearings,) = rated_bearings(built, figures["bearing_load"][:1], load)
+    return of_bearings
 
 
 def demand_in_map(built: Ready) -> None:
