@@ -1032,7 +1032,8 @@ def new(
     count: Annotated[
         int | None,
         typer.Option(
-            help="With --ratio: at most so many sets as variants of the file, the best first."
+            help="With --ratio: at most so many sets as variants of the file; those nearest to the "
+            "ratio first, of 3K those that lose least."
         ),
     ] = None,
     output: Annotated[
@@ -1358,13 +1359,14 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
 
 
 def _summary(outcome: "Outcome", number: int) -> None:
+    from pitchpoint.views.point import by_members
     from pitchpoint.views.registry import in_order
 
     _heading(outcome.manifest, number)
     for section in in_order():
         for printed in section.prints(outcome):
             _print(printed)
-    _warn(outcome.manifest["warnings"])
+    _warn([by_members(outcome, text) for text in outcome.manifest["warnings"]])
 
 
 def _heading(manifest: Mapping[str, Any], number: int) -> None:

@@ -195,11 +195,11 @@ def _easily_started(
     efforts = [measured(effort, "N" if kind == "force" else "N m") for effort in (at_rest, moving)]
     return [
         Doubt(
-            f"A {kind} to start of {efforts[0]} beside {efforts[1]} in slow motion is too low: "
+            f"A {kind} to start of {efforts[0]} beside {efforts[1]} in slow motion is a lower bound: "
             "seals and greased bearings stick at rest, and measured drives take up to many times as much, "
             "either way; a breakaway model or a breakaway_torque in [losses] says what holds them.",
             about=("starting_torque", "back_driving_torque"),
-            brief=f"{efforts[0]} to start: too low, too little holds.",
+            brief=f"{efforts[0]} to start is a lower bound: no breakaway is given.",
         )
     ]
 

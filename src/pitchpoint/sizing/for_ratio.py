@@ -134,7 +134,8 @@ def case_for_ratio(
         torque: at the output, with its unit; the module is 1 mm and stays unsized without one. Not for strain
             wave gears, whose teeth no standard rates.
         planets: at equal angles, 3 unless given; of sets that have some.
-        count: of sets at most, the best one first; of several each is a variant of the file, `set_1` on.
+        count: of sets at most, the nearest to the ratio and the smallest first, of 3K the one that loses
+            least in its worse direction; of several each is a variant of the file, `set_1` on.
 
     Raises:
         InputError: another family, no such teeth, more torque than gears of 32 mm module bear.
@@ -170,8 +171,14 @@ def case_for_ratio(
         each = [f"set_{number}: {told}" for number, told in enumerate(each, 1)]
     told = _FACTORS if torque else "The module is not sized: --torque is what the output bears."
     text = template(named, sized[0][0], [*each, told])
-    return text + _variants([tree for tree, _ in sized]) if len(found) > 1 else text
+    return text + _variants(named, [tree for tree, _ in sized]) if len(found) > 1 else text
 
+
+_FIRST = {
+    PLANETARY: "the nearest to the ratio and the smallest first",
+    THREE_K: "the one that loses least in its worse direction first",
+}
+"""By what sets for a ratio are in order."""
 
 _FACTORS = "Load factors but K_v and that of planets are 1: give those of your drive in [strength]."
 
@@ -196,9 +203,10 @@ def _with_rest(named: str, make: Making, torque: str | None) -> tuple[Tree, str]
     )
 
 
-def _variants(sets: Sequence[Tree]) -> str:
+def _variants(family: str, sets: Sequence[Tree]) -> str:
     """Tables of variants with the gears of each set, and its losses as remarks, as [losses] are."""
-    lines = ["", "# Sets for this ratio, the best one first; each is computed.", "[variants.set_1]"]
+    order = f"# Sets for this ratio, {_FIRST[family]}; each is computed."
+    lines = ["", order, "[variants.set_1]"]
     for number, tree in enumerate(sets[1:], 2):
         lines += ["", *_of_variant(number, {"gears": tree["gears"]})]
         if "losses" in tree:

@@ -48,6 +48,9 @@ __all__ = [
 FEW_LINES = 12
 """Lines of a first screen."""
 
+_OF_SETS = 2
+"""Further ones for planetary sets: their diameter, and their backlash at the output."""
+
 _DOUBTS, _OF_DOUBTS = 2, 4
 """Sentences on what is doubtful, one more where something fails, and lines that they may take in all.
 
@@ -92,16 +95,17 @@ def first_screen(
         tables: False below the tables of all sections: then every figure stands here.
     """
     outcome = next(iter(outcomes.values()))
+    few = FEW_LINES + _OF_SETS * bool(len(outcomes) == 1 and outcome.manifest.get("trains"))
     title = _title(outcome, len(outcomes))
     at = _operation(outcome) if len(outcomes) == 1 else ""
     doubts = _doubts(outcomes, width)
     below = _more(outcomes, report, width) if tables else [Line(f"Report: {report}")]
     rows = [*_rows_met(outcomes), *_missed(outcomes, report.parent, width)]
     folded = [line for text in rows for line in wrapped(text, width)]
-    if 1 + len(doubts) + len(folded) + len(below) > FEW_LINES:
+    if 1 + len(doubts) + len(folded) + len(below) > few:
         folded = [show.first_clauses(text, width) for text in rows]
     foot = [*map(Line, folded), *below]
-    room = FEW_LINES - len(doubts) - len(foot) - bool(at)
+    room = few - len(doubts) - len(foot) - bool(at)
     titles = wrapped(title, width)
     titles = titles if len(titles) <= min(room, 2) else [show.first_clauses(title, width)]
     head = [Line(text, "title") for text in titles]

@@ -159,6 +159,7 @@ TRAIN = Section(
     order=40.0,
     blocks="pitchpoint.views.sections.train:train_blocks",
     lacks=without_trains,
+    answer=of_trains("pitchpoint.views.sections.train:train_facts"),
     screen=of_trains("pitchpoint.views.sections.train:train_printed"),
 )
 TRAIN_PERIOD = Section(

@@ -618,7 +618,24 @@ class Section:
             screen = partial(self.screen, mesh)
             for printed in made_of([outcome], screen, lambda told: [Printed(line=told)]):
                 titles = [stage.capitalize(), printed.title]
-                yield replace(printed, title=": ".join(filter(None, titles))) if stage else printed
+                titled = replace(printed, title=": ".join(filter(None, titles)))
+                yield _printed_by_members(outcome, titled if stage else printed)
+
+
+def _printed_by_members(outcome: Outcome, printed: Printed) -> Printed:
+    """What is printed with the meshes of a planetary set by their members, see `by_members`."""
+
+    def cell(head: str, text: str) -> tuple[str, str]:
+        mesh = by_members(outcome, f"stage {text.partition(':')[0]}") if head == "stage" else ""
+        return (
+            (head, by_members(outcome, text)) if mesh in ("", f"stage {text}") else ("mesh", mesh)
+        )
+
+    return Printed(
+        by_members(outcome, printed.title),
+        [dict(cell(*entry) for entry in row.items()) for row in printed.rows],
+        by_members(outcome, printed.line),
+    )
 
 
 def made_of(

@@ -627,11 +627,14 @@ def _shortest_life(data: xr.Dataset) -> Iterator[KeyFigure]:
 
 
 def _times_input(outcome: Outcome, data: xr.Dataset) -> str:
-    """Power that rolls through the meshes of sets as so many times that of the input."""
+    """Power that rolls through the meshes of sets, all together, as so many times that of the input."""
     rolls, torque = (float(data[n].values[0, 0]) for n in ("latent_power", "mean_input_torque"))
     power = torque * number(outcome, "operation", "speed")
-    times = f"{show.number(rolls / power, 3)} times the input" if power > 0.0 else ""
-    return _clauses(times, "rolls through the meshes")
+    return (
+        f"all meshes, {show.number(rolls / power, 3)} times the input"
+        if power > 0.0
+        else "all meshes"
+    )
 
 
 def _lacks(data: xr.Dataset) -> str:

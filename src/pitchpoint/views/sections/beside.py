@@ -293,7 +293,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield from [Paragraph(show.pretty(told), "note")] if told else []
 
 
-_TOO_LOW = "too low by up to many times; no breakaway in [losses]"
+_AT_LEAST = "at least; without breakaway, none is in [losses]"
 """Beside a torque from rest of which nothing says what holds it there."""
 
 _FROM_REST, _DOUBTED = 70.1, 79.6
@@ -317,7 +317,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         for place, (name, value) in enumerate(starting_answer(outcome, laws(data)[0])):
             brief, _, speed = name.partition(" at ")
             torque, _, band = value.partition(", ")
-            detail = f"at {speed}" if speed else band or _TOO_LOW * doubted
+            detail = f"at {speed}" if speed else band or _AT_LEAST * doubted
             order = 76.0 if speed else from_rest + 0.1 * place
             asked_by = () if speed else ("breakaway",)
             yield KeyFigure(order, brief.capitalize(), torque, detail, asked_by=asked_by)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 
-import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
@@ -28,9 +27,10 @@ def sharing_blocks(page: Page) -> Iterator[Block]:
 
 def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts["planet_sharing"]
-    yield Table(_HEADS, _rows(data), compact=True)
+    if rows := _rows(data):
+        yield Table(_HEADS, rows, compact=True)
     if "drawn_planet_load_factor" in data:
-        yield Table(["of sets by tolerance", "K_γ at most"], _drawn(data), compact=True)
+        yield Table(["of sets sampled by tolerance", "K_γ at most"], _drawn(data), compact=True)
     yield Paragraph(_assumed(data), "note")
 
 
@@ -39,11 +39,13 @@ def _assumed(data: xr.Dataset) -> str:
     pins = "pins are rigid" if data.attrs["rigid_pins"] else "pins and teeth yield"
     moves = f"the {floating} moves sideways freely" if floating else "no body moves sideways"
     stiffness = show.quantity("planet_stiffness", float(data["planet_stiffness"]))
+    force = show.quantity("pin_force", float(data["pin_force"].mean()))
     return (
-        f"Springs that only push, {stiffness} over one planet: {pins}, {moves}; without friction, weight and "
-        "centrifugal force. By tolerance pins lie anywhere in their circles and thicknesses in their "
-        "field alike, and runout counts in any position. The rating of teeth "
-        "takes the larger of this factor and that of the standard, unless [strength] gives one."
+        f"An equal share is {force} on each pin along its circle. Springs that only push, {stiffness} over "
+        f"one planet: {pins}, {moves}; without friction, weight and centrifugal force. By tolerance pins lie "
+        "anywhere in their circles and thicknesses in their field alike, and runout counts in any position. "
+        "The rating of teeth takes the larger of this factor and that of the standard, unless [strength] "
+        "gives one."
     )
 
 
@@ -56,6 +58,9 @@ _HEADS = [
 
 
 def _rows(data: xr.Dataset) -> list[tuple[str, ...]]:
+    """Rows of the planets; none where no pin is out of place but by tolerance, and all bear alike."""
+    if "drawn_planet_load_factor" in data and not data["pin_error"].any():
+        return []
     names = ("pin_error", "pin_force", "planet_share")
     return [
         (
@@ -74,25 +79,27 @@ def _drawn(data: xr.Dataset) -> list[tuple[str, ...]]:
     ]
 
 
+def most_by_deviations(data: xr.Dataset) -> float:
+    """Largest mesh load factor by the deviations of a set: by tolerance that of nearly all sets."""
+    return float(data.get("drawn_planet_load_factor", data["planet_load_factor"]).max())
+
+
+def whence_shared(data: xr.Dataset) -> str:
+    """By what that factor is, in words."""
+    if "drawn_planet_load_factor" not in data:
+        return "by pin_errors"
+    level, _ = _drawn(data)[-1]
+    return f"{level} of sampled sets have less"
+
+
 def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
-    """The mesh load factor where no rating takes it: by tolerance about errors given, or by these alone."""
-    rated = outcome.parts.get("strength")
-    for label, mesh in of_meshes(outcome, "planet_sharing"):
-        yield from _fact(mesh.parts["planet_sharing"], rated, f", {label}" if label else "")
-
-
-def _fact(data: xr.Dataset, rated: xr.Dataset | None, of_stage: str) -> Iterator[KeyFigure]:
-    worst = data.get("drawn_planet_load_factor", data["planet_load_factor"]).max()
-    if rated is not None and np.isclose(rated["mesh_load_factor"], worst).any():
+    """The mesh load factor where no rating names it: by tolerance about errors given, or by these alone."""
+    if "planets" in getattr(outcome.parts.get("strength"), "attrs", ()):
         return
-    if "drawn_planet_load_factor" in data:
-        level, factor = _drawn(data)[-1]
-        detail = f"at most in {level} of sets"
-    else:
-        factor = show.quantity("planet_load_factor", float(data["planet_load_factor"]))
-        detail = "by the errors of the pins"
-    name = "Load on a planet" if rated is None else "Load by deviations"
-    yield KeyFigure(57.0, f"{name}{of_stage}", f"K_γ {factor}", detail)
+    for label, mesh in of_meshes(outcome, "planet_sharing"):
+        data, of_stage = mesh.parts["planet_sharing"], f", {label}" if label else ""
+        factor = show.quantity("planet_load_factor", most_by_deviations(data))
+        yield KeyFigure(42.0, f"Load on a planet{of_stage}", f"K_γ {factor}", whence_shared(data))
 
 
 def sharing_printed(outcome: Outcome) -> Iterator[Printed]:
@@ -100,6 +107,6 @@ def sharing_printed(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts["planet_sharing"]
     yield Printed(rows=[dict(zip(_HEADS, row, strict=True)) for row in _rows(data)])
     if "drawn_planet_load_factor" in data:
-        factors = ", ".join(f"{level} of sets K_γ up to {factor}" for level, factor in _drawn(data))
-        yield Printed(line=f"By tolerance: {factors}.")
+        factors = ", ".join(f"{level} of them K_γ up to {factor}" for level, factor in _drawn(data))
+        yield Printed(line=f"Of sets sampled by tolerance {factors}.")
     yield Printed(line=_assumed(data))

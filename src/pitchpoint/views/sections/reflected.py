@@ -84,8 +84,9 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         ends = [least, largest] if _by_tolerances(data) else [nominal]
         value = " to ".join(_cell("output_backlash", end) for end in ends)
         unit = show.unit_of("output_backlash")
+        behind = _NONE_ALLOWED if max(map(abs, ends)) < _NO_PLAY else 59.0
         yield KeyFigure(
-            _NONE_ALLOWED if max(map(abs, ends)) < _NO_PLAY else 59.0,
+            _OF_SETS if outcome.manifest.get("trains") else behind,
             "Backlash at the output",
             f"{value} {unit}",
             _whence(data, nominal),
@@ -111,6 +112,8 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
 
 _NO_PLAY = 1e-9
 """Backlash below which no allowance can have been given [rad]."""
+_OF_SETS = 45.0
+"""Place of that of planetary sets among key figures: with their diameter."""
 _NONE_ALLOWED = 79.7
 """Place of such a backlash among key figures: behind what is computed."""
 

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from itertools import chain
-from math import inf
+from math import inf, nan
 
 import numpy as np
 import xarray as xr
@@ -27,6 +27,7 @@ from pitchpoint.views.section import (
     by_variant,
     turned,
 )
+from pitchpoint.views.sections.planet_sharing import most_by_deviations, whence_shared
 
 __all__ = ["STRENGTH", "strength_rows"]
 
@@ -236,17 +237,27 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
             cure = f"name one that has them, or give strength.sigma_{limit}"
             detail = "; ".join([*_doubted(outcome, most, stress), *lacks, cure])
             yield KeyFigure(order, f"Stress of {where}", value, detail)
+    yield from _on_a_planet(outcome, data)
+
+
+def _on_a_planet(outcome: Outcome, data: xr.Dataset) -> Iterator[KeyFigure]:
+    """Mesh load factor by which the planets of a set are rated, and whence it is."""
     planets = int(data.attrs.get("planets", 1))
-    if planets > 1:
-        factor = show.number(float(data["mesh_load_factor"].max()), 3)
-        usual = data.attrs.get("usual_mesh_load_factor")
-        whence = (
-            "assumed by IEC 61400-4"
-            if float(data["mesh_load_factor"].max()) == usual
-            else "at most"
-        )
-        detail = f"{whence}, over an equal share of {planets} planets"
-        yield KeyFigure(42.0, "Load on a planet", f"K_γ {factor}", detail)
+    if planets < 2:
+        return
+    factor, usual = float(data["mesh_load_factor"].max()), data.attrs.get("usual_mesh_load_factor")
+    sharing = outcome.parts.get("planet_sharing")
+    by_deviations = nan if sharing is None else most_by_deviations(sharing)
+    if sharing is not None and np.isclose(factor, by_deviations):
+        detail = whence_shared(sharing)
+    elif factor == usual:
+        known = "IEC 61400-4" if factor > 1.0 else f"no standard has {planets} planets"
+        least = f"; deviations alone give {show.number(by_deviations, 3)}"
+        detail = f"by {known}{least if np.isfinite(by_deviations) else ''}"
+    else:
+        detail = "by [strength]"
+    equal = f"over an equal share of {planets} planets"
+    yield KeyFigure(42.0, "Load on a planet", f"K_γ {show.number(factor, 3)}", f"{detail}; {equal}")
 
 
 def _doubted(outcome: Outcome, value: xr.DataArray, stress: str) -> list[str]:

@@ -4,12 +4,27 @@ from collections.abc import Iterator, Mapping
 from math import gcd, pi
 from typing import Any
 
+import xarray as xr
+
+from pitchpoint.gears.cylindrical.design import RING_RIM_RATIO
+from pitchpoint.results.variable import length
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Table
+from pitchpoint.views.inputs import given
+from pitchpoint.views.section import (
+    Block,
+    Drawn,
+    Heading,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    Table,
+    of_meshes,
+)
 from pitchpoint.views.train_picture import train_pictures
 
-__all__ = ["train_blocks", "train_printed"]
+__all__ = ["train_blocks", "train_facts", "train_printed"]
 
 Record = Mapping[str, Any]
 
@@ -46,6 +61,47 @@ def train_blocks(page: Page) -> Iterator[Block]:
             yield Table(BODIES, _bodies(train), compact=True, caption="Speeds")
             yield Table(MESHES, _meshes(train), compact=True, caption="Meshes", wide=True)
             yield Paragraph(_NOTE, "note")
+
+
+def train_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Diameter around the gears of the largest set, and the centre distance of its planets."""
+    teeth = {label: mesh.parts["teeth"] for label, mesh in of_meshes(outcome, "teeth")}
+    sets = [
+        (*_around(outcome, train, teeth), train["stage"])
+        for train in outcome.manifest.get("trains", ())
+        if all("root_radius" in teeth.get(f"stage {mesh['label']}", ()) for mesh in train["meshes"])
+    ]
+    if not sets:
+        return
+    across, whence, apart, stage = max(sets)
+    of_stage = f"stage {stage}; " if len(sets) > 1 else ""
+    detail = f"{of_stage}{whence}; axes {_length(apart)} apart"
+    yield KeyFigure(44.0, "Outer diameter", _length(across), detail)
+
+
+def _around(
+    outcome: Outcome, train: Record, teeth: Mapping[str, xr.Dataset]
+) -> tuple[float, str, float]:
+    """Diameter around the gears of a set [m], up to where it counts, centre distance of its planets [m]."""
+    reached: list[tuple[float, str, float]] = []
+    for mesh in train["meshes"]:
+        of_mesh = teeth[f"stage {mesh['label']}"]
+        for at, body in enumerate(mesh["bodies"]):
+            apart = float(of_mesh["centre_distance"])
+            root, tip = (float(of_mesh[f"{end}_radius"].values[at]) for end in ("root", "tip"))
+            if float(of_mesh["teeth"].values[at]) < 0.0:
+                bores = given(outcome, "stages", f"{mesh['label']}.gears.bore_diameter")
+                outside = bores[at] if bores else 2.0 * RING_RIM_RATIO * root
+                rim = f"{'' if bores else 'assumed '}rim {_length(0.5 * outside - root)}"
+                reached.append((outside, rim, apart))
+            elif body in train["planets"]:
+                reached.append((2.0 * (apart + tip), "around the planets", apart))
+    return max(reached)
+
+
+def _length(metres: float) -> str:
+    variable = length("", "")
+    return f"{show.number(float(variable.displayed(metres)))} {show.unit(variable.display)}"
 
 
 def train_printed(outcome: Outcome) -> Iterator[Printed]:
