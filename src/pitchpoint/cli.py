@@ -1026,6 +1026,16 @@ def new(
         str | None,
         typer.Option(help='With --ratio: a module that bears it at the output, "20 N m".'),
     ] = None,
+    speed: Annotated[
+        str | None, typer.Option(help='With --torque: of the output, "30 rpm".')
+    ] = None,
+    life: Annotated[
+        str | None, typer.Option(help='With --torque: time under load, "5000 h".')
+    ] = None,
+    diameter: Annotated[
+        str | None,
+        typer.Option(help='With --torque: largest one around the gears, "120 mm".'),
+    ] = None,
     planets: Annotated[
         int | None, typer.Option(help="With --ratio: number of planets, 3 unless given.")
     ] = None,
@@ -1048,7 +1058,9 @@ def new(
     from pitchpoint.cases.template import template
 
     if ratio is None:
-        for key, value in {"torque": torque, "planets": planets, "count": count}.items():
+        options = {"torque": torque, "planets": planets, "count": count}
+        options |= {"speed": speed, "life": life, "diameter": diameter}
+        for key, value in options.items():
             if value is not None:
                 raise InputError("goes with --ratio; the file has its own", key=key)
         _write(template(family), output)
@@ -1062,6 +1074,9 @@ def new(
             torque=torque,
             planets=planets,
             count=1 if count is None else count,
+            speed=speed,
+            life=life,
+            diameter=diameter,
         ),
         output,
     )

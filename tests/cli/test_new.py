@@ -25,6 +25,7 @@ from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.for_ratio import (
     MODULES,
     SAFETIES,
+    _diameter,
     _planetary,
     _three_k,
     case_for_ratio,
@@ -238,6 +239,23 @@ def test_the_module_is_the_smallest_that_bears_the_torque(family: str, ratio: fl
     assert built.case.operation.load == 200.0
 
 
+def test_speed_life_and_diameter_are_those_of_the_case() -> None:
+    """The speed counts at the output, as `size` has it; of sets that bear the torque one that fits in."""
+    task = {"torque": "200 N m", "speed": "30 rpm", "life": "5000 h"}
+    text = case_for_ratio("planetary", 5.0, **task)
+    case = load_case(tomllib.loads(text)).case
+    assert case.strength is not None and case.strength.life == 5000.0 * 3600.0
+    assert case.operation.speed == pytest.approx(np.pi * 30.0 / 30.0 * 5.0)
+    assert 'life = "5000 h"' in text
+    across = _diameter("planetary", tomllib.loads(text))
+    with pytest.raises(InputError, match="too small") as caught:
+        case_for_ratio("planetary", 5.0, **task, diameter="30 mm")
+    smallest = float(str(caught.value).split("smallest is ")[1].split(" mm")[0])
+    assert smallest <= 1e3 * across + 0.05
+    fitting = case_for_ratio("planetary", 5.0, **task, diameter=f"{smallest + 0.1} mm")
+    assert 1e3 * _diameter("planetary", tomllib.loads(fitting)) <= smallest + 0.1
+
+
 @pytest.mark.parametrize(
     ("family", "ratio"), [("planetary", 5.0), ("planetary", 30.0), ("3k", 100.0)]
 )
@@ -312,6 +330,16 @@ def test_a_strain_wave_gear_for_a_ratio_has_it_within_half_a_turn(
         ("strain_wave", 80.0, {"torque": "5 N m"}, "no rating of its teeth, give operation.torque"),
         ("strain_wave", 80.0, {"planets": 3}, "planets: is for planetary and 3K"),
         ("planetary", float("nan"), {}, "nan is no ratio"),
+        ("planetary", 5.0, {"speed": "30 rpm"}, "speed: goes with --torque"),
+        ("planetary", 5.0, {"torque": "200 N m", "life": "5"}, 'life: "5" has no unit'),
+        (
+            "planetary",
+            5.0,
+            {"torque": "200 N m", "diameter": "30 mm"},
+            "diameter: 30 mm is too small: of the sets for this torque the smallest is",
+        ),
+        ("strain_wave", 80.0, {"speed": "30 rpm"}, "give operation.speed in the file"),
+        ("strain_wave", 80.0, {"life": "5000 h"}, "life: is for planetary and 3K"),
         ("planetary", 5.0, {"count": 0}, "count: 0 is out of range; allowed is 1 to 20"),
         ("strain_wave", 80.0, {"count": 2}, "count: is for planetary and 3K"),
     ],

@@ -45,6 +45,9 @@ FAMILIES = (*(tag(table) for table in TABLES), *_CYLINDRICAL, *_DRIVES)
 _MEANT = ("gears", STAGES, "train", "materials", "lubricant", "roughness", "operation", "models")
 """Tables that stand in it; all others are remarks."""
 
+_TASKED = ("strength",)
+"""Tables that stand in it where they are asked for."""
+
 _ARRANGING = ("gears", STAGES, "train")
 """Tables on how gears stand together, of which a case has the ones or the others."""
 
@@ -134,7 +137,8 @@ def _of_table(model: type[BaseModel], key: str, tree: Tree) -> Iterator[str]:
         )
     else:
         meant = forms(info.annotation, stated)[0]
-        yield from _lines(meant, key, stated or {}, live=key in _MEANT and key in tree)
+        meant_here = key in (*_MEANT, *_TASKED) and key in tree
+        yield from _lines(meant, key, stated or {}, live=meant_here)
 
 
 def _of_stages(stages: Sequence[Tree]) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """A case file of gears from a ratio: teeth that assemble, a module that bears the torque if it is rated."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import islice
 from math import ceil, isfinite, pi, radians, sin
 from typing import Any
@@ -12,12 +13,15 @@ import xarray as xr
 from pitchpoint import units
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.strength import ratings_of
+from pitchpoint.cases.schema import LIFE, SPEED
 from pitchpoint.cases.template import sample_tree, template
 from pitchpoint.cases.trains import USUAL_BEARING
 from pitchpoint.drive.assembly import clear_neighbours, fit_at_equal_angles
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.planetary import PLANETARY, PLANETS
+from pitchpoint.gears.rated_pair import rated_pair
+from pitchpoint.gears.table import DISTANCE
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.registry import letters
 from pitchpoint.runs.run import load_case
@@ -124,6 +128,9 @@ def case_for_ratio(
     torque: str | None = None,
     planets: int | None = None,
     count: int = 1,
+    speed: str | None = None,
+    life: str | None = None,
+    diameter: str | None = None,
 ) -> str:
     """A case file of a set of this ratio, with a module that bears the torque.
 
@@ -136,12 +143,17 @@ def case_for_ratio(
         planets: at equal angles, 3 unless given; of sets that have some.
         count: of sets at most, the nearest to the ratio and the smallest first, of 3K the one that loses
             least in its worse direction; of several each is a variant of the file, `set_1` on.
+        speed: of the output, with its unit; the input runs at 3000 rpm without one.
+        life: time under load, with its unit; the teeth are to endure without one.
+        diameter: largest one around the gears, with its unit, as `size` counts it; of the sets that bear the
+            torque those within it count.
 
     Raises:
-        InputError: another family, no such teeth, more torque than gears of 32 mm module bear.
+        InputError: another family, no such teeth, more torque than gears of 32 mm module bear, or than gears
+            within the diameter do.
 
     The module is the smallest with which the least safeties by ISO 6336 are at least `SAFETIES`, of gears of
-    `MATERIAL` whose face width is `WIDTH` and that run at 3000 rpm. A strain wave gear has the diameter of
+    `MATERIAL` whose face width is `WIDTH`. A strain wave gear has the diameter of
     the size 25 of catalogues at every ratio.
     """
     named = next((one for one in FOR_RATIO if letters(one) == letters(family)), None)
@@ -153,17 +165,31 @@ def case_for_ratio(
         raise InputError(f"{ratio} is no ratio, input over output", key="ratio")
     if named == STRAIN_WAVE:
         return _strain_wave(
-            ratio, {"torque": torque, "planets": planets, "count": count if count != 1 else None}
+            ratio,
+            {"torque": torque, "planets": planets, "count": count if count != 1 else None}
+            | {"speed": speed, "life": life, "diameter": diameter},
         )
     _check("count", lambda: SETS.read(count))
     planets = 3 if planets is None else planets
     _check("planets", lambda: PLANETS.read(planets))
     if torque is not None and _check("torque", lambda: units.parse(torque, "torque")) <= 0.0:
         raise InputError(f"{torque} was given; it is more than zero", key="torque")
+    asked = {"speed": speed, "life": life, "diameter": diameter}
+    if torque is None and (unsized := [key for key, text in asked.items() if text is not None]):
+        raise InputError("goes with --torque, for which the gears are sized", key=unsized[0])
+    limits = {
+        key: _check(key, partial(read.read, asked[key]))
+        for key, read in {"speed": SPEED, "life": LIFE, "diameter": DISTANCE}.items()
+        if asked[key] is not None
+    }
+    tried = count if diameter is None else max(count, SETS_IN_DIAMETER)
     found = [
-        *islice((_planetary if named == PLANETARY else _three_k)(ratio, planets, count), count)
+        *islice((_planetary if named == PLANETARY else _three_k)(ratio, planets, tried), tried)
     ]
-    sized = [_with_rest(named, make, torque) for make, _ in found]
+    sized = [_with_rest(named, make, torque, _of_task(met, life, limits)) for make, met in found]
+    if "diameter" in limits:
+        fitting = _within(limits["diameter"], [_diameter(named, tree) for tree, _ in sized])
+        found, sized = ([several[k] for k in fitting[:count]] for several in (found, sized))
     each = [
         f"{_met(met, ratio)}. {borne}" for (_, met), (_, borne) in zip(found, sized, strict=True)
     ]
@@ -183,12 +209,57 @@ _FIRST = {
 _FACTORS = "Load factors but K_v and that of planets are 1: give those of your drive in [strength]."
 
 
-def _with_rest(named: str, make: Making, torque: str | None) -> tuple[Tree, str]:
+SETS_IN_DIAMETER = 6
+"""Sets for a ratio that are sized where a diameter is asked."""
+
+
+def _of_task(met: float, life: str | None, limits: Mapping[str, float]) -> Tree:
+    """Tables that say speed and life, for a set of a ratio."""
+    tables: Tree = {} if life is None else {"strength": {"life": life}}
+    if "speed" in limits:
+        turns = limits["speed"] * abs(met) * 30.0 / pi
+        tables["operation"] = {"speed": f"{turns:.6g} rpm"}
+    return tables
+
+
+def _within(most: float, diameters: Sequence[float]) -> list[int]:
+    """Numbers of the sets that are no larger than a diameter [m], in their order."""
+    fitting = [number for number, across in enumerate(diameters) if across <= most]
+    if not fitting:
+        raise InputError(
+            f"{1e3 * most:.4g} mm is too small: of the sets for this torque the smallest is "
+            f"{1e3 * min(diameters):.4g} mm around the gears; give more, or have pitchpoint size try other "
+            "face widths",
+            key="diameter",
+        )
+    return fitting
+
+
+def _diameter(family: str, tables: Tree) -> float:
+    """Diameter around the gears of a set [m]: its rings with their usual rims, or its planets."""
+    built, reached = load_case(sample_tree(family, tables)), 0.0
+    for mesh in built.meshes:
+        pair = rated_pair(mesh.design.mesh)
+        roots, rims = np.abs(pair.root_radii), np.asarray(pair.rim_thickness)
+        ring = float(pair.teeth[1]) < 0.0
+        apart, tip = (
+            float(mesh.dimensions["centre_distance"]),
+            float(pair.tip_radii[0 if ring else 1]),
+        )
+        reached = max(reached, apart + tip, float(roots[1] + rims[1]) if ring else 0.0)
+    return 2.0 * reached
+
+
+def _with_rest(named: str, make: Making, torque: str | None, of_task: Tree) -> tuple[Tree, str]:
     """Tables of a set, with the module that bears the torque if there is one, and a sentence on that."""
 
     def with_rest(module: float) -> Tree:
-        rest: Tree = {"materials": {"gear_1": MATERIAL, "gear_2": MATERIAL}}
-        return make(module) | (rest | {"operation": {"torque": torque}} if torque else {})
+        if not torque:
+            return make(module)
+        loads = {"operation": {"torque": torque, **of_task.get("operation", {})}}
+        return (
+            make(module) | {"materials": {"gear_1": MATERIAL, "gear_2": MATERIAL}} | of_task | loads
+        )
 
     gears = with_rest(1.0)["gears"]
     teeth = "/".join(map(str, [*gears["teeth"], *gears.get("second", {}).get("teeth", [])]))
@@ -220,6 +291,10 @@ def _of_variant(number: int, tables: Tree) -> list[str]:
     return tomlkit.dumps({"variants": {f"set_{number}": tables}}).strip().splitlines()
 
 
+_IN_THE_FILE = {"torque": "operation.torque", "speed": "operation.speed"}
+"""Keys of a case that say of a strain wave gear what options say of sets."""
+
+
 def _strain_wave(ratio: float, others: Mapping[str, Any]) -> str:
     """A case file of a strain wave gear whose circular spline is held.
 
@@ -231,8 +306,8 @@ def _strain_wave(ratio: float, others: Mapping[str, Any]) -> str:
         if value is not None:
             raise InputError(
                 f"is for {' and '.join(FOR_RATIO[1:])}; a strain wave gear has no rating of its teeth, "
-                "give operation.torque in the file"
-                if key == "torque"
+                f"give {_IN_THE_FILE[key]} in the file"
+                if key in _IN_THE_FILE
                 else f"is for {' and '.join(FOR_RATIO[1:])}; a strain wave gear has none",
                 key=key,
             )
