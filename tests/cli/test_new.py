@@ -107,6 +107,14 @@ def test_what_a_key_is_stands_behind_it(family: str) -> None:
     assert not re.search("[\x80-\xff]", text)
 
 
+def test_examples_of_a_set_are_what_an_engineer_takes() -> None:
+    told = remarks(template("planetary"))
+    assert told["gears.pin_errors"] == ["20 um", "0 um", "0 um"]
+    assert (told["strength.life"], told["gears.second.teeth"]) == ("10000 h", [34, 88])
+    of_gears = [value for key, value in told.items() if key.startswith("gears.")]
+    assert not any(value in of_gears for value in ("3 um", 0.3, "text"))
+
+
 def test_helical_gears_are_helical() -> None:
     assert tomllib.loads(template("helical"))["gears"]["helix_angle"] == "15 deg"
     assert "helix_angle" not in tomllib.loads(template("spur"))["gears"]

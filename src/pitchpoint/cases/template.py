@@ -51,6 +51,28 @@ _TASKED = ("strength",)
 _ARRANGING = ("gears", STAGES, "train")
 """Tables on how gears stand together, of which a case has the ones or the others."""
 
+_TYPICAL: Mapping[str, Any] = {
+    "planet_angles": ["0 deg", "120 deg", "240 deg"],
+    "dedendum": 1.25,
+    "cutter_teeth": 20,
+    "cutter_profile_shift": 0.1,
+    "tip_alteration": -0.05,
+    "least_tip_thickness": 0.25,
+    "pin_errors": ["20 um", "0 um", "0 um"],
+    "pin_tolerance": "20 um",
+    "thickness_tolerance": "20 um",
+    "planet_runout": "20 um",
+    "central_runout": "20 um",
+    "pin_stiffness": "200 N/um",
+    "upper_thickness_allowance": "-40 um",
+    "lower_thickness_allowance": "-70 um",
+    "thickness_field": "cd25",
+    "centre_distance_deviation": "15 um",
+    "iso_class": 7,
+    "life": "10000 h",
+}
+"""Examples of keys for which that of their unit is none of gears."""
+
 _LEFT_OUT = ("title", "summary", "source", "targets", "issues", "formulas", "studies")
 _WIDTH = 100
 _FEW = 9
@@ -164,7 +186,7 @@ def _lines(model: type[BaseModel], path: str, given: Tree, *, live: bool) -> Ite
         elif live and key in given:
             yield f"{key} = {_toml(given[key])}{_words(info, descriptions.get(key, ''))}"
         else:
-            value = _example(info)
+            value = _TYPICAL.get(key, _example(info))
             yield f"# {key} = {_toml(value)}{_words(info, descriptions.get(key, ''))}"
     for key, table in inner:
         below = live and key in given and key != "deviations"
@@ -221,6 +243,8 @@ def _options(info: FieldInfo) -> tuple[Any, ...]:
 def _example(info: FieldInfo) -> Any:
     """The usual value of a key, or one that it may have."""
     quantity, usual = quantity_of(info), info.default
+    if info.is_required() and info.examples:
+        return info.examples[0]
     if quantity is not None:
         value = _of_quantity(quantity, usual if not info.is_required() else None)
         listed = get_origin(info.annotation) is tuple and not _pair(info)

@@ -189,7 +189,7 @@ def case_for_ratio(
     sized = [_with_rest(named, make, torque, _of_task(met, life, limits)) for make, met in found]
     if "diameter" in limits:
         fitting = _within(limits["diameter"], [_diameter(named, tree) for tree, _ in sized])
-        found, sized = ([several[k] for k in fitting[:count]] for several in (found, sized))
+        found, sized = ([found[k] for k in fitting[:count]], [sized[k] for k in fitting[:count]])
     each = [
         f"{_met(met, ratio)}. {borne}" for (_, met), (_, borne) in zip(found, sized, strict=True)
     ]
