@@ -184,7 +184,8 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
         "Backlash by tolerances" if several else "Backlash",
         f"{' to '.join(on_circle[1:])} {show.unit_of('backlash_on_circle')}",
         f"{_of_allowances(data)}on the pitch circles; {', '.join(turns)}",
-        asked_by=("gears.inspection",),
+        # Of a mesh of a train that at the output is what was asked.
+        asked_by=() if outcome.manifest.get("bodies") else ("gears.inspection",),
     )
 
 

@@ -94,7 +94,7 @@ def whence_shared(data: xr.Dataset) -> str:
 
 def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """The mesh load factor where no rating names it: by tolerance about errors given, or by these alone."""
-    if "planets" in getattr(outcome.parts.get("strength"), "attrs", ()):
+    if "strength" in outcome.parts:
         return
     for label, mesh in of_meshes(outcome, "planet_sharing"):
         data, of_stage = mesh.parts["planet_sharing"], f", {label}" if label else ""

@@ -34,6 +34,7 @@ def train_period_blocks(page: Page) -> Iterator[Block]:
     """Blocks of the section."""
     variants, page = page.having(_PART), page.by_mesh(_PART)
     alone = len(variants) == 1 and [*variants] == [*page.outcomes]
+    first = next(iter(page.outcomes))
     for position, (variant, outcome) in enumerate(page.outcomes.items()):
         data = outcome.parts[_PART]
         title = "" if alone else variant
@@ -51,15 +52,17 @@ def train_period_blocks(page: Page) -> Iterator[Block]:
         if "body_thrust" in data and data["body_thrust"].any():
             yield Table(_HEADS, _thrusts(data), compact=True)
             yield Paragraph(_tilted(data), "note")
+        # Stages of one variant have figures of their own: all with whole lines, whose jumps can be seen.
+        drawn = first if len(variants) == 1 and (first, laws(data)[0]) in page.curves else variant
+        known = {(variant, law): page.curves[drawn, law] for law in laws(data)}
         figures = [
             *(
-                _over_angle(f"train{position}_{name}", name, variant, data, page.curves)
+                _over_angle(f"train{position}_{name}", name, variant, data, known)
                 for name in ("input_torque", "efficiency")
             ),
             *_forces(f"train{position}_force", data),
         ]
-        curves = [page.curves[variant, law] for law in laws(data)]
-        yield from naming(title, [Panel(title, figures, curves)])
+        yield from naming(title, [Panel(title, figures, [*known.values()])])
 
 
 _HEADS = ["body", f"axial force [{show.unit_of('body_thrust')}]"]
