@@ -22,7 +22,8 @@ from pitchpoint.duty_cycle.history import load_steps
 from pitchpoint.efficiency import train_summary
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case
-from pitchpoint.views.registry import TRAIN
+from pitchpoint.views.registry import TRAIN, in_order
+from pitchpoint.views.section import key_figures
 from pitchpoint.views.train_picture import train_pictures
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -622,6 +623,32 @@ def test_the_rating_takes_the_load_of_planets_whose_pins_are_out_of_place():
     slight = rated(pin_errors=["0.05 um", 0, 0])[0]
     assert slight["mesh_load_factor"].values.tolist() == [1.1, 1.1]
     assert "stays that of the standard" in slight.attrs["remarks"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "settings", "words"),
+    [
+        ({"pin_tolerance": "2 um"}, {}, "at most that in 99 % of sampled sets"),
+        ({"pin_errors": ["1 um", 0, 0]}, {}, "by pin_errors"),
+        ({"pin_tolerance": "0.01 um"}, {}, "assumed by IEC 61400-4; deviations alone: 1"),
+        ({}, {}, "assumed by IEC 61400-4"),
+        ({"pin_tolerance": "2 um"}, {"strength.mesh_load_factor": 1.05}, "by [strength]"),
+    ],
+)
+def test_the_first_screen_says_by_what_the_load_on_a_planet_is(changes, settings, words):
+    """One factor, the one of the rating; and by hand the diameter around the ring."""
+    parts = ["teeth", "strength", *["planet_sharing"] * bool(changes)]
+    tree = {"gears": SET | changes, **TABLES}
+    (outcome,) = pp.run(tree, analyses=parts, settings=settings).values()
+    figures = {figure.name: figure for figure in key_figures(in_order(), outcome)}
+    (name,) = [name for name in figures if name.startswith("Load")]
+    assert name == "Load on a planet" and figures[name].detail.startswith(words)
+    rated = float(outcome.parts["strength"]["mesh_load_factor"].max())
+    assert figures[name].value == f"K_γ {rated:.3g}"
+    # 1.2 of a root circle 2.5 modules beyond 84 teeth; 27 teeth from axis to axis
+    across, apart = 1.2 * 1.0 * (84 + 2.5), 27.0
+    assert figures["Outer diameter"].value == f"{across:.4g} mm"
+    assert figures["Outer diameter"].detail.endswith(f"axes {apart:g} mm apart")
 
 
 @pytest.mark.whole

@@ -89,7 +89,7 @@ def whence_shared(data: xr.Dataset) -> str:
     if "drawn_planet_load_factor" not in data:
         return "by pin_errors"
     level, _ = _drawn(data)[-1]
-    return f"{level} of sampled sets have less"
+    return f"at most that in {level} of sampled sets"
 
 
 def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
