@@ -149,7 +149,6 @@ PLANET_SHARING = Section(
     order=208.0,
     parts=("planet_sharing",),
     blocks="pitchpoint.views.sections.planet_sharing:sharing_blocks",
-    answer=of_part("planet_sharing", "pitchpoint.views.sections.planet_sharing:sharing_facts"),
     screen=of_part("planet_sharing", "pitchpoint.views.sections.planet_sharing:sharing_printed"),
 )
 TRAIN = Section(

@@ -1,9 +1,12 @@
 """How planets share a load where their pins are out of place."""
 
 from collections.abc import Iterator
+from math import nan
 
+import numpy as np
 import xarray as xr
 
+from pitchpoint.cases.strength import MESH_LOAD
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.section import (
@@ -79,27 +82,64 @@ def _drawn(data: xr.Dataset) -> list[tuple[str, ...]]:
     ]
 
 
-def most_by_deviations(data: xr.Dataset) -> float:
+def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+    """The mesh load factor by which planets are rated; where none are, that by the deviations of each set."""
+    if "strength" in outcome.parts:
+        yield from _rated(outcome)
+        return
+    for label, mesh in of_meshes(outcome, "planet_sharing"):
+        if "planet_sharing" in mesh.parts:
+            data, of_stage = mesh.parts["planet_sharing"], f", {label}" if label else ""
+            factor = show.quantity("planet_load_factor", _most_by_deviations(data))
+            name = f"Load on a planet{of_stage}"
+            yield KeyFigure(42.0, name, f"K_γ {factor}", _by_deviations(data))
+
+
+def _rated(outcome: Outcome) -> Iterator[KeyFigure]:
+    """Mesh load factor by which the planets of sets are rated, the largest one, and whence it is."""
+    data = outcome.parts["strength"]
+    sharing = {label: mesh.parts for label, mesh in of_meshes(outcome, "planet_sharing")}
+    factors: dict[str, tuple[float, str]] = {}
+    trains = [train for train in outcome.manifest.get("trains", ()) if len(train["angles"]) > 1]
+    for train in trains:
+        stage = f"stage {train['stage']}" if train["stage"] else ""
+        labels = {str(mesh["label"]) for mesh in train["meshes"]}
+        rated = [name for name in data["stage"].values if str(name) in labels]
+        if rated:
+            factor = float(data["mesh_load_factor"].sel(stage=rated).max())
+            of_set = sharing.get(stage, {}).get("planet_sharing")
+            factors[stage] = factor, _whence(factor, len(train["angles"]), of_set)
+    if factors:
+        stage, (factor, whence) = max(factors.items(), key=lambda item: item[1][0])
+        detail = f"{stage}; {whence}" if len(trains) > 1 else whence
+        yield KeyFigure(42.0, "Load on a planet", f"K_γ {show.number(factor, 3)}", detail)
+
+
+def _whence(factor: float, planets: int, sharing: xr.Dataset | None) -> str:
+    """By what a mesh load factor is, in words."""
+    usual, by_deviations = MESH_LOAD.get(planets, 1.0), nan
+    if sharing is not None:
+        by_deviations = _most_by_deviations(sharing)
+        if np.isclose(factor, by_deviations):
+            return f"{_by_deviations(sharing)}; over an equal share of {planets} planets"
+    if factor != usual:
+        return f"by [strength]; over an equal share of {planets} planets"
+    known = "assumed by IEC 61400-4" if planets in MESH_LOAD else f"assumed for {planets} planets"
+    least = f"; deviations alone: {show.number(by_deviations, 3)}"
+    return f"{known}{least if np.isfinite(by_deviations) else ''}; over an equal share"
+
+
+def _most_by_deviations(data: xr.Dataset) -> float:
     """Largest mesh load factor by the deviations of a set: by tolerance that of nearly all sets."""
     return float(data.get("drawn_planet_load_factor", data["planet_load_factor"]).max())
 
 
-def whence_shared(data: xr.Dataset) -> str:
+def _by_deviations(data: xr.Dataset) -> str:
     """By what that factor is, in words."""
     if "drawn_planet_load_factor" not in data:
         return "by pin_errors"
     level, _ = _drawn(data)[-1]
     return f"at most that in {level} of sampled sets"
-
-
-def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
-    """The mesh load factor where no rating names it: by tolerance about errors given, or by these alone."""
-    if "strength" in outcome.parts:
-        return
-    for label, mesh in of_meshes(outcome, "planet_sharing"):
-        data, of_stage = mesh.parts["planet_sharing"], f", {label}" if label else ""
-        factor = show.quantity("planet_load_factor", most_by_deviations(data))
-        yield KeyFigure(42.0, f"Load on a planet{of_stage}", f"K_γ {factor}", whence_shared(data))
 
 
 def sharing_printed(outcome: Outcome) -> Iterator[Printed]:

@@ -3,12 +3,11 @@
 import json
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from itertools import chain
-from math import inf, nan
+from math import inf
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint.cases.strength import MESH_LOAD
 from pitchpoint.doubts import apart, doubts_of, without_repeats
 from pitchpoint.results.by_stage import as_label
 from pitchpoint.runs.run import Outcome
@@ -26,10 +25,8 @@ from pitchpoint.views.section import (
     Section,
     Table,
     by_variant,
-    of_meshes,
     turned,
 )
-from pitchpoint.views.sections.planet_sharing import most_by_deviations, whence_shared
 
 __all__ = ["STRENGTH", "strength_rows"]
 
@@ -239,40 +236,6 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
             cure = f"name one that has them, or give strength.sigma_{limit}"
             detail = "; ".join([*_doubted(outcome, most, stress), *lacks, cure])
             yield KeyFigure(order, f"Stress of {where}", value, detail)
-    yield from _on_a_planet(outcome, data)
-
-
-def _on_a_planet(outcome: Outcome, data: xr.Dataset) -> Iterator[KeyFigure]:
-    """Mesh load factor by which the planets of sets are rated, the largest one, and whence it is."""
-    sharing = {label: mesh.parts for label, mesh in of_meshes(outcome, "planet_sharing")}
-    factors: dict[str, tuple[float, str]] = {}
-    trains = [train for train in outcome.manifest.get("trains", ()) if len(train["angles"]) > 1]
-    for train in trains:
-        stage = f"stage {train['stage']}" if train["stage"] else ""
-        labels = {str(mesh["label"]) for mesh in train["meshes"]}
-        rated = [name for name in data["stage"].values if str(name) in labels]
-        if rated:
-            factor = float(data["mesh_load_factor"].sel(stage=rated).max())
-            of_set = sharing.get(stage, {}).get("planet_sharing")
-            factors[stage] = factor, _whence(factor, len(train["angles"]), of_set)
-    if factors:
-        stage, (factor, whence) = max(factors.items(), key=lambda item: item[1][0])
-        detail = f"{stage}; {whence}" if len(trains) > 1 else whence
-        yield KeyFigure(42.0, "Load on a planet", f"K_γ {show.number(factor, 3)}", detail)
-
-
-def _whence(factor: float, planets: int, sharing: xr.Dataset | None) -> str:
-    """By what a mesh load factor is, in words."""
-    usual, by_deviations = MESH_LOAD.get(planets, 1.0), nan
-    if sharing is not None:
-        by_deviations = most_by_deviations(sharing)
-        if np.isclose(factor, by_deviations):
-            return f"{whence_shared(sharing)}; over an equal share of {planets} planets"
-    if factor != usual:
-        return f"by [strength]; over an equal share of {planets} planets"
-    known = "assumed by IEC 61400-4" if planets in MESH_LOAD else f"assumed for {planets} planets"
-    least = f"; deviations alone: {show.number(by_deviations, 3)}"
-    return f"{known}{least if np.isfinite(by_deviations) else ''}; over an equal share"
 
 
 def _doubted(outcome: Outcome, value: xr.DataArray, stress: str) -> list[str]:

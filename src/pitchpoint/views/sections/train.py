@@ -22,6 +22,7 @@ from pitchpoint.views.section import (
     Table,
     of_meshes,
 )
+from pitchpoint.views.sections.planet_sharing import sharing_facts
 from pitchpoint.views.train_picture import train_pictures
 
 __all__ = ["train_blocks", "train_facts", "train_printed"]
@@ -64,7 +65,8 @@ def train_blocks(page: Page) -> Iterator[Block]:
 
 
 def train_facts(outcome: Outcome) -> Iterator[KeyFigure]:
-    """Diameter around the gears of the largest set, and the centre distance of its planets."""
+    """Load on a planet, diameter around the gears of the largest set, centre distance of its planets."""
+    yield from sharing_facts(outcome)
     teeth = {label: mesh.parts["teeth"] for label, mesh in of_meshes(outcome, "teeth")}
     sets = [
         (*_around(outcome, train, teeth), train["stage"])
