@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views.first_screen import FEW_LINES, first_screen
+from pitchpoint.views.first_screen import first_screen, most_lines
 
 NUMBER = re.compile(r"\d(?:[\d.,e−+-]*[\de])?")
 REPORT = Path("results/pair/report.html")
@@ -21,7 +21,7 @@ def faults_of_the_screen(outcomes: Mapping[str, Outcome], width: int = 80) -> It
     """What is wrong with the screen of a result."""
     lines = screen(outcomes, width)
     whole = {number for line in screen(outcomes, 1000) for number in NUMBER.findall(line)}
-    if len(lines) > FEW_LINES:
+    if len(lines) > most_lines(outcomes):
         yield f"{len(lines)} lines"
     for line in lines:
         if len(line) > width:

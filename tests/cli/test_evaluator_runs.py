@@ -123,7 +123,7 @@ def beside_torques_at_rest(outcome: Outcome, running: xr.Dataset) -> Iterator[st
 def test_a_torque_that_holds_hardly_anything_is_told_as_none_is(
     moving: tuple[Ready, Outcome],
 ) -> None:
-    assert "too low" not in moving[1].parts["running"].attrs["warnings"]
+    assert "lower bound" not in moving[1].parts["running"].attrs["warnings"]
     for held in ('breakaway_torque = "1e-6 N m"\n', ""):
         losses = MOVING.replace('breakaway_torque = "1 N m"\nbreakaway_spread = 2.0\n', held)
         built = variant(PAIR + losses).built({})

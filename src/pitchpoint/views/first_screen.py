@@ -40,6 +40,7 @@ __all__ = [
     "aligned",
     "beside_each_other",
     "first_screen",
+    "most_lines",
     "swept_beside",
     "within",
     "wrapped",
@@ -95,7 +96,7 @@ def first_screen(
         tables: False below the tables of all sections: then every figure stands here.
     """
     outcome = next(iter(outcomes.values()))
-    few = FEW_LINES + _OF_SETS * bool(len(outcomes) == 1 and outcome.manifest.get("trains"))
+    few = most_lines(outcomes)
     title = _title(outcome, len(outcomes))
     at = _operation(outcome) if len(outcomes) == 1 else ""
     doubts = _doubts(outcomes, width)
@@ -117,6 +118,16 @@ def first_screen(
         [line for line in doubts if line.style == style] for style in ("fails", "doubt")
     )
     return [*fails, *head, *doubtful, *figures, *foot]
+
+
+def most_lines(outcomes: Mapping[str, Outcome]) -> int:
+    """Lines of a first screen at most: a dozen, of planetary sets with their diameter and backlash.
+
+    Args:
+        outcomes: by variant.
+    """
+    of_sets = [outcome for outcome in outcomes.values() if outcome.manifest.get("trains")]
+    return FEW_LINES + _OF_SETS * bool(of_sets and len(outcomes) == 1)
 
 
 def beside_each_other(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
