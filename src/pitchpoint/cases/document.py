@@ -39,6 +39,7 @@ _NAMING_FILES = (
     ("film", "heights", "*"),
     ("worn",),
     ("duty",),
+    ("stages", "*", "worn"),
     ("stages", "*", "film", "heights", "*"),
 )
 """Places of the tables that name files; a star stands for every table there."""

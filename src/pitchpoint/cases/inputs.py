@@ -257,6 +257,7 @@ _OF_STAGE = (
     "strength",
     "film",
     "wear",
+    "worn",
     "dynamics",
 )
 """Tables that a stage may have of its own, beside gears and models."""

@@ -14,6 +14,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    PrivateAttr,
     Tag,
     ValidationError,
     ValidationInfo,
@@ -165,6 +166,10 @@ MAP_UNIT = Quantity("length", 0.0, 1.0, "um", open_low=True)
 MAP_PLACE = Quantity("length", -1.0, 1.0, "mm")
 WEAR_TURNS = Quantity("dimensionless", 0.0, 1e15, open_low=True)
 WORN_TURNS = Quantity("dimensionless", 0.0, 1e15)
+MOST_STAGES = 5
+"""Stages of a drive: the meetings of their phases multiply."""
+
+WORN_STAGE = Quantity("dimensionless", 1, MOST_STAGES, whole=True)
 WEAR_COEFFICIENT = Quantity("dimensionless", 0.0, 1.0)
 WEAR_RATE = Quantity("specific wear rate", 0.0, 1e-6, "mm3/(N m)")
 WEAR_DEPTH = Quantity("length", 1e-8, 0.1, "um")
@@ -1429,13 +1434,28 @@ class WearTable(Table):
 class WornTable(Table):
     """Flanks that are worn, from a result with wear of the same gears.
 
-    `cycles` of the driver are those up to which they are worn; all that the result has by default.
+    `cycles` of the driver, of a set of its input, are those up to which they are worn; all that the result
+    has by default. Of a result of several meshes that of the same gears counts.
     """
 
     file: Text
     """File wear.nc of a result with wear of the same gears, beside the case file."""
     cycles: Annotated[float, WORN_TURNS] | None = None
     """Turns of the driver up to which flanks are worn; all that the file has unless given."""
+    stage: Annotated[float, WORN_STAGE] | None = None
+    """Number of the stage of that result, where several of its stages have such gears."""
+    _of_driver: float = PrivateAttr(default=1.0)
+
+    @property
+    def of_driver(self) -> float:
+        """Turns of the driver for one of those that `cycles` counts."""
+        return self._of_driver
+
+    def counted(self, of_driver: float) -> "WornTable":
+        """The same with `cycles` of the input of a train, for one of which the driver makes so many."""
+        copied = self.model_copy()
+        copied._of_driver = of_driver
+        return copied
 
 
 _TREATMENT = named(TREATMENTS.keys, "heat treatment")
@@ -1672,10 +1692,6 @@ def _damped(dynamics: Dynamics | None, usual: float) -> Dynamics | None:
     return dynamics.model_copy(update={"damping_ratio": usual})
 
 
-MOST_STAGES = 5
-"""Stages of a drive: the meetings of their phases multiply."""
-
-
 PLANET_GEAR = Quantity("dimensionless", 1, MOST_STAGES, whole=True)
 
 
@@ -1710,6 +1726,8 @@ class StageTable(Table):
     """Asks for films solved over the mesh cycle of the stage, of a set of each mesh; none unless given."""
     wear: WearTable | None = None
     """Asks for wear of the stage, of a set of each mesh, over turns of what drives it; none unless given."""
+    worn: WornTable | None = None
+    """Flanks of the stage, of a set of each mesh, worn by an earlier result; as new unless given."""
     dynamics: Dynamics | None = None
     """Asks for vibration of the stage by itself, speeds being those of its own driver; none unless given."""
     place: Annotated[float, PLACE] = 0.0
@@ -1819,6 +1837,8 @@ class DriveCase(Table):
     """Asks for films solved over the cycle of each mesh of a planetary set; stages have their own."""
     wear: WearTable | None = None
     """Asks for wear of each mesh of a planetary set; stages have their own."""
+    worn: WornTable | None = None
+    """Flanks of each mesh of a planetary set worn by an earlier result; stages have their own."""
     train: TrainTable | None = None
     """Bodies of a train whose meshes turn together; stages follow each other unless given."""
     materials: DriveMaterials = DriveMaterials()
@@ -2323,12 +2343,8 @@ def validate(document: Document) -> Case | DriveCase:
 
 _OF_SETS = {
     "dynamics": _NO_VIBRATION,
-    "worn": (
-        "worn flanks belong to one mesh, and a set has several; leave it out, or give one pair of its gears "
-        "a file of its own"
-    ),
 }
-_OF_EACH_MESH = ("film", "wear")
+_OF_EACH_MESH = ("film", "wear", "worn")
 """Tables of a planetary set that each of its meshes has."""
 
 
@@ -2348,7 +2364,7 @@ _OF_ONE_MESH = {
     "dynamics": "vibration is that of a mesh; give a stage the table, [stages.dynamics] under its [[stages]]",
     "film": "films are those of a mesh; give a stage the table, film = { ... } under its [[stages]]",
     "wear": "wear is that of a mesh; give a stage the table, wear = { ... } under its [[stages]]",
-    "worn": "worn flanks belong to one mesh; give the stage a file of its own",
+    "worn": "worn flanks are those of a mesh; give a stage the table, worn = { ... } under its [[stages]]",
 }
 
 

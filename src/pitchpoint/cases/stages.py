@@ -312,7 +312,9 @@ def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
     both = {key: {**shared.get(key, {}), **stage.get(key, {})} for key in _SHARED}
     tree |= {key: table for key, table in both.items() if table}
     tree |= {
-        key: stage[key] for key in ("gears", "losses", "film", "wear", "dynamics") if key in stage
+        key: stage[key]
+        for key in ("gears", "losses", "film", "wear", "worn", "dynamics")
+        if key in stage
     }
     conditions = {key: drive["operation"][key] for key in ("speed", "temperature")}
     tree["operation"] = {**conditions, gears.load: SIValue(case.operation.load)}

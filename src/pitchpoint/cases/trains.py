@@ -121,6 +121,7 @@ def turning_together(
         shared = {
             "strength": _strength(stage, link, meshings, train),
             "wear": _wear(stage.wear, link, train, per_turn),
+            "worn": stage.worn and stage.worn.counted(per_turn),
         }
         turned.append(stage.model_copy(update=shared))
     return turned, points

@@ -1,10 +1,12 @@
 """Worn flanks of a case, from a result with wear of the same gears."""
 
 import hashlib
+import json
 import os
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 
 from pitchpoint._jax import array
 from pitchpoint.cases.schema import WornTable
@@ -12,6 +14,7 @@ from pitchpoint.contact.worn import FLATTEST
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.table import GearsTable
+from pitchpoint.results.by_stage import OF_STAGES, of_stage, stages_of
 from pitchpoint.results.store import load
 from pitchpoint.wear.history import Cells
 
@@ -19,6 +22,9 @@ __all__ = ["gears_digest", "with_wear"]
 
 _PLACES = ("flank_ends", "across_ends", "contact_span")
 _READ = ("worn_depth", "cycles", "conforming", "deepest_wear", "wear_error", *_PLACES)
+
+ROUNDING = 1e-12
+"""Part by which turns of the input, as those of a mesh, may be beyond those that a result has."""
 
 
 def gears_digest(gears: GearsTable) -> str:
@@ -50,18 +56,20 @@ def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str
         raise _wrong(name, "cannot be read as a result; name the wear.nc of one") from None
     if data.attrs.get("title") != "wear":
         raise _wrong(name, "holds no wear; name the wear.nc of a result")
-    if data.attrs.get("gears") != gears_digest(gears):
-        raise _wrong(
-            name, "holds the wear of other gears: every key of [gears] has to be as it was there"
-        )
+    data = _of_gears(data, gears_digest(gears), worn.stage, name)
     lacking = [one for one in _READ if one not in data]
     if lacking:
         raise _wrong(name, f"lacks {', '.join(lacking)}; compute the wear again with this version")
     cycles = data["cycles"].values
-    turns = float(cycles[-1]) if worn.cycles is None else worn.cycles
-    if turns > cycles[-1]:
-        warning = f"{turns:.6g} is beyond the {cycles[-1]:.6g} turns that {name} holds; give at most so many"
+    held = float(cycles[-1])
+    turns = held if worn.cycles is None else worn.cycles * worn.of_driver
+    if turns > held * (1.0 + ROUNDING):
+        warning = (
+            f"{worn.cycles:.6g} is beyond the {held / worn.of_driver:.6g} turns that {name} holds; give at "
+            "most so many"
+        )
         raise InputError(warning, key="worn.cycles")
+    turns = min(turns, held)
     depth = data["worn_depth"]
     at = max(int(np.searchsorted(cycles, turns)), 1) if cycles.size > 1 else 0
     part = 0.0 if at == 0 else (turns - cycles[at - 1]) / (cycles[at] - cycles[at - 1])
@@ -90,6 +98,50 @@ def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str
         )
     # Flanks from which nothing is gone are those as new, to the last bit.
     return cells.worn(mesh, array(gone)) if gone.any() else mesh, warning
+
+
+def _of_gears(data: xr.Dataset, digest: str, stage: float | None, name: str) -> xr.Dataset:
+    """The wear of some gears out of that of one mesh or of several.
+
+    Args:
+        data: of a result.
+        digest: of the gears.
+        stage: number of the stage that is asked for, if any is.
+        name: of the file.
+
+    Raises:
+        InputError: other gears, or several stages that have them.
+    """
+    record = json.loads(data.attrs.get(OF_STAGES, "{}"))
+    digests = {label: record[str(label)]["attributes"].get("gears") for label in stages_of(data)}
+    if not digests and stage is not None:
+        message = f'{stage:.0f} was given, and "{name}" has one mesh alone; leave it out'
+        raise InputError(message, key="worn.stage")
+    if digest not in (data.attrs.get("gears"), *digests.values()):
+        raise _wrong(
+            name, "holds the wear of other gears: every key of [gears] has to be as it was there"
+        )
+    if not digests:
+        return data
+    numbers = {
+        label: int(str(label).partition(" ")[0])
+        for label, of_label in digests.items()
+        if of_label == digest
+    }
+    chosen = [label for label, number in numbers.items() if stage in (None, number)]
+    if len(chosen) != 1:
+        stages = " and ".join(map(str, numbers.values()))
+        is_given = "is missing" if stage is None else f"{stage:.0f} was given"
+        advice = (
+            f"give {' or '.join(map(str, numbers.values()))}"
+            if len(numbers) > 1
+            else "leave it out"
+        )
+        message = (
+            f'{is_given}, and "{name}" holds the wear of such gears in stage {stages}; {advice}'
+        )
+        raise InputError(message, key="worn.stage")
+    return of_stage(data, chosen[0])
 
 
 def _wrong(name: str, told: str) -> InputError:

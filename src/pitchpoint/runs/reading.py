@@ -86,7 +86,7 @@ def _recorded(path: Path, own: ChosenLaws, settings: Mapping[str, Any]) -> Varia
     warnings = (
         *record.warning,
         *_other_heights(record, settings),
-        *_other_inputs(record, settings),
+        *dict.fromkeys(_other_inputs(record, settings)),
     )
     return Variant(
         tree, name, record.variant, recorded=record.case, warnings=warnings, folder=path.parent
@@ -106,10 +106,16 @@ def _other_heights(record: Manifest, settings: Mapping[str, Any]) -> Iterator[st
 
 def _other_inputs(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
     """That files hold other wear or loads than when the record was made, unless settings name others."""
-    replaced = {key.split(".")[0] for key in settings}
-    for table, what in (("worn", "worn flanks"), ("duty", "loads over time")):
-        if table not in replaced:
-            yield from _other_file(record, f"{table}.", what)
+    for key in _by_key(record):
+        place, _, leaf = key.rpartition(".")
+        *_, table = place.split(".")
+        what = {"worn": "worn flanks", "duty": "loads over time"}.get(table)
+        # Of a set the table of the file is that of each mesh.
+        replaced = any(
+            setting == table or setting.startswith((f"{table}.", place)) for setting in settings
+        )
+        if leaf == "digest" and what and not replaced:
+            yield from _other_file(record, f"{place}.", what)
 
 
 def _by_key(record: Manifest) -> dict[str, Any]:
