@@ -449,6 +449,7 @@ def test_a_load_that_friction_locks_is_told() -> None:
     ("change", "says"),
     [
         ({"resistance": 0.0}, "motor.resistance: 0.0 was given; it is above 0"),
+        ({"resistance": float("inf")}, "motor.resistance: inf was given; it is finite"),
         ({"torque_constant": math.nan}, "motor.torque_constant"),
         ({"inertia": -1.0}, "motor.inertia: -1.0 was given; it is not negative"),
         ({"iron_exponent": 3.0}, "allowed is 1 to 2"),

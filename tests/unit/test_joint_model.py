@@ -170,7 +170,9 @@ def test_ranges_that_somebody_names() -> None:
     for told, texts in (
         ("beyond the map, which ends at 60 N m", ("5 N m:90 N m", None)),
         ("is no range", ("5 N m", None)),
-        ("is no range", ("30 N m:5 N m", None)),
+        ('"30 N m: 5 N m" goes from high to low; write "5 N m:30 N m"', ("30 N m: 5 N m", None)),
+        ("begins where it ends", ("5 N m:5 N m", None)),
+        ("begins at 0.01 rad/s", (None, "0.001 rad/s:0.002 rad/s")),
         ("beyond the map, which ends at 4 rad/s", (None, "1 rpm:900 rpm")),
     ):
         with pytest.raises(InputError, match=told):

@@ -256,9 +256,9 @@ def _demand_units(table: "pd.DataFrame", travels: bool) -> None:
     usual = {"time": "s", "duration": "s", "torque": "N m", "speed": "rpm", "temperature": "degC"}
     usual |= {"torque": "N", "speed": "m/s"} if travels else {}
     for head in map(str, table):
-        name, _, unit = (part.strip().lower() for part in head.partition("["))
+        name, unit = _name_and_unit(head)
         nothing = name != "temperature" and (table[head] == 0).all()
-        if name in usual and not unit.strip("] ") and not nothing:
+        if name in usual and not unit and not nothing:
             raise InputError(
                 f"{head!r} has no unit; write it in brackets, such as {name} [{usual[name]}]",
                 key=name,
@@ -270,8 +270,7 @@ def _columns(table: "Mapping[str, ArrayLike] | pd.DataFrame", travels: bool) -> 
     kinds = _kinds(travels)
     columns: dict[str, Floats] = {}
     for head in map(str, table):
-        name, _, unit = head.strip().partition("[")
-        name = name.strip().lower()
+        name, unit = _name_and_unit(head)
         if name not in kinds:
             raise InputError(
                 f"{head!r} is no column of a duty cycle; those are {', '.join(kinds)}, "
@@ -280,8 +279,14 @@ def _columns(table: "Mapping[str, ArrayLike] | pd.DataFrame", travels: bool) -> 
         if name in columns:
             raise InputError(f"there are two columns for {name}", key=name)
         values = _numbers(name, table[head])
-        columns[name] = _in_si(values, unit.rstrip().removesuffix("]").strip(), kinds[name], head)
+        columns[name] = _in_si(values, unit, kinds[name], head)
     return columns
+
+
+def _name_and_unit(head: str) -> tuple[str, str]:
+    """Of a column, by its head, "Torque [N m]"; no unit is an empty one."""
+    name, _, unit = head.partition("[")
+    return name.strip().lower(), unit.rstrip().removesuffix("]").strip()
 
 
 def _kinds(travels: bool) -> dict[str, str]:

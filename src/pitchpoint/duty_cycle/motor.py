@@ -59,6 +59,9 @@ class Motor:
                 raise InputError(
                     f"{getattr(self, name)} was given; it is above 0", key=f"motor.{name}"
                 )
+        for name in ("torque_constant", "resistance"):
+            if math.isinf(getattr(self, name)):
+                raise InputError("inf was given; it is finite", key=f"motor.{name}")
         for name in ("inertia", "iron_loss"):
             if not 0.0 <= getattr(self, name) < math.inf:
                 raise InputError(

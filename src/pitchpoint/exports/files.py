@@ -13,7 +13,7 @@ import xarray as xr
 
 from pitchpoint.errors import InputError, visible
 from pitchpoint.exports.evaluator import evaluator
-from pitchpoint.exports.simulators import TARGETS
+from pitchpoint.exports.simulators import TARGETS, option_of
 from pitchpoint.exports.tables import Sheet, exported, sheets
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import make_folder, without_nan, write_bytes, write_text
@@ -77,7 +77,7 @@ def _exported(
 ) -> list[Path]:
     if not formats:
         names = (*FORMATS, EVALUATOR, *TARGETS)
-        options = ", ".join("--" + name.replace("_", "-") for name in names)
+        options = ", ".join(map(option_of, names))
         raise InputError(f"no format was given; give one or several of {options}")
     written: list[Path] = []
     for name, outcome in outcomes.items():

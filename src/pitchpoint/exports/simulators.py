@@ -41,6 +41,7 @@ __all__ = [
     "lost_lines",
     "lost_without_load",
     "most_torque",
+    "option_of",
     "xml_comment",
 ]
 
@@ -151,12 +152,22 @@ def hand_over(
         several = len(outcomes) > 1
         for target in targets:
             place = (folder / name if several else folder) / target
-            simulated = _simulated(outcome, asked or Asked(), "--" + target.replace("_", "-"))
+            simulated = _simulated(outcome, asked or Asked(), option_of(target))
             make_folder(place)
             paths, lost = _writer(target)(simulated, place)
             lines = [*lost, *wrap(_beside_map(simulated), 78)]
             written[f"{name}: {target}" if several else target] = HandedOver(paths, lines)
     return written
+
+
+def option_of(target: str) -> str:
+    """The option of a target or a format on the command line.
+
+    Example:
+        >>> option_of("ros2_control")
+        '--ros2-control'
+    """
+    return "--" + target.replace("_", "-")
 
 
 def _writer(target: str) -> Writer:
@@ -187,9 +198,7 @@ def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
     load = quantity_of(asked.load, joint.units["torque"], "--load")
     warm = quantity_of(asked.temperature, "K", "--temperature")
     degrees = joint.table.temperatures
-    degree = float(degrees_celsius(np.asarray(joint.temperature if warm is None else warm)))
-    if warm is None:  # a map may be of other temperatures than operation, see `_beside_map`
-        degree = min(max(degree, degrees[0]), degrees[-1])
+    degree = _nearest_of_map(joint) if warm is None else float(degrees_celsius(np.asarray(warm)))
     for value, axis, of, text, unit in (
         (load or 0.0, joint.table.torques, "--load", asked.load, joint.units["torque"]),
         (degree, degrees, "--temperature", asked.temperature, "degC"),
@@ -201,11 +210,16 @@ def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
     return Simulated(outcome, joint, joint.load if load is None else load, degree, within)
 
 
+def _nearest_of_map(joint: JointModel) -> float:
+    """The temperature of operation, or the nearest of a map that has others [degC]."""
+    degrees = joint.table.temperatures
+    return min(max(float(degrees_celsius(np.asarray(joint.temperature))), degrees[0]), degrees[-1])
+
+
 def _beside_map(given: Simulated) -> str:
     """A sentence where the nearest of the map stands for the temperature of operation."""
-    coldest, hottest = given.joint.table.temperatures[0], given.joint.table.temperatures[-1]
     degree = float(degrees_celsius(np.asarray(given.joint.temperature)))
-    edge = min(max(degree, coldest), hottest)
+    edge = _nearest_of_map(given.joint)
     if edge == degree or given.temperature != edge:
         return ""
     return (

@@ -457,9 +457,20 @@ def _between(
     if text is None:
         return axis
     ends = [quantity_of(part.strip(), unit, key) or 0.0 for part in text.split(":")]
-    if len(ends) != 2 or not ends[0] < ends[1]:
+    if len(ends) != 2:
         raise InputError(
             f'{shown(text)} is no range; write "LEAST:LARGEST", each with its unit', key=key
+        )
+    if not ends[0] < ends[1]:
+        turned = ":".join(part.strip() for part in reversed(text.split(":")))
+        what = f"goes from high to low; write {shown(turned)}"
+        if ends[0] == ends[1]:
+            what = "begins where it ends; give two amounts, the least first"
+        raise InputError(f"{shown(text)} {what}", key=key)
+    if ends[1] <= axis[0]:
+        raise InputError(
+            f"{shown(text)} lies below the motion in the map, which begins at {axis[0]:.6g} {unit}",
+            key=key,
         )
     if ends[1] > axis[1] * (1.0 + 1e-9):
         raise InputError(
