@@ -86,8 +86,8 @@ class StrainWaveSize:
 
     @property
     def length(self) -> float:
-        """Length of the cup [m]: half of the pitch diameter, as cases take it that do not give one."""
-        return self.diameter / 2.0
+        """Length of the cup by usual proportions [m], as cases take it that do not give one."""
+        return PROPORTIONS.cup * self.diameter
 
     @property
     def gears(self) -> Tree:

@@ -110,8 +110,8 @@ def _row(first: str, design: SizedDrive) -> dict[str, str]:
 
 def _doubts(sizing: Sizing) -> Iterator[str]:
     families = {design.family for design in sizing.designs.values()}
-    factors = sizing.task.application_factor, sizing.task.face_load_factor
-    on_factors = "K_A is {:.6g} and K_Hβ {:.6g}.".format(*factors)
+    task = sizing.task
+    on_factors = f"K_A is {task.application_factor:.6g} and K_Hβ {task.face_load_factor:.6g}."
     of_teeth = f"{_OF_TEETH} " if families - {"strain wave"} else ""
     yield f"{of_teeth}{_LEFT_OUT}; {on_factors}"
     if "strain wave" in families:
