@@ -16,7 +16,7 @@ from pitchpoint.sizing.for_ratio import (
     without_undercut,
 )
 from pitchpoint.sizing.stage_forms import CENTRE_FIELD, FIELD, Form, formed
-from pitchpoint.sizing.task import Task
+from pitchpoint.sizing.table import Task
 from pitchpoint.sizing.three_k import three_k_sets, three_k_tables
 
 __all__ = ["Arrangement", "arrangements", "reach_words"]

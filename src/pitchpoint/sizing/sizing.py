@@ -32,9 +32,9 @@ from pitchpoint.sizing.strain_wave import (
     strain_wave_sizes,
     why_no_size,
 )
-from pitchpoint.sizing.task import Task
+from pitchpoint.sizing.table import Task, read_task
 
-__all__ = ["SizedDrive", "Sizing", "families_by_reason", "size"]
+__all__ = ["SizedDrive", "Sizing", "families_by_reason", "size", "sized_for"]
 
 Tree = dict[str, Any]
 
@@ -171,12 +171,11 @@ class Sizing:
         return paths
 
 
-@double_precision()
 def size(
-    torque: str,
-    ratio: float,
-    speed: str,
-    life: str,
+    torque: str | Path | None = None,
+    ratio: float | None = None,
+    speed: str | None = None,
+    life: str | None = None,
     *,
     ratio_tolerance: float | None = None,
     diameter: str | None = None,
@@ -196,7 +195,8 @@ def size(
     """Designs of drives for a torque, a ratio, a speed and a life, and the front of those that none beats.
 
     Args:
-        torque: at the output, with its unit.
+        torque: at the output, with its unit; or a file with a task, "task.toml", whose values what is given
+            beside it takes the place of.
         ratio: speed of the input over that of the output, of either sense.
         speed: of the output.
         life: time under load.
@@ -231,11 +231,23 @@ def size(
             ...
         pitchpoint.errors.InputError: no drive does this: planetary: reaches ratios of 2.8 to 11, 60 is asked
     """
-    given = dict(locals())
-    task = Task.read(**given)
+    options = dict(locals())
+    if isinstance(torque, Path) or str(torque).endswith(".toml"):
+        return sized_for(read_task(options.pop("torque"), **options))
+    return sized_for(Task.read(**options))
+
+
+@double_precision()
+def sized_for(task: Task) -> Sizing:
+    """Designs of drives for a task, as `size` has them.
+
+    Args:
+        task: what is asked.
+    """
     _demand_oil(task)
     designs: list[SizedDrive] = []
-    tried, without = {}, {}
+    tried: dict[str, int] = {}
+    without: dict[str, str] = {}
     for family in task.families:
         try:
             made, tried[family] = _MAKERS.get(family, _of_stages)(task, family)
