@@ -14,7 +14,6 @@ from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.table import DISTANCE
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.input.tables import Table
-from pitchpoint.materials import lubricants, solids
 from pitchpoint.registry import alike, enumerated, known_as, nearest
 
 __all__ = ["AIMS", "SIZED_FAMILIES", "TASK_TABLE", "Task", "read_task", "task_template"]
@@ -83,6 +82,8 @@ def _names(known: Sequence[str], what: str) -> Callable[[Any], tuple[str, ...]]:
 
 def _steel(value: Any) -> str:
     """Name of a material whose teeth have limits of strength."""
+    from pitchpoint.materials import solids  # only what is read computes
+
     record = solids.find(str(value))
     if record.sigma_hlim is None or record.sigma_flim is None:
         raise InputError(
@@ -93,6 +94,8 @@ def _steel(value: Any) -> str:
 
 
 def _oil(value: Any) -> str:
+    from pitchpoint.materials import lubricants
+
     return lubricants.find(str(value)).name
 
 
