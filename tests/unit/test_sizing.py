@@ -192,6 +192,28 @@ def test_a_few_stand_for_many_with_the_best_by_each_aim():
     assert len(representatives(costs[:0], 7)) == 0
 
 
+def test_each_stage_has_the_centre_distance_that_is_given_for_it():
+    task = Task.read(**TASK, centre_distances="40 mm, 60 mm")
+    assert [task.most_distance(stage, 2) for stage in range(2)] == [0.04, 0.06]
+    assert task.most_distance(0, 3) == 0.0  # of two stages, not of three
+    for_all = Task.read(**TASK, centre_distances="50 mm")
+    assert [for_all.most_distance(stage, 3) for stage in range(3)] == [0.05] * 3
+    assert Task.read(**TASK).most_distance(2, 3) == np.inf
+
+
+def test_the_best_of_a_front_are_those_with_the_least_and_the_one_that_lacks_little_of_both():
+    rest = dict.fromkeys(("ratio", "diameter", "length", "backlash", "inertia"), 1.0)
+    rest |= {"flank_safety": 2.0, "root_safety": 2.0}
+    costs = {"light": (1.0, 0.09), "middle": (2.0, 0.02), "lossless": (9.0, 0.01)}
+    designs = {
+        name: SizedDrive(name=name, family="3K", tree={}, mass=mass, loss=loss, **rest)
+        for name, (mass, loss) in costs.items()
+    }
+    task = Task.read(**TASK, aims="mass, loss")
+    best = Sizing(task, designs, tuple(designs), {"3K": 3}, {}).best
+    assert best == {"mass": "light", "loss": "lossless", "balanced": "middle"}
+
+
 def test_losses_of_helical_teeth_are_the_mean_over_lines_that_fill_the_path():
     teeth, friction = np.array([23.0, 61.0]), 0.04
     parts = np.array([0.9, 0.6])  # beyond the pitch point, and before it, in base pitches
