@@ -310,6 +310,9 @@ def test_why_a_family_does_not_reach_a_ratio_is_told_with_how_far_it_goes():
     task = Task.read(**TASK)
     assert reach_words(task, "one stage") == "reaches ratios of 1.25 to 8, 60 is asked"
     assert reach_words(task, "planetary") == "reaches ratios of 2.8 to 11, 60 is asked"
+    both = "planetary and strain wave"
+    with pytest.raises(InputError, match=f"{both}: reaches ratios of 84 to 3520, 60 is asked"):
+        size(**TASK, families=both)
     told = "no teeth that can be made come within 3 % of that ratio"
     assert reach_words(task, "stepped planets") == told
     with pytest.raises(InputError) as caught:

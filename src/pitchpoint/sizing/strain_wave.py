@@ -10,6 +10,7 @@ from pitchpoint.sizing.stage_forms import running_tables
 from pitchpoint.sizing.table import Task
 
 __all__ = [
+    "RATIOS",
     "SIZES",
     "StrainWaveSize",
     "strain_wave_case",

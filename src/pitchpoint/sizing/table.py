@@ -27,6 +27,7 @@ SizedFamily = Literal[
     "stepped planets",
     "3K",
     "strain wave",
+    "planetary and strain wave",
 ]
 Aim = Literal["mass", "loss", "diameter", "backlash"]
 

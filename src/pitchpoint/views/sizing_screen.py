@@ -114,7 +114,7 @@ def _doubts(sizing: Sizing) -> Iterator[str]:
     on_factors = f"K_A is {task.application_factor:.6g} and K_Hβ {task.face_load_factor:.6g}."
     of_teeth = f"{_OF_TEETH} " if families - {"strain wave"} else ""
     yield f"{of_teeth}{_LEFT_OUT}; {on_factors}"
-    if "strain wave" in families:
+    if families & {"strain wave", "planetary and strain wave"}:
         yield _OF_STRAIN_WAVES
 
 
