@@ -1141,9 +1141,9 @@ def size(
 ) -> None:
     """Find drives for a torque, a ratio, a speed and a life.
 
-    Stages of spur and helical pairs, planetary, stepped and 3K sets, strain wave gears, also behind a set: those that
-    bear the load and that no other one beats, each a case file that runs. Torque, ratio, speed and life are needed, as
-    options or in a file, which pitchpoint new size writes.
+    Stages of spur and helical pairs, planetary, stepped and 3K sets, strain wave gears, also behind a set:
+    those that bear the load and that no other one beats, each a case file that runs. Torque, ratio, speed and
+    life are needed, as options or in a file, which pitchpoint new size writes.
     """
     from pitchpoint.sizing.sizing import sized_for
     from pitchpoint.sizing.table import Task, read_task
