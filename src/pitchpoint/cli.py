@@ -1089,7 +1089,8 @@ def size(
     task: Annotated[
         Path | None,
         typer.Argument(
-            metavar="[FILE]", help="A table [size] with what follows; options win over its values."
+            metavar="[FILE]",
+            help="What follows as keys of a table size; options win over its values.",
         ),
     ] = None,
     torque: Annotated[str | None, typer.Option(help='At the output, "60 N m".')] = None,
@@ -1141,9 +1142,10 @@ def size(
 ) -> None:
     """Find drives for a torque, a ratio, a speed and a life.
 
-    Stages of spur and helical pairs, planetary, stepped and 3K sets, strain wave gears, also behind a set:
-    those that bear the load and that no other one beats, each a case file that runs. Torque, ratio, speed and
-    life are needed, as options or in a file, which pitchpoint new size writes.
+    Stages of spur and helical pairs, planetary, stepped and 3K sets, strain
+    wave gears alone or behind a set. Those are shown that bear the load and
+    that no other one beats, each a case file that runs. Torque, ratio, speed
+    and life are needed, as options or in a file: pitchpoint new size.
     """
     from pitchpoint.sizing.sizing import sized_for
     from pitchpoint.sizing.table import Task, read_task
