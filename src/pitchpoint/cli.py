@@ -922,7 +922,7 @@ def _kinds_of_laws(rows: Sequence[Mapping[str, str]]) -> None:
 def schema(
     of: Annotated[
         str,
-        typer.Argument(metavar="[case | size]", help="Of case files, or of tasks for a sizing."),
+        typer.Argument(metavar="case|size", help="Of case files, or of tasks for a sizing."),
     ] = "case",
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE", help="Default: the screen.")
