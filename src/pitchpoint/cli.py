@@ -1089,7 +1089,7 @@ def size(
     task: Annotated[
         Path | None,
         typer.Argument(
-            metavar="[FILE]",
+            metavar="FILE",
             help="What follows as keys of a table size; options win over its values.",
         ),
     ] = None,
