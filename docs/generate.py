@@ -29,6 +29,7 @@ from pitchpoint.results.strength import EXTREMES, STRENGTH
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.catalogue import entries
+from pitchpoint.sizing.table import TASK_TABLE, Task
 
 __all__ = ["keys_pages", "models_page", "pages", "variables_pages", "write"]
 
@@ -65,7 +66,8 @@ def _keys_by_table() -> dict[str, list[str]]:
     tables = _tables("gears (planetary)", PlanetaryGears)
     first, *others = (part for path, model in tables for part in _of_table(f"`[{path}]`", model))
     pages["gears_planetary"] = [first[1:], *others]
-    return {**pages, "marks": _marks()}
+    title, table = _of_table(f"`[{TASK_TABLE}]` of a task", Task)
+    return {**pages, "marks": _marks(), TASK_TABLE: [title[1:], table]}
 
 
 def _marks() -> list[str]:

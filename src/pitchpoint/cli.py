@@ -920,17 +920,27 @@ def _kinds_of_laws(rows: Sequence[Mapping[str, str]]) -> None:
 
 @app.command()
 def schema(
+    of: Annotated[
+        str,
+        typer.Argument(metavar="case|size", help="Of case files, or of tasks for a sizing."),
+    ] = "case",
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE", help="Default: the screen.")
     ] = None,
 ) -> None:
-    """Print the JSON Schema of case files.
+    """Print the JSON Schema of case files, or of tasks.
 
     Editors complete and check TOML by it. A file names it in its first line: #:schema pitchpoint.json
     """
-    from pitchpoint.cases.json_schema import case_schema
+    from pitchpoint.cases.json_schema import case_schema, table_schema
+    from pitchpoint.input.quantities import shown
+    from pitchpoint.sizing.table import TASK_TABLE, Task
 
-    _write(json.dumps(case_schema(), indent=1, ensure_ascii=False) + "\n", output)
+    if of not in ("case", TASK_TABLE):
+        raise InputError(f"{shown(of)} has no schema; known are case and {TASK_TABLE}")
+    of_task = of == TASK_TABLE
+    made = table_schema("Task of Pitchpoint", TASK_TABLE, Task) if of_task else case_schema()
+    _write(json.dumps(made, indent=1, ensure_ascii=False) + "\n", output)
 
 
 def _pages_from(incomplete: str) -> list[str]:
@@ -1012,7 +1022,7 @@ def new(
         typer.Argument(
             metavar="FAMILY",
             help="spur, helical, strain_wave, rack_and_pinion, torus, ball_on_disc, two_stages, "
-            "planetary or 3K.",
+            "planetary, 3K, or size for a task.",
             autocompletion=_families_from,
         ),
     ],
@@ -1056,11 +1066,18 @@ def new(
     It runs as it is; every optional key is a remark in it.
     """
     from pitchpoint.cases.template import template
+    from pitchpoint.sizing.table import TASK_TABLE, task_template
 
+    beside = {"torque": torque, "planets": planets, "count": count}
+    beside |= {"speed": speed, "life": life, "diameter": diameter}
+    if family == TASK_TABLE:
+        for key, value in {"ratio": ratio, **beside}.items():
+            if value is not None:
+                raise InputError("is no option of a task, whose file has what is asked", key=key)
+        _write(task_template(), output)
+        return
     if ratio is None:
-        options = {"torque": torque, "planets": planets, "count": count}
-        options |= {"speed": speed, "life": life, "diameter": diameter}
-        for key, value in options.items():
+        for key, value in beside.items():
             if value is not None:
                 raise InputError("goes with --ratio; the file has its own", key=key)
         _write(template(family), output)
@@ -1084,10 +1101,19 @@ def new(
 
 @app.command()
 def size(
-    torque: Annotated[str, typer.Option(help='At the output, "60 N m".')],
-    ratio: Annotated[str, typer.Option(help="Speed of the input over that of the output.")],
-    speed: Annotated[str, typer.Option(help='Of the output, "30 rpm".')],
-    life: Annotated[str, typer.Option(help='Time under load, "5000 h".')],
+    task: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="FILE",
+            help="What follows as keys of a table size; options win over its values.",
+        ),
+    ] = None,
+    torque: Annotated[str | None, typer.Option(help='At the output, "60 N m".')] = None,
+    ratio: Annotated[
+        str | None, typer.Option(help="Speed of the input over that of the output.")
+    ] = None,
+    speed: Annotated[str | None, typer.Option(help='Of the output, "30 rpm".')] = None,
+    life: Annotated[str | None, typer.Option(help='Time under load, "5000 h".')] = None,
     ratio_tolerance: Annotated[
         str | None, typer.Option(help="Part by which the ratio may differ; 0.03 unless given.")
     ] = None,
@@ -1131,13 +1157,20 @@ def size(
 ) -> None:
     """Find drives for a torque, a ratio, a speed and a life.
 
-    Stages of spur and helical pairs, planetary, stepped and 3K sets, strain wave gears: those that bear the
-    load and that no other one beats, each a case file that runs.
+    Stages of spur and helical pairs, planetary, stepped and 3K sets, strain
+    wave gears alone or behind a set. Those are shown that bear the load and
+    that no other one beats, each a case file that runs. Torque, ratio, speed
+    and life are needed, as options or in a file: pitchpoint new size.
     """
-    from pitchpoint.sizing.sizing import size as sized
+    from pitchpoint.sizing.sizing import sized_for
+    from pitchpoint.sizing.table import Task, read_task
     from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
 
     options: dict[str, Any] = {
+        "torque": torque,
+        "ratio": None if ratio is None else _ratio(ratio),
+        "speed": speed,
+        "life": life,
         "ratio_tolerance": ratio_tolerance,
         "diameter": diameter,
         "length": length,
@@ -1153,7 +1186,7 @@ def size(
         "lubricant": lubricant,
         "temperature": temperature,
     }
-    found = sized(torque, _ratio(ratio), speed, life, **options)
+    found = sized_for(Task.read(**options) if task is None else read_task(task, **options))
     if output is not None:
         found.write(output)
     if json_:

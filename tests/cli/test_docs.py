@@ -34,12 +34,12 @@ from pitchpoint.runs import run
 from pitchpoint.runs.designs import wanted
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.layouts import layout_of
-from pitchpoint.sizing.task import Task
+from pitchpoint.sizing.table import Task
 
 PAIR, VARIANTS = blocks("README.md", "toml")
 (WHOLE_WITH_VARIANTS,) = blocks("guide/variants.md", "toml")
 _, MODIFIED = blocks("guide/pairs.md", "toml")
-STRENGTH, SHAFT, INSPECTION, LIMITS = blocks("guide/sizing.md", "toml")
+TASK_FILE, STRENGTH, SHAFT, INSPECTION, LIMITS = blocks("guide/sizing.md", "toml")
 (PLASTIC,) = blocks("guide/stiffness.md", "toml")
 (MOTION,) = blocks("guide/motion.md", "toml")
 FILM, OIL, FINITE, HEIGHTS = blocks("guide/films.md", "toml")
@@ -135,7 +135,7 @@ def test_every_block_is_known() -> None:
     assert set(kinds) <= {"sh", "toml", "python", "text", *OF_THE_SITE}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 30
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 31
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 
@@ -417,9 +417,11 @@ def test_designs_that_are_compared(line: str, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("line", SIZED)
-def test_a_drive_that_is_sized(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_drive_that_is_sized(line: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Read as far as the search itself, which `test_size.py` runs."""
     tasks = []
+    monkeypatch.chdir(tmp_path)
+    Path("task.toml").write_text(TASK_FILE, "utf-8")
 
     def read(**values: Any) -> None:
         tasks.append(TASK_READ(**values))
@@ -435,7 +437,7 @@ def test_a_drive_that_is_sized(line: str, monkeypatch: pytest.MonkeyPatch) -> No
 def test_the_guide_has_every_option_of_a_task() -> None:
     (table,) = re.findall(r"^\| option .*?\n\n", PAGES["guide/sizing.md"], re.DOTALL | re.MULTILINE)
     told = {name.replace("-", "_") for name in re.findall(r"`--([\w-]+)`", table)}
-    assert told | {"torque", "ratio", "speed", "life"} == {*Task.__dataclass_fields__}
+    assert told | {"torque", "ratio", "speed", "life"} == {*Task.model_fields}
 
 
 @pytest.mark.parametrize("line", EXPLORED)

@@ -82,6 +82,28 @@ def test_a_case_that_runs_says_the_same(sizing: Sizing, family: str) -> None:
     assert design.loss == pytest.approx(loss, rel=LOSS)
 
 
+def test_a_planetary_set_before_a_strain_wave_gear_says_what_its_case_says() -> None:
+    task = TASK | {"ratio": 250.0, "speed": "10 rpm"}
+    sizing = size(**task, families="planetary and strain wave")
+    assert sizing.designs
+    for design in sizing.designs.values():
+        with double_precision():
+            built = load_case(tomllib.loads(design.case))
+        assert abs(1.0 / built.output_rate) == pytest.approx(design.ratio, rel=1e-12)
+        assert abs(design.ratio / 250.0 - 1.0) <= 0.03
+        assert design.flank_safety >= 1.2 and design.root_safety >= 1.5
+        assert design.tree["stages"][1]["gears"]["family"] == "strain_wave"
+    design = sizing.designs[sizing.best["mass"]]
+    parts = run(tomllib.loads(design.case), analyses=PARTS)["default"].parts
+    assert float(parts["reflected"]["drive_mass"]) == pytest.approx(design.mass, rel=1e-9)
+    assert float(parts["strength"]["least_flank_safety"]) == pytest.approx(design.flank_safety)
+    loss = 1.0 - float(parts["operation"]["mean_efficiency"].values.ravel()[0])
+    assert design.loss == pytest.approx(loss, rel=LOSS)
+    largest = max(one.diameter for one in sizing.designs.values())
+    with pytest.raises(InputError, match="no drive does this: planetary and strain wave: "):
+        size(**task, families="planetary and strain wave", diameter=f"{0.5 * largest} m")
+
+
 def test_load_factors_are_in_the_rating_and_in_the_cases() -> None:
     light = {"torque": "5 N m", "ratio": 4.0, "speed": "100 rpm", "life": "1000 h"}
     factors = {"application_factor": 1.25, "face_load_factor": 1.3}

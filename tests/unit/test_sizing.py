@@ -2,10 +2,16 @@
 
 import errno
 import re
+import sys
+import tomllib
 
 import numpy as np
 import pytest
+import tomlkit
+from jsonschema import Draft202012Validator
 
+from pitchpoint import cli
+from pitchpoint.cases.json_schema import table_schema
 from pitchpoint.errors import InputError
 from pitchpoint.results import store
 from pitchpoint.sizing.arrangements import reach_words
@@ -13,7 +19,7 @@ from pitchpoint.sizing.front import CHUNK, non_dominated, representatives
 from pitchpoint.sizing.sizing import SizedDrive, Sizing, size
 from pitchpoint.sizing.stage_forms import tooth_loss
 from pitchpoint.sizing.strain_wave import strain_wave_sizes, why_no_size
-from pitchpoint.sizing.task import SIZED_FAMILIES, Task
+from pitchpoint.sizing.table import SIZED_FAMILIES, TASK_TABLE, Task, read_task, task_template
 
 TASK = {"torque": "60 N m", "ratio": 60, "speed": "30 rpm", "life": "5000 h"}
 
@@ -60,6 +66,108 @@ def test_all_that_is_wrong_with_a_task_is_told_at_once():
     ]
 
 
+EVERY = {
+    "ratio_tolerance": 0.02,
+    "diameter": "120 mm",
+    "length": "90 mm",
+    "centre_distances": ["40 mm", "60 mm"],
+    "families": ["3K", "two stages"],
+    "material": "case-hardened-mq",
+    "flank_safety": 1.1,
+    "root_safety": 1.4,
+    "application_factor": 1.25,
+    "face_load_factor": 1.3,
+    "slenderness": 1.0,
+    "aims": ["mass", "loss"],
+    "lubricant": "mineral-vg-220",
+    "temperature": "70 degC",
+}
+"""Keys of a task that may be left out, each with another value than the usual one where there is one."""
+
+
+def written(folder, tables):
+    path = folder / "task.toml"
+    path.write_text(tomlkit.dumps(tables), "utf-8")
+    return path
+
+
+def test_a_file_asks_for_what_options_ask_for_and_options_win(tmp_path):
+    assert {*TASK, *EVERY} == {*Task.model_fields}
+    path = written(tmp_path, {"title": "joint", "size": TASK | EVERY})
+    assert read_task(path) == Task.read(**TASK, **EVERY) != Task.read(**TASK)
+    options = {"torque": "80 N m", "families": "planetary", "diameter": None}
+    changed = TASK | EVERY | {"torque": "80 N m", "families": "planetary"}
+    assert read_task(path, **options) == Task.read(**changed)
+    marked = TASK | {"life": {"value": "5000 h", "status": "assumed", "note": "of the arm"}}
+    assert read_task(written(tmp_path, {"size": marked})) == Task.read(**TASK)
+
+
+def test_a_file_of_a_task_sizes_what_its_options_size(tmp_path, monkeypatch, capsys):
+    sentence = "no drive does this: planetary: reaches ratios of 2.8 to 11, 70 is asked"
+    path = written(tmp_path, {"size": TASK | {"families": "planetary"}})
+    with pytest.raises(InputError, match=f"^{sentence}$"):
+        size(path, 70)
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "size", str(path), "--ratio", "70:1"])
+    with pytest.raises(SystemExit):
+        cli.main()
+    assert capsys.readouterr().err == f"error: {sentence}\n"
+
+
+@pytest.mark.parametrize(
+    ("tables", "told"),
+    [
+        (
+            {"size": {"torqe": "60 N m", "ratio": 1, "speed": "30 rpm"}, "output": {}},
+            [
+                "output: is no part of a task; known are title, size",
+                'size.life: is missing; write "5000 h"; allowed is above 0 h to 1.11111e+06 h',
+                "size.ratio: 1 is out of range; allowed is 1.2 to 2000",
+                "size.torqe: is not a known key; did you mean torque?",
+            ],
+        ),
+        ({"sizes": TASK}, ["sizes: is no part of a task; did you mean size?"]),
+        ({"size": 3}, ["size: 3 was given where one table [size] belongs"]),
+        (
+            {"title": "joint"},
+            [
+                "size: is missing: torque, ratio, speed and life stand in a table [size], which pitchpoint "
+                "new size writes"
+            ],
+        ),
+    ],
+)
+def test_what_is_wrong_with_the_file_of_a_task_is_told_at_once_with_its_keys(
+    tmp_path, tables, told
+):
+    with pytest.raises(InputError) as caught:
+        read_task(written(tmp_path, tables))
+    assert sorted(str(caught.value).splitlines()) == [f"task.toml: {line}" for line in told]
+
+
+def test_a_case_is_no_task_and_is_told_as_such(tmp_path):
+    path = written(tmp_path, {"gears": {"teeth": [20, 30]}})
+    with pytest.raises(InputError) as caught:
+        read_task(path)
+    assert str(caught.value) == (
+        f"task.toml: is a case, which has its gears: pitchpoint run {path}; a task is a table [size], which "
+        "pitchpoint new size writes"
+    )
+
+
+def test_a_new_task_reads_with_all_its_remarks_and_editors_take_it(tmp_path):
+    validator = Draft202012Validator(table_schema("task", TASK_TABLE, Task))
+    text = task_template()
+    every = re.sub(r"^# (\w+ = )", r"\1", text, flags=re.MULTILINE)
+    for lines in (text, every):
+        (tmp_path / "new.toml").write_text(lines, "utf-8")
+        assert [*validator.iter_errors(tomllib.loads(lines))] == []
+    assert {*tomllib.loads(every)[TASK_TABLE]} == {*Task.model_fields}
+    small = Task.read(**TASK, diameter="3 mm", length="3 mm", centre_distances="3 mm")
+    assert read_task(tmp_path / "new.toml") == small  # what has no usual value has an example
+    for wrong in ({**TASK, "families": ["cycloid"]}, {**TASK, "ratio": 1}, {"torque": "60 N m"}):
+        assert [*validator.iter_errors({"size": wrong})]
+
+
 def test_a_front_is_that_of_every_pair_compared():
     costs = np.random.default_rng(3).integers(0, 12, (3 * CHUNK // 2, 3)).astype(float)
     better = (costs[None] <= costs[:, None]).all(axis=2) & (costs[None] < costs[:, None]).any(
@@ -84,6 +192,28 @@ def test_a_few_stand_for_many_with_the_best_by_each_aim():
     assert len(representatives(costs[:0], 7)) == 0
 
 
+def test_each_stage_has_the_centre_distance_that_is_given_for_it():
+    task = Task.read(**TASK, centre_distances="40 mm, 60 mm")
+    assert [task.most_distance(stage, 2) for stage in range(2)] == [0.04, 0.06]
+    assert task.most_distance(0, 3) == 0.0  # of two stages, not of three
+    for_all = Task.read(**TASK, centre_distances="50 mm")
+    assert [for_all.most_distance(stage, 3) for stage in range(3)] == [0.05] * 3
+    assert Task.read(**TASK).most_distance(2, 3) == np.inf
+
+
+def test_the_best_of_a_front_are_those_with_the_least_and_the_one_that_lacks_little_of_both():
+    rest = dict.fromkeys(("ratio", "diameter", "length", "backlash", "inertia"), 1.0)
+    rest |= {"flank_safety": 2.0, "root_safety": 2.0}
+    costs = {"light": (1.0, 0.09), "middle": (2.0, 0.02), "lossless": (9.0, 0.01)}
+    designs = {
+        name: SizedDrive(name=name, family="3K", tree={}, mass=mass, loss=loss, **rest)
+        for name, (mass, loss) in costs.items()
+    }
+    task = Task.read(**TASK, aims="mass, loss")
+    best = Sizing(task, designs, tuple(designs), {"3K": 3}, {}).best
+    assert best == {"mass": "light", "loss": "lossless", "balanced": "middle"}
+
+
 def test_losses_of_helical_teeth_are_the_mean_over_lines_that_fill_the_path():
     teeth, friction = np.array([23.0, 61.0]), 0.04
     parts = np.array([0.9, 0.6])  # beyond the pitch point, and before it, in base pitches
@@ -99,6 +229,10 @@ def test_strain_wave_gears_bear_the_torque_for_the_life_that_is_asked():
     sizes = strain_wave_sizes(task, 60.0)
     assert [one.ratio for one in sizes] == [60.0] * 3
     assert all(one.rated >= task.torque for one in sizes)
+    shortly = strain_wave_sizes(Task.read(**(TASK | {"life": "1 h"})), 60.0)
+    assert (
+        shortly[0].rated >= task.torque > 0.5 * shortly[0].rated
+    )  # the life does not ask for more
     longer = strain_wave_sizes(Task.read(**(TASK | {"life": "100000 h"})), 60.0)
     assert longer[0].diameter > sizes[0].diameter
     assert strain_wave_sizes(task, 20.0) == []
@@ -120,20 +254,24 @@ def test_strain_wave_gears_turn_no_faster_than_a_catalogue_allows():
     slower = Task.read(**(TASK | {"torque": "5 N m", "speed": "60 rpm"}))
     sizes = strain_wave_sizes(slower, 100.0)
     assert sizes and all(60.0 * 100.0 * np.pi / 30.0 <= size.most_speed for size in sizes)
+    between = strain_wave_sizes(Task.read(**(TASK | {"torque": "5 N m", "speed": "82 rpm"})), 100.0)
+    assert 0 < len(between) < len(sizes)  # larger ones bear it too, and turn slower
 
 
 def test_ratios_of_strain_wave_gears_are_as_near_as_is_asked():
     near = Task.read(**(TASK | {"ratio": 100.3, "ratio_tolerance": 0.0003}))
     assert strain_wave_sizes(near, 100.3) == []
     assert why_no_size(near, 100.3) == "a ratio of 100.5 is the nearest one"
-    assert strain_wave_sizes(
-        Task.read(**(TASK | {"ratio": 100.5, "ratio_tolerance": 0.0003})), 100.5
-    )
+    for ratio, tolerance in ((100.5, 0.0003), (100.3, 0.0021)):
+        within = Task.read(**(TASK | {"ratio": ratio, "ratio_tolerance": tolerance}))
+        assert strain_wave_sizes(within, ratio)[0].ratio == 100.5
 
 
-def test_the_cup_of_a_strain_wave_gear_is_within_the_length_that_is_asked():
-    with pytest.raises(InputError, match="and a cup of 30 mm length, more than is allowed"):
-        size(**(TASK | {"ratio": 100}), families="strain wave", length="20 mm")
+@pytest.mark.parametrize("limit", [{"length": "20 mm"}, {"diameter": "80 mm"}])
+def test_a_strain_wave_gear_is_within_the_length_and_the_diameter_that_are_asked(limit):
+    told = "has a diameter of 81 mm and a cup of 30 mm length, more than is allowed"
+    with pytest.raises(InputError, match=told):
+        size(**(TASK | {"ratio": 100}), families="strain wave", **limit)
 
 
 def test_an_oil_outside_of_its_range_is_told_as_such():
@@ -172,6 +310,9 @@ def test_why_a_family_does_not_reach_a_ratio_is_told_with_how_far_it_goes():
     task = Task.read(**TASK)
     assert reach_words(task, "one stage") == "reaches ratios of 1.25 to 8, 60 is asked"
     assert reach_words(task, "planetary") == "reaches ratios of 2.8 to 11, 60 is asked"
+    both = "planetary and strain wave"
+    with pytest.raises(InputError, match=f"{both}: reaches ratios of 84 to 3520, 60 is asked"):
+        size(**TASK, families=both)
     told = "no teeth that can be made come within 3 % of that ratio"
     assert reach_words(task, "stepped planets") == told
     with pytest.raises(InputError) as caught:

@@ -39,7 +39,15 @@ def loaded(*command: str) -> set[str]:
 
 @pytest.mark.parametrize(
     "command",
-    [["--help"], ["--version"], ["cases"], ["new", "helical"], ["new", "two_stages"], ["schema"]],
+    [
+        ["--help"],
+        ["--version"],
+        ["cases"],
+        ["new", "helical"],
+        ["new", "two_stages"],
+        ["new", "size"],
+        ["schema"],
+    ],
     ids="_".join,
 )
 def test_what_only_tells_loads_nothing_that_computes(command: list[str]) -> None:

@@ -15,7 +15,7 @@ from pitchpoint.cases.schema import Case, DriveCase, measure_of, usual_words
 from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.tables import alternatives, sentences
 
-__all__ = ["case_schema"]
+__all__ = ["case_schema", "table_schema"]
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -81,6 +81,28 @@ def case_schema() -> dict[str, Any]:
         "additionalProperties": False,
         "anyOf": [{"required": ["variants"]}, *wholes],
         _DEFS: {**defs, **parts, "variant": variant, "mark": _mark()},
+    }
+
+
+def table_schema(title: str, key: str, model: type[BaseModel]) -> dict[str, Any]:
+    """JSON Schema of files that have one table, and a title beside it; values as in `case_schema`.
+
+    Args:
+        title: of the schema.
+        key: name of the table.
+        model: of the table, without tables in it.
+    """
+    table = model.model_json_schema(schema_generator=_Names, mode="validation")
+    _plain(table)
+    _loosen(table, model)
+    return {
+        "$schema": DIALECT,
+        "title": title,
+        "type": "object",
+        "properties": {"title": {"type": "string"}, key: table},
+        "required": [key],
+        "additionalProperties": False,
+        _DEFS: {"mark": _mark()},
     }
 
 

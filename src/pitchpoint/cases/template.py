@@ -22,7 +22,7 @@ from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import alternatives, forms, sentences, tag
 from pitchpoint.registry import known_as
 
-__all__ = ["FAMILIES", "sample_tree", "template"]
+__all__ = ["FAMILIES", "sample_tree", "table_lines", "template"]
 
 _CYLINDRICAL = ("spur", "helical")
 """Kinds of cylindrical gears."""
@@ -160,7 +160,7 @@ def _of_table(model: type[BaseModel], key: str, tree: Tree) -> Iterator[str]:
     else:
         meant = forms(info.annotation, stated)[0]
         meant_here = key in (*_MEANT, *_TASKED) and key in tree
-        yield from _lines(meant, key, stated or {}, live=meant_here)
+        yield from table_lines(meant, key, stated or {}, live=meant_here)
 
 
 def _of_stages(stages: Sequence[Tree]) -> Iterator[str]:
@@ -173,8 +173,15 @@ def _of_stages(stages: Sequence[Tree]) -> Iterator[str]:
         yield from (f"{key} = {_toml(value)}" for key, value in stage.items())
 
 
-def _lines(model: type[BaseModel], path: str, given: Tree, *, live: bool) -> Iterator[str]:
-    """Lines of a table with all of its keys, then those of the tables in it."""
+def table_lines(model: type[BaseModel], path: str, given: Tree, *, live: bool) -> Iterator[str]:
+    """Lines of a table with all of its keys, then those of the tables in it.
+
+    Args:
+        model: of the table.
+        path: its name in the file.
+        given: values that stand in it.
+        live: False for a table that is a remark as a whole.
+    """
     yield ""
     yield from _remark(model)
     yield f"{'' if live else '# '}[{path}]"
@@ -190,7 +197,7 @@ def _lines(model: type[BaseModel], path: str, given: Tree, *, live: bool) -> Ite
             yield f"# {key} = {_toml(value)}{_words(info, descriptions.get(key, ''))}"
     for key, table in inner:
         below = live and key in given and key != "deviations"
-        yield from _lines(table, f"{path}.{key}", given.get(key, {}), live=below)
+        yield from table_lines(table, f"{path}.{key}", given.get(key, {}), live=below)
 
 
 def _inner(info: FieldInfo, given: Any) -> type[BaseModel] | None:
@@ -253,6 +260,8 @@ def _example(info: FieldInfo) -> Any:
         return info.examples[0]
     if isinstance(usual, str | bool) and (usual != "" or not _names(info)):
         return usual
+    if usual and isinstance(usual, tuple) and all(isinstance(name, str) for name in usual):
+        return [*usual]
     if choices := (_names(info) or _options(info)):
         return choices[0]
     tables = alternatives(info.annotation)

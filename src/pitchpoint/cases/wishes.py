@@ -535,6 +535,11 @@ WISHES: Mapping[str, tuple[Wish, ...]] = {
             "several forms of a case are tables [variants.NAME], each with what differs",
         ),
         Wish(
+            ("size", "sizing", "task"),
+            (),
+            "it belongs to a file of its own, for which pitchpoint size FILE looks for drives",
+        ),
+        Wish(
             ("version", "author", "date", "project", "name", "description", "comment", "customer"),
             (),
             "it decides nothing; write it into title or summary, or behind a #",

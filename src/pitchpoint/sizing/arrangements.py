@@ -16,10 +16,10 @@ from pitchpoint.sizing.for_ratio import (
     without_undercut,
 )
 from pitchpoint.sizing.stage_forms import CENTRE_FIELD, FIELD, Form, formed
-from pitchpoint.sizing.task import Task
+from pitchpoint.sizing.table import Task
 from pitchpoint.sizing.three_k import three_k_sets, three_k_tables
 
-__all__ = ["Arrangement", "arrangements", "reach_words"]
+__all__ = ["SET_RATIOS", "Arrangement", "arrangements", "reach_words"]
 
 Tree = dict[str, Any]
 

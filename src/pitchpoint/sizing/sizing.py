@@ -14,6 +14,7 @@ import xarray as xr
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.analysis import silent
 from pitchpoint.analyses.bodies import bodies_of
+from pitchpoint.analyses.registry import REFLECTED
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import summaries
 from pitchpoint.cases.built_drive import Ready
@@ -22,19 +23,21 @@ from pitchpoint.errors import InputError
 from pitchpoint.registry import enumerated
 from pitchpoint.results.store import make_folder, write_text
 from pitchpoint.runs.run import load_case
+from pitchpoint.sizing.arrangements import SET_RATIOS
 from pitchpoint.sizing.combining import Drives, NoDriveError, drives_of, exactly_loaded
-from pitchpoint.sizing.front import non_dominated
+from pitchpoint.sizing.front import non_dominated, representatives
 from pitchpoint.sizing.stage_forms import case_of, gears_as_discs
 from pitchpoint.sizing.strain_wave import (
+    RATIOS,
     SIZES,
     StrainWaveSize,
     strain_wave_case,
     strain_wave_sizes,
     why_no_size,
 )
-from pitchpoint.sizing.task import Task
+from pitchpoint.sizing.table import Task, read_task
 
-__all__ = ["SizedDrive", "Sizing", "families_by_reason", "size"]
+__all__ = ["SizedDrive", "Sizing", "families_by_reason", "size", "sized_for"]
 
 Tree = dict[str, Any]
 
@@ -171,12 +174,11 @@ class Sizing:
         return paths
 
 
-@double_precision()
 def size(
-    torque: str,
-    ratio: float,
-    speed: str,
-    life: str,
+    torque: str | Path | None = None,
+    ratio: float | None = None,
+    speed: str | None = None,
+    life: str | None = None,
     *,
     ratio_tolerance: float | None = None,
     diameter: str | None = None,
@@ -196,7 +198,8 @@ def size(
     """Designs of drives for a torque, a ratio, a speed and a life, and the front of those that none beats.
 
     Args:
-        torque: at the output, with its unit.
+        torque: at the output, with its unit; or a file with a task, "task.toml", whose values what is given
+            beside it takes the place of.
         ratio: speed of the input over that of the output, of either sense.
         speed: of the output.
         life: time under load.
@@ -231,11 +234,23 @@ def size(
             ...
         pitchpoint.errors.InputError: no drive does this: planetary: reaches ratios of 2.8 to 11, 60 is asked
     """
-    given = dict(locals())
-    task = Task.read(**given)
+    options = dict(locals())
+    if isinstance(torque, Path) or str(torque).endswith(".toml"):
+        return sized_for(read_task(options.pop("torque"), **options))
+    return sized_for(Task.read(**options))
+
+
+@double_precision()
+def sized_for(task: Task) -> Sizing:
+    """Designs of drives for a task, as `size` has them.
+
+    Args:
+        task: what is asked.
+    """
     _demand_oil(task)
     designs: list[SizedDrive] = []
-    tried, without = {}, {}
+    tried: dict[str, int] = {}
+    without: dict[str, str] = {}
     for family in task.families:
         try:
             made, tried[family] = _MAKERS.get(family, _of_stages)(task, family)
@@ -310,6 +325,7 @@ FILES = {
     "stepped planets": "stepped",
     "3K": "3K",
     "strain wave": "strain_wave",
+    "planetary and strain wave": "set_and_wave",
 }
 """What names of designs begin with, by family."""
 
@@ -420,6 +436,151 @@ def _waves_designed(task: Task, family: str, sizes: Sequence[StrainWaveSize]) ->
     return made
 
 
+FIRST_RATIOS = 3.0, 4.0, 5.5, 7.5, 10.0
+"""Ratios of a planetary set before a strain wave gear that are tried, about."""
+
+SETS_BEFORE, WITH_SETS = 4, 12
+"""Planetary sets before a strain wave gear that are tried, and designs of both that are worked out."""
+
+
+@dataclass(frozen=True, eq=False)
+class _SetBefore:
+    """A planetary set before a strain wave gear.
+
+    Attributes:
+        task: of the set.
+        drives, number: sets, and which of them it is.
+        gear, design: the strain wave gear, and it alone.
+    """
+
+    task: Task
+    drives: Drives
+    number: int
+    gear: StrainWaveSize
+    design: SizedDrive
+
+    @property
+    def costs(self) -> list[float]:
+        """Mass [kg], part of the power that is lost, and diameter [m]."""
+        loss = float(self.drives.loss[self.number])
+        return [
+            float(self.drives.mass[self.number]) + self.design.mass,
+            1.0 - (1.0 - loss) * (1.0 - self.design.loss),
+            max(float(self.drives.diameter[self.number]), self.design.diameter),
+        ]
+
+    @property
+    def length(self) -> float:
+        """Of the gears behind each other [m]."""
+        return float(self.drives.length[self.number]) + self.design.length
+
+    def tree(self, task: Task, set_case: Tree) -> Tree:
+        """Tables of the case of both.
+
+        Args:
+            task: of the whole.
+            set_case: tables of the case of the set.
+        """
+        speed = task.speed * self.gear.ratio * float(self.drives.ratio[self.number])
+        wave = strain_wave_case(task, self.gear, speed)
+        of_wave = {key: wave[key] for key in ("gears", "losses", "models")}
+        steel = {"gear_1": "steel", "gear_2": "steel"}  # as of a strain wave gear alone
+        tables = {key: table for key, table in set_case.items() if key != "gears"}
+        return {
+            "stages": [{"gears": set_case["gears"]}, {**of_wave, "materials": steel}],
+            **tables,
+            "operation": wave["operation"],
+        }
+
+
+def _sets_before_strain_waves(task: Task, family: str) -> tuple[list[SizedDrive], int]:
+    """Designs of a planetary set that drives a strain wave gear."""
+    low, high = (most * of_set for most, of_set in zip(RATIOS, SET_RATIOS, strict=True))
+    if not low <= task.ratio <= high:
+        raise NoDriveError(f"reaches ratios of {low:.3g} to {high:.4g}, {task.ratio:.6g} is asked")
+    both, tried = _with_sets(task, family)
+    costs = np.array([one.costs for one in both])
+    front = np.flatnonzero(non_dominated(costs))
+    made: list[SizedDrive] = []
+    for number in front[representatives(costs[front], WITH_SETS)]:
+        opened = _opened(both[number].task, both[number].drives, both[number].number)
+        if opened is not None:
+            name = _name(family, len(made))
+            made.append(_designed_with_set(task, family, name, both[number], *opened))
+    if not made:
+        raise NoDriveError("no teeth that bear the load run with the backlash of their fields")
+    return made, tried
+
+
+def _with_sets(task: Task, family: str) -> tuple[list[_SetBefore], int]:
+    """Sets before strain wave gears that do a task, and how many gears were rated; NoDriveError for none."""
+    both, tried, words = [], 0, ""
+    for first in FIRST_RATIOS:
+        ratio = round(2.0 * task.ratio / first) / 2.0
+        if not RATIOS[0] <= ratio <= RATIOS[1]:
+            continue
+        gears = [gear for gear in strain_wave_sizes(task, ratio) if _fits(task, gear)]
+        if not gears:
+            words = why_no_size(task, ratio) if not task.diameter and not task.length else words
+            continue
+        values = {
+            "torque": task.torque / ratio,
+            "ratio": task.ratio / ratio,
+            "speed": task.speed * ratio,
+        }
+        before = task.model_copy(update=values)
+        try:
+            drives = _within(before, drives_of(before, "planetary")).few(SETS_BEFORE)
+        except NoDriveError as error:
+            words = f"the planetary set: {error.words}"
+            continue
+        tried, drives = tried + drives.tried, exactly_loaded(before, drives)
+        both += [
+            _SetBefore(before, drives, number, gear, design)
+            for gear, design in zip(gears, _waves_designed(task, family, gears), strict=True)
+            for number in range(len(drives))
+        ]
+    longest = np.inf if task.length is None else task.length
+    widest = np.inf if task.diameter is None else task.diameter
+    small = [one for one in both if one.length <= longest and one.costs[2] <= widest]
+    if not small:
+        raise NoDriveError(words or "no set and strain wave gear fit into that diameter and length")
+    return small, tried
+
+
+def _designed_with_set(
+    task: Task, family: str, name: str, both: _SetBefore, set_case: Tree, built_set: Ready
+) -> SizedDrive:
+    """A planetary set before a strain wave gear with the figures of its case.
+
+    Args:
+        task: of the whole.
+        family, name: of the design.
+        both: the set and the gear.
+        set_case, built_set: case of the set, and what that opens as.
+    """
+    tree = both.tree(task, set_case)
+    built = load_case(tree)
+    rated = ratings_of([built], 1)
+    bodies = REFLECTED.compute(built, {}, silent)
+    _, loss, diameter = both.costs
+    return SizedDrive(
+        name=name,
+        family=family,
+        tree=tree,
+        ratio=abs(1.0 / built.output_rate),
+        mass=float(bodies["drive_mass"]),
+        loss=loss,
+        diameter=diameter,
+        length=both.length,
+        backlash=gears_as_discs(built_set)[2] / both.gear.ratio,
+        inertia=float(bodies["reflected_inertia"].sel(end="input")),
+        flank_safety=float(rated["least_flank_safety"][1][0, 0]),
+        root_safety=float(rated["least_root_safety"][1][0, 0]),
+    )
+
+
 _MAKERS: dict[str, Callable[[Task, str], tuple[list[SizedDrive], int]]] = {
     "strain wave": _strain_waves,
+    "planetary and strain wave": _sets_before_strain_waves,
 }

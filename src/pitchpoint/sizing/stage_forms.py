@@ -27,7 +27,7 @@ from pitchpoint.gears.rated_pair import RatedPair, bare, rated_pair
 from pitchpoint.lubrication.friction_coefficient import iso_tr_14179_2
 from pitchpoint.programs import program
 from pitchpoint.runs.run import load_case
-from pitchpoint.sizing.task import Task
+from pitchpoint.sizing.table import Task
 from pitchpoint.sizing.three_k import mesh_efficiency, three_k_efficiencies
 from pitchpoint.strength.rating import ROWS, ratings
 

@@ -7,9 +7,10 @@ from pitchpoint import units
 from pitchpoint.gears.strain_wave.load_limits import bearing_life, of_other_size
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
 from pitchpoint.sizing.stage_forms import running_tables
-from pitchpoint.sizing.task import Task
+from pitchpoint.sizing.table import Task
 
 __all__ = [
+    "RATIOS",
     "SIZES",
     "StrainWaveSize",
     "strain_wave_case",
@@ -86,8 +87,8 @@ class StrainWaveSize:
 
     @property
     def length(self) -> float:
-        """Length of the cup [m]: half of the pitch diameter, as cases take it that do not give one."""
-        return self.diameter / 2.0
+        """Length of the cup by usual proportions [m], as cases take it that do not give one."""
+        return PROPORTIONS.cup * self.diameter
 
     @property
     def gears(self) -> Tree:
@@ -119,7 +120,7 @@ def strain_wave_sizes(task: Task, ratio: float) -> list[StrainWaveSize]:
     20.2, see `bearing_life`; largest input speeds as recalled from catalogues, see `SIZES`.
 
     Example:
-        >>> from pitchpoint.sizing.task import Task
+        >>> from pitchpoint.sizing.table import Task
         >>> task = Task.read(torque="60 N m", ratio=100, speed="20 rpm", life="5000 h")
         >>> [round(1e3 * size.diameter, 1) for size in strain_wave_sizes(task, 100.0)]
         [60.0, 76.8, 96.0]

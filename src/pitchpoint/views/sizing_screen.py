@@ -9,7 +9,7 @@ from pitchpoint import units
 from pitchpoint.doubts import GUESSED, in_percent
 from pitchpoint.registry import enumerated
 from pitchpoint.sizing.sizing import SizedDrive, Sizing, families_by_reason
-from pitchpoint.sizing.task import Task
+from pitchpoint.sizing.table import Task
 from pitchpoint.views.columns import lines_of
 from pitchpoint.views.first_screen import Line, wrapped
 
@@ -110,11 +110,11 @@ def _row(first: str, design: SizedDrive) -> dict[str, str]:
 
 def _doubts(sizing: Sizing) -> Iterator[str]:
     families = {design.family for design in sizing.designs.values()}
-    factors = sizing.task.application_factor, sizing.task.face_load_factor
-    on_factors = "K_A is {:.6g} and K_Hβ {:.6g}.".format(*factors)
+    task = sizing.task
+    on_factors = f"K_A is {task.application_factor:.6g} and K_Hβ {task.face_load_factor:.6g}."
     of_teeth = f"{_OF_TEETH} " if families - {"strain wave"} else ""
     yield f"{of_teeth}{_LEFT_OUT}; {on_factors}"
-    if "strain wave" in families:
+    if families & {"strain wave", "planetary and strain wave"}:
         yield _OF_STRAIN_WAVES
 
 

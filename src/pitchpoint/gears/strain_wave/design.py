@@ -30,7 +30,7 @@ from pitchpoint.gears.strain_wave.groove import (
 )
 from pitchpoint.gears.strain_wave.in_series import Behind, Cup, InSeries, in_series
 from pitchpoint.gears.strain_wave.load_limits import curvature_change
-from pitchpoint.gears.strain_wave.proportions import rim_by_strain
+from pitchpoint.gears.strain_wave.proportions import PROPORTIONS, rim_by_strain
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, WAVE_SHAPES, DoubleArcForm
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
@@ -416,7 +416,7 @@ def _planned(
             thickness=array(rim),
             width=array(face_width),
             wall_thickness=array(wall),
-            cup_length=array(module * z1 / 2.0 if cup_length is None else cup_length),
+            cup_length=array(PROPORTIONS.cup * module * z1 if cup_length is None else cup_length),
             support_stiffness=array(support_stiffness),
         ),
         "bearing": None

@@ -22,6 +22,7 @@ class Proportions:
     dimension of these parts is set.
 
     Attributes:
+        cup: length of the cup, from the teeth to its flange.
         flange: diameter of the flange, at which the bottom of the cup begins.
         bolts: number of bolts of the flange.
         bolt_circle, bolt: diameters of the circle and of one bolt.
@@ -35,6 +36,7 @@ class Proportions:
         plastic_rim, plastic_strain: the same of plastic, as printed and moulded cups are.
     """
 
+    cup: float = 0.5
     flange: float = 0.5
     bolts: int = 8
     bolt_circle: float = 0.4
