@@ -486,6 +486,10 @@ def study(
     piece: Annotated[
         int | None, typer.Option("--piece", metavar="N", help="Designs kept together; 4096.")
     ] = None,
+    csv: Annotated[
+        Path | None,
+        typer.Option("--csv", metavar="FILE", help="Write every design as a row too."),
+    ] = None,
     units: UnitsByKind = None,
     json_: AsJson = False,
 ) -> None:
@@ -498,7 +502,12 @@ def study(
     from pitchpoint.runs.case import Case
     from pitchpoint.runs.study import folder_of_table, table_of_study
     from pitchpoint.runs.study import study as compute
-    from pitchpoint.views.many_designs import as_plain, figures_of_many
+    from pitchpoint.views.many_designs import (
+        as_plain,
+        figures_of_many,
+        indices_of_many,
+        write_rows,
+    )
 
     settings = _settings(set_ or [])
     chosen = (Case(case) if variant is None else Case(case, variant=variant)).set(settings)
@@ -525,11 +534,17 @@ def study(
             scheduler=scheduler,
             progress=progress,
         )
+    if csv is not None:
+        write_rows(found, csv)
     if json_:
         _emit(as_plain(found, folder))
         return
     told, rows = figures_of_many(found, folder)
     _table(rows, tuple(rows[0]))
+    about, indices = indices_of_many(found)
+    if indices:
+        _console().print(_plain_line(about), soft_wrap=True)
+        _table(indices, tuple(indices[0]))
     for line in told:
         _console().print(_plain_line(line), soft_wrap=True)
 

@@ -533,3 +533,36 @@ def test_normal_values_have_their_ends_at_three_standard_deviations() -> None:
     assert drawn.mean() == pytest.approx(25.0, abs=0.02)
     # A standard normal distribution cut off at 3 has the variance 1 - 6 pdf(3)/(2 cdf(3) - 1).
     assert drawn.std() == pytest.approx(40.0 / 6.0 * 0.98658, rel=2e-3)
+
+
+@pytest.mark.usefixtures("quick")
+def test_every_design_is_a_row_of_a_file(case: str, tmp_path: Path) -> None:
+    import csv
+
+    rows = tmp_path / "rows.csv"
+    over = ("--over", "torque=5 N m:45 N m:3", "--over", 'gears.face_width=["9 mm", "10 mm"]')
+    assert _command(case, *over, "-o", str(tmp_path / "out"), "--csv", str(rows)) == 0
+    with rows.open() as file:
+        read = [*csv.DictReader(file)]
+    assert [row["design"] for row in read] == ["0", "1", "2", "3", "4", "5"]
+    torque = [float(row["operation.torque [N m]"]) for row in read]
+    assert torque == [5.0, 5.0, 25.0, 25.0, 45.0, 45.0]
+    width = [float(row["gears.face_width [mm]"]) for row in read]
+    assert width == pytest.approx([9.0, 10.0] * 3)
+    assert [float(row["mean_loss [W]"]) for row in read] == pytest.approx(np.sin(torque))
+
+
+@pytest.mark.usefixtures("quick")
+def test_the_screen_has_sobol_indices(
+    case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("pitchpoint.views.many_designs.FIGURES", ("mean_loss",))
+    drawn = ("--over", "torque=5 N m:45 N m", "--over", "gears.face_width=9 mm:10 mm")
+    asked = (case, *drawn, "--how", "saltelli", "-n", "64", "-o", str(tmp_path / "out"))
+    assert _command(*asked) == 0
+    told = capsys.readouterr().out
+    assert "256 designs" in told and "from 64 of 64 designs of each sample" in told
+    assert _command(*asked, "--json") == 0
+    indices = json.loads(capsys.readouterr().out)["sobol_indices"]["mean_loss"]["xu_2007"]
+    assert indices[TORQUE]["total_order"] == pytest.approx(1.0, abs=0.2)
+    assert indices[WIDTH]["total_order"] == 0.0
