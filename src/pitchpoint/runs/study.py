@@ -191,6 +191,8 @@ def _laid_out(case: Case, base: Variant, plan: StudyPlan) -> tuple[Variant, Stud
     if plan.tolerances is not None:
         base, drawn = with_tolerances(base, plan.tolerances)
         values = {**drawn, **values}
+    if not values:
+        raise InputError("a study needs the values of one key at least", key="over")
     try:
         layout = layout_of(base, values, plan.way, plan.n, plan.seed)
     except InputError as error:
