@@ -54,6 +54,7 @@ def _sampled(distribution: str, count: int) -> np.ndarray:
     )
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("distribution", ["uniform", "normal"])
 def test_percentiles_of_the_backlash_are_those_of_direct_sampling(distribution: str) -> None:
     found = pp.study(PAIR, tolerances=distribution, n=256, seed=3)
