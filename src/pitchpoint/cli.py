@@ -446,12 +446,27 @@ def study(
         ),
     ] = None,
     how: Annotated[
-        str, typer.Option("--how", metavar="WAY", help="grid, zip, latin_hypercube or sobol.")
-    ] = "grid",
+        str | None,
+        typer.Option(
+            "--how",
+            metavar="WAY",
+            help="grid, zip, latin_hypercube, sobol, or saltelli, of which Sobol' indices follow.",
+        ),
+    ] = None,
     n: Annotated[
         int | None, typer.Option("-n", "--designs", metavar="N", help="Designs to draw.")
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", help="The same one draws the same designs.")] = 0,
+    seed: Annotated[
+        int | None, typer.Option("--seed", help="The same one draws the same designs.")
+    ] = None,
+    tolerances: Annotated[
+        str | None,
+        typer.Option(
+            "--tolerances",
+            metavar="DISTRIBUTION",
+            help="uniform or normal: draws what gears.inspection allows.",
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Default: results/CASE/study."),
@@ -471,42 +486,65 @@ def study(
     piece: Annotated[
         int | None, typer.Option("--piece", metavar="N", help="Designs kept together; 4096.")
     ] = None,
+    csv: Annotated[
+        Path | None,
+        typer.Option("--csv", metavar="FILE", help="Write every design as a row too."),
+    ] = None,
     units: UnitsByKind = None,
     json_: AsJson = False,
 ) -> None:
     """Compute many designs of a case, from a few to millions, into a folder of files.
 
-    What is killed goes on from the pieces that are kept, when the same command is given again.
+    Which ones stands in the table [study] of the case, or in options. What is killed goes on from the pieces
+    that are kept, when the same command is given again.
     """
     from pitchpoint.cases.record import default_folder
     from pitchpoint.runs.case import Case
-    from pitchpoint.runs.study import PIECE
+    from pitchpoint.runs.study import folder_of_table, table_of_study
     from pitchpoint.runs.study import study as compute
-    from pitchpoint.views.many_designs import as_plain, figures_of_many
+    from pitchpoint.views.many_designs import (
+        as_plain,
+        figures_of_many,
+        indices_of_many,
+        write_rows,
+    )
 
     settings = _settings(set_ or [])
-    folder = output or default_folder(case, Path("results"), settings) / "study"
-    chosen = Case(case).set(settings)
+    chosen = (Case(case) if variant is None else Case(case, variant=variant)).set(settings)
+    of_table = None if over or tolerances else table_of_study(chosen)
+    if of_table is None and not (over or tolerances):
+        raise InputError(
+            "a study needs the values of a key, in a table [study] of the case or by option: "
+            f"{_OPTIONS['--over']}"
+        )
+    usual = default_folder(case, Path("results"), settings) / "study"
+    folder = output or folder_of_table(of_table, chosen) or usual
     with _progress(folder, "pieces") as progress:
         found = compute(
             chosen,
-            _values_over(over or [], chosen),
+            _values_over(over, chosen) if over else None,
             how,  # type: ignore[arg-type]
             n=n,
             seed=seed,
+            tolerances=tolerances,
             units=_units(units) if units else "si" if json_ else "shown",
-            variant=variant,
             folder=folder,
-            piece=PIECE if piece is None else piece,
+            piece=piece,
             workers=workers,
             scheduler=scheduler,
             progress=progress,
         )
+    if csv is not None:
+        write_rows(found, csv)
     if json_:
         _emit(as_plain(found, folder))
         return
     told, rows = figures_of_many(found, folder)
     _table(rows, tuple(rows[0]))
+    about, indices = indices_of_many(found)
+    if indices:
+        _console().print(_plain_line(about), soft_wrap=True)
+        _table(indices, tuple(indices[0]))
     for line in told:
         _console().print(_plain_line(line), soft_wrap=True)
 
@@ -1290,8 +1328,6 @@ def _values_over(texts: list[str], case: "Case") -> dict[str, Any]:
     """Values by key of a study: a range of numbers, two ends, or a list."""
     from pitchpoint.input.quantities import shown
 
-    if not texts:
-        raise InputError(f"a study needs the values of a key: {_OPTIONS['--over']}")
     values: dict[str, Any] = {}
     for text in texts:
         key, equals, given = (part.strip() for part in text.partition("="))

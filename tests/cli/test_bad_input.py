@@ -192,6 +192,16 @@ sweep = { key = "gears.module", values = ["2 mm"] }
 [studies.list.change.operation]
 torque = "40 N m"
 
+[study]
+over = { "operation.torque" = ["20 N m", "60 N m"] }
+how = "sobol"
+n = 16
+seed = 1
+tolerances = "normal"
+folder = "many"
+piece = 8
+workers = 2
+
 [loss_map]
 temperatures = ["60 degC"]
 
@@ -1676,7 +1686,7 @@ OTHER_CALLS = {
     "run pair.toml --set": '; write --set operation.torque="50 N m"',
     "run pair.toml other.toml": "it takes one case, pitchpoint compare several",
     "show": "a name out of pitchpoint cases",
-    "study tian2024": 'a study needs the values of a key: --over operation.torque="20 N m:90 N m:8"',
+    "study tian2024": 'table [study] of the case or by option: --over operation.torque="20 N m:90 N m:8"',
     "models steel oil": "it takes one kind or name, such as friction",
     "cases tian": "pitchpoint show CASE has the inputs of one",
     "new wolfrom": "did you mean 3K?",

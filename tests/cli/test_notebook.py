@@ -430,7 +430,11 @@ def test_a_study_goes_on_from_its_folder(tmp_path: Path) -> None:
         ({"models.averaging": ["path"]}, "grid", "models.averaging: cannot be studied; keys of ge"),
         ({"gears.profile_shift": [0.1]}, "grid", "different values for gear 1 and gear 2"),
         ({TORQUE: [1.0], WARM: [1.0, 2.0]}, "zip", "given were 1 of operation.torque, 2 of opera"),
-        ({TORQUE: [1.0, 2.0]}, "latin_hypercube", "needs the number of designs, n"),
+        (
+            {TORQUE: [1.0, 2.0]},
+            "latin_hypercube",
+            "n: a Latin hypercube needs the number of designs",
+        ),
         (
             {TORQUE: [1.0, 2.0]},
             "sobol",

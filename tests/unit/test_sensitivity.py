@@ -1,8 +1,11 @@
 """Sobol' indices against a closed form."""
 
 import numpy as np
+import xarray as xr
 from scipy.stats import qmc
 
+import pitchpoint as pp
+from pitchpoint.analyses.designs import Designs
 from pitchpoint.runs.sensitivity import indices_of
 
 
@@ -31,3 +34,35 @@ def test_indices_of_a_closed_form():
 def test_what_does_not_vary_has_no_indices():
     found = indices_of(np.ones((1, 4, 16)))
     assert np.isnan(found["total_order"]).all()
+
+
+def test_indices_of_a_study_are_those_of_its_layout(monkeypatch):
+    """Ishigami's function in the place of a drive, through the layout and the study as users have them."""
+    keys = ["operation.torque", "operation.speed", "operation.temperature"]
+    ranges = {keys[0]: (20.0, 90.0), keys[1]: (50.0, 300.0), keys[2]: (300.0, 360.0)}
+    ends = np.array([*ranges.values()])
+
+    def computed(self, progress=None):
+        values = np.array(
+            [[float(str(v).split()[0]) for v in one.values()] for one in self.changes]
+        )
+        share = (values - ends[:, 0]) / (ends[:, 1] - ends[:, 0])
+        loss = ishigami((2.0 * share.T - 1.0) * np.pi)
+        shape = (1, len(loss))
+        whole = {
+            "mean_loss": (("law", "point"), loss[None], {"units": "W", "long_name": "loss"}),
+            "residual": (("law", "point"), np.zeros(shape)),
+            "iterations": (("law", "point"), np.ones(shape, int)),
+            "locked": (("law", "point"), np.zeros(shape, bool)),
+            "reason": (("law", "point"), np.full(shape, "")),
+        }
+        solve = {"solve": '{"residual": 0.0, "iterations": 1}'}
+        return xr.Dataset(whole, {"law": ["xu_2007"]}, solve)
+
+    monkeypatch.setattr(Designs, "compute", computed)
+    found = pp.sobol_indices("tian2024", ranges, 2**14, figures=["mean_loss"], variant="physical")
+    first = found["first_order"].values[0, 0]
+    total = found["total_order"].values[0, 0]
+    assert found["key"].values.tolist() == keys and found.attrs["designs"] == 2**14
+    np.testing.assert_allclose(first, [0.3139, 0.4424, 0.0], atol=0.02)
+    np.testing.assert_allclose(total, [0.5576, 0.4424, 0.2437], atol=0.02)

@@ -46,6 +46,7 @@ LISTS = {TORQUE: [5.0, 6.0, 7.0, 8.0], WIDTH: ["10 mm", "20 mm", "25 mm", "30 mm
         (LISTS, "zip", None),
         (RANGES, "latin_hypercube", 16),
         (RANGES, "sobol", 16),
+        (RANGES, "saltelli", 16),
     ],
 )
 def test_any_range_of_designs_is_made_without_the_others(
@@ -53,7 +54,7 @@ def test_any_range_of_designs_is_made_without_the_others(
 ) -> None:
     layout = layout_of(VARIANT, over, how, n, 3)
     every = layout.changes(0, layout.count)
-    assert len({str(design) for design in every}) == layout.count
+    assert len({str(design) for design in every}) == layout.count or how == "saltelli"
     ends = [0, 1, 3, layout.count]
     parts = [layout.changes(first, stop) for first, stop in pairwise(ends)]
     assert [design for part in parts for design in part] == every
@@ -84,11 +85,15 @@ def test_what_draws_the_designs_is_in_the_mark(monkeypatch: pytest.MonkeyPatch) 
     theirs = piece_elsewhere(
         StudyDescription(VARIANT, RANGES, "sobol", 4, 0, 4).packed, first, 0, 4
     )
+    on_a_grid = StudyDescription(VARIANT, LISTS, "grid", None, 0, 4).mark
     monkeypatch.undo()
     assert isinstance(theirs, dict)
-    assert workers._other(theirs).startswith(
+    here = StudyDescription(VARIANT, RANGES, "sobol", 4, 0, 4).decisive
+    assert workers._other(theirs, here).startswith(
         "a worker has what gives other numbers than here: scipy another"
     )
+    # A grid is what its values make, whatever version SciPy has.
+    assert StudyDescription(VARIANT, LISTS, "grid", None, 0, 4).mark == on_a_grid
 
 
 def test_what_is_logged_of_lost_connections_does_not_stand_before_the_sentence() -> None:
@@ -140,7 +145,7 @@ def test_what_a_worker_fails_at_is_told_as_its_own(
 ) -> None:
     pytest.importorskip("distributed")
     with pytest.raises(kind) as caught:
-        workers._image(Failed(failure), (4, 8))  # type: ignore[arg-type]
+        workers._image(Failed(failure), (4, 8), {})  # type: ignore[arg-type]
     assert type(caught.value) is kind and str(caught.value).startswith(told)
 
 
@@ -311,9 +316,10 @@ def test_a_worker_of_another_version_is_told() -> None:
     study = StudyDescription(VARIANT, RANGES, "sobol", 4, 0, 4)
     theirs = piece_elsewhere(study.packed, "another", 0, 4)
     assert isinstance(theirs, dict)
-    told = workers._other({**theirs, "jax": "0.1"})
+    here = study.decisive
+    told = workers._other({**theirs, "jax": "0.1"}, here)
     assert told.startswith("a worker has what gives other numbers than here: jax 0.1 for ")
-    assert workers._other(theirs) == "a worker does not have the files that the case names"
+    assert workers._other(theirs, here) == "a worker does not have the files that the case names"
 
 
 @pytest.mark.parametrize(
@@ -419,7 +425,7 @@ def test_values_of_a_grid_are_ranges_and_lists(
         (("--over", "torque"), '--over: "torque" is not KEY=VALUES, such as --over operation.tor'),
         (("--over", "torque=[5]", "--over", "torque=[6]"), '--over: "torque" was given twice'),
         (("--over", "torque=5:6:0"), "is not KEY=START:STOP:COUNT with a count of 1 to 100000"),
-        ((), 'error: a study needs the values of a key: --over operation.torque="20 N m:90 N m:8"'),
+        ((), 'table [study] of the case or by option: --over operation.torque="20 N m:90 N m:8"'),
         ((*DRAWN, "--scheduler", "tcp://127.0.0.1:1"), "Connection refused; `dask scheduler` star"),
         ((*DRAWN, "--workers", "0"), "workers: 0 was given where a whole number from 1 on belongs"),
     ],
@@ -466,3 +472,97 @@ def test_workers_of_this_machine_compute_the_same_bits(tmp_path: Path) -> None:
         found = pp.study(PAIR, over, "sobol", n=16, folder=tmp_path / name, piece=4, workers=count)
     assert 0 < np.isnan(found["mean_loss"].values[0]).sum() < 16
     assert _digests(tmp_path / "there") == _digests(tmp_path / "here")
+
+
+PLAN = {"how": "sobol", "n": 16, "piece": 4, "over": {"operation.torque": ["5 N m", "45 N m"]}}
+
+
+@pytest.mark.usefixtures("quick")
+@pytest.mark.parametrize("spelling", ["dotted", "tables"])
+def test_a_table_of_the_case_is_the_study(spelling: str, tmp_path: Path) -> None:
+    over = {"operation": {"torque": ["5 N m", "45 N m"]}} if spelling == "tables" else PLAN["over"]
+    stated = PAIR.set({"study": {**PLAN, "over": over, "folder": "table"}})
+    stated.to_toml(tmp_path / "stated.toml")
+    pp.study(tmp_path / "stated.toml")
+    called = dict(n=16, piece=4, folder=tmp_path / "call")
+    pp.study(tmp_path / "stated.toml", {TORQUE: ["5 N m", "45 N m"]}, "sobol", **called)
+    assert _digests(tmp_path / "table") == _digests(tmp_path / "call")
+    assert _command(str(tmp_path / "stated.toml"), "-o", str(tmp_path / "command")) == 0
+    assert _digests(tmp_path / "command") == _digests(tmp_path / "call")
+    assert _command(str(tmp_path / "stated.toml"), "-n", "8", "-o", str(tmp_path / "few")) == 0
+    assert len(_digests(tmp_path / "few")) == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"n": 15}, "n: 15 designs were asked for; a Sobol' sequence is even with a power of two"),
+        ({"over": {}}, "study.over: a study needs the values of one key at least"),
+        ({"over": {"operation.torqe": [5, 6]}}, "operation.torqe: there is no such key; did you"),
+        ({"over": {TORQUE: "5 N m"}}, 'operation.torque: "5 N m" was given where a list of values'),
+        ({"workers": 2, "scheduler": "tcp://a:1"}, "study.workers: goes with workers of this mach"),
+        (
+            {"over": {TORQUE: {"start": 5, "stop": 6, "distribution": "gauss"}}},
+            'operation.torque: "gauss" is no distribution; use one of "uniform", "normal"',
+        ),
+        (
+            {"over": {TORQUE: {"start": 5, "stop": 6, "step": 2}}},
+            'operation.torque: "step" is no key of a range; did you mean stop?',
+        ),
+        ({"tolerances": "normal"}, "tolerances: none are given; say thickness_field = "),
+    ],
+)
+def test_a_table_that_cannot_be_is_one_sentence(
+    change: dict[str, Any], told: str, tmp_path: Path
+) -> None:
+    from pitchpoint.runs.check import check
+
+    path = tmp_path / "wrong.toml"
+    path.write_text(PAIR.set({"study": {**PLAN, **change}}).to_toml())
+    for asked in (pp.study, lambda case: check(str(case))):
+        with pytest.raises(InputError) as caught:
+            asked(path)
+        assert told in str(caught.value) and "wrong.toml" in str(caught.value)
+
+
+def test_normal_values_have_their_ends_at_three_standard_deviations() -> None:
+    normal = {TORQUE: {"start": "5 N m", "stop": "45 N m", "distribution": "normal"}}
+    layout = layout_of(VARIANT, normal, "sobol", 4096, 3)
+    drawn = np.array([float(str(text).split()[0]) for text in layout.columns(0, 4096)[TORQUE]])
+    assert drawn.min() >= 5.0 and drawn.max() <= 45.0
+    assert drawn.mean() == pytest.approx(25.0, abs=0.02)
+    # A standard normal distribution cut off at 3 has the variance 1 - 6 pdf(3)/(2 cdf(3) - 1).
+    assert drawn.std() == pytest.approx(40.0 / 6.0 * 0.98658, rel=2e-3)
+
+
+@pytest.mark.usefixtures("quick")
+def test_every_design_is_a_row_of_a_file(case: str, tmp_path: Path) -> None:
+    import csv
+
+    rows = tmp_path / "rows.csv"
+    over = ("--over", "torque=5 N m:45 N m:3", "--over", 'gears.face_width=["9 mm", "10 mm"]')
+    assert _command(case, *over, "-o", str(tmp_path / "out"), "--csv", str(rows)) == 0
+    with rows.open() as file:
+        read = [*csv.DictReader(file)]
+    assert [row["design"] for row in read] == ["0", "1", "2", "3", "4", "5"]
+    torque = [float(row["operation.torque [N m]"]) for row in read]
+    assert torque == [5.0, 5.0, 25.0, 25.0, 45.0, 45.0]
+    width = [float(row["gears.face_width [mm]"]) for row in read]
+    assert width == pytest.approx([9.0, 10.0] * 3)
+    assert [float(row["mean_loss [W]"]) for row in read] == pytest.approx(np.sin(torque))
+
+
+@pytest.mark.usefixtures("quick")
+def test_the_screen_has_sobol_indices(
+    case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("pitchpoint.views.many_designs.FIGURES", ("mean_loss",))
+    drawn = ("--over", "torque=5 N m:45 N m", "--over", "gears.face_width=9 mm:10 mm")
+    asked = (case, *drawn, "--how", "saltelli", "-n", "64", "-o", str(tmp_path / "out"))
+    assert _command(*asked) == 0
+    told = capsys.readouterr().out
+    assert "256 designs" in told and "from 64 of 64 designs of each sample" in told
+    assert _command(*asked, "--json") == 0
+    indices = json.loads(capsys.readouterr().out)["sobol_indices"]["mean_loss"]["xu_2007"]
+    assert indices[TORQUE]["total_order"] == pytest.approx(1.0, abs=0.2)
+    assert indices[WIDTH]["total_order"] == 0.0

@@ -168,6 +168,8 @@ def _measured(number: int, built: Built, table: CylindricalGears, asked: Inspect
     teeth, shift, infeed = (
         float(np.asarray(both)[number]) for both in (mesh.teeth, mesh.profile_shift, mesh.infeed)
     )
+    # Allowances of a drawing count from teeth without any, whatever those that are computed have.
+    infeed = infeed if table.thickness_allowances is None else 0.0
     gear = Toothing(teeth, float(mesh.module), *angles, shift + infeed)
     tip = float(drawn["tip_radius"][number])
     form, active, end = (

@@ -130,6 +130,9 @@ COEFFICIENT = Quantity("dimensionless", 0.0, 2.0)
 SPREAD = Quantity("dimensionless", 1.0, 10.0)
 COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
 MAP_COUNT = Quantity("dimensionless", 2, 200, whole=True)
+DESIGNS = Quantity("dimensionless", 1, 10_000_000, whole=True)
+DESIGN_SEED = Quantity("dimensionless", 0, 1_000_000, whole=True)
+WORKERS = Quantity("dimensionless", 1, 1000, whole=True)
 BEARING_FACTOR = Quantity("dimensionless", 0.0, 100.0)
 FORCE = Quantity("force", 0.0, 1e7, "N")
 RATING = Quantity("force", 0.0, 1e9, "N", open_low=True)
@@ -1198,6 +1201,64 @@ class Study(Table):
     """Values over which one key is swept; one point unless given."""
 
 
+class StudyTable(Table):
+    """Many designs of the case, which the command `study` computes; `run` leaves them out.
+
+    `over` has the values of each key: a list, or { start = ..., stop = ..., count = ... } in equal steps;
+    where designs are drawn two ends, or { start = ..., stop = ..., distribution = "normal" }, whose ends are
+    three standard deviations from its middle. `tolerances` draws what [gears.inspection] allows: both tooth
+    thicknesses, the centre distance, by a class of ISO 1328-1 the misalignment by helix slopes.
+    """
+
+    over: dict[str, Any] = Field(
+        default_factory=dict, examples=[{"operation.torque": ["20 N m", "90 N m"]}]
+    )
+    """Values by dotted key; may be left out with tolerances."""
+    how: Literal["grid", "zip", "latin_hypercube", "sobol", "saltelli"] | None = None
+    """How designs are laid out, by saltelli for Sobol' indices; grid, with tolerances sobol, unless given."""
+    n: Annotated[float, DESIGNS] | None = None
+    """Designs to draw; of sobol, and of each of both samples of saltelli, a power of two."""
+    seed: Annotated[float, DESIGN_SEED] = 0.0
+    """Number from which designs are drawn; the same one draws the same designs."""
+    tolerances: Literal["uniform", "normal"] | None = None
+    """Distribution of tolerances between their limits; gears are the nominal ones unless given."""
+    folder: Text = ""
+    """Folder of the files, from that of the case file on; results/CASE/study unless given."""
+    piece: Annotated[float, DESIGNS] | None = None
+    """Designs that are computed and kept together; 4096 unless given."""
+    workers: Annotated[float, WORKERS] | None = None
+    """Processes of this machine that compute; the one of the command unless given."""
+    scheduler: Text = ""
+    """Address of a scheduler of dask.distributed whose workers compute, in place of workers."""
+
+    @model_validator(mode="after")
+    def _of_something(self) -> "StudyTable":
+        if not self.over and self.tolerances is None:
+            raise InputError(
+                'a study needs the values of one key at least, "operation.torque" = ["20 N m", "90 N m"], or '
+                "tolerances",
+                key="over",
+            )
+        if self.workers is not None and self.scheduler:
+            raise InputError(
+                "goes with workers of this machine; give it or a scheduler", key="workers"
+            )
+        return self
+
+    @property
+    def by_key(self) -> dict[str, Any]:
+        """Values by dotted key, also of keys that were written as tables within tables."""
+        return dict(_values_by_key(self.over))
+
+
+def _values_by_key(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, Mapping) and value and not {"start", "stop"} & value.keys():
+            yield from _values_by_key(value, f"{before}{key}.")
+        else:
+            yield f"{before}{key}", value
+
+
 def _quadrants(value: Any) -> Any:
     """The value, unless it is a flag, which Python counts among the numbers."""
     if isinstance(value, bool):
@@ -1640,6 +1701,8 @@ class Case(Table):
     """Load factors and limits for the strength by ISO 6336; what is left out is assumed, and told."""
     studies: Studies = Field(default_factory=dict)
     """Further computations with changed inputs, by names of one's own."""
+    study: StudyTable | None = None
+    """Many designs of the case, for the command `study`; none unless given."""
     loss_map: LossMap | None = None
     """Axes of the loss map; up to 1.5 times the operating point unless given."""
     duty: DutyTable | None = None
@@ -1859,6 +1922,8 @@ class DriveCase(Table):
     """Load factors and limits for the strength by ISO 6336; what is left out is assumed, and told."""
     studies: Studies = Field(default_factory=dict)
     """Further computations with changed inputs, by names of one's own."""
+    study: StudyTable | None = None
+    """Many designs of the case, for the command `study`; none unless given."""
     loss_map: LossMap | None = None
     """Axes of the loss map; up to 1.5 times the operating point unless given."""
     duty: DutyTable | None = None

@@ -29,7 +29,7 @@ __all__ = [
 P = ParamSpec("P")
 T = TypeVar("T")
 
-_TOLD = ("targets", "issues", "studies")
+_TOLD = ("targets", "issues", "studies", "study")
 
 
 @dataclass(frozen=True)

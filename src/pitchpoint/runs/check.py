@@ -8,7 +8,9 @@ from pitchpoint.cases.library import find
 from pitchpoint.cases.record import is_record, is_result
 from pitchpoint.doubts import Doubt, as_doubt, of_designs
 from pitchpoint.errors import CollectedInputError, InputError
+from pitchpoint.runs.case import Case
 from pitchpoint.runs.run import forewarned
+from pitchpoint.runs.study import demand_study
 
 __all__ = ["check"]
 
@@ -37,6 +39,8 @@ def check(
             for kind, sentences in forewarned(case, [name] if name else (), settings).items():
                 for text in map(as_doubt, sentences):
                     sentences_of[kind].setdefault(text, []).append(name)
+            if name:
+                demand_study(Case(case, variant=name).set(settings or {}))
         except InputError as error:
             every = error.errors if isinstance(error, CollectedInputError) else (error,)
             for fault in every:

@@ -22,10 +22,10 @@ from pitchpoint.programs import bound_programs, surroundings
 from pitchpoint.results.netcdf import encode
 from pitchpoint.results.pieces import ALONG
 from pitchpoint.results.store import fingerprint
-from pitchpoint.runs.layouts import StudyLayout, layout_of
+from pitchpoint.runs.layouts import DRAWN, StudyLayout, layout_of
 from pitchpoint.runs.run import mark_of
 
-__all__ = ["StudyDescription", "decisive", "piece_elsewhere"]
+__all__ = ["StudyDescription", "piece_elsewhere"]
 
 _PART = "designs"
 _OF_VARIANT = ("tree", "name", "variant", "settings", "recorded")
@@ -37,7 +37,7 @@ class StudyDescription:
 
     Attributes:
         variant: the case.
-        over: values by whole key.
+        over: values by whole key, see `StudyAxis.described`.
         how, n, seed: see `study`.
         size: designs of a piece.
     """
@@ -69,7 +69,7 @@ class StudyDescription:
     @property
     def _layout(self) -> dict[str, Any]:
         return {
-            "over": {key: [*values] for key, values in self.over.items()},
+            "over": self.over,
             "how": self.how,
             "n": self.n,
             "seed": self.seed,
@@ -86,7 +86,13 @@ class StudyDescription:
         """Digest of the description, of the code and of what it runs on: equal ones give equal bits."""
         tree = self.variant.document().tree
         case = {key: table for key, table in tree.items() if key != OUTPUT}
-        return fingerprint(mark_of(self.variant, _PART), case, self._layout, decisive())
+        return fingerprint(mark_of(self.variant, _PART), case, self._layout, self.decisive)
+
+    @property
+    def decisive(self) -> dict[str, str]:
+        """What decides about the numbers beside the description: drawn designs are those of SciPy."""
+        drawn = {"scipy": version("scipy")} if self.how in DRAWN else {}
+        return {**surroundings(), **drawn}
 
     def computed(self, first: int, stop: int, progress: AnalysisProgress = silent) -> xr.Dataset:
         """Figures [law, design] of a range of designs, with their values as coordinates.
@@ -109,11 +115,6 @@ class StudyDescription:
         )
 
 
-def decisive() -> dict[str, str]:
-    """What decides about the numbers of a study beside its description: its designs are drawn by SciPy."""
-    return {**surroundings(), "scipy": version("scipy")}
-
-
 @double_precision()
 def piece_elsewhere(packed: bytes, mark: str, first: int, stop: int) -> bytes | dict[str, str]:
     """The file of a piece, computed in a process that shares nothing with the one that asks.
@@ -128,5 +129,5 @@ def piece_elsewhere(packed: bytes, mark: str, first: int, stop: int) -> bytes | 
     """
     study = StudyDescription.read(packed)
     if study.mark != mark:
-        return decisive()
+        return study.decisive
     return encode(study.computed(first, stop))

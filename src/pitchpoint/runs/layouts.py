@@ -13,20 +13,41 @@ from jaxtyping import Float
 
 from pitchpoint import units as units_of_numbers
 from pitchpoint.analyses.studies import SWEPT
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.schema import COUNT, one_value, quantity_at
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
+from pitchpoint.registry import nearest
 from pitchpoint.results.chosen_units import unit_in_use
 from pitchpoint.results.labelled import Units
 from pitchpoint.runs.case import written
 
-__all__ = ["MOST_DESIGNS", "How", "StudyAxis", "StudyLayout", "layout_of", "sobol_shares"]
+__all__ = [
+    "DRAWN",
+    "FEWEST",
+    "MOST_DESIGNS",
+    "How",
+    "StudyAxis",
+    "StudyLayout",
+    "layout_of",
+    "sobol_shares",
+]
 
-How = Literal["grid", "zip", "latin_hypercube", "sobol"]
+How = Literal["grid", "zip", "latin_hypercube", "sobol", "saltelli"]
+
+DRAWN = ("latin_hypercube", "sobol", "saltelli")
+"""Ways whose designs are drawn, by SciPy."""
 
 MOST_DESIGNS = 10_000_000
 """Designs of a study."""
+
+FEWEST = 16
+"""Designs of each sample below which Sobol' indices say nothing."""
+
+DEVIATIONS = 3.0
+"""Standard deviations from the middle of a normal distribution to its ends, where it is cut off."""
+
+_DISTRIBUTIONS = ("uniform", "normal")
 
 
 @dataclass(frozen=True)
@@ -37,11 +58,13 @@ class StudyAxis:
         key: dotted.
         quantity: what its values are; None for names.
         values: as a case file has them.
+        distribution: of what is drawn between two ends, "uniform" or "normal".
     """
 
     key: str
     quantity: Quantity | None
     values: Sequence[Any]
+    distribution: str = "uniform"
 
     @classmethod
     def of(cls, variant: Variant, key: str, values: Any) -> "StudyAxis":
@@ -50,14 +73,27 @@ class StudyAxis:
             quantity = quantity_at(key, variant.document().tree)
             if key.partition(".")[0] not in SWEPT:
                 raise InputError(f"cannot be studied; keys of {', '.join(SWEPT)} can")
-            listed = written(key, values)
+            listed, distribution = written(key, values), "uniform"
+            if isinstance(listed, dict):
+                listed, distribution = _of_range(listed, quantity)
+                listed = written(key, listed)
             if not isinstance(listed, list) or not listed:
-                raise InputError(f"{shown(listed)} was given where a list of values belongs")
+                raise InputError(
+                    f"{shown(listed)} was given where a list of values belongs, or a table of start and stop"
+                )
             for value in listed:
                 _demand_value(value, quantity)
         except InputError as error:
             raise error.at(file=variant.name, key=key) from None
-        return cls(key, quantity, listed)
+        return cls(key, quantity, listed, distribution)
+
+    @property
+    def described(self) -> Any:
+        """What makes it again."""
+        if self.distribution == "uniform":
+            return [*self.values]
+        start, stop = self.values
+        return {"start": start, "stop": stop, "distribution": self.distribution}
 
     def stored(self, values: Sequence[Any]) -> tuple[np.ndarray, dict[str, str]]:
         """Values as a coordinate in SI, and its attributes."""
@@ -98,11 +134,47 @@ class StudyAxis:
     def drawn(self, share: np.ndarray) -> list[Any]:
         """Values at shares of the range; of a count whole ones, each with the same part of it."""
         low, high = self.ends
+        if self.distribution == "normal":
+            from scipy.special import ndtr, ndtri
+
+            least = ndtr(-DEVIATIONS)
+            share = 0.5 + ndtri(least + share * (1.0 - 2.0 * least)) / (2.0 * DEVIATIONS)
         if self.quantity is not None and self.quantity.whole:
             return [
                 *written(self.key, np.minimum(low + np.floor(share * (high - low + 1.0)), high))
             ]
         return [*written(self.key, low + share * (high - low))]
+
+
+_OF_RANGE = ("start", "stop", "count", "distribution")
+
+
+def _of_range(table: Mapping[str, Any], quantity: Quantity | None) -> tuple[list[Any], str]:
+    """Values in equal steps, or two ends between which a distribution draws them."""
+    for name in table:
+        if name not in _OF_RANGE:
+            raise InputError(
+                f"{shown(name)} is no key of a range{nearest(name, _OF_RANGE)}; it has {', '.join(_OF_RANGE)}"
+            )
+    start, stop, count = (table.get(name) for name in _OF_RANGE[:3])
+    distribution = table.get("distribution", "uniform")
+    if start is None or stop is None or quantity is None:
+        raise InputError(f"{shown(dict(table))} was given where start and stop of numbers belong")
+    if distribution not in _DISTRIBUTIONS:
+        raise InputError(
+            f"{shown(distribution)} is no distribution; use one of {', '.join(map(shown, _DISTRIBUTIONS))}"
+        )
+    if count is None:
+        return [start, stop], distribution
+    if "distribution" in table:
+        raise InputError(
+            "count and distribution were both given; values in equal steps have no distribution, give one"
+        )
+    steps = round(COUNT.read(count))
+    if steps < 2:
+        raise InputError(one_value(start, stop))
+    even = np.linspace(quantity.read(start), quantity.read(stop), steps)
+    return (np.round(even) if quantity.whole else even).tolist(), "uniform"
 
 
 def _demand_value(value: Any, quantity: Quantity | None) -> None:
@@ -202,7 +274,7 @@ class _LatinHypercube(_Drawn):
     @cached_property
     def count(self) -> int:
         if self.n is None:
-            raise InputError("a Latin hypercube needs the number of designs, n")
+            raise InputError("a Latin hypercube needs the number of designs; give n", key="n")
         self._demand_ranges()
         return self.n
 
@@ -228,11 +300,30 @@ class _Sobol(_Drawn):
         return sobol_shares(self.count, len(self.axes), self.seed, first=first, stop=stop)
 
 
+class _Saltelli(_Drawn):
+    """Two samples, and the first one with each key in turn from the second, one after the other."""
+
+    @cached_property
+    def count(self) -> int:
+        base = _power_of_two(self.n, FEWEST)
+        self._demand_ranges()
+        return base * (len(self.axes) + 2)
+
+    def shares(self, first: int, stop: int) -> Float[np.ndarray, "design key"]:
+        assert self.n is not None
+        numbers, keys = np.arange(first, stop), len(self.axes)
+        sample, place = np.divmod(numbers, self.n)
+        both = sobol_shares(self.n, 2 * keys, self.seed, FEWEST)[place]
+        second = (sample == 1)[:, None] | (sample[:, None] == 2 + np.arange(keys))
+        return np.where(second, both[:, keys:], both[:, :keys])
+
+
 _LAYOUTS: dict[str, type[StudyLayout]] = {
     "grid": _Grid,
     "zip": _Zip,
     "latin_hypercube": _LatinHypercube,
     "sobol": _Sobol,
+    "saltelli": _Saltelli,
 }
 
 
@@ -259,7 +350,9 @@ def layout_of(
 def _demand_way(how: str) -> None:
     if how not in get_args(How):
         known = ", ".join(f'"{name}"' for name in get_args(How))
-        raise InputError(f"{shown(how)} is no way to lay out a study; use one of {known}")
+        raise InputError(
+            f"{shown(how)} is no way to lay out a study; use one of {known}", key="how"
+        )
 
 
 def _possible(count: int) -> int:
@@ -312,5 +405,8 @@ def _power_of_two(n: int | None, least: int = 1) -> int:
     if n is None or n < least or n & (n - 1):
         told = "no number of designs was given" if n is None else f"{n} designs were asked for"
         most = f", {least} at least" if least > 1 else ""
-        raise InputError(f"{told}; a Sobol' sequence is even with a power of two of them{most}")
+        raise InputError(
+            f"{told}; a Sobol' sequence is even with a power of two of them{most}; give n = 1024, say",
+            key="n",
+        )
     return _possible(n)

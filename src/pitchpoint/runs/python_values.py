@@ -139,6 +139,10 @@ def _by_key(value: Any) -> bool:
     return isinstance(value, Mapping) and all(map(_is_name, value))
 
 
+def _is_tolerance(value: Any) -> bool:
+    return isinstance(value, str) and value in ("uniform", "normal")
+
+
 def _are_studies(value: Any) -> bool:
     return _by_key(value) and all(isinstance(study, Study) for study in value.values())
 
@@ -162,12 +166,13 @@ _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "seed": (_whole(0), "a whole number from 0 on"),
     "settings": (_by_key, "a dictionary of values by key"),
     "studies": (_are_studies, "a dictionary of studies by name"),
+    "tolerances": (_is_tolerance, '"uniform" or "normal"'),
     "variant": (_is_name, "the name of a variant"),
     "workers": (_whole(1), "a whole number from 1 on"),
 }
 """Which values an argument takes, and what they are."""
 
-_NEEDED = ("key", "over")
+_NEEDED = ("key",)
 
 
 def demand_arguments(**given: Any) -> None:

@@ -1,5 +1,6 @@
 """Which numbers of a case its figures hang on over ranges of all of them: Sobol' indices."""
 
+import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,14 +13,14 @@ from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
 from pitchpoint.registry import nearest
 from pitchpoint.runs.case import CaseLike
-from pitchpoint.runs.layouts import sobol_shares
+from pitchpoint.runs.layouts import FEWEST
 from pitchpoint.runs.run import FrictionChoice, Progress
-from pitchpoint.runs.study import drawn_values, study
+from pitchpoint.runs.study import study
 
-__all__ = ["indices_of", "sobol_indices"]
+__all__ = ["FIGURES", "indices_of", "indices_of_study", "sobol_indices"]
 
-FEWEST = 16
-"""Designs of each sample below which indices say nothing."""
+FIGURES = ("mean_efficiency", "mean_loss", "torque_ripple")
+"""Whose variance is parted unless others are named."""
 
 CONFIDENCE = 0.95
 """Part of the resampled indices that lie between the bounds of an index."""
@@ -33,11 +34,13 @@ def sobol_indices(
     over: Mapping[str, Any],
     n: int,
     *,
-    figures: Sequence[str] = ("mean_efficiency", "mean_loss", "torque_ripple"),
+    figures: Sequence[str] = FIGURES,
     seed: int = 0,
     variant: str | None = None,
     friction: FrictionChoice | None = None,
     folder: str | Path | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Parts of the variance of figures that each number of a case has, alone and with others.
@@ -45,11 +48,11 @@ def sobol_indices(
     Args:
         case: a `Case`, or what makes one.
         over: lowest and highest value by key, SI numbers or texts with a unit; all values between are equally
-            likely, those of different keys independent.
+            likely, or as the distribution says that `study` takes, those of different keys independent.
         n: designs of each of two samples, a power of two; (keys + 2) n designs are computed in all.
         figures: of the study whose variance is parted.
         seed: the same one draws the same designs.
-        variant, friction, folder, progress: see `study`.
+        variant, friction, folder, workers, scheduler, progress: see `study`.
 
     Returns:
         `first_order` and `total_order` over `figure`, `law` and `key`, each with bounds `_low` and `_high` in
@@ -62,19 +65,41 @@ def sobol_indices(
 
     From Sobol (2001) by the estimators of Saltelli et al. (2010), on a scrambled Sobol' sequence.
     """
-    shares = _shares(len(over), n, seed)
-    values = drawn_values(case, over, shares.reshape(shares.shape[0] * n, len(over)), variant)
     computed = study(
         case,
-        values,
-        "zip",
+        over,
+        "saltelli",
+        n=n,
+        seed=seed,
         variant=variant,
         friction=friction,
         folder=folder,
+        workers=workers,
+        scheduler=scheduler,
         progress=progress,
     )
+    return indices_of_study(computed, figures)
+
+
+def indices_of_study(computed: xr.Dataset, figures: Sequence[str] = FIGURES) -> xr.Dataset:
+    """Sobol' indices of the figures of a study whose designs are those of Saltelli.
+
+    Args:
+        computed: what `study(..., how="saltelli")` gave.
+        figures: whose variance is parted.
+
+    Returns:
+        See `sobol_indices`.
+
+    Raises:
+        InputError: a study of another kind, a figure that it does not have, or too few designs with figures.
+    """
+    layout = json.loads(computed.attrs.get("layout", "{}"))
+    if layout.get("how") != "saltelli":
+        raise InputError('Sobol\' indices follow from a study by how = "saltelli" alone', key="how")
+    keys, n, seed = layout["keys"], layout["n"], layout["seed"]
     data = xr.concat([_figure(computed, name) for name in figures], "figure")
-    rows = data.transpose("figure", "law", "design").values.reshape(-1, len(over) + 2, n)
+    rows = data.transpose("figure", "law", "design").values.reshape(-1, len(keys) + 2, n)
     sound = np.flatnonzero(np.isfinite(rows).all(axis=(0, 1)))
     count = 1 << max(sound.size.bit_length() - 1, 0)
     if sound.size < FEWEST:
@@ -84,13 +109,13 @@ def sobol_indices(
             f"{sound.size} of {n} designs can be computed with all changes of them{cause}"
         )
     indices = indices_of(rows[..., sound[:count]], seed)
-    shape = (len(figures), data.sizes["law"], len(over))
+    shape = (len(figures), data.sizes["law"], len(keys))
     return xr.Dataset(
         {
             name: (("figure", "law", "key"), values.reshape(shape))
             for name, values in indices.items()
         },
-        {"figure": [*figures], "law": data["law"].values, "key": [*values]},
+        {"figure": [*figures], "law": data["law"].values, "key": keys},
         {"designs": count, "asked": n, "seed": seed},
     )
 
@@ -151,13 +176,6 @@ def _of_figure(
 
 ROUNDING = 1e-9
 """Range of a figure over its size below which it does not vary: what a solver leaves."""
-
-
-def _shares(keys: int, n: int, seed: int) -> Float[np.ndarray, "sample design key"]:
-    """Both samples, and the first one with each key in turn from the second, as shares of the ranges."""
-    base, resample = np.split(sobol_shares(n, 2 * keys, seed, FEWEST), 2, axis=1)
-    swapped = [np.where(np.arange(keys) == key, resample, base) for key in range(keys)]
-    return np.stack([base, resample, *swapped])
 
 
 def _figure(found: xr.Dataset, name: str) -> xr.DataArray:

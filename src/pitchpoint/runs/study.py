@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
 from typing import Any
@@ -15,7 +16,7 @@ from pitchpoint.analyses.designs import TOGETHER
 from pitchpoint.analyses.studies import demand_films, demand_one
 from pitchpoint.analyses.summaries import balance_codes, few
 from pitchpoint.cases.record import OUTPUT
-from pitchpoint.cases.schema import Sweep
+from pitchpoint.cases.schema import StudyTable, Sweep, validate, with_meshes
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import stored
 from pitchpoint.errors import InputError
@@ -25,13 +26,21 @@ from pitchpoint.results.pieces import ALONG, StudyPieces, Summary, as_whole, sum
 from pitchpoint.results.store import make_folder, sole_writer, sweep
 from pitchpoint.runs.case import Case, CaseLike, as_case
 from pitchpoint.runs.described import StudyDescription
-from pitchpoint.runs.layouts import How, StudyAxis, StudyLayout, layout_of
+from pitchpoint.runs.layouts import How, StudyLayout, layout_of
 from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import FrictionChoice, Progress, own_law
+from pitchpoint.runs.tolerances import with_tolerances
 from pitchpoint.runs.workers import pieces_of_workers
 from pitchpoint.status import told
 
-__all__ = ["PIECE", "drawn_values", "study"]
+__all__ = [
+    "PIECE",
+    "StudyPlan",
+    "demand_study",
+    "folder_of_table",
+    "study",
+    "table_of_study",
+]
 
 PIECE = 16 * TOGETHER
 """Designs that are kept together: a loss of a minute or less, and a file of a megabyte or two."""
@@ -46,31 +55,40 @@ MOST_IN_MEMORY = 100_000
 @double_precision()
 def study(
     case: CaseLike,
-    over: Mapping[str, Any],
-    how: How = "grid",
+    over: Mapping[str, Any] | None = None,
+    how: How | None = None,
     *,
     n: int | None = None,
-    seed: int = 0,
+    seed: int | None = None,
+    tolerances: str | None = None,
     units: Units = "si",
     variant: str | None = None,
     friction: FrictionChoice | None = None,
     folder: str | Path | None = None,
-    piece: int = PIECE,
+    piece: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Main figures of many designs of a case, from a few to millions.
 
+    What is not given is that of the table `[study]` of the case; with `over` or `tolerances` the study is
+    that of the call alone, whatever the table says.
+
     Args:
         case: a `Case`, or what makes one.
-        over: values by key, SI numbers or texts with a unit, or names; for "latin_hypercube" and "sobol" the
-            lowest and the highest one.
+        over: values by key, SI numbers or texts with a unit, or names; for designs that are drawn the lowest
+            and the highest one, or {"start": ..., "stop": ..., "distribution": "normal"}, whose ends are
+            three standard deviations from its middle.
         how: "grid" takes every value with every other, "zip" the first ones together, then the second
             ones, "latin_hypercube" draws designs that fill the ranges evenly, "sobol" those of a scrambled
-            Sobol' sequence.
-        n: number of designs to draw, of those two ways alone; a power of two of a Sobol' sequence.
-        seed: the same one draws the same designs.
+            Sobol' sequence, "saltelli" those from which `sobol_indices` follow. A grid, with tolerances
+            "sobol", by default.
+        n: number of designs to draw, of the last three ways alone; a power of two of a Sobol' sequence, and
+            of each of both samples of "saltelli", which has (keys + 2) n designs.
+        seed: the same one draws the same designs; 0 by default.
+        tolerances: "uniform" or "normal" draws what `[gears.inspection]` of a cylindrical pair allows between
+            its limits, see `pitchpoint.runs.tolerances`; beside `over`, if that is given.
         units: of the result, "si", those in which values are "shown", or some by kind of quantity,
             {"angle": "arcmin"}, and the others as shown.
         variant: of the case, the first one by default.
@@ -78,7 +96,7 @@ def study(
         folder: where pieces are kept as soon as they are computed, each a NetCDF file that is whole or not
             there, so that the same call goes on from them. Whoever computes them, in whatever order and after
             whatever was killed, the files are the same bit for bit.
-        piece: designs that are computed and kept together.
+        piece: designs that are computed and kept together; 4096 by default.
         workers: processes of this machine that compute pieces, by `dask.distributed`; this one by default.
         scheduler: in their place the address of a scheduler of `dask.distributed`, "tcp://host:8786", whose
             workers have this version of the package, and need share no disk with this process.
@@ -102,49 +120,120 @@ def study(
     demand_units(units)
     demand_arguments(over=over, how=how, n=n, seed=seed, variant=variant, friction=friction)
     demand_arguments(folder=folder, piece=piece, workers=workers, scheduler=scheduler)
+    demand_arguments(tolerances=tolerances)
     chosen = as_case(case) if variant is None else Case(case, variant=variant)
+    given: dict[str, Any] = {
+        "over": over,
+        "how": how,
+        "n": n,
+        "seed": seed,
+        "tolerances": tolerances,
+    }
+    given |= {"folder": folder, "piece": piece, "workers": workers, "scheduler": scheduler}
+    plan = StudyPlan(**_completed(given, chosen))
     base = chosen.held[0] if friction is None else own_law(chosen.held[0], friction)
-    layout = layout_of(base, _whole_keys(chosen, over), how, n, seed)
-    _demand_meant(base, layout)
-    _demand_place(layout, base, folder, workers, scheduler)
-    values = {key: axis.values for key, axis in layout.axes.items()}
-    asked = StudyDescription(base.computed, values, how, n, seed, piece)
-    where = None if folder is None else Path(folder)
-    pieces = StudyPieces(where, f"designs_{asked.mark[:8]}", asked.mark, layout.count, piece)
+    base, layout = _laid_out(chosen, base, plan)
+    where = None if plan.folder is None else Path(plan.folder)
+    _demand_place(layout, base, where, plan.workers, plan.scheduler)
+    described = {key: axis.described for key, axis in layout.axes.items()}
+    asked = StudyDescription(base.computed, described, plan.way, plan.n, plan.seed, plan.piece)
+    pieces = StudyPieces(where, f"designs_{asked.mark[:8]}", asked.mark, layout.count, plan.piece)
     with ExitStack() as stack:
         if where is not None:
             stack.enter_context(_alone(where))
-        _compute(asked, pieces, workers, scheduler, progress or Progress())
+        _compute(asked, pieces, plan.workers, plan.scheduler, progress or Progress())
     choice = unit_choice(base.document().tree.get(OUTPUT, {}).get("units", {}))
-    return _opened(pieces, layout, base.name, choice, units)
+    data = _opened(pieces, layout, base.name, choice, units)
+    of_layout = {"how": plan.way, "n": plan.n, "seed": plan.seed, "keys": [*layout.axes]}
+    return data.assign_attrs(layout=json.dumps(of_layout), tolerances=plan.tolerances or "")
 
 
-def drawn_values(
-    case: CaseLike, over: Mapping[str, Any], shares: np.ndarray, variant: str | None = None
-) -> dict[str, list[Any]]:
-    """Values by whole key at shares of their ranges, as a study by "zip" takes them.
+@dataclass(frozen=True)
+class StudyPlan:
+    """What a study is asked for; None where it is left open, see `study`."""
 
-    Args:
-        case: see `study`.
-        over: lowest and highest value by key.
-        shares: of the ranges, shape (design, key).
-        variant: of the case, the first one by default.
+    over: Mapping[str, Any]
+    how: str | None = None
+    n: int | None = None
+    seed: int = 0
+    tolerances: str | None = None
+    folder: str | Path | None = None
+    piece: int = PIECE
+    workers: int | None = None
+    scheduler: str | None = None
+
+    @property
+    def way(self) -> str:
+        """How designs are laid out."""
+        return self.how or ("grid" if self.tolerances is None else "sobol")
+
+
+def table_of_study(case: Case) -> StudyTable | None:
+    """The table `[study]` of the first variant of a case; None where it has none.
 
     Raises:
-        InputError: see `study`; a key without two numbers.
+        InputError: the case cannot be read.
     """
-    chosen = as_case(case) if variant is None else Case(case, variant=variant)
-    ranges = _whole_keys(chosen, over).items()
-    return {
-        key: StudyAxis.of(chosen.held[0], key, values).drawn(shares[:, at])
-        for at, (key, values) in enumerate(ranges)
-    }
+    document = case.held[0].document()
+    return validate(with_meshes(document)).study if "study" in document.tree else None
+
+
+def demand_study(case: Case) -> None:
+    """InputError for what is wrong with the table `[study]` of the first variant of a case, if it has one."""
+    if "study" in case.held[0].document().tree:
+        plan = StudyPlan(**_completed({}, case))
+        _laid_out(case, case.held[0], plan)
+
+
+def _laid_out(case: Case, base: Variant, plan: StudyPlan) -> tuple[Variant, StudyLayout]:
+    """Designs of a study, and the case that they are changes of."""
+    values = _whole_keys(case, plan.over)
+    if plan.tolerances is not None:
+        base, drawn = with_tolerances(base, plan.tolerances)
+        values = {**drawn, **values}
+    if not values:
+        raise InputError("a study needs the values of one key at least", key="over")
+    try:
+        layout = layout_of(base, values, plan.way, plan.n, plan.seed)
+    except InputError as error:
+        raise error.at(file=error.file or base.name) from None
+    _demand_meant(base, layout)
+    return base, layout
+
+
+def folder_of_table(table: StudyTable | None, case: Case) -> Path | None:
+    """Folder of a study as its table says, from that of the case file on; None where it says none."""
+    if table is None or not table.folder:
+        return None
+    return (case.held[0].folder or Path()) / table.folder
+
+
+def _completed(given: Mapping[str, Any], case: Case) -> dict[str, Any]:
+    """Arguments that are given, and those of the table of the case where they leave the designs to it."""
+    stated = {name: value for name, value in given.items() if value is not None}
+    if stated.keys() & {"over", "tolerances"}:
+        return {"over": {}, **stated}
+    table = table_of_study(case)
+    if table is None:
+        raise InputError(
+            "a study needs the values of one key at least, as over, or a table [study] in the case",
+            file=case.name,
+        )
+    of_table: dict[str, Any] = {"over": table.by_key, "seed": int(table.seed)}
+    of_table |= {"how": table.how, "tolerances": table.tolerances}
+    for name in ("n", "piece", "workers"):
+        number = getattr(table, name)
+        of_table[name] = None if number is None else int(number)
+    of_table["scheduler"] = table.scheduler or None
+    of_table["folder"] = folder_of_table(table, case)
+    if stated.keys() & {"workers", "scheduler"}:
+        of_table |= {"workers": None, "scheduler": None}
+    left_open = {name: value for name, value in of_table.items() if value is not None}
+    return {**left_open, **stated}
 
 
 def _whole_keys(case: Case, over: Mapping[str, Any]) -> dict[str, Any]:
     """Values by whole key."""
-    if not over:
-        raise InputError("a study needs the values of one key at least")
     return {case.key(name): values for name, values in over.items()}
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from pitchpoint.errors import InputError, PitchpointError, shorten
 from pitchpoint.input.quantities import shown
 from pitchpoint.results.pieces import StudyPieces
-from pitchpoint.runs.described import StudyDescription, decisive, piece_elsewhere
+from pitchpoint.runs.described import StudyDescription, piece_elsewhere
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -210,7 +210,7 @@ def _landing(
         done = _finished(asked)
         for future in done:
             number = asked.pop(future)
-            yield number, _image(future, pieces.range(number))
+            yield number, _image(future, pieces.range(number), study.decisive)
             future.release()
 
 
@@ -247,7 +247,7 @@ def _finished(asked: Collection["Future[Any]"]) -> "list[Future[Any]]":
     return []
 
 
-def _image(future: "Future[Any]", designs: tuple[int, int]) -> bytes:
+def _image(future: "Future[Any]", designs: tuple[int, int], decisive: Mapping[str, str]) -> bytes:
     """The file that a worker made of a piece."""
     with _reachable():
         failure = future.exception()
@@ -256,7 +256,7 @@ def _image(future: "Future[Any]", designs: tuple[int, int]) -> bytes:
     with _reachable():
         made = future.result()
     if isinstance(made, dict):
-        raise InputError(_other(made), key="scheduler")
+        raise InputError(_other(made, decisive), key="scheduler")
     return bytes(made)
 
 
@@ -278,9 +278,8 @@ def _of_worker(failure: BaseException, designs: str) -> BaseException:
     return failure
 
 
-def _other(theirs: Mapping[str, str]) -> str:
+def _other(theirs: Mapping[str, str], here: Mapping[str, str]) -> str:
     """What a worker has that gives other bits than this process."""
-    here = decisive()
     differ = [name for name in here if here[name] != theirs.get(name)]
     if not differ:
         return "a worker does not have the files that the case names"

@@ -280,7 +280,10 @@ def _of_pair(gears: CylindricalGears, pair: CylindricalPair) -> dict[str, Any]:
     followed = {key: getattr(pair, name) for key, name in _FOLLOWING.items()}
     if any(gears.infeed):
         cut = tuple(map(sum, zip(gears.profile_shift, gears.infeed, strict=True)))
-        note = "teeth thinned alike for the backlash, with the tips of nominal ones"
+        why = (
+            "alike for the backlash" if gears.thickness_allowance is None else "by their allowance"
+        )
+        note = f"teeth thinned {why}, with the tips of nominal ones"
         followed["generating_shift"] = Followed(cut, "derived", note)
     modifications = _modifications(gears)
     if modifications is not None:

@@ -1,7 +1,7 @@
 """The table [gears] of a pair of cylindrical gears."""
 
 from dataclasses import dataclass
-from math import ceil, cos, isnan, nan, pi
+from math import ceil, cos, hypot, isnan, nan, pi
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BeforeValidator, GetJsonSchemaHandler, model_validator
@@ -17,6 +17,7 @@ from pitchpoint.gears.cylindrical.inspection import (
     distance_without_backlash,
     profile_shift_sum,
 )
+from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
@@ -320,6 +321,8 @@ class CylindricalGears(GearsTable):
     """Centre distance a; that without backlash, of teeth that are not thinned, unless given."""
     backlash: Annotated[float, DEVIATION] | None = None
     """Backlash j_wt on the pitch circles, for which both teeth are thinned alike; that of a unless given."""
+    thickness_allowance: Annotated[tuple[float, float], Pair(ALLOWANCE)] | None = None
+    """Allowance A_sn of the normal tooth thickness as made; none, or that of backlash, unless given."""
     bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
     """Bore diameters, of a ring its outer one; 0.3, of a ring 1.2, root diameters unless given."""
     flank: Literal["left", "right"] = "left"
@@ -374,6 +377,38 @@ class CylindricalGears(GearsTable):
             raise error.at(key="inspection.thickness_field") from None
 
     @property
+    def limits_by_key(self) -> dict[str, Limits]:
+        """Lowest and highest value that the tolerances of `inspection` allow, by key of this table [SI].
+
+        The misalignment is that of both helix slopes within their class, which are independent of each other.
+
+        Raises:
+            InputError: a gear or a centre distance that is larger than its field covers.
+        """
+        if self.inspection is None:
+            return {}
+        limits: dict[str, Limits] = {}
+        if self.thickness_allowances is not None:
+            upper, lower = self.thickness_allowances
+            limits |= {f"thickness_allowance.{k + 1}": (lower[k], upper[k]) for k in (0, 1)}
+        distance = self.operating_distance
+        if (deviation := self.inspection.deviation(distance)) is not None:
+            limits["centre_distance"] = distance - deviation, distance + deviation
+        if self.inspection.iso_class is not None:
+            slopes = (
+                flank_tolerances(
+                    tolerance_class=int(grade),
+                    diameter=abs(teeth) * self.module / cos(self.helix_angle),
+                    module=self.module,
+                    face_width=self.face_width,
+                ).helix_slope
+                for grade, teeth in zip(self.inspection.iso_class, self.teeth, strict=True)
+            )
+            middle, slope = self.misalignment or 0.0, hypot(*slopes)
+            limits["misalignment"] = middle - slope, middle + slope
+        return limits
+
+    @property
     def sources(self) -> tuple[str, ...]:
         """Keys of the bibliography for what is given."""
         modified = self.modifications is not None or self.misalignment is not None
@@ -406,6 +441,7 @@ class CylindricalGears(GearsTable):
         amount_by_key = {f"modifications.{key}": max(pair) for key, pair in amounts.items()}
         amount_by_key["misalignment"] = abs(self.misalignment or 0.0)
         amount_by_key["backlash"] = self.backlash or 0.0
+        amount_by_key["thickness_allowance"] = max(map(abs, self.thickness_allowance or (0.0,)))
         amount_by_key |= _allowed(self)
         for key, most in amount_by_key.items():
             if most > self.module / 2.0:
@@ -473,11 +509,15 @@ class CylindricalGears(GearsTable):
 
     @property
     def infeed(self) -> tuple[float, float]:
-        """Profile shifts x_E - x by which both gears are cut deeper for the backlash; zero without one.
+        """Profile shifts x_E - x by which gears are cut deeper for backlash or allowance; zero without them.
 
         Raises:
             InputError: a backlash that is smaller than that of teeth as they are.
         """
+        if self.thickness_allowance is not None:
+            thinner = zip(self.toothings, self.thickness_allowance, strict=True)
+            pinion_infeed, wheel_infeed = (gear.infeed(allowance) for gear, allowance in thinner)
+            return pinion_infeed, wheel_infeed
         if self.backlash is None:
             return 0.0, 0.0
         (pinion, wheel), distance = self.toothings, self.operating_distance
@@ -497,6 +537,11 @@ class CylindricalGears(GearsTable):
 
     @model_validator(mode="after")
     def _one_thickness(self) -> "CylindricalGears":
+        if self.backlash is not None and self.thickness_allowance is not None:
+            raise InputError(
+                "was given beside backlash; each of them says how thin the teeth are, give one",
+                key="thickness_allowance",
+            )
         if self.backlash is not None and self.thickness_allowances is not None:
             raise InputError(
                 "was given beside allowances of the tooth thickness in gears.inspection; each of them says "
