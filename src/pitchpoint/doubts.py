@@ -1,10 +1,16 @@
-"""What is doubtful of a result, and what cannot be: sentences with what they move, the worst first."""
+"""What is doubtful of a result, and what cannot be: sentences with what they move, the worst first.
+
+A sentence is a `Doubt`. Which ones there are follows from checks, each registered with the `Checks` of the
+place where it is asked: films of a line or a patch, the mesh cycle, the contacts of a mesh, a result.
+"""
 
 import json
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import partial
-from typing import Any, Final
+from inspect import getdoc
+from typing import Any, Final, Generic, TypeVar
 
 from pitchpoint.registry import enumerated
 
@@ -16,6 +22,8 @@ __all__ = [
     "LEFT_OUT",
     "REMARKED",
     "WITHHELD",
+    "Check",
+    "Checks",
     "Doubt",
     "apart",
     "as_doubt",
@@ -102,6 +110,76 @@ class Doubt(str):
         """What copies are made of."""
         named = {"moves": self.moves, "about": self.about, "brief": self.brief}
         return (str(self), self.kind, self.extent), named
+
+
+Looked = TypeVar("Looked")
+Asks = TypeVar("Asks", bound=Callable[[Any], Iterable[str] | str | None])
+
+
+@dataclass(frozen=True)
+class Check(Generic[Looked]):
+    """One question of what was computed.
+
+    Attributes:
+        asks: what is doubtful, or cannot be: a sentence, several, or none. Its docstring begins with what it
+            looks at; the paragraphs below are the criterion and what that rests on.
+        sources: keys of the bibliography.
+    """
+
+    asks: Callable[[Looked], Iterable[str] | str | None]
+    sources: tuple[str, ...]
+
+    @property
+    def criterion(self) -> str:
+        """From when on it tells something, and why from then on."""
+        return " ".join((getdoc(self.asks) or "").partition("\n\n")[2].split())
+
+
+class Checks(Generic[Looked]):
+    """All that is asked at one place of a result, in the order in which it stands there.
+
+    Args:
+        place: that they are about.
+        fails: True where they tell what cannot be; they give their sentences without the stop then.
+
+    Example:
+        >>> from pitchpoint.doubts import Checks
+        >>> checks = Checks[float]("the teeth", fails=True)
+        >>> @checks.add("iso_6336_5_2016")
+        ... def heat(temperature):
+        ...     "Temperature of steel."
+        ...     return "the teeth melt" if temperature > 1800.0 else None
+        >>> checks.of(2000.0), checks.of(300.0)
+        (['Fails: the teeth melt.'], [])
+    """
+
+    def __init__(self, place: str, *, fails: bool = False) -> None:
+        self.place, self._fails, self._checks = place, fails, list[Check[Looked]]()
+
+    def __iter__(self) -> Iterator[Check[Looked]]:
+        """Checks in order."""
+        return iter(self._checks)
+
+    def add(self, *sources: str) -> Callable[[Asks], Asks]:
+        """Register a function as a check.
+
+        Args:
+            sources: keys of the bibliography.
+        """
+
+        def registered(asks: Asks) -> Asks:
+            self._checks.append(Check(asks, sources))
+            return asks
+
+        return registered
+
+    def of(self, computed: Looked) -> list[Doubt]:
+        """All that the checks say of what was computed."""
+        answers = (check.asks(computed) or () for check in self._checks)
+        every = (text for told in answers for text in ([told] if isinstance(told, str) else told))
+        if self._fails:
+            return [fails(reworded(text, "{}.".format)) for text in every]
+        return [*map(as_doubt, every)]
 
 
 def as_doubt(sentence: str) -> Doubt:

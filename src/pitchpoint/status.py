@@ -1,6 +1,6 @@
 """What became of a solve: one record for balances, equilibria, vibrations and loops around them."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from enum import IntEnum
 from typing import Any
 
@@ -8,7 +8,9 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-__all__ = ["DIRECT", "Code", "Status", "locked_or_lost", "summary", "told"]
+from pitchpoint.doubts import WITHHELD, Doubt
+
+__all__ = ["DIRECT", "Code", "Status", "locked_or_lost", "summary", "told", "withheld"]
 
 
 class Code(IntEnum):
@@ -142,6 +144,20 @@ def told(
         "residual": largest,
         "iterations": None if iterations is None else int(np.max(iterations, initial=0)),
     }
+
+
+def withheld(codes: np.ndarray, words: Callable[[int, str], tuple[str, str]]) -> list[Doubt]:
+    """Doubts on numbers that are not there, one for each way in which solves ended without.
+
+    Args:
+        codes: of `Code`, of these solves alone, any shape.
+        words: sentence and brief, by how many they are and why.
+    """
+    every = (
+        words(int(count), Code(int(code)).sentence)
+        for code, count in zip(*np.unique(codes, return_counts=True), strict=True)
+    )
+    return [Doubt(sentence, moves=WITHHELD, brief=brief) for sentence, brief in every]
 
 
 def locked_or_lost(locked: np.ndarray | bool, lost: np.ndarray | bool = False) -> np.ndarray:

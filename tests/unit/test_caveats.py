@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from pitchpoint.analyses import caveats, four_quadrants
-from pitchpoint.analyses.cycle import _reasons
 from pitchpoint.cases.build import _roughness
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import Surface
@@ -84,21 +83,26 @@ def test_doubts_about_films_stand_with_their_table() -> None:
     for film, told in ((None, ["the grid is coarse"]), ("line", [])):
         built = case()
         built.case.film, built.laws = film, [XU]
-        assert _reasons(built, XU, run) == told
+        at = caveats.AtWork(built, [XU], [run])
+        assert [*caveats.laws_left(at)] == [f"xu_2007: {text}." for text in told]
+
+
+def at_boundary(run: dict[str, np.ndarray], law: Any, *gears: SolidInUse) -> list[str]:
+    return caveats.boundary_warning(caveats.AtWork(case("none", *gears), [law], [run]))
 
 
 def test_friction_of_a_thin_film_is_beside_that_of_boundary_lubrication() -> None:
     steel = in_use("case-hardened-mq")
-    (told,) = caveats.boundary_warning(case("none", steel, steel), ISO, cycle(lambda_ratio=0.25))
+    (told,) = at_boundary(cycle(lambda_ratio=0.25), ISO, steel, steel)
     # 0.1 of 1/1.25^2 of the load, over the 0.04 of the law.
     assert "0.25 of the composite roughness" in told and "up to 1.6 times" in told
     assert moves(told) == pytest.approx(0.6)
     thick = cycle(lambda_ratio=np.array([0.25, 0.5]).reshape(2, 1, 1))
     rough = cycle(lambda_ratio=0.25, friction=0.07)
     for run, law in ((thick, ISO), (rough, ISO), (cycle(lambda_ratio=0.25), XU)):
-        assert not caveats.boundary_warning(case("none", steel, steel), law, run)
+        assert not at_boundary(run, law, steel, steel)
     nylon = in_use("PA66")
-    assert not caveats.boundary_warning(case("none", steel, nylon), ISO, cycle(lambda_ratio=0.25))
+    assert not at_boundary(cycle(lambda_ratio=0.25), ISO, steel, nylon)
 
 
 def test_a_map_with_far_nodes_is_doubtful() -> None:

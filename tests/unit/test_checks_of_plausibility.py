@@ -9,17 +9,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from pitchpoint.analyses.plausibility import (
-    OF_CONTACTS,
-    OF_RESULTS,
-    AtWork,
-    implausible,
-    unlikely,
-)
+from pitchpoint.analyses.caveats import OF_CYCLES, AtWork
+from pitchpoint.analyses.plausibility import OF_CONTACTS, OF_RESULTS, implausible, unlikely
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.solids import BY_VALUE, SolidInUse
 from pitchpoint.citations import cite
+from pitchpoint.doubts import Checks
 from pitchpoint.gears.pairs import largest_radius
+from pitchpoint.lubrication.ehl.doubts import OF_LINE_FILMS, OF_LINE_INPUTS
+from pitchpoint.lubrication.ehl.patch.films import OF_PATCH_FILMS, OF_PATCHES
 from pitchpoint.lubrication.registry import BOUNDARY
 from pitchpoint.materials import solids
 from pitchpoint.materials.data import Datum
@@ -211,7 +209,14 @@ def test_sound_results_and_those_that_are_not_there() -> None:
         assert unlikely(built, found) == []
 
 
-def test_every_check_says_what_it_rests_on() -> None:
-    checks = [*OF_CONTACTS.values(), *OF_RESULTS.values()]
-    assert all(one.title and one.note.endswith(".") for one in checks)
-    assert all(cite(key) for one in checks for key in one.sources)
+FILMS = OF_LINE_INPUTS, OF_LINE_FILMS, OF_PATCHES, OF_PATCH_FILMS
+
+
+@pytest.mark.parametrize(
+    "checks", [OF_CONTACTS, OF_CYCLES, OF_RESULTS, *FILMS], ids=lambda checks: checks.place
+)
+def test_every_check_says_what_it_rests_on(checks: Checks[Any]) -> None:
+    assert [*checks]
+    for check in checks:
+        assert check.criterion.endswith("."), check.asks
+        assert all(map(cite, check.sources)), check.asks

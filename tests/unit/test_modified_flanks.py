@@ -3,6 +3,7 @@
 import copy
 import json
 import tomllib
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import pytest
 from sound import PAIR
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.caveats import face_warning, faces_warning
+from pitchpoint.analyses.caveats import AtWork, face_warning, faces_warning
 from pitchpoint.analyses.kinematic_error import FEW_PAIRS, kinematic_error_part
 from pitchpoint.analyses.summaries import profiles, summaries
 from pitchpoint.analyses.vibration import (
@@ -22,6 +23,7 @@ from pitchpoint.analyses.vibration import (
     stiffness_part,
     vibrating_of,
 )
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.deviations import ToothDeviations
@@ -229,15 +231,19 @@ def run_with(carrying: int) -> dict[str, np.ndarray]:
     return {"active": active, "load": load, "weight": np.ones(1)}
 
 
+def of_face(built: Built, run: Mapping[str, np.ndarray]) -> list[str]:
+    return face_warning(AtWork(built, built.laws, [run]))
+
+
 def test_part_of_the_face_without_load_is_told_and_nearly_all_of_it_refused() -> None:
     built = pair(gears__modifications__crowning="5 um").built({})
-    (told,) = face_warning(built, run_with(9))
+    (told,) = of_face(built, run_with(9))
     assert told.startswith("Of the contact lines that carry, 25 % get no load at 50 N m")
-    assert face_warning(built, run_with(12)) == []
-    assert face_warning(built, run_with(0)) == []  # nothing is loaded at all
+    assert of_face(built, run_with(12)) == []
+    assert of_face(built, run_with(0)) == []  # nothing is loaded at all
     with pytest.raises(InputError, match="at 50 N m only 2 of 12 slices of a contact line get"):
-        face_warning(built, run_with(2))
-    assert face_warning(pair().built({}), run_with(2)) == []
+        of_face(built, run_with(2))
+    assert of_face(pair().built({}), run_with(2)) == []
 
 
 def test_points_of_a_study_that_carry_on_part_of_the_face_are_told() -> None:
@@ -263,7 +269,7 @@ def test_a_study_over_misalignment_tells_of_faces_that_carry_in_part() -> None:
     (told,) = (one for one in json.loads(data.attrs["warnings"]) if "contact lines" in one)
     assert told.startswith("At 1 of 2 points a part of the contact lines that carry")
     assert not {"slices", "carrying_slices"} & set(data)
-    carrying = face_warning(points[1], profiles(points[1], points[1].models[:1])[0])
+    carrying = of_face(points[1], profiles(points[1], points[1].models[:1])[0])
     assert carrying[0].split("carry, ")[1].split(" %")[0] in told
 
 

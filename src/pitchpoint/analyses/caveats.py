@@ -1,6 +1,8 @@
 """What is said about a mesh cycle, and what is refused: a locked mesh, say."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from math import exp, inf
 from typing import Any
 
@@ -10,25 +12,25 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import SPEED, TEMPERATURE
-from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, fails, in_percent, reworded
+from pitchpoint.doubts import GUESSED, WITHHELD, Checks, Doubt, fails, in_percent, reworded
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import largest_radius, touching
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.applicability import Limited, limits_words
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
 from pitchpoint.lubrication.registry import (
     BOUNDARY,
     ROLLING_RESISTANCE,
     USUAL_BOUNDARY,
-    AsperityLoad,
-    FilmThickness,
     FrictionLaw,
 )
 from pitchpoint.status import Code
 
 __all__ = [
-    "asperity_warning",
+    "OF_CYCLES",
+    "AtWork",
     "beyond_face",
     "boundary_warning",
     "cold_warning",
@@ -39,7 +41,6 @@ __all__ = [
     "demand_motion",
     "face_warning",
     "faces_warning",
-    "film_warning",
     "films_lost",
     "friction_beyond",
     "jamming_words",
@@ -64,6 +65,43 @@ LENGTH = Quantity("length", 0.0, 1e3, "mm")
 
 LEAST_FACE = 3.0
 """Mean number of slices of a contact line below which it is nearly a point, not a line."""
+
+
+@dataclass(frozen=True)
+class AtWork:
+    """Contacts of one mesh over its cycle.
+
+    Attributes:
+        built: the mesh.
+        laws: of friction.
+        runs: state under each of them, see `profile`.
+    """
+
+    built: Built
+    laws: Sequence[FrictionLaw]
+    runs: Sequence[Mapping[str, Any]]
+
+    @cached_property
+    def loaded(self) -> bool:
+        """True if a contact carries."""
+        return bool(np.any(self.runs[0]["load"] > 0.0))
+
+    def largest(self, name: str) -> float:
+        """Largest value of a quantity under all laws."""
+        return max(float(np.max(np.abs(run[name]))) for run in self.runs)
+
+    @property
+    def under(self) -> Iterator[tuple[FrictionLaw, Mapping[str, Any]]]:
+        """Each law with the state under it."""
+        return zip(self.laws, self.runs, strict=True)
+
+    @property
+    def plastic(self) -> bool:
+        """True if a gear is of plastic."""
+        return any(used.plastic for used in self.built.solids)
+
+
+OF_CYCLES = Checks[AtWork]("the mesh cycle")
 
 
 def demand_convergence(residual: np.ndarray, points: Sequence[Ready], laws: Sequence[str]) -> None:
@@ -184,36 +222,6 @@ def conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
-    """Part of the contact lines that gets no load; refused where hardly any of them gets some."""
-    mesh, active = built.design.mesh, np.asarray(run["active"])
-    carries = np.asarray(run["load"]) > 0.0
-    pairs, slices = carries.any(axis=2), active.shape[2]
-    if touching(mesh) or slices == 1 or not pairs.any():
-        return []
-    lines = np.sum(pairs.sum(axis=1) * run["weight"])
-    mean = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]) / lines)
-    load = built.carried.show(built.case.operation.load)
-    if mean < LEAST_FACE:
-        raise InputError(
-            f"at {load} only {mean:.2g} of {slices} slices of a contact line get load in the mean, nearly a "
-            "point in place of a line; less crowning, end relief or misalignment, a higher load or more "
-            "slices leave a line of contact",
-            key="gears",
-        )
-    if mean > slices * (1.0 - 1e-9):
-        return []
-    idle = 1.0 - mean / slices
-    return [
-        Doubt(
-            f"Of the contact lines that carry, {in_percent(idle)} get no load at {load}; flanks do not "
-            "touch there.",
-            moves=idle,
-            brief=f"{in_percent(idle)} of the contact lines carry nothing at {load}.",
-        )
-    ]
-
-
 def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndarray) -> list[str]:
     """Points of a study whose contact lines get load along a part only; `face_warning` has one point.
 
@@ -262,21 +270,6 @@ def beyond_face(run: Mapping[str, Any]) -> np.ndarray:
     return beyond
 
 
-def room_warning(run: Mapping[str, Any]) -> list[str]:
-    """Elliptic contacts that are longer than the face has room for."""
-    if not beyond_face(run).any():
-        return []
-    longest, room = (float(np.max(run[name])) for name in ("semi_axis_across", "contact_room"))
-    return [
-        fails(
-            f"the contact reaches {_length(longest)} to each side across the face, and the nearest end of a "
-            f"face is {_length(room)} away: its pressure, approach and film are those of an ellipse that has "
-            "room.",
-            f"the contact needs {_length(longest)} of a face that leaves {_length(room)}.",
-        )
-    ]
-
-
 def _length(value: float) -> str:
     return LENGTH.show(float(f"{value:.3g}"))
 
@@ -316,11 +309,6 @@ def _proportions(points: Sequence[Built]) -> list[str]:
     """Names of the proportions that are assumed."""
     keys = (key for built in points for key in built.assumed)
     return [*dict.fromkeys(key.rpartition(".")[2].replace("_", " ") for key in keys)]
-
-
-def film_warning(film: FilmThickness, run: Mapping[str, np.ndarray]) -> list[str]:
-    """Conditions that leave the range of the film law, which answers there too."""
-    return told_of_law(film, range_left(film, run, "film"))
 
 
 def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
@@ -383,57 +371,6 @@ def _rise(built: Built, run: Mapping[str, np.ndarray]) -> np.ndarray:
         12.0 * float(built.design.lubricant.conductivity)
     )
     return np.where(heat > 0.0, np.asarray(flash) + heat * within, 0.0)
-
-
-def asperity_warning(law: AsperityLoad | None, run: Mapping[str, np.ndarray]) -> list[str]:
-    """Conditions that leave the range of the law of the load on asperities, and where it is cut."""
-    if law is None:
-        return []
-    reasons: list[str] = [*range_left(law, run, "asperity load")]
-    cut = np.any(run["asperity_load_ratio"] >= 1.0, axis=(1, 2))
-    if cut.any():
-        reasons.append(
-            Doubt(
-                f"its asperity load is cut at 100 % {_how_long(cut, run['weight'])}; the law gives more",
-                moves=GUESSED * float(np.sum(cut * run["weight"])),
-                brief=f"all load on asperities {_part_of(cut, run['weight'])}",
-            )
-        )
-    return told_of_law(law, reasons)
-
-
-def boundary_warning(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
-    """That a law leaves out friction of asperities, where these carry most of the load over the whole cycle.
-
-    Asperities carry 1/(1 + lambda)^2 of the load (Olver and Spikes 2004, `olver_spikes_2004`), with the
-    friction of steel in oil under boundary lubrication. Laws of full films say that they are out of their
-    range; one that was fitted to gears knows none, and its coefficient may be far below this share.
-    """
-    loaded = run["load"] > 0.0
-    of_steel = law.largest == BOUNDARY and not any(used.plastic for used in built.solids)
-    if law.full_film or not (of_steel and loaded.any()):
-        return []
-    carried = (1.0 + np.maximum(run["lambda_ratio"], 0.0)) ** -2.0
-    if np.min(carried, where=loaded, initial=1.0) < 0.5:
-        return []
-    loss = run["sliding_loss"] * run["weight"][:, None, None]
-    ratio = np.divide(
-        USUAL_BOUNDARY * carried, run["friction"], where=loss > 0.0, out=np.ones_like(loss)
-    )
-    times = (
-        float(np.sum(loss * np.maximum(ratio, 1.0)) / np.sum(loss)) if np.any(loss > 0.0) else 1.0
-    )
-    thinnest = float(np.min(run["lambda_ratio"], where=loaded, initial=np.inf))
-    doubt = Doubt(
-        f"the film is down to {thinnest:.2g} of the composite roughness Rq, and asperities carry most of the "
-        f"load; with boundary friction of steel in oil, about {USUAL_BOUNDARY:g}, the loss is up to "
-        f"{times:.2g} times as large",
-        "boundary",
-        times,
-        moves=times - 1.0,
-        brief=f"loss up to {times:.2g} times, film down to {thinnest:.2g} Rq",
-    )
-    return told_of_law(law, [doubt]) if times > 1.0 else []
 
 
 def told_of_law(law: Limited, reasons: Sequence[str]) -> list[str]:
@@ -564,3 +501,168 @@ def rolling_share(run: Mapping[str, np.ndarray]) -> float:
         for name in ("rolling_loss", "sliding_loss")
     )
     return 100.0 * rolling / (rolling + sliding)
+
+
+# ---- what is asked of a mesh cycle, in the order in which it is told
+
+
+@OF_CYCLES.add()
+def laws_left(at: AtWork) -> Iterator[str]:
+    """Friction laws that do not hold; doubts about films of the first one stand with a table of them.
+
+    What each law in its registry says that it holds for, see `why_outside`.
+    """
+    for law, run in at.under:
+        beside = at.built.case.film is not None and law is at.laws[0]
+        films = set(map(str, run["outside films"])) if beside else ()
+        yield from told_of_law(
+            law, [why for why in why_outside(at.built, law, run) if why not in films]
+        )
+
+
+@OF_CYCLES.add("olver_spikes_2004")
+def boundary_warning(at: AtWork) -> list[str]:
+    """That a law leaves out friction of asperities, where these carry most of the load over the whole cycle.
+
+    Asperities carry 1/(1 + lambda)^2 of the load, with the friction of steel in oil under boundary
+    lubrication. Laws of full films say that they are out of their range; one that was fitted to gears knows
+    none, and its coefficient may be far below this share.
+    """
+    return [text for law, run in at.under for text in _rougher(at.built, law, run)]
+
+
+def _rougher(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
+    """The same of one law."""
+    loaded = run["load"] > 0.0
+    of_steel = law.largest == BOUNDARY and not any(used.plastic for used in built.solids)
+    if law.full_film or not (of_steel and loaded.any()):
+        return []
+    carried = (1.0 + np.maximum(run["lambda_ratio"], 0.0)) ** -2.0
+    if np.min(carried, where=loaded, initial=1.0) < 0.5:
+        return []
+    loss = run["sliding_loss"] * run["weight"][:, None, None]
+    ratio = np.divide(
+        USUAL_BOUNDARY * carried, run["friction"], where=loss > 0.0, out=np.ones_like(loss)
+    )
+    times = (
+        float(np.sum(loss * np.maximum(ratio, 1.0)) / np.sum(loss)) if np.any(loss > 0.0) else 1.0
+    )
+    thinnest = float(np.min(run["lambda_ratio"], where=loaded, initial=np.inf))
+    doubt = Doubt(
+        f"the film is down to {thinnest:.2g} of the composite roughness Rq, and asperities carry most of the "
+        f"load; with boundary friction of steel in oil, about {USUAL_BOUNDARY:g}, the loss is up to "
+        f"{times:.2g} times as large",
+        "boundary",
+        times,
+        moves=times - 1.0,
+        brief=f"loss up to {times:.2g} times, film down to {thinnest:.2g} Rq",
+    )
+    return told_of_law(law, [doubt]) if times > 1.0 else []
+
+
+@OF_CYCLES.add()
+def cold_law(at: AtWork) -> list[str]:
+    """What isothermal films of a friction law leave out; a table of films says it of its own.
+
+    A rise by friction from `WARM` on, of which each kelvin takes `THINS` of the film.
+    """
+    if at.built.case.film is not None:
+        return []
+    solved = [(law.films, run) for law, run in at.under if law.films is not None]
+    return [cold_warning(at.built, run) for films, run in solved if films.thermal == ISOTHERMAL]
+
+
+@OF_CYCLES.add()
+def film_left(at: AtWork) -> list[str]:
+    """Conditions that leave the range of the film law, which answers there too.
+
+    The range of the law in its registry.
+    """
+    film = at.built.film
+    return told_of_law(film, range_left(film, at.runs[0], "film"))
+
+
+@OF_CYCLES.add()
+def asperity_warning(at: AtWork) -> list[str]:
+    """Conditions that leave the range of the law of the load on asperities, and where it is cut.
+
+    The range of the law in its registry; asperities carry no more than the whole load.
+    """
+    law, run = at.built.asperities, at.runs[0]
+    if law is None:
+        return []
+    reasons: list[str] = [*range_left(law, run, "asperity load")]
+    cut = np.any(run["asperity_load_ratio"] >= 1.0, axis=(1, 2))
+    if cut.any():
+        reasons.append(
+            Doubt(
+                f"its asperity load is cut at 100 % {_how_long(cut, run['weight'])}; the law gives more",
+                moves=GUESSED * float(np.sum(cut * run["weight"])),
+                brief=f"all load on asperities {_part_of(cut, run['weight'])}",
+            )
+        )
+    return told_of_law(law, reasons)
+
+
+@OF_CYCLES.add()
+def conformal_cycle(at: AtWork) -> list[str]:
+    """Contacts whose flanks have the same curvature nearly, see `conformal_warning`.
+
+    Relative radii that are cut at the largest one of the mesh.
+    """
+    return conformal_warning(at.built.design.mesh, at.runs[0])
+
+
+@OF_CYCLES.add()
+def face_warning(at: AtWork) -> list[str]:
+    """Part of the contact lines that gets no load; refused where hardly any of them gets some.
+
+    Slices that carry of a line that does, in the mean; at least `LEAST_FACE` of them make a line.
+    """
+    built, run = at.built, at.runs[0]
+    mesh, active = built.design.mesh, np.asarray(run["active"])
+    carries = np.asarray(run["load"]) > 0.0
+    pairs, slices = carries.any(axis=2), active.shape[2]
+    if touching(mesh) or slices == 1 or not pairs.any():
+        return []
+    lines = np.sum(pairs.sum(axis=1) * run["weight"])
+    mean = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]) / lines)
+    load = built.carried.show(built.case.operation.load)
+    if mean < LEAST_FACE:
+        raise InputError(
+            f"at {load} only {mean:.2g} of {slices} slices of a contact line get load in the mean, nearly a "
+            "point in place of a line; less crowning, end relief or misalignment, a higher load or more "
+            "slices leave a line of contact",
+            key="gears",
+        )
+    if mean > slices * (1.0 - 1e-9):
+        return []
+    idle = 1.0 - mean / slices
+    return [
+        Doubt(
+            f"Of the contact lines that carry, {in_percent(idle)} get no load at {load}; flanks do not "
+            "touch there.",
+            moves=idle,
+            brief=f"{in_percent(idle)} of the contact lines carry nothing at {load}.",
+        )
+    ]
+
+
+@OF_CYCLES.add()
+def room_warning(at: AtWork) -> list[str]:
+    """Elliptic contacts that are longer than the face has room for.
+
+    The half-axis across the face, over the distance of the nearest end of a face.
+    """
+    run = at.runs[0]
+    if not beyond_face(run).any():
+        return []
+    longest, room = (float(np.max(run[name])) for name in ("semi_axis_across", "contact_room"))
+    return [
+        fails(
+            f"the contact reaches {_length(longest)} to each side across the face, and the nearest end of a "
+            f"face is {_length(room)} away: its pressure, approach and film are those of an ellipse that has "
+            "room.",
+            f"the contact needs {_length(longest)} of a face that leaves {_length(room)}.",
+        )
+    ]

@@ -7,25 +7,16 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.caveats import (
-    asperity_warning,
+    OF_CYCLES,
+    AtWork,
     beyond_face,
-    boundary_warning,
-    cold_warning,
-    conformal_warning,
     demand_convergence,
     demand_motion,
-    face_warning,
-    film_warning,
-    room_warning,
-    told_of_law,
-    why_outside,
 )
-from pitchpoint.analyses.plausibility import AtWork, implausible
+from pitchpoint.analyses.plausibility import implausible
 from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.build import Built
 from pitchpoint.gears.pairs import in_pairs
-from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
-from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code, locked_or_lost
 from pitchpoint.status import told as told_of
@@ -33,26 +24,6 @@ from pitchpoint.status import told as told_of
 __all__ = [
     "CYCLE",
 ]
-
-
-def _reasons(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
-    """Why a law does not hold; doubts about films of the first law stand with a table of them."""
-    reasons = why_outside(built, law, run)
-    if built.case.film is None or law is not built.laws[0]:
-        return reasons
-    films = set(map(str, run["outside films"]))
-    return [text for text in reasons if text not in films]
-
-
-def _cold(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) -> list[str]:
-    """What isothermal films of a friction law leave out; a table of films says it of its own."""
-    if built.case.film is not None:
-        return []
-    return [
-        cold_warning(built, run)
-        for law, run in zip(built.laws, runs, strict=True)
-        if law.films is not None and law.films.thermal == ISOTHERMAL
-    ]
 
 
 def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
@@ -76,23 +47,7 @@ def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
         name: (lanes, in_pairs(mesh, values, 2)) if values.ndim == 4 else (lanes[:2], values)
         for name, values in stacked.items()
     }
-    warnings = [
-        text
-        for law, run in zip(built.laws, runs, strict=True)
-        for text in told_of_law(law, _reasons(built, law, run))
-    ]
-    warnings += [
-        text
-        for law, run in zip(built.laws, runs, strict=True)
-        for text in boundary_warning(built, law, run)
-    ]
-    warnings += _cold(built, runs)
-    warnings += film_warning(built.film, runs[0])
-    warnings += asperity_warning(built.asperities, runs[0])
-    warnings += conformal_warning(mesh, runs[0])
-    warnings += face_warning(built, runs[0])
-    warnings += room_warning(runs[0])
-    warnings += implausible(AtWork(built, built.laws, runs))
+    at = AtWork(built, built.laws, runs)
     code = locked_or_lost(by_law["locked"][1])
     beyond = np.stack([beyond_face(run) for run in runs])
     code = np.where(beyond & (code == Code.SOLVED), int(Code.BEYOND_FACE), code)
@@ -101,7 +56,7 @@ def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
         {"law": names},
         title="mesh cycle",
         travels=built.travels,
-        warnings=warnings,
+        warnings=[*OF_CYCLES.of(at), *implausible(at)],
         solve=told_of(code, by_law["residual"][1]),
         film_law=built.case.models.film_thickness,
         events=built.nominal["events"].tolist(),

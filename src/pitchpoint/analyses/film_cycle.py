@@ -12,10 +12,10 @@ from pitchpoint.analyses.film_series import series_figures
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import SUMMIT_CONSTANTS
 from pitchpoint.contact.registry import SUMMITS
-from pitchpoint.doubts import REMARKED, WITHHELD, Doubt, doubts_of, in_percent, reworded
+from pitchpoint.doubts import REMARKED, Doubt, doubts_of, in_percent, reworded
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code
+from pitchpoint.status import Code, withheld
 from pitchpoint.status import told as told_of
 
 __all__ = ["whole"]
@@ -261,15 +261,16 @@ def _efficiencies(states: States, figures: Mapping[str, np.ndarray]) -> dict[str
 # ---- words
 
 
-def _lost(codes: np.ndarray) -> Iterator[str]:
+def _lost(codes: np.ndarray) -> list[Doubt]:
     """Loaded contacts whose film was not found, by what became of them."""
-    for code in sorted({*codes.tolist()} - {int(Code.SOLVED)}):
-        yield Doubt(
-            f"Films: {int(np.sum(codes == code))} of {codes.size} loaded contacts have no film "
-            f"({Code(code).sentence}); the loss and efficiency by films are withheld.",
-            moves=WITHHELD,
-            brief=f"No film in {int(np.sum(codes == code))} of {codes.size} contacts: loss withheld.",
-        )
+    return withheld(
+        codes[codes != Code.SOLVED],
+        lambda count, why: (
+            f"Films: {count} of {codes.size} loaded contacts have no film ({why}); the loss and efficiency "
+            "by films are withheld.",
+            f"No film in {count} of {codes.size} contacts: loss withheld.",
+        ),
+    )
 
 
 def _of_pieces(parts: Sequence[xr.Dataset]) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
-from pitchpoint.analyses.caveats import why_outside
+from pitchpoint.analyses.caveats import AtWork, why_outside
 from pitchpoint.analyses.figures import (
     CONTACT,
     MAIN,
@@ -20,7 +20,7 @@ from pitchpoint.analyses.figures import (
     out_of_range,
 )
 from pitchpoint.analyses.lacking import untransmitted
-from pitchpoint.analyses.plausibility import AtWork, implausible
+from pitchpoint.analyses.plausibility import implausible
 from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
@@ -101,7 +101,7 @@ def _implausible(built: Ready) -> list[str]:
     ]
 
 
-def _of_mesh(mesh: Built, under: Sequence[Models]) -> list[str]:
+def _of_mesh(mesh: Built, under: Sequence[Models]) -> Sequence[str]:
     return implausible(AtWork(mesh, [models.law for models in under], profiles(mesh, under)))
 
 

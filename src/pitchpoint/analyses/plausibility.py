@@ -1,33 +1,30 @@
 """What cannot be: checks of computed numbers, whose sentences stand above every number of a result.
 
 A check asks whether steel, plastic, oil or the formulas themselves bear what was computed. What it finds is
-marked by `fails`. An analysis may mark warnings of its own so: they go to the same place.
+marked so. An analysis may mark warnings of its own by `fails`: they go to the same place.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf, pi
-from typing import Any, Final, Generic, TypeVar
+from typing import Any, Final
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.caveats import conformal, rolling_share
+from pitchpoint.analyses.caveats import AtWork, conformal, rolling_share
 from pitchpoint.analyses.figures import holding, why_not
-from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.contact.contacts import Shape
-from pitchpoint.doubts import Doubt, fails, in_percent, reworded
+from pitchpoint.doubts import Checks, Doubt, in_percent
 from pitchpoint.input.quantities import Quantity
-from pitchpoint.lubrication.registry import BOUNDARY, ROLLING_RESISTANCE, FrictionLaw
+from pitchpoint.lubrication.registry import BOUNDARY, ROLLING_RESISTANCE
 from pitchpoint.materials import solids
 from pitchpoint.materials.solids import celsius
-from pitchpoint.registry import Registry
 from pitchpoint.strength.limits import STRESS_CORRECTION
 
-__all__ = ["OF_CONTACTS", "OF_RESULTS", "AtWork", "Check", "Result", "implausible", "unlikely"]
+__all__ = ["OF_CONTACTS", "OF_RESULTS", "ResultParts", "implausible", "unlikely"]
 
 GPA, MPA = (Quantity("pressure", 0.0, 1e15, unit) for unit in ("GPa", "MPa"))
 LENGTH = Quantity("length", 0.0, 1e3, "um")
@@ -64,83 +61,37 @@ MOST = 0.5
 
 
 @dataclass(frozen=True)
-class AtWork:
-    """Contacts of one mesh over its cycle.
-
-    Attributes:
-        built: the mesh.
-        laws: of friction.
-        runs: state under each of them, see `profile`.
-    """
-
-    built: Built
-    laws: Sequence[FrictionLaw]
-    runs: Sequence[Mapping[str, Any]]
-
-    @cached_property
-    def loaded(self) -> bool:
-        """True if a contact carries."""
-        return bool(np.any(self.runs[0]["load"] > 0.0))
-
-    def largest(self, name: str) -> float:
-        """Largest value of a quantity under all laws."""
-        return max(float(np.max(np.abs(run[name]))) for run in self.runs)
-
-    @property
-    def plastic(self) -> bool:
-        """True if a gear is of plastic."""
-        return any(used.plastic for used in self.built.solids)
-
-
-@dataclass(frozen=True)
-class Result:
+class ResultParts:
     """Parts of a result, as far as they are there."""
 
     built: Ready
     parts: Mapping[str, xr.Dataset]
 
 
-Seen = TypeVar("Seen")
+OF_CONTACTS = Checks[AtWork]("the contacts of a mesh", fails=True)
+OF_RESULTS = Checks[ResultParts]("the main figures of a result", fails=True)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Check(Generic[Seen]):
-    """One question whether a result can be.
-
-    Attributes:
-        name: of the check.
-        title: what it looks at.
-        told: what is wrong, in one sentence without its stop; None where nothing is.
-        note: the criterion, and what it rests on.
-        sources: keys of the bibliography.
-    """
-
-    name: str
-    title: str
-    told: Callable[[Seen], str | None]
-    note: str
-    sources: tuple[str, ...] = ()
-
-
-def implausible(at: AtWork) -> list[str]:
+def implausible(at: AtWork) -> list[Doubt]:
     """What cannot be in the contacts of a mesh, in sentences that are marked so."""
-    return _told(OF_CONTACTS.values(), at) if at.loaded else []
+    return OF_CONTACTS.of(at) if at.loaded else []
 
 
-def unlikely(built: Ready, parts: Mapping[str, xr.Dataset]) -> list[str]:
+def unlikely(built: Ready, parts: Mapping[str, xr.Dataset]) -> list[Doubt]:
     """What cannot be in the figures of a result, in sentences that are marked so."""
-    return _told(OF_RESULTS.values(), Result(built, parts))
-
-
-def _told(checks: Iterable[Check[Seen]], seen: Seen) -> list[str]:
-    return [fails(reworded(text, "{}.".format)) for check in checks if (text := check.told(seen))]
+    return OF_RESULTS.of(ResultParts(built, parts))
 
 
 # ---- of the contacts of a mesh
 
 
+@OF_CONTACTS.add("iso_6336_5_2016", "johnson_1985")
 def hertz_pressure(at: AtWork) -> str | None:
-    """A pressure that the weaker of both materials does not bear even once."""
+    """A pressure that the weaker of both materials does not bear even once.
+
+    The contact limit of the catalogue, where there is one. A mean pressure above the hardness, the force over
+    the area of an indentation, indents by definition.
+    """
     largest, shape = at.largest("pressure"), at.built.design.mesh.shape
     weakest = min(
         (limit for used in at.built.solids for limit in _bears(used, shape)), default=None
@@ -165,8 +116,13 @@ def _bears(used: SolidInUse, shape: Shape) -> Iterator[tuple[float, str, str]]:
         yield most, why, "by hardness borne"
 
 
+@OF_CONTACTS.add("johnson_1985")
 def contact_strain(at: AtWork) -> str | None:
-    """A pressure beside which the modulus is small, of materials whose limit nobody knows."""
+    """A pressure beside which the modulus is small, of materials whose limit nobody knows.
+
+    At 0.05 of the reduced modulus a line of contact is 0.2 of the relative radius wide to each side: half
+    spaces and small strains are at their end. The number is assumed; plastics yield before.
+    """
     largest, modulus = at.largest("pressure"), at.built.modulus
     if largest <= SMALL_STRAIN * modulus or hertz_pressure(at):
         return None
@@ -178,8 +134,13 @@ def contact_strain(at: AtWork) -> str | None:
     )
 
 
+@OF_CONTACTS.add()
 def heat(at: AtWork) -> str | None:
-    """A plastic given by value, of which no limit is known, hotter than any of the catalogue bears."""
+    """A plastic given by value, of which no limit is known, hotter than any of the catalogue bears.
+
+    The highest service limit of all plastics of the catalogue. Those of the catalogue have their own, which
+    building a case checks.
+    """
     name, limit = _toughest()
     for gear, used in enumerate(at.built.solids, 1):
         unknown = used.plastic and used.record.service_limit is None
@@ -199,8 +160,33 @@ def _toughest() -> tuple[str, float]:
     return max(limited.items(), key=lambda item: item[1])
 
 
+@OF_CONTACTS.add()
+def flank_speed(at: AtWork) -> str | None:
+    """Gears faster than any that run.
+
+    250 m/s, which the fastest turbo gears reach. The number is assumed.
+    """
+    surfaces = max(
+        float(np.max(np.abs(run["entrainment"]) + 0.5 * np.abs(run["sliding_velocity"])))
+        for run in at.runs
+    )
+    pitch = float(at.built.nominal["pitch_line_speed"]) * at.built.case.operation.speed
+    if max(pitch, surfaces) <= FASTEST:
+        return None
+    what = "pitch circles" if pitch >= surfaces else "flanks"
+    return Doubt(
+        f"the {what} run at {max(pitch, surfaces):.3g} m/s; the fastest gears reach about {FASTEST:g} m/s",
+        brief=f"{what} at {max(pitch, surfaces):.3g} m/s, fastest gears {FASTEST:g} m/s",
+    )
+
+
+@OF_CONTACTS.add()
 def film_of_atoms(at: AtWork) -> str | None:
-    """Films thinner than an atom where most of the load is."""
+    """Films thinner than an atom where most of the load is.
+
+    0.3 nm, under more than half of the load: where surfaces come to rest for a moment, every film law gives
+    nothing. The number is assumed.
+    """
     thin = [_part(_carried(run), run["film_thickness"] < ATOM) for run in at.runs]
     if max(thin) <= MOST:
         return None
@@ -214,8 +200,12 @@ def film_of_atoms(at: AtWork) -> str | None:
     )
 
 
+@OF_CONTACTS.add()
 def thick_film(at: AtWork) -> str | None:
-    """Films that are no longer thin beside the bodies that they part."""
+    """Films that are no longer thin beside the bodies that they part.
+
+    A film of 0.2 % of the relative radius; sound gears have at most 0.04 %. The number is assumed.
+    """
     ratio = max(float(np.nanmax(_over(run["film_thickness"], run["radius"]))) for run in at.runs)
     if ratio <= THICKEST:
         return None
@@ -227,8 +217,13 @@ def thick_film(at: AtWork) -> str | None:
     )
 
 
+@OF_CONTACTS.add()
 def roughness(at: AtWork) -> str | None:
-    """Flanks rougher than any cutter leaves them, or than their own size allows."""
+    """Flanks rougher than any cutter leaves them, or than their own size allows.
+
+    A mean Ra of 12.5 um, or under more than half of the load a composite Rq of 1 % of the relative radius.
+    The numbers are assumed.
+    """
     flanks, run = at.built.design.roughness, at.runs[0]
     ra = 0.5 * (float(flanks.ra_1) + float(flanks.ra_2))
     rq = float(np.hypot(flanks.rq_1, flanks.rq_2))
@@ -248,8 +243,13 @@ def roughness(at: AtWork) -> str | None:
     )
 
 
+@OF_CONTACTS.add()
 def friction(at: AtWork) -> str | None:
-    """A coefficient, given or of a law that knows no limit, that no lubricated contact has."""
+    """A coefficient, given or of a law that knows no limit, that no lubricated contact has.
+
+    0.2 for steel in oil, 0.4 with a plastic, for coefficients that are given and laws without a limit; others
+    are out of their range there. The numbers are assumed.
+    """
     most = DRY_PLASTIC if at.plastic else BOUNDARY
     mean = {
         law.title: float(np.sum(_carried(run) * run["friction"]))
@@ -269,24 +269,12 @@ def friction(at: AtWork) -> str | None:
 _STEEL = "steel in oil has at most about {:g}"
 
 
-def flank_speed(at: AtWork) -> str | None:
-    """Gears faster than any that run."""
-    surfaces = max(
-        float(np.max(np.abs(run["entrainment"]) + 0.5 * np.abs(run["sliding_velocity"])))
-        for run in at.runs
-    )
-    pitch = float(at.built.nominal["pitch_line_speed"]) * at.built.case.operation.speed
-    if max(pitch, surfaces) <= FASTEST:
-        return None
-    what = "pitch circles" if pitch >= surfaces else "flanks"
-    return Doubt(
-        f"the {what} run at {max(pitch, surfaces):.3g} m/s; the fastest gears reach about {FASTEST:g} m/s",
-        brief=f"{what} at {max(pitch, surfaces):.3g} m/s, fastest gears {FASTEST:g} m/s",
-    )
-
-
+@OF_CONTACTS.add()
 def conformal_loss(at: AtWork) -> str | None:
-    """Conformal contacts, whose pressure and film say little, that make most of the loss."""
+    """Conformal contacts, whose pressure and film say little, that make most of the loss.
+
+    More than half of the loss in the teeth from contacts whose relative radius is cut.
+    """
     parts = [_part(_lost(run), conformal(at.built.design.mesh, run)) for run in at.runs]
     if max(parts) <= MOST:
         return None
@@ -297,8 +285,12 @@ def conformal_loss(at: AtWork) -> str | None:
     )
 
 
+@OF_CONTACTS.add()
 def rolling_twice(at: AtWork) -> str | None:
-    """A law of whole losses beside a rolling resistance."""
+    """A law of whole losses beside a rolling resistance.
+
+    A friction law that was fitted to whole losses of gears, beside a rolling resistance.
+    """
     rolling = ROLLING_RESISTANCE[at.built.case.models.rolling_resistance]
     of_whole_losses = [(law, run) for law, run in zip(at.laws, at.runs, strict=True) if law.whole]
     if not of_whole_losses or not rolling.sources:
@@ -314,8 +306,12 @@ def rolling_twice(at: AtWork) -> str | None:
 # ---- of the figures of a result
 
 
-def efficiency(result: Result) -> str | None:
-    """More power that comes out than goes in, or none that does."""
+@OF_RESULTS.add()
+def efficiency(result: ResultParts) -> str | None:
+    """More power that comes out than goes in, or none that does.
+
+    Not below zero, not above one: energy is conserved.
+    """
     if "operation" not in result.parts:
         return None
     values = result.parts["operation"]["mean_efficiency"].values[:, 0]
@@ -329,8 +325,12 @@ def efficiency(result: Result) -> str | None:
     )
 
 
-def friction_laws(result: Result) -> str | None:
-    """No law, of the case or of the library, that holds at the operating point."""
+@OF_RESULTS.add()
+def friction_laws(result: ResultParts) -> str | None:
+    """No law, of the case or of the library, that holds at the operating point.
+
+    None of the case and of the library is in its range at the operating point.
+    """
     laws = result.parts.get("laws")
     if laws is None or laws.sizes["law"] or any(holding(result.parts)):
         return None
@@ -343,24 +343,14 @@ def friction_laws(result: Result) -> str | None:
     )
 
 
-def edge_load(result: Result) -> str | None:
-    """Edges of teeth that carry most of the load."""
-    torsion = result.parts.get("torsion")
-    if torsion is None or "edge_share" not in torsion:
-        return None
-    at = result.built.case.operation.load
-    share = float(np.interp(at, torsion["torque"], torsion["edge_share"]))
-    if not share > MOST:
-        return None
-    return Doubt(
-        f"edges of the teeth (ends of flanks and roundings of tips) carry {100.0 * share:.3g} % of the "
-        "load, and the formulas of contact do not hold there",
-        brief=f"edges of the teeth carry {100.0 * share:.3g} % of the load",
-    )
+@OF_RESULTS.add("iso_6336_5_2016", "vdi_2736_2_2014")
+def root_stress(result: ResultParts) -> str | None:
+    """A stress at a root that its material does not bear even once.
 
-
-def root_stress(result: Result) -> str | None:
-    """A stress at a root that its material does not bear even once."""
+    Steel: the static strength 2.5 Y_ST sigma_Flim of case-hardened teeth of quality ME, 2.6 GPa. Plastics:
+    Y_St = 2 times the tensile strength, at which the whole section yields; where that is not known, 0.05 of
+    the modulus, which is assumed.
+    """
     strength = result.parts.get("strength")
     if strength is None:
         return None
@@ -379,6 +369,26 @@ def root_stress(result: Result) -> str | None:
     return Doubt(
         f"the root stress of gear {gear} reaches {_pressure(stress)}; {why}",
         brief=f"root stress of gear {gear} is {_pressure(stress)}, borne {_pressure(limit)}",
+    )
+
+
+@OF_RESULTS.add()
+def edge_load(result: ResultParts) -> str | None:
+    """Edges of teeth that carry most of the load.
+
+    More than half of the load at the operating point, where teeth are watched for it.
+    """
+    torsion = result.parts.get("torsion")
+    if torsion is None or "edge_share" not in torsion:
+        return None
+    at = result.built.case.operation.load
+    share = float(np.interp(at, torsion["torque"], torsion["edge_share"]))
+    if not share > MOST:
+        return None
+    return Doubt(
+        f"edges of the teeth (ends of flanks and roundings of tips) carry {100.0 * share:.3g} % of the "
+        "load, and the formulas of contact do not hold there",
+        brief=f"edges of the teeth carry {100.0 * share:.3g} % of the load",
     )
 
 
@@ -434,110 +444,3 @@ def _over(values: np.ndarray, by: np.ndarray) -> np.ndarray:
     """Quotients; zero where there is nothing to divide by."""
     quotients: np.ndarray = np.divide(values, by, out=np.zeros_like(values), where=by > 0.0)
     return quotients
-
-
-OF_CONTACTS: Registry[Check[AtWork]] = Registry(
-    "check",
-    Check(
-        name="hertz_pressure",
-        title="Hertz pressure that a material bears",
-        told=hertz_pressure,
-        note="The contact limit of the catalogue, where there is one. A mean pressure above the hardness, "
-        "the force over the area of an indentation, indents by definition.",
-        sources=("iso_6336_5_2016", "johnson_1985"),
-    ),
-    Check(
-        name="contact_strain",
-        title="Hertz pressure beside the modulus",
-        told=contact_strain,
-        note="At 0.05 of the reduced modulus a line of contact is 0.2 of the relative radius wide to each "
-        "side: half spaces and small strains are at their end. The number is assumed; plastics yield before.",
-        sources=("johnson_1985",),
-    ),
-    Check(
-        name="heat",
-        title="Temperature of plastics by value",
-        told=heat,
-        note="The highest service limit of all plastics of the catalogue. Those of the catalogue have their "
-        "own, which building a case checks.",
-    ),
-    Check(
-        name="flank_speed",
-        title="Speed of pitch circles and flanks",
-        told=flank_speed,
-        note="250 m/s, which the fastest turbo gears reach. The number is assumed.",
-    ),
-    Check(
-        name="film_of_atoms",
-        title="Film thinner than an atom",
-        told=film_of_atoms,
-        note="0.3 nm, under more than half of the load: where surfaces come to rest for a moment, every film "
-        "law gives nothing. The number is assumed.",
-    ),
-    Check(
-        name="thick_film",
-        title="Film that is not thin",
-        told=thick_film,
-        note="A film of 0.2 % of the relative radius; sound gears have at most 0.04 %. The number is "
-        "assumed.",
-    ),
-    Check(
-        name="roughness",
-        title="Roughness that flanks may have",
-        told=roughness,
-        note="A mean Ra of 12.5 um, or under more than half of the load a composite Rq of 1 % of the "
-        "relative radius. The numbers are assumed.",
-    ),
-    Check(
-        name="friction",
-        title="Friction coefficient of lubricated contacts",
-        told=friction,
-        note="0.2 for steel in oil, 0.4 with a plastic, for coefficients that are given and laws without a "
-        "limit; others are out of their range there. The numbers are assumed.",
-    ),
-    Check(
-        name="conformal_loss",
-        title="Loss of conformal contacts",
-        told=conformal_loss,
-        note="More than half of the loss in the teeth from contacts whose relative radius is cut.",
-    ),
-    Check(
-        name="rolling_twice",
-        title="Rolling that is counted twice",
-        told=rolling_twice,
-        note="A friction law that was fitted to whole losses of gears, beside a rolling resistance.",
-    ),
-)
-"""Checks of the contacts of one mesh, the worst first."""
-
-OF_RESULTS: Registry[Check[Result]] = Registry(
-    "check",
-    Check(
-        name="efficiency",
-        title="Efficiency",
-        told=efficiency,
-        note="Not below zero, not above one: energy is conserved.",
-    ),
-    Check(
-        name="friction_laws",
-        title="A friction law that holds",
-        told=friction_laws,
-        note="None of the case and of the library is in its range at the operating point.",
-    ),
-    Check(
-        name="root_stress",
-        title="Stress at the roots that a material bears",
-        told=root_stress,
-        note="Steel: the static strength 2.5 Y_ST sigma_Flim of case-hardened teeth of quality ME, 2.6 GPa. "
-        "Plastics: Y_St = 2 times the tensile strength, at which the whole section yields; where that is not "
-        "known, 0.05 of the modulus, which is assumed.",
-        sources=("iso_6336_5_2016", "vdi_2736_2_2014"),
-    ),
-    Check(
-        name="edge_load",
-        title="Load on edges of teeth",
-        told=edge_load,
-        note="More than half of the load at the operating point, where teeth are watched for it.",
-    ),
-)
-"""Checks of the main figures of a result."""

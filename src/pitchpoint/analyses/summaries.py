@@ -29,7 +29,7 @@ from pitchpoint.gears.pairs import touching
 from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.rounding import difference
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code, locked_or_lost
+from pitchpoint.status import locked_or_lost, withheld
 from pitchpoint.status import told as told_of
 
 __all__ = [
@@ -301,16 +301,14 @@ def _lock_warning(law: FrictionLaw, locked: np.ndarray) -> list[str]:
     return [Doubt(sentence, moves=WITHHELD, brief=brief)]
 
 
-def _lost_warning(law: FrictionLaw, code: np.ndarray) -> list[str]:
-    return [
-        Doubt(
-            f"{law.title}: at {np.sum(code == lost)} of {code.size} points {Code(int(lost)).sentence}; their "
-            "figures are withheld.",
-            moves=WITHHELD,
-            brief=f"{law.name}: no result at {np.sum(code == lost)} of {code.size} points.",
-        )
-        for lost in np.unique(code[films_lost(code)])
-    ]
+def _lost_warning(law: FrictionLaw, code: np.ndarray) -> list[Doubt]:
+    return withheld(
+        code[films_lost(code)],
+        lambda count, why: (
+            f"{law.title}: at {count} of {code.size} points {why}; their figures are withheld.",
+            f"{law.name}: no result at {count} of {code.size} points.",
+        ),
+    )
 
 
 def _grouped(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import ceil, log, log2
 from typing import Any, Final
 
@@ -10,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jax
-from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, in_percent
+from pitchpoint.doubts import GUESSED, WITHHELD, Checks, Doubt, in_percent
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.fields import LineFilm
@@ -25,9 +27,13 @@ from pitchpoint.status import Code
 
 __all__ = [
     "GRID",
+    "OF_LINE_FILMS",
+    "OF_LINE_INPUTS",
     "UNKNOWN_GRID",
     "UNSOLVED",
+    "SolvedLines",
     "check",
+    "extrapolated",
     "flooded_inlet",
     "of_conduction",
     "of_grid",
@@ -131,54 +137,53 @@ def of_conduction(given: Conduction) -> dict[str, tuple[Any, str, float, str]]:
     return positive
 
 
-def warnings(
-    contact: LineContact,
-    film: LineFilm,
-    code: NDArray[np.int_],
-    grid_error: NDArray[np.float64],
-    nodes: int,
-    size: float | None,
-) -> Iterator[Doubt]:
-    """What to be wary of about films.
+@dataclass(frozen=True)
+class SolvedLines:
+    """Films of lines as checks look at them.
 
-    Args:
+    Attributes:
         contact: contacts `b`.
         film: theirs.
         code: of `Code`, what became of each, shape (b,).
         grid_error: estimates of film in the middle and smallest film of each, shape (2, b).
         nodes: of their grid.
-        size: of the teeth, such as the module [m].
+        size: of the teeth, such as the module [m]; None where bodies have none.
     """
-    solved = code == Code.SOLVED
-    yield from _of_unsolved(code[~solved], code.size)
-    yield from _of_units(contact)
-    yield from of_volume(contact.fluid)
+
+    contact: LineContact
+    film: LineFilm
+    code: NDArray[np.int_]
+    grid_error: NDArray[np.float64]
+    nodes: int
+    size: float | None
+
+    @cached_property
+    def half_width(self) -> NDArray[np.float64]:
+        """Of the dry contacts [m]."""
+        return np.asarray(self.film.half_width)
+
+
+OF_LINE_INPUTS = Checks[SolvedLines]("lines, with a film or without")
+OF_LINE_FILMS = Checks[SolvedLines]("films of lines")
+
+
+def warnings(lines: SolvedLines) -> list[Doubt]:
+    """What to be wary of about films."""
+    told, solved = OF_LINE_INPUTS.of(lines), lines.code == Code.SOLVED
     if not solved.any():
-        return
-    select = lambda leaf: leaf[solved]  # noqa: E731
-    solved_contacts, solved_film = jax.tree.map(select, contact), jax.tree.map(select, film)
-    half_width = np.asarray(solved_film.half_width)
-    yield from _of_thick(np.asarray(solved_film.central_film))
-    yield from _of_pressure(solved_contacts, np.asarray(solved_film.hertz_pressure))
-    yield from _of_half_space(solved_contacts, half_width, size)
-    yield from _of_inlet(solved_contacts, half_width)
-    yield from _of_long_inlet(solved_contacts, solved_film)
-    yield from of_grid(*grid_error[:, solved], grid=(nodes,))
-    yield from _of_shear(solved_contacts, solved_film)
-    if solved_contacts.texture is not None:
-        yield from _of_roughness(np.asarray(solved_contacts.texture.rq), half_width)
-    if solved_film.heat is not None:
-        peclet = np.stack([solved_film.heat.peclet_a, solved_film.heat.peclet_b])
-        yield from of_heat(
-            solved_contacts.fluid,
-            peclet,
-            np.stack([solved_contacts.speed_a, solved_contacts.speed_b]),
-            half_width,
-        )
+        return told
+    contact, film = jax.tree.map(lambda leaf: leaf[solved], (lines.contact, lines.film))
+    parts = {"contact": contact, "film": film, "grid_error": lines.grid_error[:, solved]}
+    return [*told, *OF_LINE_FILMS.of(replace(lines, **parts))]
 
 
-def _of_unsolved(code: NDArray[np.int_], every: int) -> Iterator[Doubt]:
-    """How many contacts have no film, and why."""
+@OF_LINE_INPUTS.add()
+def _of_unsolved(lines: SolvedLines) -> Iterator[Doubt]:
+    """How many contacts have no film, and why.
+
+    Each way in which a solve ended but the one with a solution, see `Code`.
+    """
+    every, code = lines.code.size, lines.code[lines.code != Code.SOLVED]
     kinds = [(Code(int(number)).sentence, np.sum(code == number)) for number in np.unique(code)]
     why = (reason if len(kinds) == 1 else f"{reason} ({count})" for reason, count in kinds)
     if code.size:
@@ -187,8 +192,13 @@ def _of_unsolved(code: NDArray[np.int_], every: int) -> Iterator[Doubt]:
         yield Doubt(sentence, UNSOLVED, code.size, moves=WITHHELD, brief=brief)
 
 
-def _of_units(contact: LineContact) -> Iterator[Doubt]:
-    """Values that hint at another unit than the one that they are taken in."""
+@OF_LINE_INPUTS.add()
+def _of_units(lines: SolvedLines) -> Iterator[Doubt]:
+    """Values that hint at another unit than the one that they are taken in.
+
+    Beyond `LARGE`, `SOFT`, `STIFF`, `THICKENS` and `WEAK` no gears and oils are found.
+    """
+    contact = lines.contact
     radius, modulus, viscosity = (
         np.asarray(quantity)
         for quantity in (contact.radius, contact.modulus, contact.fluid.viscosity)
@@ -217,6 +227,160 @@ def _of_units(contact: LineContact) -> Iterator[Doubt]:
     yield from _of_units_of_oil(contact.fluid)
 
 
+@OF_LINE_INPUTS.add()
+def _of_oil(lines: SolvedLines) -> Iterator[Doubt]:
+    """That viscosity or density under pressure rest on assumed constants.
+
+    Oils of the catalogue without measured ones say so themselves.
+    """
+    return of_volume(lines.contact.fluid)
+
+
+@OF_LINE_FILMS.add()
+def _of_thick(lines: SolvedLines) -> Iterator[Doubt]:
+    """Films that hint at a value in another unit.
+
+    Those thicker than `THICK`, which bodies as large as those of ships do not reach.
+    """
+    film = np.asarray(lines.film.central_film)
+    if film.max() > THICK:
+        yield Doubt(
+            f"a film of {1e6 * film.max():.3g} um is far thicker than those of gears, 0.01 to 5 um: check "
+            "the units of radius [m], viscosity [Pa s] and line load [N/m]",
+            "thick",
+            film.max(),
+            brief=f"a film of {1e6 * film.max():.3g} um is too thick for gears: check units",
+        )
+
+
+@OF_LINE_FILMS.add()
+def _of_pressure(lines: SolvedLines) -> Iterator[Doubt]:
+    """Laws of the oil that end below the pressure.
+
+    The range of each law of viscosity and density, see `Fluid.outside`.
+    """
+    return extrapolated(lines.contact.fluid, np.asarray(lines.film.hertz_pressure))
+
+
+@OF_LINE_FILMS.add()
+def _of_half_space(lines: SolvedLines) -> Iterator[Doubt]:
+    """Contacts too wide for half spaces.
+
+    A half-width of more than `WIDE` of the relative radius, or of the size of a tooth.
+    """
+    radius, half_width, size = np.asarray(lines.contact.radius), lines.half_width, lines.size
+    sizes = {"the relative radius": radius}
+    if size is not None:
+        sizes["the size of a tooth"] = np.full_like(radius, size)
+    for name, length in sizes.items():
+        worst = np.argmax(half_width / length)
+        if half_width[worst] > WIDE * length[worst]:
+            yield Doubt(
+                f"the contact is {2e3 * half_width[worst]:.3g} mm wide, and {name} is "
+                f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them",
+                f"wide against {name}",
+                half_width[worst] / length[worst],
+                brief=f"contact {2e3 * half_width[worst]:.3g} mm wide, {name} "
+                f"{1e3 * length[worst]:.3g} mm",
+            )
+
+
+@OF_LINE_FILMS.add()
+def _of_inlet(lines: SolvedLines) -> Iterator[Doubt]:
+    """Oil that begins nearer than it would take to flood the contact.
+
+    The inlet beyond which more oil no longer changes the film, see `flooded_inlet`.
+    """
+    inlet, needed = np.asarray(lines.contact.inlet) / lines.half_width, flooded_inlet(lines.contact)
+    worst = np.argmin(inlet / needed)
+    if inlet[worst] < needed[worst] * (1.0 - 1e-9):
+        yield starved(inlet[worst], needed[worst])
+
+
+@OF_LINE_FILMS.add()
+def _of_long_inlet(lines: SolvedLines) -> Iterator[Doubt]:
+    """Inlets that nothing limits but a radius, over which a gap is no parabola any more.
+
+    A flooded inlet, see `flooded_inlet`, longer than the relative radius.
+    """
+    contact, film = lines.contact, lines.film
+    radius, endless = np.asarray(contact.radius), np.asarray(contact.inlet) >= FLOODED
+    flooded = np.where(endless, flooded_inlet(contact) * np.asarray(film.half_width), 0.0)
+    worst = np.argmax(flooded / radius)
+    if flooded[worst] > radius[worst]:
+        yield Doubt(
+            f"a flooded film draws oil from {1e3 * flooded[worst]:.3g} mm before the contact on, more than "
+            f"its relative radius of {1e3 * radius[worst]:.3g} mm: give the `inlet` at which oil begins",
+            "long inlet",
+            flooded[worst] / radius[worst],
+            brief=f"a flooded film draws oil from {1e3 * flooded[worst]:.3g} mm on: give its inlet",
+        )
+
+
+@OF_LINE_FILMS.add()
+def _of_coarse_grid(lines: SolvedLines) -> Iterator[Doubt]:
+    """Errors of films by their grid, see `of_grid`.
+
+    More than `COARSE`, estimated by the same film on half as many nodes.
+    """
+    return of_grid(*lines.grid_error, grid=(lines.nodes,))
+
+
+@OF_LINE_FILMS.add()
+def _of_shear(lines: SolvedLines) -> Iterator[Doubt]:
+    """Stress that no oil bears: a Newtonian one has no limit.
+
+    A mean shear stress of more than `SHEARED` of the mean pressure.
+    """
+    contact, film = lines.contact, lines.film
+    *others, final = (f"'{name}'" for name in SHEAR_STRESS if name != NEWTONIAN)
+    drawn, width = np.abs(film.shear_force), 2e6 * film.half_width
+    worst = np.argmax(drawn / contact.line_load)
+    stress, pressure = drawn[worst] / width[worst], contact.line_load[worst] / width[worst]
+    if contact.fluid.shear_law == NEWTONIAN and stress > SHEARED * pressure:
+        yield Doubt(
+            f"a Newtonian oil is sheared by {stress:.3g} MPa in the mean at a mean pressure of "
+            f"{pressure:.3g} MPa, more than oils bear: a `shear_law` that lowers it is "
+            f"{', '.join(others)} or {final}",
+            "shear",
+            stress / pressure,
+            brief=f"a Newtonian oil sheared by {stress:.3g} MPa: more than oils bear",
+        )
+
+
+@OF_LINE_FILMS.add()
+def _of_roughness(lines: SolvedLines) -> Iterator[Doubt]:
+    """Roughness that is large against the contact.
+
+    An Rq of more than `WIDE` of the half-width.
+    """
+    if lines.contact.texture is None:
+        return
+    rough, half_width = np.asarray(lines.contact.texture.rq), lines.half_width
+    worst = np.argmax(rough / half_width)
+    if rough[worst] > WIDE * half_width[worst]:
+        yield Doubt(
+            f"a roughness Rq of {1e6 * rough[worst]:.3g} um is large against a contact that is "
+            f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little",
+            "roughness",
+            rough[worst] / half_width[worst],
+            brief=f"Rq {1e6 * rough[worst]:.3g} um in a contact {2e6 * half_width[worst]:.3g} um wide",
+        )
+
+
+@OF_LINE_FILMS.add()
+def _of_warm_film(lines: SolvedLines) -> Iterator[Doubt]:
+    """Temperatures that come out too high, see `of_heat`.
+
+    Peclet numbers below `LEAST_PECLET`, and oils whose viscosity has no slope.
+    """
+    contact, film = lines.contact, lines.film
+    if film.heat is not None:
+        peclet = np.stack([film.heat.peclet_a, film.heat.peclet_b])
+        speed = np.stack([contact.speed_a, contact.speed_b])
+        yield from of_heat(contact.fluid, peclet, speed, lines.half_width)
+
+
 def _of_units_of_oil(oil: Fluid) -> Iterator[Doubt]:
     """The same of what pressure and shear do to an oil."""
     alpha = np.max(np.asarray(oil.pressure_viscosity))
@@ -238,29 +402,13 @@ def _of_units_of_oil(oil: Fluid) -> Iterator[Doubt]:
         )
 
 
-def _of_thick(film: NDArray[np.float64]) -> Iterator[Doubt]:
-    """Films that hint at a value in another unit."""
-    if film.max() > THICK:
-        yield Doubt(
-            f"a film of {1e6 * film.max():.3g} um is far thicker than those of gears, 0.01 to 5 um: check "
-            "the units of radius [m], viscosity [Pa s] and line load [N/m]",
-            "thick",
-            film.max(),
-            brief=f"a film of {1e6 * film.max():.3g} um is too thick for gears: check units",
-        )
-
-
-def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterator[Doubt]:
-    warning = contact.fluid.outside(pressure)
+def extrapolated(fluid: Fluid, pressure: NDArray[np.float64]) -> Iterator[Doubt]:
+    """That the laws of an oil end below the largest of some pressures [Pa]."""
+    warning, largest = fluid.outside(pressure), float(np.max(pressure))
     if warning is not None:
         sentence = f"{warning}: films and traction there are extrapolated"
-        brief = extrapolated_pressure(float(pressure.max()))
-        yield Doubt(sentence, "pressure", pressure.max(), moves=GUESSED, brief=brief)
-
-
-def extrapolated_pressure(pressure: float) -> str:
-    """In few words that the laws of an oil end below a pressure [Pa]."""
-    return f"laws of the oil extrapolated to {1e-9 * pressure:.3g} GPa"
+        brief = f"laws of the oil extrapolated to {1e-9 * largest:.3g} GPa"
+        yield Doubt(sentence, "pressure", largest, moves=GUESSED, brief=brief)
 
 
 def of_volume(fluid: Fluid) -> Iterator[Doubt]:
@@ -268,38 +416,6 @@ def of_volume(fluid: Fluid) -> Iterator[Doubt]:
     if fluid.assumed is not None:
         brief = "constants of this oil under pressure are assumed"
         yield Doubt(fluid.assumed, "volume of the oil", moves=GUESSED, brief=brief)
-
-
-def _of_half_space(
-    contact: LineContact, half_width: NDArray[np.float64], size: float | None
-) -> Iterator[Doubt]:
-    radius = np.asarray(contact.radius)
-    sizes = {"the relative radius": radius}
-    if size is not None:
-        sizes["the size of a tooth"] = np.full_like(radius, size)
-    for name, length in sizes.items():
-        worst = np.argmax(half_width / length)
-        if half_width[worst] > WIDE * length[worst]:
-            yield Doubt(
-                f"the contact is {2e3 * half_width[worst]:.3g} mm wide, and {name} is "
-                f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them",
-                f"wide against {name}",
-                half_width[worst] / length[worst],
-                brief=f"contact {2e3 * half_width[worst]:.3g} mm wide, {name} "
-                f"{1e3 * length[worst]:.3g} mm",
-            )
-
-
-def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -> Iterator[Doubt]:
-    worst = np.argmax(rough / half_width)
-    if rough[worst] > WIDE * half_width[worst]:
-        yield Doubt(
-            f"a roughness Rq of {1e6 * rough[worst]:.3g} um is large against a contact that is "
-            f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little",
-            "roughness",
-            rough[worst] / half_width[worst],
-            brief=f"Rq {1e6 * rough[worst]:.3g} um in a contact {2e6 * half_width[worst]:.3g} um wide",
-        )
 
 
 def of_heat(
@@ -333,38 +449,6 @@ def _of_strips(
             "strips",
             -peclet[member, worst],
             brief=f"Peclet number {peclet[member, worst]:.3g}: a surface comes out too warm",
-        )
-
-
-def _of_long_inlet(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
-    """Inlets that nothing limits but a radius, over which a gap is no parabola any more."""
-    radius, endless = np.asarray(contact.radius), np.asarray(contact.inlet) >= FLOODED
-    flooded = np.where(endless, flooded_inlet(contact) * np.asarray(film.half_width), 0.0)
-    worst = np.argmax(flooded / radius)
-    if flooded[worst] > radius[worst]:
-        yield Doubt(
-            f"a flooded film draws oil from {1e3 * flooded[worst]:.3g} mm before the contact on, more than "
-            f"its relative radius of {1e3 * radius[worst]:.3g} mm: give the `inlet` at which oil begins",
-            "long inlet",
-            flooded[worst] / radius[worst],
-            brief=f"a flooded film draws oil from {1e3 * flooded[worst]:.3g} mm on: give its inlet",
-        )
-
-
-def _of_shear(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
-    """Stress that no oil bears: a Newtonian one has no limit."""
-    *others, final = (f"'{name}'" for name in SHEAR_STRESS if name != NEWTONIAN)
-    drawn, width = np.abs(film.shear_force), 2e6 * film.half_width
-    worst = np.argmax(drawn / contact.line_load)
-    stress, pressure = drawn[worst] / width[worst], contact.line_load[worst] / width[worst]
-    if contact.fluid.shear_law == NEWTONIAN and stress > SHEARED * pressure:
-        yield Doubt(
-            f"a Newtonian oil is sheared by {stress:.3g} MPa in the mean at a mean pressure of "
-            f"{pressure:.3g} MPa, more than oils bear: a `shear_law` that lowers it is "
-            f"{', '.join(others)} or {final}",
-            "shear",
-            stress / pressure,
-            brief=f"a Newtonian oil sheared by {stress:.3g} MPa: more than oils bear",
         )
 
 
@@ -435,13 +519,6 @@ def _finer(off: float, grid: tuple[int, ...], most: int, falls: float) -> tuple[
     if left <= COARSE:
         return f"{finer_grid} should bring that below {100.0 * COARSE:g} %", f"take {enough}"
     return f"{finer_grid}, the most, leave some {in_percent(left)}", f"take {enough}"
-
-
-def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[Doubt]:
-    inlet, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
-    worst = np.argmin(inlet / needed)
-    if inlet[worst] < needed[worst] * (1.0 - 1e-9):
-        yield starved(inlet[worst], needed[worst])
 
 
 def starved(given: float, needed: float) -> Doubt:

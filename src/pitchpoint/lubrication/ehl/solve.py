@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pitchpoint._jax import jax, jnp
 from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import check, warnings
+from pitchpoint.lubrication.ehl.doubts import SolvedLines, check, warnings
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
 from pitchpoint.lubrication.ehl.grid import ENDS, Ends, Grid, fewer, grid, prolongation
 from pitchpoint.lubrication.ehl.heat import defect, settled, turned, warmed
@@ -234,7 +234,7 @@ def solve_lines(
     back = np.argsort(np.concatenate(groups))
     film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts)[back], *portions)
     grid_error = np.stack([ended.grid, ended.grid_minimum])
-    doubts = tuple(warnings(flat, film, ended.code, grid_error, nodes, size))
+    doubts = tuple(warnings(SolvedLines(flat, film, ended.code, grid_error, nodes, size)))
     film, ended = (
         jax.tree.map(lambda leaf: leaf.reshape((*shape, *leaf.shape[1:])), tree)
         for tree in (film, ended)

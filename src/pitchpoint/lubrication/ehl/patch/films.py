@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.subsurface import Stresses, below_row
-from pitchpoint.doubts import GUESSED, WITHHELD, Doubt
+from pitchpoint.doubts import GUESSED, WITHHELD, Checks, Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import (
     WIDE,
-    extrapolated_pressure,
+    extrapolated,
     of_conduction,
     of_heat,
     of_volume,
@@ -54,8 +54,11 @@ __all__ = [
     "CELLS",
     "ENDS",
     "NODES",
+    "OF_PATCHES",
+    "OF_PATCH_FILMS",
     "PatchEnded",
     "PatchFilms",
+    "SolvedPatch",
     "Turned",
     "back",
     "before",
@@ -292,7 +295,9 @@ def told_film(
         film = jax.tree.map(lambda leaf: np.full_like(leaf, np.nan), film)
     least = shown_film(problem) * float(problem.flow.height)
     ended = replace(ended, code=code)
-    return Told(film, ended, tuple(_warnings(own, layout, film, ended, least)))
+    patch = SolvedPatch(own, layout, film, ended, least)
+    told = [*OF_PATCHES.of(patch), *(OF_PATCH_FILMS.of(patch) if code == Code.SOLVED else ())]
+    return Told(film, ended, tuple(told))
 
 
 def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
@@ -515,8 +520,65 @@ def _check_senses(contact: PatchContact) -> None:
         )
 
 
-def _of_room(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
-    """Oil that begins nearer than it would take to flood the contact, and thick films that leak."""
+@dataclass(frozen=True)
+class SolvedPatch:
+    """Film over a patch as checks look at it.
+
+    Attributes:
+        contact: along x of the grid.
+        layout: of the grid.
+        film: NaN where none was found.
+        ended: how the solve ended.
+        least: gap that opens beside the contact within a cell [m].
+    """
+
+    contact: PatchContact
+    layout: Layout
+    film: PatchFilm
+    ended: PatchEnded
+    least: float
+
+
+OF_PATCHES = Checks[SolvedPatch]("a patch, with a film or without")
+OF_PATCH_FILMS = Checks[SolvedPatch]("a film over a patch")
+
+
+@OF_PATCHES.add()
+def _of_half_space(patch: SolvedPatch) -> Iterator[Doubt]:
+    """Contacts too wide for half spaces.
+
+    A half-width of more than `WIDE` of the relative radius.
+    """
+    half_width, radius = patch.layout.half_width, float(np.min(np.asarray(patch.contact.radius)))
+    if half_width > WIDE * radius:
+        yield Doubt(
+            f"the contact is {2e3 * half_width:.3g} mm wide, and the relative radius is {1e3 * radius:.3g} "
+            "mm: the bodies are no half spaces, as the deformation takes them",
+            "wide",
+            half_width / radius,
+            brief=f"contact {2e3 * half_width:.3g} mm wide, relative radius {1e3 * radius:.3g} mm",
+        )
+
+
+@OF_PATCHES.add()
+def _of_unsolved(patch: SolvedPatch) -> Iterator[Doubt]:
+    """Why there is no film.
+
+    Each way in which a solve ended but the one with a solution, see `Code`.
+    """
+    if patch.ended.code != Code.SOLVED:
+        sentence = f"the film was not found: {patch.ended.code.sentence}"
+        yield Doubt(sentence, moves=WITHHELD, brief="the film of a contact was not found")
+
+
+@OF_PATCH_FILMS.add()
+def _of_room(patch: SolvedPatch) -> Iterator[Doubt]:
+    """Oil that begins nearer than it would take to flood the contact, and thick films that leak.
+
+    The flooded inlet of the layout, a film that lengthens the contact more than `THICK` times, and an inlet
+    shorter than grids of patches have it.
+    """
+    contact, layout = patch.contact, patch.layout
     begins, wanted = -layout.inlet, float(contact.inlet)
     if begins < layout.flooded * (1.0 - 1e-9):
         yield starved(begins / layout.half_width, layout.flooded / layout.half_width)
@@ -540,30 +602,23 @@ def _of_room(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
         )
 
 
-def _warnings(
-    contact: PatchContact, layout: Layout, film: PatchFilm, ended: PatchEnded, least: float
-) -> Iterator[Doubt]:
-    half_width, radius = layout.half_width, float(np.min(np.asarray(contact.radius)))
-    if half_width > WIDE * radius:
-        yield Doubt(
-            f"the contact is {2e3 * half_width:.3g} mm wide, and the relative radius is {1e3 * radius:.3g} "
-            "mm: the bodies are no half spaces, as the deformation takes them",
-            "wide",
-            half_width / radius,
-            brief=f"contact {2e3 * half_width:.3g} mm wide, relative radius {1e3 * radius:.3g} mm",
-        )
-    if ended.code != Code.SOLVED:
-        sentence = f"the film was not found: {ended.code.sentence}"
-        yield Doubt(sentence, moves=WITHHELD, brief="the film of a contact was not found")
-        return
-    yield from _of_room(contact, layout)
-    yield from of_volume(contact.fluid)
-    warning = contact.fluid.outside(film.hertz_pressure)
-    if warning is not None:
-        pressure = float(film.hertz_pressure)
-        sentence = f"{warning}: films and traction there are extrapolated"
-        brief = extrapolated_pressure(pressure)
-        yield Doubt(sentence, "pressure", pressure, moves=GUESSED, brief=brief)
+@OF_PATCH_FILMS.add()
+def _of_oil(patch: SolvedPatch) -> Iterator[Doubt]:
+    """Laws of the oil under pressure that rest on assumed constants or end below this one.
+
+    Oils of the catalogue without measured constants say so; each law has its range, see `Fluid.outside`.
+    """
+    yield from of_volume(patch.contact.fluid)
+    yield from extrapolated(patch.contact.fluid, np.asarray(patch.film.hertz_pressure))
+
+
+@OF_PATCH_FILMS.add()
+def _of_grid(patch: SolvedPatch) -> Iterator[Doubt]:
+    """Films that are thin for their grid.
+
+    A gap that opens by more than the film within a cell, and errors of more than `COARSE`.
+    """
+    film, least, ended = patch.film, patch.least, patch.ended
     if 0.0 < film.mean_film < least:
         yield Doubt(
             f"the grid is coarse for a film of {1e9 * film.mean_film:.3g} nm: beside the contact the gap "
@@ -574,33 +629,16 @@ def _warnings(
         )
     rows, nodes = film.pressure.shape
     errors = np.array([[ended.grid], [ended.grid_minimum]])
-    yield from of_patches(errors, (nodes, rows), line=contact.length is not None)
-    yield from _of_end(contact, film)
-    if layout.bounded:
-        yield Doubt(
-            "the film was found with bounds on what flows where it begins or ends within a cell, and without "
-            "them not: of a ball that has both films they moved rolling by 16 %; more nodes may do without",
-            "bounded",
-            1.0,
-            brief="film found with bounds at its ends: take more nodes",
-        )
-    if film.heat is not None:
-        peclet = np.array([[film.heat.peclet_a], [film.heat.peclet_b]])
-        slowest = [[np.min(np.abs(speed))] for speed in (contact.speed_a, contact.speed_b)]
-        yield from of_heat(contact.fluid, peclet, np.array(slowest), np.array([half_width]))
-    yield from unseen(contact, layout, nodes, rows)
-    if contact.length is not None and np.max(film.pressure[[0, -1]]) > film.hertz_pressure:
-        yield Doubt(
-            "the contact line ends sharply: the pressure of the first and the last row is a number of the "
-            "grid; `near_ends` has it at distances from the ends",
-            ENDS,
-            1.0,
-            brief="the contact line ends sharply: see near_ends for its pressure",
-        )
+    yield from of_patches(errors, (nodes, rows), line=patch.contact.length is not None)
 
 
-def _of_end(contact: PatchContact, film: PatchFilm) -> Iterator[Doubt]:
-    """That the smallest film lies where the grid does not show how the end of a line drops."""
+@OF_PATCH_FILMS.add()
+def _of_end(patch: SolvedPatch) -> Iterator[Doubt]:
+    """That the smallest film lies where the grid does not show how the end of a line drops.
+
+    Two rows within a cell of it over which the dry pressure drops by `DROPS` of the largest.
+    """
+    contact, film = patch.contact, patch.film
     held, lowest = np.max(film.dry_pressure, axis=1), np.argmin(np.min(film.gap, axis=1))
     rows = np.flatnonzero(held > 0.0)
     near = [two for two in (rows[:2], rows[-2:]) if np.min(np.abs(two - lowest)) < 2]
@@ -617,3 +655,60 @@ def _of_end(contact: PatchContact, film: PatchFilm) -> Iterator[Doubt]:
         moves=GUESSED,
         brief="smallest film lies at a sharp end: a number of the grid",
     )
+
+
+@OF_PATCH_FILMS.add()
+def _of_bounds(patch: SolvedPatch) -> Iterator[Doubt]:
+    """Films that were found with bounds on what flows.
+
+    Of a ball that has films with bounds and without both were solved.
+    """
+    if patch.layout.bounded:
+        yield Doubt(
+            "the film was found with bounds on what flows where it begins or ends within a cell, and without "
+            "them not: of a ball that has both films they moved rolling by 16 %; more nodes may do without",
+            "bounded",
+            1.0,
+            brief="film found with bounds at its ends: take more nodes",
+        )
+
+
+@OF_PATCH_FILMS.add()
+def _of_warm_film(patch: SolvedPatch) -> Iterator[Doubt]:
+    """Temperatures that come out too high, see `of_heat`.
+
+    Peclet numbers below `LEAST_PECLET`, and oils whose viscosity has no slope.
+    """
+    contact, heat = patch.contact, patch.film.heat
+    if heat is not None:
+        peclet = np.array([[heat.peclet_a], [heat.peclet_b]])
+        slowest = [[np.min(np.abs(speed))] for speed in (contact.speed_a, contact.speed_b)]
+        half_width = np.array([patch.layout.half_width])
+        yield from of_heat(contact.fluid, peclet, np.array(slowest), half_width)
+
+
+@OF_PATCH_FILMS.add()
+def _of_heights(patch: SolvedPatch) -> Iterator[Doubt]:
+    """What the grid does not show of height maps, see `unseen`.
+
+    Less than `SHOWN` of the Rq of a map, or heights larger than what the load flattens.
+    """
+    rows, nodes = patch.film.pressure.shape
+    return unseen(patch.contact, patch.layout, nodes, rows)
+
+
+@OF_PATCH_FILMS.add()
+def _of_sharp_end(patch: SolvedPatch) -> Iterator[Doubt]:
+    """Pressure at the ends of a line that the grid decides on.
+
+    A first or last row with more than the Hertz pressure.
+    """
+    film = patch.film
+    if patch.contact.length is not None and np.max(film.pressure[[0, -1]]) > film.hertz_pressure:
+        yield Doubt(
+            "the contact line ends sharply: the pressure of the first and the last row is a number of the "
+            "grid; `near_ends` has it at distances from the ends",
+            ENDS,
+            1.0,
+            brief="the contact line ends sharply: see near_ends for its pressure",
+        )
