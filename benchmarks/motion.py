@@ -26,7 +26,7 @@ import spur_motion as rival
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.dynamics.bodies import Body, across
 from pitchpoint.dynamics.passage import passage, polynomial
-from pitchpoint.dynamics.right_hand_side import Moving
+from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.dynamics.transient import Transient, transient, transient_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
@@ -57,7 +57,7 @@ def design() -> Design:
     return Design(mesh, (steel, steel), oil, Roughness.from_composite_rq(0.8e-6))
 
 
-def moving(own: Design, bearings: bool) -> Moving:
+def moving(own: Design, bearings: bool) -> MovingMesh:
     point = Operation(*map(array, (LOAD, SPEED, TEMPERATURE)))
     laws = tuple(law for law in LAWS if law.name == "xu_2007")
     sharing, rolling = LOAD_SHARING["from_stiffness"], ROLLING_RESISTANCE["none"]
@@ -67,7 +67,7 @@ def moving(own: Design, bearings: bool) -> Moving:
         Body(INERTIA[0], DRIVE * LOAD, support=held[0]),
         Body(INERTIA[1], LOAD, viscous=VISCOUS, support=held[1]),
     )
-    return Moving(
+    return MovingMesh(
         own,
         point,
         models,

@@ -25,7 +25,7 @@ import numpy as np
 
 from pitchpoint._jax import jnp
 from pitchpoint.dynamics.excitation import Excitation
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.steady_state import steady_state
 from pitchpoint.dynamics.system import System
@@ -132,7 +132,7 @@ def figures(stiffness: MeshStiffness, moved: System, found: Response) -> Figures
 
 
 @eqx.filter_jit
-def solved(parts: Excited, grid: Grid, of_mesh: bool) -> Figures:
+def solved(parts: Excited, grid: PeriodGrid, of_mesh: bool) -> Figures:
     def one(part: Excited) -> Figures:
         stiffness, moved, driven = part
         driven = whole(stiffness, driven) if of_mesh else driven
@@ -183,7 +183,7 @@ def main() -> None:
     )
     parts = all_excited(pair, designs)
     ratios = jax.vmap(frequency_ratio)(*parts[:2])
-    grid = Grid.resolving(float(jnp.max(ratios)))
+    grid = PeriodGrid.resolving(float(jnp.max(ratios)))
     print(f"natural over mesh frequency {jnp.min(ratios):.1f} to {jnp.max(ratios):.1f}, {grid}")
     own = {
         "stiffness from design": lambda: all_excited(pair, designs),

@@ -14,7 +14,7 @@ from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import MARKS, STATUSES
 from pitchpoint.cases.loss_sets import SET, SET_TOLD
 from pitchpoint.cases.schema import (
-    Case,
+    CaseFile,
     DriveCase,
     DriveMaterials,
     StageTable,
@@ -52,7 +52,7 @@ def keys_pages() -> dict[str, str]:
 def _keys_by_table() -> dict[str, list[str]]:
     """Text of each page."""
     pages: dict[str, list[str]] = {}
-    for path, model in _tables("", Case):
+    for path, model in _tables("", CaseFile):
         parts = _of_table(_titled(path), model)
         if path.startswith("losses"):
             rows = [(f"`{SET}`", SET_TOLD, "a name", "", "")]

@@ -18,7 +18,7 @@ from pitchpoint import kept
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.schema import Study
 from pitchpoint.programs import surroundings
-from pitchpoint.results.target_rows import Row
+from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.runs.run import Outcome, compare_case, open_result, run
 
 MOST = 200
@@ -40,7 +40,7 @@ def outcomes(
     return open_result(_folder([_text(case), [*ANALYSES], asked], compute))
 
 
-def rows(case: str) -> list[Row]:
+def rows(case: str) -> list[TargetRow]:
     """Printed against computed of a published case."""
 
     def compute(folder: Path) -> None:
@@ -49,7 +49,7 @@ def rows(case: str) -> list[Row]:
         (folder / "rows.json").write_text(json.dumps(found), "utf-8")
 
     text = (_folder(["rows", case], compute) / "rows.json").read_text("utf-8")
-    return [Row(**row) for row in json.loads(text)]
+    return [TargetRow(**row) for row in json.loads(text)]
 
 
 def _text(case: str | Path) -> list[str]:

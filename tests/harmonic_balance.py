@@ -6,8 +6,8 @@ from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.dynamics.equations import Equations, equations
-from pitchpoint.dynamics.excitation import Course, Excitation
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.excitation import Excitation, ExcitationCourse
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.response import Response, respond
 from pitchpoint.dynamics.system import System
@@ -19,7 +19,7 @@ Coefficients = Complex[Array, "harmonic coordinate"]
 
 
 def harmonic_balance(
-    system: System, excitation: Excitation, harmonics: int, grid: Grid | None = None
+    system: System, excitation: Excitation, harmonics: int, grid: PeriodGrid | None = None
 ) -> Response:
     """Steady state of a mesh whose teeth never part, as a sum of harmonics of the mesh frequency.
 
@@ -38,7 +38,7 @@ def harmonic_balance(
 
     Source: Nayfeh and Mook (1979), section 2.3.4; here of a linear system with periodic stiffness.
     """
-    course = excitation.on(grid or Grid.resolving(harmonics))
+    course = excitation.on(grid or PeriodGrid.resolving(harmonics))
     scaled = equations(system, course)
     orders = np.arange(-harmonics, harmonics + 1)
     matrix, load = _balance(scaled, course, system.period, orders)
@@ -67,7 +67,7 @@ def harmonic_balance(
 
 
 def _balance(
-    equations: Equations, course: Course, period: Float[Array, ""], orders: np.ndarray
+    equations: Equations, course: ExcitationCourse, period: Float[Array, ""], orders: np.ndarray
 ) -> tuple[Complex[Array, "unknown unknown"], Complex[Array, " unknown"]]:
     """Equations of the coefficients, harmonics outside, coordinates inside."""
     size = equations.load.shape[0]
@@ -86,7 +86,10 @@ def _balance(
 
 
 def _states(
-    coefficients: Coefficients, course: Course, orders: np.ndarray, duration: Float[Array, ""]
+    coefficients: Coefficients,
+    course: ExcitationCourse,
+    orders: np.ndarray,
+    duration: Float[Array, ""],
 ) -> Float[Array, "state element node"]:
     """Displacement and velocity at the nodes."""
     harmonic = jnp.exp(2j * jnp.pi * orders[:, None, None] * course.phase)

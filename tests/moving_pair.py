@@ -3,10 +3,10 @@
 import numpy as np
 
 from pitchpoint._jax import array
-from pitchpoint.dynamics.excitation import Waves
+from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.passage import passage
 from pitchpoint.dynamics.registry import CONTACT_LAWS
-from pitchpoint.dynamics.right_hand_side import Moving
+from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.registry import LOAD_SHARING
@@ -52,10 +52,10 @@ def moving(bodies, **given):
         "relaxation": array(1e-6),
         "passage": WAY,
         "law": CONTACT_LAWS["separating"],
-        "error": Waves([2e-6, 1e-6], [0.5, 1.0], [0.3, 0.0]),
+        "error": ErrorOrders([2e-6, 1e-6], [0.5, 1.0], [0.3, 0.0]),
         "mesh_damping": array(800.0),
     }
-    return Moving(PAIR, OPERATION, XU, tuple(bodies), **values | given)
+    return MovingMesh(PAIR, OPERATION, XU, tuple(bodies), **values | given)
 
 
 def relative(found, expected):

@@ -12,7 +12,7 @@ from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.errors import InputError
 from pitchpoint.programs import fast_program
 from pitchpoint.wear.gradients import Inputs
-from pitchpoint.wear.history import Cells, Start, Turn, reached, travelled, turn_alone
+from pitchpoint.wear.history import Cells, DriverTurn, Start, reached, travelled, turn_alone
 from pitchpoint.wear.march import FIRST
 
 __all__ = ["AT_ONCE", "Marches", "worn_together"]
@@ -114,7 +114,7 @@ def _worn(
     own = dataclasses.replace(cells, flank=flank, across=across, span=span)
     start = start.on(own)
 
-    def turn(depth: Array) -> Turn:
+    def turn(depth: Array) -> DriverTurn:
         return turn_alone(design, operation, models, wear, own, start, depth)
 
     none = jnp.zeros(cells.shape)

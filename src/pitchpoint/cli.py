@@ -19,7 +19,7 @@ from pitchpoint.errors import InputError, PitchpointError, shorten, visible
 
 if TYPE_CHECKING:
     from pitchpoint.cases.schema import Study, Sweep
-    from pitchpoint.results.target_rows import Row
+    from pitchpoint.results.target_rows import TargetRow
     from pitchpoint.runs.case import Case
     from pitchpoint.runs.run import Outcome, Progress
     from pitchpoint.views.section import Printed
@@ -1476,7 +1476,7 @@ def _print(printed: "Printed") -> None:
         _console().print(_plain(printed.line))
 
 
-def _rows(rows: "list[Row]") -> None:
+def _rows(rows: "list[TargetRow]") -> None:
     from pitchpoint.views.show import number
 
     shown = [
@@ -1500,7 +1500,7 @@ def _rows(rows: "list[Row]") -> None:
             _console().print(_plain(f"{row.verdict}: {row.quantity}: {row.reason}"))
 
 
-def _verdicts(rows: "list[Row]", of: str = "") -> None:
+def _verdicts(rows: "list[TargetRow]", of: str = "") -> None:
     from pitchpoint.results.target_rows import counts, in_words
 
     if rows:

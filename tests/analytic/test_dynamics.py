@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.energy import energies
 from pitchpoint.dynamics.excitation import Excitation
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.integration import by_steps
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.series import by_series
@@ -28,7 +28,7 @@ from pitchpoint.status import Code
 NODES = 24
 MASS, MEAN, LOAD = 2.2e-3, 1.14e7, 141.0
 NATURAL = np.sqrt(MEAN / MASS)
-SHORT, FINE = Grid(4), Grid(64)
+SHORT, FINE = PeriodGrid(4), PeriodGrid(64)
 HAND_OVER = 0.3
 
 solve = eqx.filter_jit(steady_state)
@@ -261,7 +261,7 @@ def test_short_elements_resolve_a_fast_profile_error():
         excitation(one, lambda path: 5e-6 * np.cos(48.0 * np.pi * path)).error,
     )
     sys = system(40.0, 0.16)
-    assert energies(sys, solve(sys, excite, Grid(16))).closure < 1e-9
+    assert energies(sys, solve(sys, excite, PeriodGrid(16))).closure < 1e-9
 
 
 @pytest.mark.parametrize("excite", [rounded(), steps()], ids=["rounded", "steps"])
@@ -426,7 +426,7 @@ def test_mass_that_vibrates_along_a_contact():
 
 
 SPUR = steps(1.0 / 1.3)
-UNIT = Grid(4, 16)
+UNIT = PeriodGrid(4, 16)
 RATIOS = 1.0 / np.linspace(0.62, 1.1, 25)
 
 

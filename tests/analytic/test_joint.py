@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.dynamics.excitation import Waves
+from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.joint import Joint, Sliding, respond
-from pitchpoint.dynamics.joint_course import Drive, course, fading, settled
+from pitchpoint.dynamics.joint_course import MotorRun, course, fading, settled
 from pitchpoint.loading.wind_up_curve import WindUpCurve
 from pitchpoint.programs import program
 from pitchpoint.status import Code
@@ -168,8 +168,8 @@ def test_energy_is_the_integral_of_the_torque(play: float) -> None:
 # ---- in time
 
 TIMES = np.linspace(0.0, 0.2, 41)
-NONE = Waves(array([0.0]), array([2.0]), array([0.0]))
-WAVE = Waves(array([ERROR]), array([2.0]), array([0.3]))
+NONE = ErrorOrders(array([0.0]), array([2.0]), array([0.0]))
+WAVE = ErrorOrders(array([ERROR]), array([2.0]), array([0.3]))
 
 
 @pytest.mark.whole
@@ -178,7 +178,7 @@ def test_a_free_vibration_without_damping_is_a_cosine(motor: float) -> None:
     made = joint(motor=motor, damping=0.0)
     frequency, _, _, rest = own(made)
     start = array([0.0, 0.0, float(rest) + 2e-4, 0.0])
-    found = course(made, NONE, Drive.steady(50.0), array(TIMES), start)
+    found = course(made, NONE, MotorRun.steady(50.0), array(TIMES), start)
     expected = float(rest) + 2e-4 * np.cos(2.0 * np.pi * float(frequency) * TIMES)
     np.testing.assert_allclose(found.wind_up, expected, atol=1e-8 * 2e-4)
     assert found.closure < 1e-8
@@ -197,7 +197,7 @@ def test_a_free_vibration_without_damping_is_a_cosine(motor: float) -> None:
 )
 def test_the_energy_closes_while_the_motor_speeds_up(made: Joint) -> None:
     rest = float(own(made)[3])
-    even = Drive(array(40.0), array(120.0 if np.isinf(made.motor) else 40.0), array(0.1))
+    even = MotorRun(array(40.0), array(120.0 if np.isinf(made.motor) else 40.0), array(0.1))
     found = course(made, WAVE, even, array(TIMES), array([0.0, 0.0, rest + 1e-3, 0.0]))
     assert found.closure < 1e-8
     assert int(found.status.code) == Code.SOLVED
@@ -211,7 +211,7 @@ def test_a_motor_that_speeds_up_takes_the_load_along() -> None:
     """An even gain of speed needs the torque J a of the load on top, once the vibration has faded."""
     made = joint(damping=400.0)
     gain = 200.0 / RATIO / 0.2
-    even = Drive(array(40.0), array(240.0), array(0.2))
+    even = MotorRun(array(40.0), array(240.0), array(0.2))
     start = array([0.0, 0.0, float(own(made)[3]), 0.0])
     found = course(made, NONE, even, array(TIMES), start)
     assert found.torque[-1] == pytest.approx(TORQUE + LOAD * gain, rel=1e-4)
@@ -248,8 +248,10 @@ def test_a_free_motor_vibrates_as_the_tangent_says() -> None:
     rest = float(own(made)[3])
     # The wind-up of the state counts with the error, whose rate is zero at its crest.
     start = [swing["motor"][0], rates["motor"], rest + swing["wind_up"][0] + small]
-    wave = Waves(array([small]), array([2.0]), array([0.0]))
-    there = course(made, wave, Drive.steady(speed), array(TIMES), array([*start, rates["wind_up"]]))
+    wave = ErrorOrders(array([small]), array([2.0]), array([0.0]))
+    there = course(
+        made, wave, MotorRun.steady(speed), array(TIMES), array([*start, rates["wind_up"]])
+    )
     size = np.ptp(swing["wind_up"])
     np.testing.assert_allclose(there.wind_up - rest, swing["wind_up"], atol=1e-4 * size)
     np.testing.assert_allclose(there.motor, swing["motor"], atol=1e-3 * np.ptp(swing["motor"]))

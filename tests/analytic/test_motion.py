@@ -9,11 +9,11 @@ from sound import quick_first
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.dynamics.bodies import Body, across, motor
-from pitchpoint.dynamics.excitation import Waves
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.excitation import ErrorOrders
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.passage import passage, polynomial, tabulated
 from pitchpoint.dynamics.registry import CONTACT_LAWS
-from pitchpoint.dynamics.right_hand_side import Moving
+from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.dynamics.steady_motion import (
     steady_motion,
 )
@@ -35,7 +35,7 @@ from pitchpoint.status import Code
 STEEL = solids.find("steel").build()
 FIRM = dataclasses.replace(STEEL, young=1e4 * STEEL.young)
 LAW = {law.name: law for law in LAWS}
-GRID = Grid(8, 24)
+GRID = PeriodGrid(8, 24)
 LOAD, SPEED = 100.0, 100.0
 INERTIA = (1e-3, 6e-3)
 
@@ -86,12 +86,12 @@ def moving(bodies, design=SPUR, own=None, **given):
         "law": CONTACT_LAWS["linear"],
     }
     own = own or models(coefficient=0.0)
-    return Moving(design, operation(), own, bodies, **values | given)
+    return MovingMesh(design, operation(), own, bodies, **values | given)
 
 
 def alone(driver=np.inf, **given):
     """Two gears on stiff bearings, without friction, damped along the line of action."""
-    waves = Waves(np.zeros(2), ORDERS, np.zeros(2))
+    waves = ErrorOrders(np.zeros(2), ORDERS, np.zeros(2))
     values = {"error": waves, "mesh_damping": array(800.0)} | given
     return moving((Body(driver), Body(INERTIA[1], LOAD)), **values)
 
@@ -110,7 +110,7 @@ def test_with_a_steady_driver_and_without_friction_it_is_the_vibration_along_the
     )
     own = models(coefficient=0.0)
     expected, damping = program(_vibration)(SPUR, operation(), own.compliance, vibrating)
-    waves = Waves(vibrating.error, ORDERS, vibrating.error_phase)
+    waves = ErrorOrders(vibrating.error, ORDERS, vibrating.error_phase)
     found = steady_motion(alone(error=waves, mesh_damping=damping[0, 0]), SPEED, GRID)
     assert found.status.code == expected.status.code == Code.SOLVED
     size = np.ptp(expected.transmission_error)
@@ -200,7 +200,7 @@ def test_a_slow_motion_is_the_quasi_static_cycle(family):
     design = design_of(mesh, FIRM)
     heavy = (Body(np.inf), Body(600.0, LOAD))
     slow = {"creep": array(1e-6), "relaxation": array(2.5e-4), "own": own, "design": design}
-    slow["error"] = Waves(np.zeros(2), ORDERS, np.zeros(2))
+    slow["error"] = ErrorOrders(np.zeros(2), ORDERS, np.zeros(2))
     found = steady_motion(moving(heavy, **slow), SLOW[family], GRID)
     assert found.status.code in (Code.SOLVED, Code.UNRESOLVED)  # jumps at the pitch point
     settled, node = np.flatnonzero(np.diff(found.bounds) > 0.1), GRID.nodes // 2
@@ -226,7 +226,7 @@ def test_energy_of_a_transient_closes_with_every_effect(combination):
     given = {
         "own": own,
         "passage": passage(SPUR, operation(), own.compliance, curve),
-        "error": Waves([2e-6, 8e-6], [1.0, 2.5], [0.3, 0.1]),
+        "error": ErrorOrders([2e-6, 8e-6], [1.0, 2.5], [0.3, 0.1]),
         "relaxation": array(2e-6),
         "mesh_damping": array(300.0),
         "backlash": array(4e-6),
@@ -308,7 +308,7 @@ def test_stiffness_below_nothing_is_refused():
         ({}, 0.0, "mean speed of the driver above 0, got 0"),
         ({"mesh_damping": array(0.0)}, SPEED, "nothing damps the vibration"),
         (
-            {"error": Waves([1e-6], [1.5], [0.0])},
+            {"error": ErrorOrders([1e-6], [1.5], [0.0])},
             SPEED,
             "order 1.5 of the mesh does not repeat after 1 mesh cycles",
         ),

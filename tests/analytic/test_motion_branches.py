@@ -9,8 +9,8 @@ from moving_pair import SPEED as SLOW
 
 from pitchpoint._jax import array
 from pitchpoint.dynamics.bodies import Body, across
-from pitchpoint.dynamics.excitation import Waves
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.excitation import ErrorOrders
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.modes import mean_stiffness, modes
 from pitchpoint.dynamics.passage import passage
 from pitchpoint.dynamics.steady_motion import film, steady_motion
@@ -21,7 +21,7 @@ from pitchpoint.lubrication.registry import FILM_THICKNESS, ROLLING_RESISTANCE
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
-GRID = Grid(6, 20)
+GRID = PeriodGrid(6, 20)
 CONSTANT = dataclasses.replace(
     XU,
     friction=(LAW["constant"],),
@@ -36,7 +36,7 @@ NOMINAL = np.full(4, np.nan)
 def vibrating(**given):
     """Gear 2 on a steady gear 1, damped a little."""
     held = Body(array(np.inf)), Body(array(INERTIA[1]), [LOAD])
-    own = moving(held, error=Waves([1e-6], [1.0], [0.0]), relaxation=array(0.0))
+    own = moving(held, error=ErrorOrders([1e-6], [1.0], [0.0]), relaxation=array(0.0))
     values = {"models": CONSTANT, "mesh_damping": array(4000.0)}
     return dataclasses.replace(own, **values | given)
 

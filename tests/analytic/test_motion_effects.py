@@ -5,12 +5,12 @@ import pytest
 from moving_pair import INERTIA, LOAD, SPEED, moving, relative
 
 from pitchpoint.dynamics.bodies import Body
-from pitchpoint.dynamics.excitation import Waves
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.excitation import ErrorOrders
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.steady_motion import steady_motion
 from pitchpoint.status import Code
 
-GRID = Grid(4, 16)
+GRID = PeriodGrid(4, 16)
 FOUND = (Code.SOLVED, Code.UNRESOLVED)
 """Where teeth part a force has kinks, which its elements resolve to 1e-3."""
 
@@ -42,7 +42,7 @@ def test_an_error_of_half_an_order_repeats_after_two_mesh_cycles(alone):
     assert np.max(np.abs(half - whole)) > 0.1 * np.ptp(error)
     orders = alone.spectrum(error, range(5))  # of the period: every second one is one of the mesh
     assert float(orders[1]) > 1e-7
-    own = driven(error=Waves([0.0, 1e-6], [0.5, 1.0], [0.3, 0.0]))
+    own = driven(error=ErrorOrders([0.0, 1e-6], [0.5, 1.0], [0.3, 0.0]))
     without = steady_motion(own, SPEED, GRID, cycles=2)
     orders = without.spectrum(without.transmission_error, range(5))
     assert float(orders[1]) < 1e-6 * float(orders[2])

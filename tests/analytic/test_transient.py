@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.dynamics.bodies import Body, Support, across
-from pitchpoint.dynamics.right_hand_side import Moving, contact_forces
+from pitchpoint.dynamics.right_hand_side import MovingMesh, contact_forces
 from pitchpoint.dynamics.transient import CLOSED, _code, _known, transient
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
@@ -72,7 +72,7 @@ def gear(inertia, torque=(0.0, 0.0), held=(HELD, 0.0, 0.0), **braked):
 
 
 def moving(bodies, knots=(0.0, 1.0), level=0.0, phase=0.4, load=100.0, relaxation=0.0, design=None):
-    return Moving(
+    return MovingMesh(
         design or PAIR,
         operation(load),
         models(RISING, level=level),
@@ -336,7 +336,7 @@ def discs(inertia, mass, held, creep, times, rate):
     shifted = Support(mass, np.array([[0.0, 1.0, 0.0]]), np.array([[held]]), np.zeros((1, 1)))
     spring = 1e6
     bodies = (Body(inertia[0]), Body(inertia[1], support=shifted), Body(1.0, [NORMAL]))
-    given = Moving(
+    given = MovingMesh(
         DISCS,
         operation(NORMAL),
         models(CONSTANT, coefficient=FRICTION),

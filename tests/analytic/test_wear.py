@@ -29,7 +29,7 @@ from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.three_k import mesh_efficiency
 from pitchpoint.wear import film_share
 from pitchpoint.wear.gradients import march_sensitivities
-from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_turn
+from pitchpoint.wear.history import Cells, DriverTurn, Start, WearModel, as_new, one_turn
 from pitchpoint.wear.laws import archard_1953
 from pitchpoint.wear.march import Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
@@ -53,7 +53,9 @@ def begun(built: Built, cells: int = CELLS) -> tuple[Start, Cells]:
     return as_new(*given, parts=PARTS, count=cells)
 
 
-def turn(built: Built, cells: int = CELLS, depth: np.ndarray | None = None) -> tuple[Turn, Cells]:
+def turn(
+    built: Built, cells: int = CELLS, depth: np.ndarray | None = None
+) -> tuple[DriverTurn, Cells]:
     """What a turn wears off flanks as new, or off worn ones."""
     start, grid = begun(built, cells)
     gone = jnp.zeros(grid.shape) if depth is None else array(depth)
@@ -62,7 +64,7 @@ def turn(built: Built, cells: int = CELLS, depth: np.ndarray | None = None) -> t
 
 
 @cache
-def of_pair(name: str = "from_stiffness", cells: int = CELLS) -> tuple[Turn, Cells]:
+def of_pair(name: str = "from_stiffness", cells: int = CELLS) -> tuple[DriverTurn, Cells]:
     return turn(pair(name), cells)
 
 

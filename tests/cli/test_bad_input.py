@@ -484,7 +484,7 @@ def worn_file(gears: dict[str, Any]) -> str:
         },
         {},
         title="wear",
-        gears=gears_digest(schema.validated(schema.Case, document).gears),
+        gears=gears_digest(schema.validated(schema.CaseFile, document).gears),
         driver="gear 1",
     )
     path = Path(_FOLDER.name) / "wear.nc"
@@ -593,7 +593,7 @@ BASES = {
     "train": TRAIN,
 }
 WALKS = [
-    ("cylindrical", schema.Case, ()),
+    ("cylindrical", schema.CaseFile, ()),
     ("strain wave", strain_wave.StrainWaveGears, ("gears",)),
     ("strain wave", ZoneFilms, ("formulas",)),
     ("involute", FlankWear, ("formulas",)),

@@ -21,7 +21,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.exports.files import FORMATS, export
 from pitchpoint.exports.tables import sheets
 from pitchpoint.results.variable import dimensionless
-from pitchpoint.runs.designs import Figure, as_json, designs, main_results, wanted
+from pitchpoint.runs.designs import MainFigure, as_json, designs, main_results, wanted
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, open_result, run, run_variant
 from pitchpoint.views import show
@@ -431,7 +431,7 @@ def test_what_solvers_leave_is_no_difference(
 ) -> None:
     first, second = compared
     values = {first: 1.0, second: 1.0 + change}
-    figure = Figure("operation", "contact_ratio", "", "", dimensionless("ratio", ""), values)
+    figure = MainFigure("operation", "contact_ratio", "", "", dimensionless("ratio", ""), values)
     monkeypatch.setattr("pitchpoint.views.designs.main_results", lambda _: [figure])
     assert result_table(compared).rows[-1][-1] == told
 

@@ -23,7 +23,7 @@ from pitchpoint.analyses.engagement import check_heights
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.height_maps import height_maps
-from pitchpoint.cases.schema import Case, DriveCase, Target, keys, validate
+from pitchpoint.cases.schema import CaseFile, DriveCase, Target, keys, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.conditions import UNITS as CONDITIONS
@@ -175,7 +175,7 @@ def test_the_reference_is_that_of_the_code(tmp_path: Path) -> None:
 def test_every_key_and_variable_has_its_line() -> None:
     generate = runpy.run_path(str(ROOT / "docs" / "generate.py"))
     lines = [line for text in generate["keys_pages"]().values() for line in rows(text)]
-    for table in (Case, DriveCase):
+    for table in (CaseFile, DriveCase):
         assert {key.rpartition(".")[2] for key in keys(table)} <= {line[0] for line in lines}
     assert "set" in {line[0] for line in rows(generate["keys_pages"]()["keys_losses.md"])}
     assert all(told.endswith(".") for _, told, *_ in lines)

@@ -18,9 +18,9 @@ from scipy.integrate import cumulative_trapezoid, solve_ivp
 
 from pitchpoint._jax import array
 from pitchpoint.analyses.motion import moving_of
-from pitchpoint.dynamics.excitation import Waves
+from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.joint import Joint, Sliding
-from pitchpoint.dynamics.joint_course import Drive, course
+from pitchpoint.dynamics.joint_course import MotorRun, course
 from pitchpoint.exports.simulators import Asked, HandedOver, hand_over
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.loading.wind_up_curve import WindUpCurve
@@ -276,7 +276,7 @@ def test_wind_up_play_and_error_move_as_in_the_product(torque: float, tmp_path: 
     """Without friction of a map: against `course`, its own motion of a joint."""
     points, play = np.array([0.0, 1e-3, 3e-3]), 4e-4
     carried, slopes = np.array([0.0, 25.0, 105.0]), np.array([2e4, 3e4, 4.5e4])
-    waves, wave = error(), Waves(array([1e-4]), array([2.0]), array([0.3]))
+    waves, wave = error(), ErrorOrders(array([1e-4]), array([2.0]), array([0.3]))
     waves["kinematic_error"][1] = 1e-4 * np.cos(2.0 * np.arange(64) * 2.0 * np.pi / 64 + 0.3)
     spring = torsion().assign_coords(torque=carried)
     spring["wind_up"], spring["tangent_torsional_stiffness"] = (
@@ -292,7 +292,7 @@ def test_wind_up_play_and_error_move_as_in_the_product(torque: float, tmp_path: 
     rest, lag = float(joint.wind_up), 1e-4 * math.cos(0.3)
     times = np.linspace(0.0, 0.2, 41)
     start = array([0.0, 0.0, rest + 1e-3, 0.0])
-    expected = course(joint, wave, Drive.steady(40.0), array(times), start)
+    expected = course(joint, wave, MotorRun.steady(40.0), array(times), start)
     speed = 40.0 / abs(RATIO)
     turning = -1e-4 * 2.0 * abs(RATIO) * math.sin(0.3) * speed
     unit = Unit(
@@ -388,9 +388,9 @@ def test_teeth_that_hold_brake_a_vibration_as_in_the_product(tmp_path: Path) -> 
     line = map(array, ([0.0, 1.0, 2.0], [0.0, 1e3, 2e3], [1e3] * 3, 0.0))
     values = map(array, (0.0, np.inf, LOAD, 0.0, abs(RATIO)))
     joint = Joint(WindUpCurve(*line), *values, Sliding(array([held]), array([0.0])))
-    still, times = Waves(array([0.0]), array([1.0]), array([0.0])), np.linspace(0.0, 0.6, 301)
+    still, times = ErrorOrders(array([0.0]), array([1.0]), array([0.0])), np.linspace(0.0, 0.6, 301)
     begin = array([0.0, 0.0, start, 0.0])
-    expected = course(joint, still, Drive.steady(0.0), array(times), begin)
+    expected = course(joint, still, MotorRun.steady(0.0), array(times), begin)
     swing = np.asarray(expected.wind_up)
     assert swing.min() == pytest.approx(-start + 2.0 * held / 1e3, rel=1e-2)
     rate = np.asarray(expected.output_rate)[1:]

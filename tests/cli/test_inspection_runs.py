@@ -13,7 +13,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.cylindrical.din_3967 import thickness_allowances
 from pitchpoint.runs.run import Outcome, load_case
-from pitchpoint.views.section import Page, Paragraph, Table
+from pitchpoint.views.section import Page, Paragraph, SectionTable
 from pitchpoint.views.sections.inspection import INSPECTION as SECTION
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -118,7 +118,7 @@ def test_balls_that_fall_in_are_told_and_not_measured(data) -> None:
 def test_the_report_and_the_screen_show_it(asked, data) -> None:
     outcome = Outcome({}, {"inspection": data})
     blocks = [*SECTION.blocks(Page({"default": outcome}, {}))]
-    tables = {one.head[0]: one for one in blocks if isinstance(one, Table)}
+    tables = {one.head[0]: one for one in blocks if isinstance(one, SectionTable)}
     assert [*tables] == ["backlash", "dimension", "tolerance by ISO 1328-1"]
     rows = {row[0]: row[1:] for one in tables.values() for row in one.rows}
     assert rows["measuring balls D_M [mm]"] == ("3.500", "0.500")

@@ -10,7 +10,7 @@ from pitchpoint.analyses.load_limits import load_limits_part
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.views.registry import LOAD_LIMITS
-from pitchpoint.views.section import Page, Paragraph, Table
+from pitchpoint.views.section import Page, Paragraph, SectionTable
 
 TABLE = """[gears.limits]
 bending_concentration = 1.5
@@ -106,7 +106,7 @@ def test_the_screen_has_a_row_for_each_place(asked) -> None:
     assert all(name in heads for name in ("alternating", "shear stress", "Goodman"))
     assert "Against ratcheting 0.4478, by 30 N\u00a0m" in printed.line
     page = Page({"default": outcome}, {})
-    heads = [one.head[0] for one in LOAD_LIMITS.blocks(page) if isinstance(one, Table)]
+    heads = [one.head[0] for one in LOAD_LIMITS.blocks(page) if isinstance(one, SectionTable)]
     assert heads == ["flexspline", "against"]
 
 

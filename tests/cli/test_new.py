@@ -13,7 +13,7 @@ from pitchpoint import cli
 from pitchpoint.analyses.four_quadrants import speed_ratio
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.document import read, resolve
-from pitchpoint.cases.schema import Case, DriveCase, keys, quantity_at, validate
+from pitchpoint.cases.schema import CaseFile, DriveCase, keys, quantity_at, validate
 from pitchpoint.cases.template import FAMILIES, sample_tree, template
 from pitchpoint.drive.assembly import ROOM_BETWEEN_PLANETS
 from pitchpoint.duty_cycle.table import DutyTable, HeatTable
@@ -81,7 +81,7 @@ def test_tables_by_names_of_ones_own_have_one_in_their_remark() -> None:
 @pytest.mark.parametrize("family", ["spur", "two_stages", "planetary"])
 def test_every_key_stands_in_it(family: str) -> None:
     text = template(family)
-    model = Case if family == "spur" else DriveCase
+    model = CaseFile if family == "spur" else DriveCase
     apart = ("targets", "issues", "formulas", "studies", "title", "summary", "source", "stages")
     apart += ("train",) + ("gears",) * (family == "two_stages")
     told = remarks(text)

@@ -17,7 +17,7 @@ from pitchpoint.cases.document import resolve
 from pitchpoint.cases.handed_over import as_toml
 from pitchpoint.cases.json_schema import case_schema
 from pitchpoint.cases.library import find, names, path_of
-from pitchpoint.cases.schema import Case, DriveCase, quantity_of
+from pitchpoint.cases.schema import CaseFile, DriveCase, quantity_of
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.input.tables import alternatives, sentences
@@ -94,7 +94,7 @@ def tables(model: type[BaseModel]) -> dict[str, type[BaseModel]]:
 
 def test_every_key_says_what_it_is_and_editors_show_it(schema: dict[str, Any]) -> None:
     """In one sentence under it in its table."""
-    known = tables(Case) | tables(DriveCase)
+    known = tables(CaseFile) | tables(DriveCase)
     assert len(known) > 50
     for name, model in known.items():
         sentence = sentences(model)
@@ -103,7 +103,7 @@ def test_every_key_says_what_it_is_and_editors_show_it(schema: dict[str, Any]) -
             assert told.endswith(".") and told[0].isupper() and len(told) <= 110, (name, key, told)
             shown = schema["$defs"][name]["properties"][key]["description"]
             assert shown.startswith(told), (name, key)
-    whole, losses = schema["properties"], schema["$defs"]["Case"]["properties"]["losses"]
+    whole, losses = schema["properties"], schema["$defs"]["CaseFile"]["properties"]["losses"]
     assert whole["gears"]["description"].startswith("Gears of the mesh; ")
     assert losses["anyOf"][0]["properties"]["set"]["description"].startswith("Named set of losses")
 
@@ -131,7 +131,7 @@ def measured(table: type[BaseModel]) -> Iterator[tuple[str, Quantity]]:
 
 
 def test_what_a_key_is_told_to_be_written_as_is_in_its_range() -> None:
-    every = dict(measured(Case))
+    every = dict(measured(CaseFile))
     assert len(every) > 150
     for quantity in every.values():
         quantity.read(quantity.example.strip('"'))

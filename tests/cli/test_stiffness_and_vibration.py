@@ -18,8 +18,8 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import BRIEF, as_doubt
-from pitchpoint.dynamics.excitation import Course, Excitation
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.excitation import Excitation, ExcitationCourse
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.errors import InputError
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, describe, load_case, open_result, run_variant
@@ -340,7 +340,7 @@ def test_temperature_outside_the_table_of_moduli(
 
 
 @eqx.filter_jit
-def course_on(driven: Excitation, grid: Grid) -> Course:
+def course_on(driven: Excitation, grid: PeriodGrid) -> ExcitationCourse:
     return driven.on(grid)
 
 
@@ -352,7 +352,7 @@ def test_every_order_of_a_profile_error_is_resolved(order: int, file: Callable[[
     linear = {"models.tooth_compliance": "beam_foundation_hertz"}
     built = load_case(file(SPUR), settings={"dynamics.profile_error": given} | linear)
     _, _, driven = _excited(built.design, built.operation, built.terms, vibrating_of(built))
-    course = course_on(driven, Grid.resolving(order))
+    course = course_on(driven, PeriodGrid.resolving(order))
     wanted = 2e-6 * np.cos(2.0 * np.pi * order * np.asarray(course.phase) + np.pi / 6.0)
     long = np.diff(np.asarray(course.bounds)) > 0.0
     np.testing.assert_allclose(np.asarray(course.error)[0][long], wanted[long], atol=2e-11)

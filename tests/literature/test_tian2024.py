@@ -16,7 +16,7 @@ from pitchpoint.cases.document import leaves
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.loading.registry import LoadSharing
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.tian2024.path import readings
 from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.jobs import jobs
@@ -90,7 +90,9 @@ def of_case_1(**other):
     study = variant.built({}).case.studies["case_1"]
     built = variant.built(dict(leaves(study.change)))
     models = tuple(dataclasses.replace(one, **other) for one in built.models)
-    point = Point(built.case.gears, built.design, built.operation, built.case.formulas, models)
+    point = ReadingPoint(
+        built.case.gears, built.design, built.operation, built.case.formulas, models
+    )
     return readings(point), variant.built({}).case.targets
 
 

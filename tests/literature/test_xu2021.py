@@ -30,7 +30,7 @@ from pitchpoint.lubrication.ehl.patch.fields import PatchFilm
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.materials.fluid import Fluid
 from pitchpoint.materials.solids import Solid, reduced_modulus
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.xu2021 import readings as of_case
 from pitchpoint.published.xu2021 import zone
 from pitchpoint.published.xu2021.films import (
@@ -201,7 +201,7 @@ def teeth(**changes):
     """Contacts of the zone at 20 degC and 3000 rpm."""
     built = points("films", **changes)[0]
     return ToothFilms.of(
-        Point(built.case.gears, built.design, built.operation, built.case.formulas)
+        ReadingPoint(built.case.gears, built.design, built.operation, built.case.formulas)
     )
 
 
@@ -413,7 +413,9 @@ def test_what_the_table_does_not_take(key, value, words):
 def test_double_arc_teeth_have_no_films_of_base_circles():
     built = points("double_arc")[0]
     with pytest.raises(InputError, match="involute") as told:
-        zone.zone_of(Point(built.case.gears, built.design, built.operation, built.case.formulas))
+        zone.zone_of(
+            ReadingPoint(built.case.gears, built.design, built.operation, built.case.formulas)
+        )
     assert told.value.key == "gears.tooth.form"
 
 

@@ -20,7 +20,7 @@ from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
 from pitchpoint.input.quantities import SIValue
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.zhao2022 import printed
 from pitchpoint.published.zhao2022.printed import (
     arc_distance,
@@ -32,7 +32,7 @@ from pitchpoint.published.zhao2022.printed import (
     tooth_forces,
 )
 from pitchpoint.published.zhao2022.publication import PUBLICATION
-from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear, Reference
+from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear, StatedContact
 from pitchpoint.published.zhao2022.wear import Strips, march, marched, severe, strips_of
 from pitchpoint.results.target_rows import counts
 from pitchpoint.status import Code
@@ -174,7 +174,7 @@ def test_a_zone_of_30_degrees_misses_the_loads(monkeypatch):
 def strips(study="double_arc", **changes):
     found = built(study, **changes)
     mesh = found.design.mesh
-    point = Point(found.case.gears, found.design, found.operation, found.case.formulas)
+    point = ReadingPoint(found.case.gears, found.design, found.operation, found.case.formulas)
     return strips_of(point, mesh.flank, float(mesh.line.radius))
 
 
@@ -307,7 +307,7 @@ def test_file_says_that_the_match_is_no_validation():
         assert type(case(variant).formulas) is table
         provenance = resolve(dict(TREE), name=NAME, variant=variant).provenance
         keys = table.model_fields.keys() - {"form", "reference"}
-        inside = Reference.model_fields.keys() if table is FlankWear else ()
+        inside = StatedContact.model_fields.keys() if table is FlankWear else ()
         marked = {f"formulas.{one}" for one in keys}
         assert marked | {f"formulas.reference.{one}" for one in inside} <= provenance.keys()
 

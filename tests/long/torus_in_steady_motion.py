@@ -4,7 +4,7 @@ import numpy as np
 from literature.test_liu_xiong_torus import read
 
 from pitchpoint.cases.library import find
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.published.liu_xiong_torus import steady
 from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.run import compare_case
@@ -27,7 +27,7 @@ def test_rows_of_the_corrected_motion_miss_where_flanks_would_pull_and_where_the
 
 
 def test_a_motion_that_a_grid_does_not_resolve_is_no_number(monkeypatch):
-    monkeypatch.setattr(steady, "_grid", lambda *_: Grid(16, 20))
+    monkeypatch.setattr(steady, "_grid", lambda *_: PeriodGrid(16, 20))
     found = read("steady_slow", "physical").isel(law=0)
     for pair in ("torus", "standard"):
         assert np.all(found[f"{pair}_steady_status"] == Code.UNRESOLVED)

@@ -8,10 +8,10 @@ import pytest
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.dynamics.bodies import Body
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.passage import sampled
 from pitchpoint.dynamics.registry import CONTACT_LAWS
-from pitchpoint.dynamics.right_hand_side import Moving
+from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.dynamics.steady_motion import periodic_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.families import built_gears
@@ -54,7 +54,7 @@ def swing(own, factors):
     inertia, damped, radius = factors
     radii = own.mesh.torus_radii * jnp.stack([radius, jnp.ones(())])
     own = dataclasses.replace(own, mesh=eqx.tree_at(lambda m: m.torus_radii, own.mesh, radii))
-    moving = Moving(
+    moving = MovingMesh(
         own,
         OPERATION,
         OWN,
@@ -67,7 +67,7 @@ def swing(own, factors):
         mesh_damping=800.0 * damped,
         passage=sampled(own, OPERATION, OWN.compliance),
     )
-    found = periodic_motion(moving, OPERATION.speed, Grid(4, 16), tolerance=TIGHT)
+    found = periodic_motion(moving, OPERATION.speed, PeriodGrid(4, 16), tolerance=TIGHT)
     return found.rms(found.transmission_error)
 
 

@@ -8,7 +8,7 @@ import pytest
 from sound import pair, quick_first
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.vibration import Vibrating, excited, steady, transmission_figures
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.bodies import plain_inertia
@@ -23,7 +23,7 @@ STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
 PA66 = Solid(young=3.54e9, poisson=0.35, density=1140.0)
 NAMES = ("x1", "x2", "helix angle", "width")
 FIGURES = ("mean_stiffness", "transmission_error_range", "static_transmission_error_range")
-GRID = Grid(4)
+GRID = PeriodGrid(4)
 STEP = 1e-4
 """Relative step of central differences of order four: their own error is of the order of 1e-14."""
 

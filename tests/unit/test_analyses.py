@@ -32,7 +32,15 @@ from pitchpoint.views.figures import PALETTE, Figure, Key, Panel, display, layou
 from pitchpoint.views.registry import SECTIONS, register_section
 from pitchpoint.views.report import render
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Section, Table
+from pitchpoint.views.section import (
+    Block,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    Section,
+    SectionTable,
+)
 
 DOCS = Path(__file__).parents[2] / "docs"
 SWEPT = f"""{PAIR}
@@ -275,7 +283,7 @@ def shown_passing() -> Section:
             figure = Figure("passing_speed", "Teeth that pass", [line], layout("n", "n z"))
             yield Panel("", [figure])
             cells = rows(outcome)
-            yield Table([*cells[0]], [[*row.values()] for row in cells])
+            yield SectionTable([*cells[0]], [[*row.values()] for row in cells])
 
     return Section(
         name="passing",

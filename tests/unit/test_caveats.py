@@ -11,7 +11,7 @@ import pytest
 from pitchpoint.analyses import caveats, four_quadrants
 from pitchpoint.cases.build import _roughness
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import Surface
+from pitchpoint.cases.schema import RoughnessTable
 from pitchpoint.cases.solids import SolidInUse, failures
 from pitchpoint.doubts import apart, fails, moves
 from pitchpoint.efficiency.tooth_temperature import modulus_at
@@ -180,7 +180,7 @@ def test_what_cannot_be_is_told_apart_and_once() -> None:
 
 
 def test_ra_and_rq_together_reach_the_laws_that_ask_for_them() -> None:
-    both = _roughness(Surface.model_validate({"ra": "0.4 um", "rq": ["0.55 um", "0.6 um"]}))
+    both = _roughness(RoughnessTable.model_validate({"ra": "0.4 um", "rq": ["0.55 um", "0.6 um"]}))
     assert float(both.mean_ra) == pytest.approx(0.4e-6)
     assert float(both.composite_rq) == pytest.approx(np.hypot(0.55e-6, 0.6e-6))
 
@@ -195,4 +195,4 @@ def test_ra_and_rq_together_reach_the_laws_that_ask_for_them() -> None:
 )
 def test_roughness_that_cannot_be_is_refused(table: dict[str, str], words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        Surface.model_validate(table)
+        RoughnessTable.model_validate(table)

@@ -16,7 +16,7 @@ from screens import REPORT, faults_of_the_screen, screen
 
 from pitchpoint.cases.build import ALONE, LACKING
 from pitchpoint.doubts import Doubt
-from pitchpoint.results.target_rows import Row
+from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.runs import run
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import one_page, show
@@ -31,7 +31,7 @@ from pitchpoint.views.first_screen import (
 )
 from pitchpoint.views.point import by_bodies, by_members, member_names, of_stage_by_bodies
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import KeyFigure, Page, Table, key_figures, told_of_variants
+from pitchpoint.views.section import KeyFigure, Page, SectionTable, key_figures, told_of_variants
 from pitchpoint.views.sections import answer, beside
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.strength import strength_rows
@@ -151,7 +151,9 @@ def test_members_of_a_train_are_inspected_by_their_names(pair: dict[str, Outcome
         pair["default"], manifest={**pair["default"].manifest, "bodies": "sun and planet"}
     )
     tables = [
-        one for one in INSPECTION.shows(Page({"default": train}, {})) if isinstance(one, Table)
+        one
+        for one in INSPECTION.shows(Page({"default": train}, {}))
+        if isinstance(one, SectionTable)
     ]
     assert ["dimension", "sun", "planet"] in [[*table.head] for table in tables]
     assert any("turn of planet, the other one held" in row[0] for row in tables[0].rows)
@@ -384,7 +386,7 @@ def test_variants_stand_side_by_side(pair: dict[str, Outcome]) -> None:
 def test_printed_numbers_of_variants_take_a_line_each_where_there_is_no_room(
     pair: dict[str, Outcome],
 ) -> None:
-    row = Row("loss", "Table 1", 1.0, 1.0, "W", 0.1, "predicted", "pass", "").as_json()
+    row = TargetRow("loss", "Table 1", 1.0, 1.0, "W", 0.1, "predicted", "pass", "").as_json()
     missed = row | {"verdict": "miss", "expected_miss": True}
     rows = [row, missed, row | {"kind": "reference"}, missed | {"kind": "reference"}]
     long = " ".join(["the film is thin at the pitch point;"] * 10)
@@ -401,7 +403,7 @@ def test_printed_numbers_of_variants_take_a_line_each_where_there_is_no_room(
 def test_rows_that_are_missed_beyond_two_lines_are_counted_with_the_command_that_lists_them(
     pair: dict[str, Outcome],
 ) -> None:
-    row = Row("", "Table 1", 1.0, 2.0, "W", 0.1, "predicted", "miss", "").as_json()
+    row = TargetRow("", "Table 1", 1.0, 2.0, "W", 0.1, "predicted", "miss", "").as_json()
     rows = [row | {"quantity": f"efficiency by Method {k} at the pitch point"} for k in range(9)]
     lines = shown({"default": doubting(pair["default"], rows=rows)})
     (first,) = (k for k, line in enumerate(lines) if line.startswith("Missed: "))
@@ -412,7 +414,7 @@ def test_rows_of_a_result_are_compared_without_another_run(
     pair: dict[str, Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where these programs wrote it and finished it; else the case is computed."""
-    row = Row("efficiency", "Table 1", 1.0, 2.0, "1", 0.1, "predicted", "miss", "").as_json()
+    row = TargetRow("efficiency", "Table 1", 1.0, 2.0, "1", 0.1, "predicted", "miss", "").as_json()
     kept = doubting(pair["default"], rows=[row], finished=True, surroundings=run.surroundings())
     (tmp_path / run.RUN).write_text("{}", "utf-8")
     monkeypatch.setattr(run, "held", lambda *_: pytest.fail("computed anew"))

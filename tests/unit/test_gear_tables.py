@@ -15,7 +15,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
-from pitchpoint.cases.schema import Case, quantity_at, validate
+from pitchpoint.cases.schema import CaseFile, quantity_at, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.surface import Waves
 from pitchpoint.efficiency.quasi_static import Design
@@ -46,7 +46,7 @@ def drive(**settings: Any) -> Variant:
     return Variant(copy.deepcopy(DRIVE), "drive.toml", "default", changes)
 
 
-def case(tree: dict[str, Any], settings: dict[str, Any] | None = None) -> Case:
+def case(tree: dict[str, Any], settings: dict[str, Any] | None = None) -> CaseFile:
     return validate(resolve(tree, name="x.toml", variant="default", settings=settings))
 
 

@@ -37,7 +37,7 @@ from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
-from pitchpoint.results.target_rows import Row
+from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.units import convert, kind_of, kinds, parse, units_of
 from pitchpoint.views import show
@@ -46,7 +46,7 @@ from pitchpoint.views.figures import Figure, Panel, curves, laws, line_heights, 
 from pitchpoint.views.lines import gapped
 from pitchpoint.views.outlines import visible_points
 from pitchpoint.views.path import path_of
-from pitchpoint.views.picture import Body, Picture, picture_of
+from pitchpoint.views.picture import Picture, PictureBody, picture_of
 from pitchpoint.views.point import period_of
 from pitchpoint.views.report import render, write_report
 from pitchpoint.views.section import KeyFigure, Page, Paragraph, naming, told_of_variants
@@ -993,7 +993,7 @@ def depth(drawn: Picture, corners: np.ndarray, phase: float) -> float:
     return deepest
 
 
-def half_angle(body: Body, radius: float) -> float:
+def half_angle(body: PictureBody, radius: float) -> float:
     """Half the angle of its tooth as drawn at a radius."""
     right = body.tooth[: len(body.tooth) // 2]
     radii = np.hypot(*right.T)
@@ -1123,7 +1123,9 @@ def test_numbers_for_readers() -> None:
 
 
 def test_numbers_beside_print_have_seven_digits_and_unknown_ones_are_said() -> None:
-    row = Row("part of the time", "a table", 0.0, 0.18585924446678, "1", 1e-12, "trend", "miss", "")
+    row = TargetRow(
+        "part of the time", "a table", 0.0, 0.18585924446678, "1", 1e-12, "trend", "miss", ""
+    )
     assert comparison._row(row)["computed"] == "0.1858592"
     assert comparison._row(row)["deviation"] == "+0.1859"
     assert comparison._row(replace(row, computed=float("nan")))["computed"] == "not computed"
@@ -1149,7 +1151,7 @@ def test_numbers_beside_print_have_seven_digits_and_unknown_ones_are_said() -> N
 def test_numbers_beside_print_are_written_out_as_far_as_anyone_reads(
     printed: float, computed: float, tolerance: float, told: str
 ) -> None:
-    row = Row("number", "a table", printed, computed, "1", tolerance, "reference", "pass", "")
+    row = TargetRow("number", "a table", printed, computed, "1", tolerance, "reference", "pass", "")
     assert comparison._row(row)["computed"] == told
 
 

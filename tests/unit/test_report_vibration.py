@@ -27,7 +27,7 @@ from pitchpoint.views.figures import Figure, Panel, continued
 from pitchpoint.views.path import path_of
 from pitchpoint.views.registry import STIFFNESS, WEAR
 from pitchpoint.views.report import render
-from pitchpoint.views.section import Page, Table, panels
+from pitchpoint.views.section import Page, SectionTable, panels
 from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.design_chart import design_charts
 from pitchpoint.views.sections.joint import joint_panel
@@ -563,7 +563,7 @@ def test_figures_of_a_stage_are_those_of_its_own_motion(stages: Outcome, number:
     page = Page({"default": stages}, {})
     (tabs,) = VIBRATION.shows(page)
     blocks = tabs.each[f"stage {number}"]
-    rows = {row[0]: row[1:] for one in blocks if isinstance(one, Table) for row in one.rows}
+    rows = {row[0]: row[1:] for one in blocks if isinstance(one, SectionTable) for row in one.rows}
     assert rows["natural frequency f_n"][-1].split()[0] == f"{natural:.0f}"
     assert rows["damping ratio ξ"] == ({1: "0.05", 2: "0.1"}[number],) * 2
     marks = {1: ("f_n/2", 2.0), 2: ("f_n", 1.0)}[number]
@@ -607,7 +607,10 @@ def test_the_stiffness_of_one_stage_names_it(stages: Outcome) -> None:
     alone = by_stage({1: of_stage(stages.parts["stiffness"], 1)})
     page = Page({"default": replace(stages, parts={**stages.parts, "stiffness": alone})}, {})
     blocks = STIFFNESS.shows(page)
-    assert next(one.head for one in blocks if isinstance(one, Table)) == ["Stiffness", "stage 1"]
+    assert next(one.head for one in blocks if isinstance(one, SectionTable)) == [
+        "Stiffness",
+        "stage 1",
+    ]
     titles = [figure.title for panel in panels(blocks) for figure in panel.figures]
     assert titles and all(title.endswith(" · stage 1") for title in titles)
 

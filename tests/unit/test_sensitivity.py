@@ -5,7 +5,7 @@ import xarray as xr
 from scipy.stats import qmc
 
 import pitchpoint as pp
-from pitchpoint.analyses.designs import Designs
+from pitchpoint.analyses.designs import CaseDesigns
 from pitchpoint.runs.sensitivity import indices_of
 
 
@@ -59,7 +59,7 @@ def test_indices_of_a_study_are_those_of_its_layout(monkeypatch):
         solve = {"solve": '{"residual": 0.0, "iterations": 1}'}
         return xr.Dataset(whole, {"law": ["xu_2007"]}, solve)
 
-    monkeypatch.setattr(Designs, "compute", computed)
+    monkeypatch.setattr(CaseDesigns, "compute", computed)
     found = pp.sobol_indices("tian2024", ranges, 2**14, figures=["mean_loss"], variant="physical")
     first = found["first_order"].values[0, 0]
     total = found["total_order"].values[0, 0]

@@ -17,7 +17,7 @@ import xarray as xr
 
 import pitchpoint as pp
 from pitchpoint import cli
-from pitchpoint.analyses.designs import Designs
+from pitchpoint.analyses.designs import CaseDesigns
 from pitchpoint.errors import InputError, PitchpointError
 from pitchpoint.results import store
 from pitchpoint.results.netcdf import encode
@@ -236,7 +236,7 @@ def test_a_piece_that_is_not_whole_is_missing(harm: str, tmp_path: Path) -> None
     assert pieces.missing() == [1]
 
 
-def _computed(self: Designs, progress: Any = None) -> xr.Dataset:
+def _computed(self: CaseDesigns, progress: Any = None) -> xr.Dataset:
     """Figures that take no time."""
     torque = np.array([float(str(change[TORQUE]).split()[0]) for change in self.changes])
     values = {
@@ -252,7 +252,7 @@ def _computed(self: Designs, progress: Any = None) -> xr.Dataset:
 
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Designs, "compute", _computed)
+    monkeypatch.setattr(CaseDesigns, "compute", _computed)
 
 
 class Interrupted(Progress):

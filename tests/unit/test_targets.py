@@ -13,7 +13,7 @@ from pitchpoint.cases.schema import Target, validate
 from pitchpoint.errors import InputError
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.store import dataset
-from pitchpoint.results.target_rows import Row, in_words
+from pitchpoint.results.target_rows import TargetRow, in_words
 from pitchpoint.runs.run import describe
 
 TORQUE = np.array([0.0, 10.0, 20.0, 40.0])
@@ -289,7 +289,9 @@ REST = tomllib.loads(PAIR) | {
 
 
 def row(kind, verdict, reason="", expected_miss=False):
-    return Row("q", "w", 1.0, 1.0, "1", 0.1, kind, verdict, reason, expected_miss=expected_miss)
+    return TargetRow(
+        "q", "w", 1.0, 1.0, "1", 0.1, kind, verdict, reason, expected_miss=expected_miss
+    )
 
 
 def test_a_number_surprises_that_is_missed_without_cause_or_met_in_spite_of_one():

@@ -11,7 +11,7 @@ import pytest
 
 from pitchpoint import Case
 from pitchpoint.cases.document import resolve
-from pitchpoint.cases.schema import Case as Schema
+from pitchpoint.cases.schema import CaseFile as Schema
 from pitchpoint.cases.schema import Loss, validate
 from pitchpoint.cases.wishes import WISHES
 from pitchpoint.errors import InputError

@@ -5,7 +5,7 @@ from typing import Any
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
 from pitchpoint.analyses.figures import (
     OF_CROSSING,
     OF_MOTION,
@@ -22,37 +22,37 @@ from pitchpoint.gears.mesh import has
 __all__ = ["MOTION", "MOTIONS", "RESONANCE", "START_UP", "STIFFNESS", "VIBRATIONS"]
 
 
-def _stiffness(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def _stiffness(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
     from pitchpoint.analyses.vibration import stiffness_part
 
     return stiffness_part(built)
 
 
-def _vibration(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def _vibration(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
     from pitchpoint.analyses.vibration import vibration_part
 
     return vibration_part(built)
 
 
-def _resonance(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def _resonance(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
     from pitchpoint.analyses.vibration import resonance_part
 
     return resonance_part(built)
 
 
-def _motion(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def _motion(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
     from pitchpoint.analyses.motion import motion_part
 
     return motion_part(built)
 
 
-def _motions(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+def _motions(built: Built, _: Piece, progress: PieceProgress) -> xr.Dataset:
     from pitchpoint.analyses.motion import against_speed_part
 
     return against_speed_part(built, progress)
 
 
-def _further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+def _further(built: Built, last: xr.Dataset, progress: PieceProgress) -> xr.Dataset | None:
     from pitchpoint.analyses.motion import next_speeds
 
     return next_speeds(built, last, progress)
@@ -64,7 +64,7 @@ def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     return joined(built, parts)
 
 
-def _start_up(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def _start_up(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
     from pitchpoint.analyses.motion import start_up_part
 
     return start_up_part(built)

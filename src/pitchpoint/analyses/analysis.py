@@ -20,7 +20,7 @@ from pitchpoint.results.variable import Variable
 __all__ = [
     "Analysis",
     "Piece",
-    "Progress",
+    "PieceProgress",
     "Several",
     "Subject",
     "Unasked",
@@ -34,7 +34,7 @@ Piece = Mapping[str, Any]
 """Where a piece lies, as plain data of less than 1 kB: a torque, a range of points; empty for the whole."""
 
 
-class Progress(Protocol):
+class PieceProgress(Protocol):
     """Told how far a piece is."""
 
     def __call__(self, done: int, doing: str = "") -> None:
@@ -72,7 +72,7 @@ def of_gears_with(key: str, told: str) -> Callable[[Built], str | None]:
     return lacks
 
 
-def _of_no_piece(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
+def _of_no_piece(built: Ready, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     """InputError for a piece of what reads another part."""
     raise InputError("this part is computed of another part of the result and has no pieces")
 
@@ -183,11 +183,11 @@ class Analysis(Entry):
 
     reads: str = ""
     beside: tuple[str, ...] = ()
-    compute: Deferred[Callable[[Any, Piece, Progress], xr.Dataset]] = Deferred(_of_no_piece)
+    compute: Deferred[Callable[[Any, Piece, PieceProgress], xr.Dataset]] = Deferred(_of_no_piece)
     pieces: Deferred[Callable[[Any], Iterable[Piece]]] = Deferred(_whole)
     joined: Deferred[Callable[[Any, Sequence[xr.Dataset]], xr.Dataset]] = Deferred(_only)
-    onward: Deferred[Callable[[Any, xr.Dataset, Progress], xr.Dataset | None] | None] = Deferred(
-        None
+    onward: Deferred[Callable[[Any, xr.Dataset, PieceProgress], xr.Dataset | None] | None] = (
+        Deferred(None)
     )
 
     def parts(self, subject: Subject) -> "Iterable[Analysis]":
@@ -223,11 +223,11 @@ def of_stages(analysis: Analysis) -> Analysis:
             if analysis.onward is not None:
                 return
 
-    def compute(built: BuiltDrive, piece: Piece, progress: Progress) -> xr.Dataset:
+    def compute(built: BuiltDrive, piece: Piece, progress: PieceProgress) -> xr.Dataset:
         label = piece["stage"]
         return _labelled(analysis.compute(members(built)[label], piece, progress), label)
 
-    def onward(built: BuiltDrive, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+    def onward(built: BuiltDrive, last: xr.Dataset, progress: PieceProgress) -> xr.Dataset | None:
         there, label = members(built), as_label(last.attrs[_OF_STAGE])
         march = analysis.onward
         further = None if march is None else march(there[label], last, progress)

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.cases.build import Built
 from pitchpoint.results.store import dataset
 
 __all__ = ["bodies_of"]
 
 
-def bodies_of(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def bodies_of(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
     """Mass and moment of inertia of each member, and of all at the ends: J_red = Σ J (ω/ω_end)².
 
     The latter of gears that turn at both ends, where the inertia of all that turn is known.

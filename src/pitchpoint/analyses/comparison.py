@@ -21,7 +21,7 @@ from pitchpoint.results.reductions import (
     SLOPE,
     SPANS,
 )
-from pitchpoint.results.target_rows import Row
+from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.results.variables import VARIABLES, places_of
 
 __all__ = ["compare", "demand_parts"]
@@ -32,7 +32,7 @@ OF_VIBRATION = ("mean_transmission_error", "transmission_error_range", "largest_
 
 def compare(
     targets: Sequence[Target], results: Mapping[str, xr.Dataset], name: str = ""
-) -> list[Row]:
+) -> list[TargetRow]:
     """A row for every target.
 
     Args:
@@ -58,7 +58,7 @@ class _OutsideError(InputError):
     """A place beyond what was computed: with a smaller torque, say, the part ends before it."""
 
 
-def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
+def _row(target: Target, results: Mapping[str, xr.Dataset]) -> TargetRow:
     reason, unsolved = target.missed or target.reason, False
     try:
         left_out = target.kind == "excluded"
@@ -70,7 +70,7 @@ def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
         unsolved = computed is not None and bool(np.isnan(computed))
         if unsolved:
             reason = f"not computed: no solution was found there. {reason}".strip()
-    return Row(
+    return TargetRow(
         quantity=target.quantity,
         where=target.where,
         printed=target.printed,

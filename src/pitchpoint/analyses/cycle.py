@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress
 from pitchpoint.analyses.caveats import (
     OF_CYCLES,
     AtWork,
@@ -26,7 +26,7 @@ __all__ = [
 ]
 
 
-def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+def _cycle(built: Built, _: Piece, progress: PieceProgress) -> xr.Dataset:
     runs, names = profiles(built, built.models, progress), built.law_names
     demand_motion(*_jammed(runs), [built], names)
     mesh = built.design.mesh

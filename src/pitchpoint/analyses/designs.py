@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Progress, silent
+from pitchpoint.analyses.analysis import PieceProgress, silent
 from pitchpoint.analyses.studies import more_of
 from pitchpoint.analyses.summaries import joined, summaries
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError
 
-__all__ = ["TOGETHER", "Designs"]
+__all__ = ["TOGETHER", "CaseDesigns"]
 
 TOGETHER = 256
 """Designs that are computed together."""
@@ -26,7 +26,7 @@ OUTSIDE = "why the friction law does not hold"
 
 
 @dataclass(frozen=True)
-class Designs:
+class CaseDesigns:
     """Designs of a case.
 
     Attributes:
@@ -37,7 +37,7 @@ class Designs:
     variant: Variant
     changes: Sequence[Mapping[str, Any]]
 
-    def compute(self, progress: Progress = silent) -> xr.Dataset:
+    def compute(self, progress: PieceProgress = silent) -> xr.Dataset:
         """All designs [law, point], NaN where there are no figures, with the reason.
 
         Args:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.film_contacts import LEAST, Done, alike, asked, film_model_of, states
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.cases.build import Built, tooth_size
@@ -72,7 +72,7 @@ def pieces(built: Built) -> Iterator[Piece]:
         yield {"first": start, "count": min(TOGETHER, every - start)}
 
 
-def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+def film_part(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     """Films of all contacts at some phases."""
     cycle_states = states(built)
     taken = slice(piece["first"], piece["first"] + piece["count"])

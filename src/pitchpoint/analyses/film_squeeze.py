@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.engagement import KEY, course_of
 from pitchpoint.analyses.film_contacts import asked
 from pitchpoint.analyses.finite_film import FIELDS
@@ -21,7 +21,7 @@ from pitchpoint.lubrication.ehl.patch.films import ENDS, Turned
 from pitchpoint.lubrication.ehl.patch.layout import Layout
 from pitchpoint.lubrication.ehl.patch.plan import placed
 from pitchpoint.lubrication.ehl.patch.transient import (
-    Course,
+    MarchState,
     PatchMoment,
     march_patches,
     steady_beside,
@@ -69,12 +69,12 @@ def pieces(built: Built) -> Iterator[Piece]:
     yield {"first": 0, "count": min(TOGETHER, course_of(built).times.size)}
 
 
-def squeeze_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+def squeeze_part(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     """Films of the first moments of the engagement."""
     return _some(built, piece["first"], None, progress)
 
 
-def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+def further(built: Built, last: xr.Dataset, progress: PieceProgress) -> xr.Dataset | None:
     """Films of the moments after those of the last piece; None at the end."""
     start = int(last.attrs["first"]) + last.sizes["point"]
     if start >= course_of(built).times.size:
@@ -83,7 +83,12 @@ def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | 
 
 
 def _some(
-    built: Built, first: int, after: Course | None, progress: Progress, *, lost: bool = False
+    built: Built,
+    first: int,
+    after: MarchState | None,
+    progress: PieceProgress,
+    *,
+    lost: bool = False,
 ) -> xr.Dataset:
     """Films of some moments, from the first one or after a march that stands before it.
 
@@ -125,7 +130,7 @@ def _some(
 
 
 def _marched(
-    built: Built, first: int, after: Course | None, progress: Progress, told: list[str]
+    built: Built, first: int, after: MarchState | None, progress: PieceProgress, told: list[str]
 ) -> list[PatchMoment]:
     """Moments of the march, up to one whose film is not found."""
     course = course_of(built)
@@ -158,7 +163,7 @@ def _marched(
     return moments
 
 
-def _heard(built: Built, done: int, what: str, progress: Progress) -> Any:
+def _heard(built: Built, done: int, what: str, progress: PieceProgress) -> Any:
     """What tells the steps of Newton's method of a moment."""
     every = course_of(built).times.size
 
@@ -252,7 +257,7 @@ def _thinnest(
 # ---- what a march goes on from
 
 
-def _state(course: Course) -> dict[str, tuple[tuple[str, ...], Any]]:
+def _state(course: MarchState) -> dict[str, tuple[tuple[str, ...], Any]]:
     """A course as variables."""
     numbers = [np.nan if one is None else one for one in course.layout]
     step = np.nan if course.step is None else course.step
@@ -269,15 +274,15 @@ def _state(course: Course) -> dict[str, tuple[tuple[str, ...], Any]]:
     return {f"{_STATE}{name}": one for name, one in variables.items()}
 
 
-def _state_of(piece: xr.Dataset) -> Course | None:
+def _state_of(piece: xr.Dataset) -> MarchState | None:
     """The last course of which a piece has a film; None without one."""
     if f"{_STATE}layout" not in piece:
         return None
-    variables = {name: piece[f"{_STATE}{name}"].values for name in Course._fields}
+    variables = {name: piece[f"{_STATE}{name}"].values for name in MarchState._fields}
     numbers = {name: float(v) for name, v in zip(Layout._fields, variables["layout"], strict=True)}
     layout = Layout(**numbers)
     step = float(variables["step"])
-    return Course(
+    return MarchState(
         layout=layout._replace(end=None) if np.isnan(numbers["end"]) else layout,
         lies=Turned(*map(bool, variables["lies"])),
         pressure=variables["pressure"],

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import TOUCH
@@ -110,7 +110,7 @@ def _check_contacts(built: Built) -> None:
         check_course(built)
 
 
-def _compute(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+def _compute(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     films: xr.Dataset = _solver(built).film_part(built, piece, progress)
     return films
 
@@ -127,13 +127,13 @@ def _squeeze_pieces(built: Built) -> Iterable[Piece]:
     return pieces(built)
 
 
-def _squeeze(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+def _squeeze(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     from pitchpoint.analyses.film_squeeze import squeeze_part
 
     return squeeze_part(built, piece, progress)
 
 
-def _further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+def _further(built: Built, last: xr.Dataset, progress: PieceProgress) -> xr.Dataset | None:
     from pitchpoint.analyses.film_squeeze import further
 
     return further(built, last, progress)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import array
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.film import (
     GRID_ERRORS,
     OF_LINES,
@@ -102,7 +102,7 @@ def pieces(built: Built) -> Iterator[Piece]:
         yield {"first": start, "count": min(TOGETHER, every - start)}
 
 
-def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+def film_part(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     """Films of all contacts at some phases."""
     start, count = piece["first"], piece["count"]
     taken, contacts = slice(start, start + count), wholes(built)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.figures import ERRORS, HOLDING, HOLDING_BANDS
 from pitchpoint.analyses.finer_map import finer_map
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
@@ -159,7 +159,7 @@ def speed_ratio(built: Ready) -> float:
     return float(built.backwards.operation.speed) / float(built.operation.speed)
 
 
-def quadrants_of(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
+def quadrants_of(built: Ready, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     """Loss under one load, and torque of the end that drives which starts the drive under it."""
     way, load = str(piece["way"]), float(piece["torque"])
     driven = _driven(built, way)

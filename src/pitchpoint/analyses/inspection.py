@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.teeth import drawing_of
 from pitchpoint.cases.build import Built
 from pitchpoint.doubts import Doubt
@@ -109,7 +109,7 @@ class _Measured:
         }
 
 
-def inspection_of(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def inspection_of(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
     """Dataset of the part."""
     return inspection_part(built)
 

@@ -10,7 +10,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.analysis import Piece, Progress, silent
+from pitchpoint.analyses.analysis import Piece, PieceProgress, silent
 from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.analyses.kinematic_error import own_error
@@ -82,7 +82,7 @@ class _Torsion:
     ripple: float
 
 
-def joint_part(built: Built, progress: Progress) -> xr.Dataset:
+def joint_part(built: Built, progress: PieceProgress) -> xr.Dataset:
     """Natural frequencies, and the vibration by each wave of the drive's error over the driver's speed.
 
     Args:
@@ -188,7 +188,7 @@ def _mean(values: np.ndarray, weight: np.ndarray) -> float:
     return float(values @ weight / weight.sum()) if weight.sum() > 0.0 else 1.0
 
 
-def _waves(built: Built, ripple: float, progress: Progress) -> _Waves:
+def _waves(built: Built, ripple: float, progress: PieceProgress) -> _Waves:
     """Waves of the error that are not small: those of deviations, and the ripple of the teeth."""
     every = [*_of_deviations(built, progress), _of_teeth(built, ripple)]
     every.sort(key=lambda wave: -wave[2])
@@ -203,7 +203,7 @@ def _of_teeth(built: Built, ripple: float) -> tuple[str, float, float]:
     return f"passing teeth, order {order:.4g}", order, ripple
 
 
-def _of_deviations(built: Built, progress: Progress) -> list[tuple[str, float, float]]:
+def _of_deviations(built: Built, progress: PieceProgress) -> list[tuple[str, float, float]]:
     """The same of deviations of both members, at orders below half the number of teeth."""
     if not any(built.deviations):
         return []
@@ -400,7 +400,7 @@ def _unsettled(names: Sequence[str], courses: Mapping[str, np.ndarray]) -> list[
     ]
 
 
-def joint_of(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+def joint_of(built: Built, _: Piece, progress: PieceProgress) -> xr.Dataset:
     """Dataset of the part."""
     return joint_part(built, progress)
 

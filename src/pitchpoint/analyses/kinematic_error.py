@@ -10,7 +10,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.figures import error_ranges, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import Contacts
@@ -203,7 +203,7 @@ def _errors(period: _Period, added: Float[Array, "pair slice tooth phase"]) -> K
 _FOUND: WeakKeyDictionary[Built, xr.Dataset] = WeakKeyDictionary()
 
 
-def own_error(built: Built, progress: Progress) -> xr.Dataset:
+def own_error(built: Built, progress: PieceProgress) -> xr.Dataset:
     """Kinematic error by the deviations of a case, computed once for all that ask.
 
     Args:
@@ -215,7 +215,7 @@ def own_error(built: Built, progress: Progress) -> xr.Dataset:
     return _FOUND[built]
 
 
-def error_of(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+def error_of(built: Built, _: Piece, progress: PieceProgress) -> xr.Dataset:
     """Dataset of the part."""
     return own_error(built, progress)
 

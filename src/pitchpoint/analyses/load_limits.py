@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.cases.build import Built
 from pitchpoint.doubts import fails
 from pitchpoint.gears.strain_wave import MEMBERS
@@ -38,7 +38,7 @@ ESTIMATE = (
 )
 
 
-def load_limits_of(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def load_limits_of(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
     """Dataset of the part."""
     return load_limits_part(built)
 

@@ -10,7 +10,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress
 from pitchpoint.analyses.lacking import untransmitted, without_films
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
@@ -113,7 +113,7 @@ def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     return loss_map
 
 
-def at_torque(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
+def at_torque(built: Ready, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     """The map at one torque."""
     torque, (speeds, degrees) = float(piece["torque"]), map_axes(built)[1:]
     runs = []

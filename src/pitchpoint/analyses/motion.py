@@ -18,12 +18,12 @@ from pitchpoint.cases.schema import MotionTable
 from pitchpoint.contact.contacts import along
 from pitchpoint.doubts import Doubt
 from pitchpoint.dynamics.bodies import Body, Support, across, bearing_forces, motor
-from pitchpoint.dynamics.excitation import Waves
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.excitation import ErrorOrders
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.modes import Modes, along_action, mean_stiffness, modes
 from pitchpoint.dynamics.passage import passage, tabulated
 from pitchpoint.dynamics.registry import CONTACT_LAWS
-from pitchpoint.dynamics.right_hand_side import Moving
+from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.dynamics.steady_motion import Motion, film, periodic_motion
 from pitchpoint.dynamics.system import modal_damping, reduced_mass
 from pitchpoint.dynamics.transient import Transient, transient
@@ -73,7 +73,7 @@ ACCOUNT = ("friction", "rolling", "damping")
 
 
 @lru_cache(maxsize=2)
-def moving_of(built: Built) -> tuple[Moving, Modes]:
+def moving_of(built: Built) -> tuple[MovingMesh, Modes]:
     """Mesh and bodies of a case that asks for their motion, and their modes.
 
     Losses beside the teeth are left out. The damping along the line of action is that which gives the
@@ -94,7 +94,7 @@ def moving_of(built: Built) -> tuple[Moving, Modes]:
     inertia = np.array(vibrating.inertia, float)
     if motion.prescribed_speed:
         inertia[_ends(built)[0]] = np.inf
-    moving = Moving(
+    moving = MovingMesh(
         design=design,
         operation=built.operation,
         models=built.models[0],
@@ -106,7 +106,9 @@ def moving_of(built: Built) -> tuple[Moving, Modes]:
         passage=pair_passage,
         law=CONTACT_LAWS[built.case.models.tooth_contact],
         backlash=vibrating.backlash,
-        error=Waves(vibrating.error, array([*map(float, vibrating.orders)]), vibrating.error_phase),
+        error=ErrorOrders(
+            vibrating.error, array([*map(float, vibrating.orders)]), vibrating.error_phase
+        ),
     )
     damping, fastest = _mean(moving, vibrating.damping_ratio)
     if motion.mesh_damping is not None:
@@ -127,7 +129,7 @@ def _asked(built: Built) -> MotionTable:
 
 
 @program
-def _mean(moving: Moving, ratio: Array) -> tuple[Array, Array]:
+def _mean(moving: MovingMesh, ratio: Array) -> tuple[Array, Array]:
     """Damping along the line of action, and the fastest sliding for a unit speed."""
     assert moving.passage is not None
     mesh = moving.design.mesh
@@ -142,7 +144,7 @@ def _mean(moving: Moving, ratio: Array) -> tuple[Array, Array]:
 
 
 @program
-def _modes(moving: Moving) -> Modes:
+def _modes(moving: MovingMesh) -> Modes:
     return modes(moving)
 
 
@@ -191,7 +193,7 @@ def _contacts(design: Any) -> Any:
     return design.mesh.contacts(jnp.asarray(0.0))
 
 
-def _grid(built: Built, own: Modes, slowest: float, key: str) -> Grid:
+def _grid(built: Built, own: Modes, slowest: float, key: str) -> PeriodGrid:
     """Grid for the highest natural frequency over the mesh frequency, and for the errors.
 
     Twice as fine as for a vibration: friction turns where a pair passes the pitch point.
@@ -206,7 +208,7 @@ def _grid(built: Built, own: Modes, slowest: float, key: str) -> Grid:
             key=key,
         )
     orders = [float(error.order) for error in built.case.dynamics.profile_error]
-    return Grid.resolving(2.0 * max(ratio, *orders, 0.0))
+    return PeriodGrid.resolving(2.0 * max(ratio, *orders, 0.0))
 
 
 # ---- steady motion
@@ -214,11 +216,11 @@ def _grid(built: Built, own: Modes, slowest: float, key: str) -> Grid:
 
 @fast_program
 def _steady(
-    moving: Moving,
+    moving: MovingMesh,
     speed: Float[Array, ""],
     start: Float[Array, " state"],
     law: FilmThickness,
-    grid: Grid,
+    grid: PeriodGrid,
     cycles: int,
 ) -> dict[str, Array]:
     """Everything that is kept of a steady motion, by name."""
@@ -228,7 +230,7 @@ def _steady(
     return {**_courses(scaled, motion, law), **_figures(scaled, motion, cycles), **figures}
 
 
-def _courses(moving: Moving, found: Motion, law: FilmThickness) -> dict[str, Array]:
+def _courses(moving: MovingMesh, found: Motion, law: FilmThickness) -> dict[str, Array]:
     """Courses over the period: nodes in the last axis."""
     act = found.found
     force = jnp.maximum(act.force, 0.0)
@@ -255,7 +257,7 @@ def _courses(moving: Moving, found: Motion, law: FilmThickness) -> dict[str, Arr
     return {name: values.reshape(*values.shape[:-2], nodes) for name, values in courses.items()}
 
 
-def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
+def _figures(moving: MovingMesh, found: Motion, cycles: int) -> dict[str, Array]:
     """Figures of the whole period."""
     size = len(moving.design.mesh.coordinates)
     error, energy = found.transmission_error, found.energy
@@ -639,7 +641,7 @@ def start_up_part(built: Built) -> xr.Dataset:
     )
 
 
-def _code_of_start(moving: Moving, found: Transient) -> Code:
+def _code_of_start(moving: MovingMesh, found: Transient) -> Code:
     """How a start ended; a linear contact that pulls is none that gears have."""
     code = Code(int(found.status.code))
     pulls = moving.law.linear and np.any(found.found.force < 0.0)
@@ -672,7 +674,7 @@ def _speeds(built: Built, rates: np.ndarray) -> dict[str, Any]:
     return {"body_speed": (("body", "time"), rates * np.sign(nominal))}
 
 
-def _started(built: Built, moving: Moving) -> tuple[Moving, np.ndarray]:
+def _started(built: Built, moving: MovingMesh) -> tuple[MovingMesh, np.ndarray]:
     """What moves under the torques of the start, and the rates of all coordinates there."""
     start_up = _asked(built).start_up
     assert start_up is not None

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress
 from pitchpoint.analyses.caveats import AtWork, why_outside
 from pitchpoint.analyses.figures import (
     CONTACT,
@@ -39,7 +39,7 @@ DIFFERS = 1.5
 """Mean friction by two laws in their range, over one another, from which on it is told."""
 
 
-def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
+def _operation(built: Ready, _: Piece, __: PieceProgress) -> xr.Dataset:
     data = summaries([built], built.models, beside([built]), title="operating point")
     if built.rates_bearings:
         from pitchpoint.analyses import bearing_life  # few cases ask for it
@@ -105,7 +105,7 @@ def _of_mesh(mesh: Built, under: Sequence[Models]) -> Sequence[str]:
     return implausible(AtWork(mesh, [models.law for models in under], profiles(mesh, under)))
 
 
-def _laws(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
+def _laws(built: Ready, _: Piece, __: PieceProgress) -> xr.Dataset:
     """Every law of the library in its range at the operating point: how far they themselves disagree.
 
     The attribute `outside` lists the others and the laws of the case that are out of theirs, each with
@@ -198,7 +198,7 @@ def _why_outside(built: Ready, under: Sequence[Any]) -> list[list[str]]:
     return reasons_by_law
 
 
-def _back_driving(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
+def _back_driving(built: Ready, _: Piece, __: PieceProgress) -> xr.Dataset:
     """The loaded member drives at its own speed and carries the same power to the former driver."""
     back = built.backwards
     data = summaries([back], back.models, {}, title="back-driving", may_lock=True)

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.torsion import mesh_slopes
 from pitchpoint.cases.built_drive import BuiltTrain
 from pitchpoint.cases.schema import TrainTable
@@ -150,7 +150,7 @@ def _equivalents(built: BuiltTrain) -> PinEquivalents | None:
     return PinEquivalents(sun, ring, normal, base_helix, float(at_ring / at_sun))
 
 
-def sharing_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
+def sharing_of(built: BuiltTrain, _: Piece, __: PieceProgress) -> xr.Dataset:
     """Dataset of the part, of a set whose pins are out of place.
 
     A set that is a stage shares the load that it has without losses behind it, as it is rated. From the

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Piece, Progress, has_key, silent
+from pitchpoint.analyses.analysis import Piece, PieceProgress, has_key, silent
 from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.inspection import CASES, inspection_part
 from pitchpoint.cases.build import MemberMotion
@@ -37,7 +37,7 @@ class _Moving(NamedTuple):
     energy: float
 
 
-def reflected_of(built: BuiltDrive, _: Piece, __: Progress) -> xr.Dataset:
+def reflected_of(built: BuiltDrive, _: Piece, __: PieceProgress) -> xr.Dataset:
     """Dataset of the part.
 
     From the kinetic energy of all bodies, J_red = Σ J (ω/ω_end)²; the backlash of a stage counts at the

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import array
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
 from pitchpoint.analyses.lacking import untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.cases.built_drive import Ready
@@ -233,7 +233,7 @@ def _free(built: Ready) -> str | None:
     return untransmitted(built) or reason or without_formula(built)
 
 
-def _computed(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
+def _computed(built: Ready, _: Piece, __: PieceProgress) -> xr.Dataset:
     return running_part(built)
 
 

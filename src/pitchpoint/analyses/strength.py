@@ -12,7 +12,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
 from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.analyses.lacking import no_pins
 from pitchpoint.cases.build import Built
@@ -85,7 +85,7 @@ def _unrated(built: Ready) -> str | None:
     return None if _rated(built) else "ISO 6336 rates pairs of cylindrical gears, not these"
 
 
-def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
+def _strength(built: Ready, _: Piece, __: PieceProgress) -> xr.Dataset:
     """The rating of a pair, or of those stages of a drive that are pairs of cylindrical gears."""
     rated, on_sharing = _with_sharing(built)
     pair_ratings = _ratings([mesh for _, mesh in rated])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject, Unasked
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Several, Subject, Unasked
 from pitchpoint.analyses.figures import by_law, json_figures
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import alone, beside, joined, summaries
@@ -21,7 +21,7 @@ from pitchpoint.errors import Complaints, InputError, shorten
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.units import si_unit
 
@@ -101,7 +101,7 @@ class _Planned:
         size = 1 if any(key.startswith("formulas.") for key in self.changes[0]) else PIECE
         return [{"first": n, "stop": min(n + size, count)} for n in range(0, count, size)]
 
-    def compute(self, _: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
+    def compute(self, _: Ready, piece: Piece, progress: PieceProgress) -> xr.Dataset:
         """Figures of a range of points."""
         changes = self.changes[piece["first"] : piece["stop"]]
         points = self.points(changes)
@@ -160,11 +160,11 @@ def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     return {name: variable(name) for name in readings[0]}
 
 
-def _at(point: Built) -> Point:
+def _at(point: Built) -> ReadingPoint:
     """What the formulas of a publication are read at."""
     case = point.case
     vibrates = case.dynamics is not None and has(point.design.mesh, line_of_action)
-    return Point(
+    return ReadingPoint(
         gears=case.gears,
         design=point.design,
         operation=point.operation,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Progress, silent
+from pitchpoint.analyses.analysis import PieceProgress, silent
 from pitchpoint.analyses.caveats import (
     demand_convergence,
     demand_films,
@@ -87,7 +87,7 @@ def summaries(
     points: Sequence[Ready],
     under: Sequence[Models | Acting],
     extra: Mapping[str, Any],
-    progress: Progress = silent,
+    progress: PieceProgress = silent,
     *,
     title: str,
     may_lock: bool = False,
@@ -312,7 +312,7 @@ def _lost_warning(law: FrictionLaw, code: np.ndarray) -> list[Doubt]:
 
 
 def _grouped(
-    points: Sequence[Ready], models: Models | Acting, progress: Progress
+    points: Sequence[Ready], models: Models | Acting, progress: PieceProgress
 ) -> dict[str, np.ndarray]:
     """Summaries in order, points of equal static structure computed together."""
     if models.law.films is not None:
@@ -332,7 +332,7 @@ def _design(point: Ready) -> Any:
     return point.design
 
 
-def _by_films(points: Sequence[Built], law: str, progress: Progress) -> dict[str, np.ndarray]:
+def _by_films(points: Sequence[Built], law: str, progress: PieceProgress) -> dict[str, np.ndarray]:
     """Summaries of points whose films are solved, each by the choices of its own case."""
     runs = []
     for done, point in enumerate(points, 1):
@@ -343,7 +343,7 @@ def _by_films(points: Sequence[Built], law: str, progress: Progress) -> dict[str
 
 
 def profiles(
-    built: Built, under: Sequence[Models], progress: Progress | None = None
+    built: Built, under: Sequence[Models], progress: PieceProgress | None = None
 ) -> list[dict[str, np.ndarray]]:
     """The mesh cycle under each of some models; where films are solved, at the nodes of all other figures."""
     point, engaged, asperities = (built.design, built.operation), built.engaged, built.asperities

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import jax
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress
 from pitchpoint.cases.build import Built
 from pitchpoint.gears.bodies import drawing
 from pitchpoint.programs import program
@@ -13,7 +13,7 @@ from pitchpoint.results.store import dataset
 __all__ = ["TEETH", "drawing_of"]
 
 
-def _teeth(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def _teeth(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
     """What a drawing of the teeth to scale needs."""
     numbers = drawing_of(built)
     dims, labels = built.family.drawing, built.family.coordinates

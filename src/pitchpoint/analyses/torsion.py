@@ -9,7 +9,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
@@ -514,7 +514,7 @@ def kinematic_play(
     )
 
 
-def torsion_of(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
+def torsion_of(built: Ready, _: Piece, __: PieceProgress) -> xr.Dataset:
     """Dataset of the part."""
     return torsion_part(built)
 

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.cases.built_drive import Acting, BuiltTrain
 from pitchpoint.drive.kinematics import Ends
 from pitchpoint.drive.thrusts import axial_loads
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["over_period", "train_period_of"]
 
 
-def train_period_of(built: BuiltTrain, _: Piece, __: Progress) -> xr.Dataset:
+def train_period_of(built: BuiltTrain, _: Piece, __: PieceProgress) -> xr.Dataset:
     """States of the train at the nodes of its period, under each friction law.
 
     From `train_cycle`, whose means are those of the operating point.

@@ -13,7 +13,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.build import Built
 from pitchpoint.doubts import WITHHELD, Doubt
 from pitchpoint.dynamics.excitation import Excitation
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.sweep import speed_sweep
@@ -226,7 +226,7 @@ def _sweep(
     driven: Excitation,
     backlash: Array,
     periods: Float[Array, " speed"],
-    grid: Grid,
+    grid: PeriodGrid,
     parting: bool,
 ) -> dict[str, Array]:
     def figures(one: Response) -> dict[str, Array]:
@@ -276,7 +276,7 @@ def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str
 
 
 @program
-def _read(parts: Excited, grid: Grid, parting: bool, reading: Reading) -> dict[str, Array]:
+def _read(parts: Excited, grid: PeriodGrid, parting: bool, reading: Reading) -> dict[str, Array]:
     def one(
         stiffness: MeshStiffness, moved: System, driven: Excitation, backlash: Array
     ) -> dict[str, Array]:
@@ -301,7 +301,9 @@ def _torques(built: Built) -> list[float]:
     return list(dynamics.torques or dynamics.forces or (built.case.operation.load,))
 
 
-def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation.speed") -> Grid:
+def _grid(
+    parts: Sequence[Excited], orders: Sequence[int], key: str = "operation.speed"
+) -> PeriodGrid:
     """Grid for the highest of natural frequencies and profile errors, over their mesh frequency."""
     ratios = [float(_ratio(stiffness, moved)) for stiffness, moved, *_ in parts]
     lost = sum(np.isnan(stiffness.single).any() for stiffness, *_ in parts)
@@ -318,7 +320,7 @@ def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation
             'which a run without [dynamics] and with load_sharing = "from_stiffness" gives',
             key=key,
         )
-    return Grid.resolving(max(ratio, *orders, 0.0))
+    return PeriodGrid.resolving(max(ratio, *orders, 0.0))
 
 
 def _moduli(built: Built) -> list[str]:

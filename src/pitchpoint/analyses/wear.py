@@ -5,7 +5,7 @@ from typing import Any
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.gears.mesh import has
@@ -36,13 +36,13 @@ def _unasked(built: Built) -> str | None:
     return Unasked("the case has no [wear]") if built.case.wear is None else None
 
 
-def _compute(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+def _compute(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     from pitchpoint.analyses.wear_course import wear_part
 
     return wear_part(built, piece, progress)
 
 
-def _further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+def _further(built: Built, last: xr.Dataset, progress: PieceProgress) -> xr.Dataset | None:
     from pitchpoint.analyses.wear_course import further
 
     return further(built, last, progress)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import array
-from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import HARDNESS, WEAR_LAND, WearTable
 from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
@@ -33,7 +33,7 @@ from pitchpoint.wear.history import ROOM, Cells, Start, WearModel, as_new, one_t
 from pitchpoint.wear.march import FIRST, End, Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
 from pitchpoint.wear.stages import run_in_end, severe_start
-from pitchpoint.wear.teeth import Tips, backlash_growth, half_teeth, tips_of
+from pitchpoint.wear.teeth import TipThickness, backlash_growth, half_teeth, tips_of
 
 __all__ = ["asked", "further", "joined", "wear_part"]
 
@@ -65,7 +65,7 @@ class _Course(NamedTuple):
     start: Start
     cells: Cells
     model: WearModel
-    tips: Tips | None
+    tips: TipThickness | None
 
 
 @lru_cache(maxsize=2)
@@ -95,7 +95,7 @@ def _rate(built: Built, depth: np.ndarray, *, coarser: bool = False) -> Rate:
     return Rate.of(one_turn(*inputs, array(seen)))
 
 
-def wear_part(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+def wear_part(built: Built, _: Piece, progress: PieceProgress) -> xr.Dataset:
     """Flanks as new."""
     progress(0, "flanks as new")
     _check_tips(built)
@@ -152,7 +152,7 @@ def _play(built: Built, depth: np.ndarray, *, pitch_line: bool = False) -> float
     )
 
 
-def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+def further(built: Built, last: xr.Dataset, progress: PieceProgress) -> xr.Dataset | None:
     """Flanks one step after those of the last piece; None at the end."""
     before = _reached(last)
     if before.end:

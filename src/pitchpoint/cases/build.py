@@ -19,15 +19,15 @@ from pitchpoint.cases.schema import (
     FORCE,
     TEMPERATURE,
     TORQUE,
-    Case,
+    CaseFile,
     Choices,
     Dynamics,
     FilmTable,
     Loss,
     Oil,
     Operating,
+    RoughnessTable,
     StageTable,
-    Surface,
     bearings_of,
 )
 from pitchpoint.cases.solids import (
@@ -211,7 +211,7 @@ class Built:
         fitted: temperatures between which the named set of losses was fitted [K]; None without one.
     """
 
-    case: Case
+    case: CaseFile
     design: Design
     operation: Operation
     models: tuple[Models, ...]
@@ -656,7 +656,7 @@ class Built:
 _ENDS: tuple[End, ...] = ("driver", "loaded")
 
 
-def ends_of(case: Case, mesh: Mesh) -> tuple[float, float]:
+def ends_of(case: CaseFile, mesh: Mesh) -> tuple[float, float]:
     """Rates of the driver and of the loaded member of a mesh."""
     ends = jax.device_get(_ends(case, mesh))
     motion = np.asarray(nominal_motion(jax.device_get(mesh), *ends))
@@ -664,7 +664,7 @@ def ends_of(case: Case, mesh: Mesh) -> tuple[float, float]:
     return driver_rate, loaded_rate
 
 
-def _ends(case: Case, mesh: Mesh) -> tuple[jax.Array, jax.Array]:
+def _ends(case: CaseFile, mesh: Mesh) -> tuple[jax.Array, jax.Array]:
     """Who drives and who is loaded, see `mesh_ends`."""
     driver, gears = case.operation.driver, case.gears
     return mesh_ends(mesh, driver, gears.loaded_member(driver), gears.members)
@@ -675,7 +675,7 @@ def operation_at(point: Operating) -> Operation:
     return Operation(array(point.load), array(point.speed), array(point.temperature))
 
 
-def build(case: Case, document: Document, own: ChosenLaws = ()) -> Built:
+def build(case: CaseFile, document: Document, own: ChosenLaws = ()) -> Built:
     """Design and operating point of a case.
 
     Raises:
@@ -718,7 +718,7 @@ def build(case: Case, document: Document, own: ChosenLaws = ()) -> Built:
     return replace(built, told=(*doubts, *of_materials, *_left_out(built), *_extrapolated(built)))
 
 
-def gears_of(case: Case, wrong: Complaints) -> tuple[Mesh, tuple[str, ...]] | None:
+def gears_of(case: CaseFile, wrong: Complaints) -> tuple[Mesh, tuple[str, ...]] | None:
     """Mesh of a case and what is to be said of it; None, with a complaint, where it cannot be built."""
     return wrong.under("gears").tried(built_gears, case.gears, int(case.models.slices))
 
@@ -759,7 +759,7 @@ def _sound(model: TypeAdapter[T], table: Any) -> T | None:
         return None
 
 
-def _worn(case: Case, gears: tuple[Mesh, tuple[str, ...]]) -> tuple[Mesh, tuple[str, ...]]:
+def _worn(case: CaseFile, gears: tuple[Mesh, tuple[str, ...]]) -> tuple[Mesh, tuple[str, ...]]:
     """Gears with the wear of their flanks, and what is to be said of them."""
     from pitchpoint.cases.worn import with_wear
 
@@ -769,7 +769,7 @@ def _worn(case: Case, gears: tuple[Mesh, tuple[str, ...]]) -> tuple[Mesh, tuple[
 
 
 def _check_parts(
-    case: Case,
+    case: CaseFile,
     wrong: Complaints,
     oil: lubricants.LubricantRecord | None,
     mesh: Mesh | None,
@@ -885,7 +885,7 @@ def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:
 
 
 def _models(
-    case: Case, own: ChosenLaws, used: Sequence[SolidInUse], mesh: Mesh
+    case: CaseFile, own: ChosenLaws, used: Sequence[SolidInUse], mesh: Mesh
 ) -> tuple[Models, ...]:
     """Models under each law of the case, or under those among which the user's own are."""
     laws = [
@@ -897,7 +897,7 @@ def _models(
     return _under_formulas(tuple(laws), case.models)
 
 
-def _beside_film(own: FrictionLaw, case: Case) -> FrictionLaw:
+def _beside_film(own: FrictionLaw, case: CaseFile) -> FrictionLaw:
     """A law of the user's own, with the film law of the case where it asks for a film."""
     wanted, _ = arguments(own.function)
     if own.film is not None or not {*FILM} & {*wanted}:
@@ -961,7 +961,7 @@ def tooth_size(mesh: Mesh) -> float | None:
     return None if module is None else float(module)
 
 
-def _law(name: str, case: Case, used: Sequence[SolidInUse], mesh: Mesh) -> FrictionLaw:
+def _law(name: str, case: CaseFile, used: Sequence[SolidInUse], mesh: Mesh) -> FrictionLaw:
     """A friction law; one that solves films does so by the choices of the case."""
     law = FRICTION[name]
     if law.films is None:
@@ -991,7 +991,7 @@ _WHY_NOT: Mapping[Shape, str] = {
 """What contacts of a shape are not solved by."""
 
 
-def _check_shapes(case: Case, mesh: Mesh, own: ChosenLaws, wrong: Complaints) -> None:
+def _check_shapes(case: CaseFile, mesh: Mesh, own: ChosenLaws, wrong: Complaints) -> None:
     """Complains of a film, a rolling law or a user's own law that hold for contacts of another shape."""
     models = case.models
     chosen: dict[str, Law] = {
@@ -1015,7 +1015,7 @@ def _check_shapes(case: Case, mesh: Mesh, own: ChosenLaws, wrong: Complaints) ->
         wrong.add(InputError(message, key="models.elliptic_contact"))
 
 
-def _check_hardness(case: Case, used: Sequence[SolidInUse]) -> None:
+def _check_hardness(case: CaseFile, used: Sequence[SolidInUse]) -> None:
     """InputError if a law asks for the hardness of a gear whose material has none."""
     law = ASPERITY_LOAD[case.models.asperity_load]
     if "hardness" not in arguments(law.function)[0]:
@@ -1029,7 +1029,7 @@ def _check_hardness(case: Case, used: Sequence[SolidInUse]) -> None:
             )
 
 
-def _check_models(case: Case, mesh: Mesh, wrong: Complaints) -> None:
+def _check_models(case: CaseFile, mesh: Mesh, wrong: Complaints) -> None:
     """Complains of models of the case that do not hold for these gears."""
     models = case.models
     for place, choice in enumerate(models.friction):
@@ -1050,7 +1050,7 @@ def _check_models(case: Case, mesh: Mesh, wrong: Complaints) -> None:
         wrong.tried(_check_joint, case, case.dynamics)
 
 
-def _check_map(case: Case, mesh: Mesh) -> None:
+def _check_map(case: CaseFile, mesh: Mesh) -> None:
     """InputError for a loss map whose friction is that of films between teeth with gaps."""
     solved = [
         choice.name for choice in case.models.friction if FRICTION[choice.name].films is not None
@@ -1063,7 +1063,7 @@ def _check_map(case: Case, mesh: Mesh) -> None:
         )
 
 
-def _check_heat(case: Case, mesh: Mesh) -> None:
+def _check_heat(case: CaseFile, mesh: Mesh) -> None:
     """InputError for gears that a model of the tooth temperature is not for."""
     missing = (
         "a pitch point, which these gears do not have"
@@ -1079,7 +1079,7 @@ def _check_heat(case: Case, mesh: Mesh) -> None:
         raise InputError(f"the heat of the teeth {reason}", key="models.friction")
 
 
-def _solved_first(case: Case) -> str | None:
+def _solved_first(case: CaseFile) -> str | None:
     """What is wrong with a first friction law that solves films, where a formula is asked for."""
     formula = FRICTION[case.models.friction[0].name]
     if formula.films is None:
@@ -1090,7 +1090,7 @@ def _solved_first(case: Case) -> str | None:
     )
 
 
-def _check_masses(case: Case, mesh: Mesh) -> None:
+def _check_masses(case: CaseFile, mesh: Mesh) -> None:
     """InputError for a vibration if a body that travels has no mass, or a moment of inertia."""
     travelling = [name for name in case.gears.members if name not in case.gears.shafts]
     if not travelling:
@@ -1109,7 +1109,7 @@ def _check_masses(case: Case, mesh: Mesh) -> None:
         )
 
 
-def _check_motion(case: Case, mesh: Mesh) -> None:
+def _check_motion(case: CaseFile, mesh: Mesh) -> None:
     """InputError for gears whose motion with friction cannot be computed."""
     assert case.dynamics is not None
     motion = case.dynamics.motion
@@ -1147,7 +1147,7 @@ def _check_motion(case: Case, mesh: Mesh) -> None:
         )
 
 
-def _check_joint(case: Case, asked: Dynamics) -> None:
+def _check_joint(case: CaseFile, asked: Dynamics) -> None:
     """InputError for what the torsional vibration of a joint does not take, or lacks."""
     if not case.gears.transmits:
         raise InputError(
@@ -1276,7 +1276,7 @@ def _built_oil(record: lubricants.LubricantRecord) -> lubricants.Lubricant:
     return record.build()
 
 
-def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
+def _yielding(case: CaseFile, mesh: Mesh) -> tuple[str, ...]:
     """What the model of tooth compliance does not cover, where it is used."""
     sharing = LOAD_SHARING[case.models.load_sharing]
     if mesh.body.couples or (case.dynamics is None and not sharing.by_stiffness):
@@ -1438,7 +1438,7 @@ def _check_temperature(temperature: float, oil: lubricants.LubricantRecord, key:
 
 
 @remembering
-def _roughness(surface: Surface) -> Roughness:
+def _roughness(surface: RoughnessTable) -> Roughness:
     if surface.ra is not None and surface.rq is not None:
         (ra_1, ra_2), (rq_1, rq_2) = surface.ra, surface.rq
         return Roughness(ra_1=ra_1, ra_2=ra_2, rq_1=rq_1, rq_2=rq_2)

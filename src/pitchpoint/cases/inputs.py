@@ -15,7 +15,7 @@ from pitchpoint.cases.height_maps import MEMBERS, digest_of
 from pitchpoint.cases.loss_sets import SET, marks_of
 from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.schema import (
-    Case,
+    CaseFile,
     DriveCase,
     FrictionChoice,
     Study,
@@ -320,7 +320,7 @@ def _row(
 
 
 def _rows(
-    case: Case | DriveCase,
+    case: CaseFile | DriveCase,
     document: Document,
     table: str,
     following: Mapping[str, Any] | None = None,

@@ -11,7 +11,7 @@ from pydantic_core import core_schema
 
 from pitchpoint.cases.document import DIAMETRAL_PITCH, MARKS, STAGES, STATUSES
 from pitchpoint.cases.loss_sets import NOT_THERE, SET, SET_TOLD
-from pitchpoint.cases.schema import Case, DriveCase, measure_of, usual_words
+from pitchpoint.cases.schema import CaseFile, DriveCase, measure_of, usual_words
 from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.tables import alternatives, sentences
 
@@ -48,8 +48,8 @@ def case_schema() -> dict[str, Any]:
     defs: dict[str, Any] = {}
     properties: dict[str, Any] = {}
     wholes = []
-    models = dict(entry for model in (Case, DriveCase) for entry in _tables(model))
-    for model in (Case, DriveCase):
+    models = dict(entry for model in (CaseFile, DriveCase) for entry in _tables(model))
+    for model in (CaseFile, DriveCase):
         schema = model.model_json_schema(schema_generator=_Names, mode="validation")
         defs |= schema.pop(_DEFS)
         if "gears" not in schema["required"]:  # those of a planetary set stand for stages
@@ -61,10 +61,10 @@ def case_schema() -> dict[str, Any]:
         _plain(table)
         _loosen(table, models[name])
     parts = {f"{name}{_PART}": _partial(table) for name, table in defs.items()}
-    for model in (DriveCase, Case):
+    for model in (DriveCase, CaseFile):
         properties |= parts[f"{model.__name__}{_PART}"]["properties"]
     gears = [
-        parts[f"{model.__name__}{_PART}"]["properties"]["gears"] for model in (Case, DriveCase)
+        parts[f"{model.__name__}{_PART}"]["properties"]["gears"] for model in (CaseFile, DriveCase)
     ]
     properties["gears"] = {"description": gears[0]["description"], "anyOf": gears}
     variant = {"type": "object", "properties": properties, "additionalProperties": False}

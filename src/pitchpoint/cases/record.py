@@ -30,7 +30,7 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.plain_files import content
 from pitchpoint.programs import surroundings
 from pitchpoint.results.store import write_text
-from pitchpoint.results.target_rows import Row
+from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.results.variable import End
 
 __all__ = [
@@ -202,7 +202,7 @@ def _written(value: Any, kind: Any) -> Any:
     return f"{value!r} {unit}" if unit and isinstance(value, float) else value
 
 
-class Law(_Kept):
+class LawRecord(_Kept):
     """A friction law in use."""
 
     name: str
@@ -210,7 +210,7 @@ class Law(_Kept):
     note: str
 
 
-class Model(Law):
+class Model(LawRecord):
     """A model in use for one effect beside friction."""
 
     effect: str
@@ -318,7 +318,7 @@ class Manifest(_Kept):
     implausible: list[str] = []
     warnings: list[str]
     briefs: list[str] = []
-    laws: list[Law]
+    laws: list[LawRecord]
     models: list[Model]
     designation: str = ""
     family: str
@@ -338,7 +338,7 @@ class Manifest(_Kept):
     oil: str
     sources: list[Source]
     issues: list[PrintedIssue]
-    rows: list[Row]
+    rows: list[TargetRow]
     parts: list[Name]
     finished: bool
 

@@ -83,7 +83,7 @@ from pitchpoint.wear.registry import WEAR_LAWS
 
 __all__ = [
     "UNRATED",
-    "Case",
+    "CaseFile",
     "DriveCase",
     "StageTable",
     "bearings_of",
@@ -371,7 +371,7 @@ class Oil(Table):
         return self
 
 
-class Surface(Table):
+class RoughnessTable(Table):
     """Roughness: Ra, Rq or both of one flank (taken for both) or of each, or the composite Rq.
 
     With both, each law takes its own; with one, the other follows for Gaussian heights.
@@ -385,7 +385,7 @@ class Surface(Table):
     """Composite Rq of both flanks, sqrt(Rq1^2 + Rq2^2), in place of ra and rq."""
 
     @model_validator(mode="after")
-    def _enough(self) -> "Surface":
+    def _enough(self) -> "RoughnessTable":
         stated = [name for name in ("ra", "rq", "composite_rq") if getattr(self, name) is not None]
         if not stated or ("composite_rq" in stated and len(stated) > 1):
             raise InputError(
@@ -1664,7 +1664,7 @@ class Output(Table):
     """Unit by kind of quantity; usual ones unless given."""
 
 
-class Case(Table):
+class CaseFile(Table):
     """A whole case file, one variant of it."""
 
     title: Text = ""
@@ -1679,7 +1679,7 @@ class Case(Table):
     """Materials of both gears; steel unless given."""
     lubricant: Oil
     """Oil, or base oil of a grease, by name or by value."""
-    roughness: Surface
+    roughness: RoughnessTable
     """Roughness of the flanks."""
     operation: Operating
     """Operating point: load, speed, temperature, and what drives."""
@@ -1722,7 +1722,7 @@ class Case(Table):
         return self.gears.members
 
     @model_validator(mode="after")
-    def _of_family(self) -> "Case":
+    def _of_family(self) -> "CaseFile":
         """What is not given stands as is usual for the family; bodies are those that it has."""
         wrong = Complaints()
         wrong.tried(_check_aims, self.targets, self.studies, self.source)
@@ -1777,7 +1777,7 @@ class StageTable(Table):
     """Materials of its gears; those of the drive unless given."""
     lubricant: Oil | None = None
     """Oil of the stage; that of the drive unless given."""
-    roughness: Surface | None = None
+    roughness: RoughnessTable | None = None
     """Roughness of its flanks; that of the drive unless given."""
     models: Choices = Choices()
     """Laws of the stage, key by key; those of the drive unless given."""
@@ -1908,7 +1908,7 @@ class DriveCase(Table):
     """Materials of both gears; steel unless given."""
     lubricant: Oil
     """Oil, or base oil of a grease, by name or by value."""
-    roughness: Surface
+    roughness: RoughnessTable
     """Roughness of the flanks."""
     operation: Operating
     """Operating point: load of the output, speed of the input, temperature."""
@@ -2222,7 +2222,7 @@ def _given(table: Table, key: str) -> bool:
     return key in table.model_fields_set
 
 
-def _check_load(case: Case | DriveCase, gears: GearsTable | PlanetaryGears) -> None:
+def _check_load(case: CaseFile | DriveCase, gears: GearsTable | PlanetaryGears) -> None:
     """InputError unless the load is given that the driven member takes, and no table asks for the other."""
     point, wanted = case.operation, gears.load
     unwanted = "force" if wanted == "torque" else "torque"
@@ -2238,7 +2238,7 @@ def _check_load(case: Case | DriveCase, gears: GearsTable | PlanetaryGears) -> N
         message = f"{gears.carries}; give {name.replace(unwanted, wanted)} in place of {name}"
         raise InputError(message, key=key)
     if getattr(point, wanted) is None:
-        missing = f"is missing{_needed(('operation', wanted), Case)}"
+        missing = f"is missing{_needed(('operation', wanted), CaseFile)}"
         raise InputError(missing, key=f"operation.{wanted}")
     if not gears.transmits and case.loss_map is not None:
         raise InputError(
@@ -2248,7 +2248,7 @@ def _check_load(case: Case | DriveCase, gears: GearsTable | PlanetaryGears) -> N
         )
 
 
-def _check_quadrants(case: Case | DriveCase) -> None:
+def _check_quadrants(case: CaseFile | DriveCase) -> None:
     """InputError unless a duty cycle has its map, and a map of four quadrants speeds between its ends."""
     loss_map = case.loss_map
     if case.duty is not None and (loss_map is None or loss_map.quadrants != 4):
@@ -2268,7 +2268,7 @@ def _check_quadrants(case: Case | DriveCase) -> None:
         )
 
 
-def _check_formulas(case: Case) -> None:
+def _check_formulas(case: CaseFile) -> None:
     """InputError if inputs of formulas are given to a case whose source has none."""
     if case.formulas is not None and case.source != (source := _SOURCE_OF[type(case.formulas)]):
         raise InputError(
@@ -2278,7 +2278,7 @@ def _check_formulas(case: Case) -> None:
         )
 
 
-def _check_meant(case: Case) -> None:
+def _check_meant(case: CaseFile) -> None:
     """InputError if a model is chosen that means nothing for the gears."""
     for key, why in case.gears.meaningless.items():
         usual = Choices.model_fields[key].default
@@ -2287,7 +2287,7 @@ def _check_meant(case: Case) -> None:
             raise InputError(f"{why}; leave it at {allowed}", key=f"models.{key}")
 
 
-def _check_driver(case: Case) -> None:
+def _check_driver(case: CaseFile) -> None:
     """InputError if the member that is to drive is fixed, or none of these gears."""
     driver, gears = case.operation.driver, case.gears
     if _given(case.operation, "driver") and driver not in gears.drivers:
@@ -2385,7 +2385,7 @@ def _out_of_place(body: str, one: Loss, others: Sequence[Loss]) -> tuple[str, st
     return None
 
 
-def validate(document: Document) -> Case | DriveCase:
+def validate(document: Document) -> CaseFile | DriveCase:
     """Case out of a document.
 
     Raises:
@@ -2394,7 +2394,7 @@ def validate(document: Document) -> Case | DriveCase:
     """
     document = with_meshes(document)
     if STAGES not in document.tree:
-        return validated(Case, document)
+        return validated(CaseFile, document)
     of_set = is_planetary(document.tree)
     for key, why in (_OF_SETS if of_set else _OF_ONE_MESH).items():
         if key in document.tree:
@@ -2419,9 +2419,9 @@ def is_planetary(tree: Mapping[str, Any]) -> bool:
     return isinstance(gears, Mapping) and gears.get("family") == PLANETARY
 
 
-def form_of(tree: Mapping[str, Any]) -> "type[Case] | type[DriveCase]":
+def form_of(tree: Mapping[str, Any]) -> "type[CaseFile] | type[DriveCase]":
     """The tables that a case has, of one mesh or of several."""
-    return DriveCase if STAGES in tree or is_planetary(tree) else Case
+    return DriveCase if STAGES in tree or is_planetary(tree) else CaseFile
 
 
 _OF_ONE_MESH = {
@@ -2530,7 +2530,7 @@ def _with_materials(meshes: list[dict[str, Any]], document: Document) -> list[di
     ]
 
 
-Whole = TypeVar("Whole", Case, DriveCase)
+Whole = TypeVar("Whole", CaseFile, DriveCase)
 
 
 def validated(model: type[Whole], document: Document) -> Whole:
@@ -2593,7 +2593,7 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
 
 @cache
 def _quantity_anywhere(key: str) -> Quantity | None:
-    return _quantity(key, None, [Case, DriveCase])
+    return _quantity(key, None, [CaseFile, DriveCase])
 
 
 def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | None:
@@ -2655,7 +2655,7 @@ def _check_stage(key: str, stages: Any) -> None:
         raise _no_stage(inside[0], stages).at(key=key)
 
 
-def keys(table: type[BaseModel] = Case) -> Iterator[str]:
+def keys(table: type[BaseModel] = CaseFile) -> Iterator[str]:
     """Dotted keys that take one value or a list, those of every family and form of a table."""
     for name, info in table.model_fields.items():
         inner, kind = alternatives(info.annotation), get_origin(info.annotation)

@@ -10,12 +10,12 @@ import numpy as np
 from pitchpoint._jax import array
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.remembered import remembering
-from pitchpoint.cases.schema import Case, Materials, SolidValues
+from pitchpoint.cases.schema import CaseFile, Materials, SolidValues
 from pitchpoint.doubts import GUESSED, LEFT_OUT, REMARKED, Doubt, fails
 from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
 from pitchpoint.efficiency.tooth_temperature import modulus_at
-from pitchpoint.efficiency.warm_teeth import Heated
+from pitchpoint.efficiency.warm_teeth import ToothHeating
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.materials import solids
@@ -190,7 +190,7 @@ def surrounded(used: Used, temperature: float) -> Used:
     return gear_1, gear_2
 
 
-def heated(case: Case, design: Design, used: Used, found: Mapping[str, float]) -> Used:
+def heated(case: CaseFile, design: Design, used: Used, found: Mapping[str, float]) -> Used:
     """Materials with plastic gears at the temperature of their tooth roots.
 
     The tooth yields most in its root and body, so the temperature there sets its modulus.
@@ -211,7 +211,7 @@ def heated(case: Case, design: Design, used: Used, found: Mapping[str, float]) -
     return gear_1, gear_2
 
 
-def heating(case: Case, used: Used) -> Heated:
+def heating(case: CaseFile, used: Used) -> ToothHeating:
     """What decides how warm the teeth of a case get.
 
     Args:
@@ -225,7 +225,7 @@ def heating(case: Case, used: Used) -> Heated:
         np.stack([np.pad(part, (0, length - len(part)), "edge") for part in parts])
         for parts in zip(*tables, strict=True)
     )
-    return Heated(
+    return ToothHeating(
         plastic=array([solid.plastic for solid in used]),
         known=array(known_at),
         moduli=array(moduli),
@@ -261,7 +261,7 @@ def datum(value: float, key: str, document: Document) -> Datum:
 
 
 def _warm(
-    case: Case, design: Design, used: Used, gear: int, found: Mapping[str, float]
+    case: CaseFile, design: Design, used: Used, gear: int, found: Mapping[str, float]
 ) -> SolidInUse:
     pair, point, gears = pitch_point(design.mesh, design.driver), case.operation, case.gears
     temperature = TOOTH_TEMPERATURE[case.models.tooth_temperature].function(

@@ -27,7 +27,7 @@ from pitchpoint.cases.schema import (
     OF_SET,
     TEMPERATURE,
     UNRATED,
-    Case,
+    CaseFile,
     DriveCase,
     Operating,
     is_planetary,
@@ -61,7 +61,7 @@ MOST_TEETH = 10_000
 
 
 def ready(
-    case: Case | DriveCase, document: Document, own: ChosenLaws = (), *, advised: bool = True
+    case: CaseFile | DriveCase, document: Document, own: ChosenLaws = (), *, advised: bool = True
 ) -> Ready:
     """A case of one mesh or of several, ready to compute.
 
@@ -74,13 +74,13 @@ def ready(
     Raises:
         InputError: see `build`; stages that do not follow each other.
     """
-    if isinstance(case, Case):
+    if isinstance(case, CaseFile):
         return _warm(case, document, own)
     with _spelt(document, advised):
         return _built(case, document, own, advised=advised)
 
 
-def _warm(case: Case, document: Document, own: ChosenLaws) -> Built:
+def _warm(case: CaseFile, document: Document, own: ChosenLaws) -> Built:
     """One mesh with its teeth as warm as their loss makes them."""
     cold = build(case, document, own)
     try:
@@ -165,7 +165,7 @@ class _Stage(NamedTuple):
     """
 
     number: int
-    case: Case | DriveCase
+    case: CaseFile | DriveCase
     document: Document
 
 
@@ -204,7 +204,7 @@ def _built(
     if case.train is None:
         alone = _following(alone, document)
         points = _points(case.operation, alone, document)
-        cases: Sequence[Case | DriveCase] = [stage.case for stage in alone]
+        cases: Sequence[CaseFile | DriveCase] = [stage.case for stage in alone]
     else:
         # Only now: a pair or a chain does not load what trains take.
         from pitchpoint.cases.trains import turning_together
@@ -261,9 +261,9 @@ def _changed(document: Document, change: Tree) -> Document:
     return replace(document, tree=tree)
 
 
-def _of_train(alone: Sequence[_Stage], document: Document) -> tuple[list[Case], list[Mesh]]:
+def _of_train(alone: Sequence[_Stage], document: Document) -> tuple[list[CaseFile], list[Mesh]]:
     """Cases and meshes of the stages of a train."""
-    cases = [stage.case for stage in alone if isinstance(stage.case, Case)]
+    cases = [stage.case for stage in alone if isinstance(stage.case, CaseFile)]
     return cases, [_mesh(stage, number, document) for number, stage in enumerate(cases, 1)]
 
 
@@ -412,7 +412,7 @@ def _following(alone: Sequence[_Stage], document: Document) -> list[_Stage]:
     for stage in alone:
         driver_rate, loaded = _turns(stage, document)
         mesh = stage.case
-        if not isinstance(mesh, Case):
+        if not isinstance(mesh, CaseFile):
             incoming *= np.sign(driver_rate * loaded)
             stages.append(stage)
             continue
@@ -420,7 +420,7 @@ def _following(alone: Sequence[_Stage], document: Document) -> list[_Stage]:
             if _open(stage):
                 stage, loaded = _turned(stage), -loaded
             elif all(
-                not isinstance(before.case, Case) or _open(before)
+                not isinstance(before.case, CaseFile) or _open(before)
                 for before in alone[: len(stages)]
             ):
                 stages = [*map(_turned, stages)]
@@ -433,19 +433,19 @@ def _following(alone: Sequence[_Stage], document: Document) -> list[_Stage]:
 
 def _open(stage: _Stage) -> bool:
     """True if the flanks of a mesh are left to the reader."""
-    assert isinstance(stage.case, Case)
+    assert isinstance(stage.case, CaseFile)
     gears = stage.case.gears
     return gears.opposed is not None and "flank" not in gears.model_fields_set
 
 
 def _turned(stage: _Stage) -> _Stage:
     """The stage with its other flanks in contact, so that all turns the other way."""
-    if not isinstance(stage.case, Case):
+    if not isinstance(stage.case, CaseFile):
         return stage
     return stage._replace(case=stage.case.model_copy(update={"gears": stage.case.gears.opposed}))
 
 
-def _against(one: Case, number: int) -> InputError:
+def _against(one: CaseFile, number: int) -> InputError:
     if one.gears.opposed is None:
         message = (
             f"these gears carry on the flanks for one sense of rotation alone, and shaft {number} turns "
@@ -459,11 +459,11 @@ def _against(one: Case, number: int) -> InputError:
     return InputError(message, key=_key(number, "gears.flank"))
 
 
-def _mesh(one: Case, number: int, document: Document) -> Mesh:
+def _mesh(one: CaseFile, number: int, document: Document) -> Mesh:
     return _in_stage(document, number, partial(_mesh_alone, one))
 
 
-def _mesh_alone(one: Case) -> Mesh:
+def _mesh_alone(one: CaseFile) -> Mesh:
     gears = gears_of(one, wrong := Complaints())
     if gears is None:
         raise wrong.error
@@ -477,7 +477,7 @@ def _turns(stage: _Stage, document: Document, *, advised: bool = False) -> tuple
         stage, document: of the drive.
         advised: see `ready`.
     """
-    if isinstance(stage.case, Case):
+    if isinstance(stage.case, CaseFile):
         return ends_of(stage.case, _mesh(stage.case, stage.number, document))
     rate = partial(_rate_of_output, stage.case, stage.document, advised=advised)
     return 1.0, _in_stage(document, stage.number, rate)
@@ -510,7 +510,7 @@ def _points(point: Operating, alone: Sequence[_Stage], document: Document) -> li
 
 def _load_of(stage: _Stage) -> str:
     """What the loaded member of a stage takes, torque or force."""
-    return stage.case.gears.load if isinstance(stage.case, Case) else "torque"
+    return stage.case.gears.load if isinstance(stage.case, CaseFile) else "torque"
 
 
 def _drive(case: DriveCase, built: Sequence[Built | BuiltTrain]) -> Drive:

@@ -10,7 +10,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import array
 from pitchpoint.cases.remembered import remembering
-from pitchpoint.cases.schema import UNRATED, Case, StrengthTable
+from pitchpoint.cases.schema import UNRATED, CaseFile, StrengthTable
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.errors import InputError
@@ -105,7 +105,7 @@ class Rated:
         return Duty(*conditions, array(time), array(engagements))
 
 
-def check_strength(case: Case, used: Used) -> None:
+def check_strength(case: CaseFile, used: Used) -> None:
     """InputError for a table that these gears have no use for, or a limit or method that does not suit them.
 
     Args:
@@ -120,7 +120,7 @@ def check_strength(case: Case, used: Used) -> None:
     _treatments(case.strength, used)
 
 
-def rated_case(case: Case, used: Used, oil: LubricantRecord, roughness: Roughness) -> Rated:
+def rated_case(case: CaseFile, used: Used, oil: LubricantRecord, roughness: Roughness) -> Rated:
     """A case as its rating takes it.
 
     Args:
@@ -176,11 +176,11 @@ def _plastic(used: Used) -> tuple[bool, bool]:
     return used[0].plastic, used[1].plastic
 
 
-def _helical(case: Case) -> bool:
+def _helical(case: CaseFile) -> bool:
     return bool(getattr(case.gears, "helix_angle", 0.0))
 
 
-def _class(table: StrengthTable, case: Case) -> tuple[int, str]:
+def _class(table: StrengthTable, case: CaseFile) -> tuple[int, str]:
     """Class of the gears by ISO 1328-1, as K_v takes it, and what is to be said of it."""
     deviations = getattr(case.gears, "deviations", None)
     drawn = getattr(deviations, "iso_class", None)
@@ -220,7 +220,7 @@ class _Toothing:
     pressure_angle: float
 
     @classmethod
-    def of(cls, case: Case, table: StrengthTable, grade: int) -> Self:
+    def of(cls, case: CaseFile, table: StrengthTable, grade: int) -> Self:
         """The toothing of a case.
 
         Args:
@@ -398,7 +398,7 @@ def _treatment(table: StrengthTable, used: SolidInUse, gear: int) -> Treatment:
     return TREATMENTS["case_hardened"]  # without limits its factors lead to no safety
 
 
-def _thinning(case: Case) -> tuple[float, float] | None:
+def _thinning(case: CaseFile) -> tuple[float, float] | None:
     """Allowances of the thinnest teeth of both gears [m]; None where the case gives none."""
     allowed = case.gears.thickness_allowances
     return None if allowed is None else allowed[1]

@@ -13,7 +13,7 @@ from pydantic.fields import FieldInfo
 
 from pitchpoint.cases.document import STAGES, Tree
 from pitchpoint.cases.loss_sets import SET
-from pitchpoint.cases.schema import Case, DriveCase, quantity_of
+from pitchpoint.cases.schema import CaseFile, DriveCase, quantity_of
 from pitchpoint.cases.wishes import no_family
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import TABLES, sample_of
@@ -141,7 +141,7 @@ def _sample(family: str) -> tuple[type[BaseModel], Tree]:
     tree = tomllib.loads(sample_of(table).read_text("utf-8"))
     tables = _MORE.get(family, {})
     tree["gears"] = {"family": name, **tree["gears"], **tables.get("gears", {})}
-    return Case, {**tree, **{key: table for key, table in tables.items() if key != "gears"}}
+    return CaseFile, {**tree, **{key: table for key, table in tables.items() if key != "gears"}}
 
 
 def _of_table(model: type[BaseModel], key: str, tree: Tree) -> Iterator[str]:

@@ -11,7 +11,7 @@ from pitchpoint._jax import jax
 from pitchpoint.cases.build import Built, drags
 from pitchpoint.cases.document import STAGES
 from pitchpoint.cases.schema import (
-    Case,
+    CaseFile,
     DriveCase,
     Operating,
     SolidValues,
@@ -76,8 +76,8 @@ def rates_of(case: DriveCase, meshes: Sequence[Mesh]) -> dict[str, float]:
 
 
 def turning_together(
-    case: DriveCase, alone: Sequence[Case], meshes: Sequence[Mesh]
-) -> tuple[list[Case], list[Operating]]:
+    case: DriveCase, alone: Sequence[CaseFile], meshes: Sequence[Mesh]
+) -> tuple[list[CaseFile], list[Operating]]:
     """Meshes of a train with the flanks that they press, and the operating point of one copy of each.
 
     Args:
@@ -128,7 +128,7 @@ def turning_together(
 
 
 def _strength(
-    one: Case, link: Link, meshings: Mapping[tuple[str, float, int], int], train: TrainTable
+    one: CaseFile, link: Link, meshings: Mapping[tuple[str, float, int], int], train: TrainTable
 ) -> StrengthTable:
     """What the strength of a mesh depends on, with the planets that share its load."""
     on_planets = train.planet in link.bodies
@@ -164,7 +164,7 @@ def _both(values: Iterable[bool]) -> tuple[bool, bool]:
     return gear_1, gear_2
 
 
-def _on_other_flanks(one: Case, number: int) -> Case:
+def _on_other_flanks(one: CaseFile, number: int) -> CaseFile:
     """A mesh pressing its other flanks, where they are open."""
     if one.gears.opposed is None or "flank" in one.gears.model_fields_set:
         raise InputError(

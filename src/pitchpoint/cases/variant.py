@@ -10,7 +10,7 @@ from pitchpoint.cases.build import check_alone
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import Document, resolve
 from pitchpoint.cases.schema import (
-    Case,
+    CaseFile,
     DriveCase,
     usual_at,
     validate,
@@ -87,14 +87,14 @@ class Variant:
         build_together(
             (case.gears, int(case.models.slices))
             for case, _ in (loaded for loaded in read if not isinstance(loaded, InputError))
-            if isinstance(case, Case)
+            if isinstance(case, CaseFile)
         )
         return [
             loaded if isinstance(loaded, InputError) else _or_error(self._ready, *loaded)
             for loaded in read
         ]
 
-    def _read(self, changes: Mapping[str, Any]) -> tuple[Case | DriveCase, Document]:
+    def _read(self, changes: Mapping[str, Any]) -> tuple[CaseFile | DriveCase, Document]:
         """Case with some values changed, and the document that it is from."""
         document = (self.computed if changes else self).document(**changes)
         try:
@@ -107,7 +107,7 @@ class Variant:
                 check_alone(document, wrong)
             raise wrong.error from None
 
-    def _ready(self, case: Case | DriveCase, document: Document) -> Ready:
+    def _ready(self, case: CaseFile | DriveCase, document: Document) -> Ready:
         return ready(case, document, self.own, advised=False)
 
 

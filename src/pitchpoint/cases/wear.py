@@ -8,7 +8,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import array
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import Case, WearTable
+from pitchpoint.cases.schema import CaseFile, WearTable
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.contact.contacts import KINDS, TOUCH
 from pitchpoint.doubts import Doubt
@@ -47,7 +47,7 @@ def limit_of(table: WearTable, deepest: float) -> Limit:
     return Limit(table.cycles, depth, pressure)
 
 
-def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
+def check_wear(case: CaseFile, mesh: Mesh, used: Used) -> None:
     """InputError for a wear that these gears or materials do not have.
 
     Args:
@@ -93,12 +93,12 @@ def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
         )
 
 
-def _feels(case: Case) -> bool:
+def _feels(case: CaseFile) -> bool:
     return case.models.load_sharing == "from_stiffness"
 
 
 def _check_share(
-    case: Case, table: WearTable, law: WearLaw, mesh: Mesh, wanted: Mapping[str, object]
+    case: CaseFile, table: WearTable, law: WearLaw, mesh: Mesh, wanted: Mapping[str, object]
 ) -> None:
     """InputError for a load on asperities that a law does not get, or does not ask for."""
     films = table.load_ratio == "film"
@@ -191,7 +191,7 @@ def _missing(law: WearLaw, name: str, member: int) -> str:
 
 
 def wear_model(
-    case: Case, used: Used, roughness: tuple[float, float], films: FilmModel | None
+    case: CaseFile, used: Used, roughness: tuple[float, float], films: FilmModel | None
 ) -> WearModel:
     """How flanks of a case wear.
 
@@ -224,7 +224,7 @@ def wear_model(
     )
 
 
-def _by_formula(case: Case) -> bool:
+def _by_formula(case: CaseFile) -> bool:
     """True if the first friction law of a case is no solver of films."""
     return FRICTION[case.models.friction[0].name].films is None
 
@@ -238,7 +238,7 @@ def _conductors(used: Used) -> tuple[Conductor, Conductor] | None:
     return gear_1, gear_2
 
 
-def told_of_wear(case: Case, model: WearModel) -> list[str]:
+def told_of_wear(case: CaseFile, model: WearModel) -> list[str]:
     """What to be wary of in the constants of a case.
 
     Args:

@@ -108,7 +108,7 @@ class _Pressed(eqx.Module):
         return jnp.asarray(self.bodies.rows)[:, :1] / self.modulus
 
 
-class _State(NamedTuple):
+class _DryIterate(NamedTuple):
     """Where an iteration stands.
 
     Attributes:
@@ -169,7 +169,7 @@ def pressed_by(
 
 
 def _solved(pair: _Pressed, most: int) -> DryContact:
-    def unfinished(at: _State) -> Array:
+    def unfinished(at: _DryIterate) -> Array:
         return (at.residual > TOLERANCE) & (at.steps < most)
 
     state = jax.lax.while_loop(unfinished, lambda at: _step(pair, at), _start(pair))
@@ -181,7 +181,7 @@ def _solved(pair: _Pressed, most: int) -> DryContact:
     return DryContact(pressure, gap, level, load, Status(code, end.residual, end.steps))
 
 
-def _start(pair: _Pressed) -> _State:
+def _start(pair: _Pressed) -> _DryIterate:
     """The load spread evenly, or every row as soft as it is alone."""
     shape, zero = pair.gap.shape, jnp.zeros(pair.gap.shape)
     if pair.approach is None:
@@ -190,13 +190,13 @@ def _start(pair: _Pressed) -> _State:
         alone = jnp.asarray(pair.bodies.own)[:, :1] / pair.modulus
         pressure = jnp.maximum(pair.approach - pair.gap, 0.0) / alone
     blank = jnp.zeros(()), jnp.zeros((), int)
-    state = _State(
+    state = _DryIterate(
         pressure, zero, blank[0], zero, zero, zero, jnp.ones(()), jnp.array(True), *blank
     )
     return _at(pair, state, pressure, pair.deflection(pressure))
 
 
-def _at(pair: _Pressed, state: _State, pressure: Array, deflection: Array) -> _State:
+def _at(pair: _Pressed, state: _DryIterate, pressure: Array, deflection: Array) -> _DryIterate:
     """The state with another pressure."""
     held = pressure > 0.0
     raised = pair.gap + deflection
@@ -212,7 +212,7 @@ def _at(pair: _Pressed, state: _State, pressure: Array, deflection: Array) -> _S
     )
 
 
-def _step(pair: _Pressed, state: _State) -> _State:
+def _step(pair: _Pressed, state: _DryIterate) -> _DryIterate:
     """One step along a conjugate direction, and cells that leave the contact or join it."""
     held = state.pressure > 0.0
     defect = _kept(state.defect, held)

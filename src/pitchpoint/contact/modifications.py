@@ -7,7 +7,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.surface import Flank, Lanes, Spot, Surface
+from pitchpoint.contact.surface import FlankEnds, Lanes, Spot, Surface
 
 __all__ = ["Crowning", "EndRelief", "LeadSlope", "LogRelief", "Relief"]
 
@@ -42,7 +42,7 @@ class Relief(Surface):
         cls,
         amount: Float[Array, ""],
         length: Float[Array, ""],
-        flank: Flank,
+        flank: FlankEnds,
         power: int = 1,
         at_tip: bool = True,
     ) -> Self:
@@ -51,7 +51,7 @@ class Relief(Surface):
         start = end + jnp.sign(opposite - end) * length
         return cls(amount, length, start**2 / flank.arcs, end**2 / flank.arcs, power, at_tip)
 
-    def fitted(self, flank: Flank) -> Self:
+    def fitted(self, flank: FlankEnds) -> Self:
         """The same at the end of another flank."""
         return self.over(self.amount, self.length, flank, self.power, self.at_tip)
 
@@ -75,7 +75,7 @@ class Crowning(Surface):
     amount: Float[Array, ""]
     width: Float[Array, ""]
 
-    def fitted(self, flank: Flank) -> Self:
+    def fitted(self, flank: FlankEnds) -> Self:
         """The same on a face of another width."""
         return replace(self, width=flank.width)
 
@@ -101,7 +101,7 @@ class EndRelief(Surface):
     width: Float[Array, ""]
     power: int = eqx.field(static=True, default=1)
 
-    def fitted(self, flank: Flank) -> Self:
+    def fitted(self, flank: FlankEnds) -> Self:
         """The same on a face of another width."""
         return replace(self, width=flank.width)
 
@@ -126,7 +126,7 @@ class LogRelief(Surface):
     drop: Float[Array, ""]
     width: Float[Array, ""]
 
-    def fitted(self, flank: Flank) -> Self:
+    def fitted(self, flank: FlankEnds) -> Self:
         """The same on a face of another width."""
         return replace(self, width=flank.width)
 
@@ -151,7 +151,7 @@ class LeadSlope(Surface):
     amount: Float[Array, ""]
     width: Float[Array, ""]
 
-    def fitted(self, flank: Flank) -> Self:
+    def fitted(self, flank: FlankEnds) -> Self:
         """The same on a face of another width."""
         return replace(self, width=flank.width)
 

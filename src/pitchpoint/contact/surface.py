@@ -12,7 +12,7 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.factored import Arrays
 
 __all__ = [
-    "Flank",
+    "FlankEnds",
     "Lanes",
     "Offset",
     "Spot",
@@ -46,7 +46,7 @@ class Spot(eqx.Module):
     leaning: Lanes
 
 
-class Flank(eqx.Module):
+class FlankEnds(eqx.Module):
     """Where the flanks of a member end.
 
     Attributes:
@@ -86,7 +86,7 @@ class Surface(eqx.Module):
         """
         return jnp.stack([_second(self, spot, name) for name in ("flank", "across")])
 
-    def fitted(self, flank: Flank) -> Self:
+    def fitted(self, flank: FlankEnds) -> Self:
         """The same on flanks that end elsewhere: amounts and lengths stay as they are.
 
         Args:

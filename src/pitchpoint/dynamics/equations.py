@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.excitation import Course
+from pitchpoint.dynamics.excitation import ExcitationCourse
 from pitchpoint.dynamics.system import System
 
 __all__ = ["Equations", "equations"]
@@ -50,14 +50,16 @@ class Equations(eqx.Module):
         of_error = jnp.einsum("apen,pen->aen", self.arm, self.stiffness * self.error)
         return self.load[:, None, None] + of_error
 
-    def steps(self, course: Course, period: Float[Array, ""]) -> Float[Array, "element interval"]:
+    def steps(
+        self, course: ExcitationCourse, period: Float[Array, ""]
+    ) -> Float[Array, "element interval"]:
         """Half the duration between neighbouring nodes."""
         between = jnp.diff(course.grid.place) / 2.0
         duration = jnp.where(self.finite, self.frequency * period, 0.0)
         return duration * course.length[:, None] * between
 
 
-def equations(system: System, course: Course) -> Equations:
+def equations(system: System, course: ExcitationCourse) -> Equations:
     """Equations on coordinates of unit mass, scaled by the mean stiffness and the load.
 
     From M q'' + C q' + K q = f with q = scale z, where M = L L^T and scale is L^-T times a length.

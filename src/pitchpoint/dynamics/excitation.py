@@ -5,11 +5,11 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.gears.period import lobatto
 from pitchpoint.materials._leaves import as_array
 
-__all__ = ["Course", "Excitation", "Waves"]
+__all__ = ["ErrorOrders", "Excitation", "ExcitationCourse"]
 
 Pairs = Float[Array, "pair element node"]
 
@@ -31,7 +31,7 @@ class Excitation(eqx.Module):
     arm: Float[Array, "coordinate pair segment node"]
     error: Float[Array, "pair segment node"]
 
-    def on(self, grid: Grid) -> "Course":
+    def on(self, grid: PeriodGrid) -> "ExcitationCourse":
         """The same at the nodes of a grid.
 
         From the Legendre series through the nodes of each segment.
@@ -50,10 +50,12 @@ class Excitation(eqx.Module):
             modes = values @ _modes(values.shape[-1])
             return jnp.einsum("...em,epm->...ep", modes[..., segment, :], basis)
 
-        return Course(bounds, phase, read(self.stiffness), read(self.arm), read(self.error), grid)
+        return ExcitationCourse(
+            bounds, phase, read(self.stiffness), read(self.arm), read(self.error), grid
+        )
 
 
-class Waves(eqx.Module):
+class ErrorOrders(eqx.Module):
     """An error as a sum of orders: sum of A cos(2 pi order phase + angle).
 
     Of a mesh the phase is that of the mesh and an error parts the flanks, of a joint the phase counts turns
@@ -82,7 +84,7 @@ class Waves(eqx.Module):
         return 2.0 * jnp.pi * self.order * phase[..., None] + self.angle
 
 
-class Course(eqx.Module):
+class ExcitationCourse(eqx.Module):
     """An excitation at the nodes of a grid.
 
     Attributes:
@@ -97,7 +99,7 @@ class Course(eqx.Module):
     stiffness: Pairs
     arm: Float[Array, "coordinate pair element node"]
     error: Pairs
-    grid: Grid = eqx.field(static=True)
+    grid: PeriodGrid = eqx.field(static=True)
 
     @property
     def length(self) -> Float[Array, " element"]:

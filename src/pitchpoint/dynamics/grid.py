@@ -10,7 +10,7 @@ from jaxtyping import Array, Complex, Float, Int
 from pitchpoint._jax import jnp
 from pitchpoint.gears.period import between, lobatto
 
-__all__ = ["Grid"]
+__all__ = ["PeriodGrid"]
 
 _DEGREE = 6
 """Degree of the polynomials between neighbouring nodes: exact to rounding for what nodes resolve."""
@@ -22,7 +22,7 @@ Values = Float[Array, "*b element node"]
 
 
 @dataclass(frozen=True)
-class Grid:
+class PeriodGrid:
     """How finely a period is divided; static, so that each grid is compiled once.
 
     The grid points that divide the period evenly and the hand-overs together bound the elements:
@@ -37,7 +37,7 @@ class Grid:
     nodes: int = 24
 
     @classmethod
-    def resolving(cls, frequency_ratio: float) -> "Grid":
+    def resolving(cls, frequency_ratio: float) -> "PeriodGrid":
         """Grid for a natural frequency of so many times the mesh frequency.
 
         Args:
@@ -47,8 +47,8 @@ class Grid:
             Grid with 4, 6, 8, 12, 16... elements, so that few are ever compiled.
 
         Example:
-            >>> from pitchpoint.dynamics.grid import Grid
-            >>> Grid.resolving(90.0).elements
+            >>> from pitchpoint.dynamics.grid import PeriodGrid
+            >>> PeriodGrid.resolving(90.0).elements
             32
         """
         needed = 2.0 * math.pi * max(frequency_ratio, 1.0) / _PHASE_PER_ELEMENT

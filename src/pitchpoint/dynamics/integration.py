@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.equations import Equations
-from pitchpoint.dynamics.excitation import Course
+from pitchpoint.dynamics.excitation import ExcitationCourse
 from pitchpoint.dynamics.maps import horner, identity, product
 from pitchpoint.dynamics.registry import ContactLaw
 
@@ -23,7 +23,7 @@ MOST_STEPS = 256
 
 def by_steps(
     equations: Equations,
-    course: Course,
+    course: ExcitationCourse,
     period: Float[Array, ""],
     adjoint: diffrax.AbstractAdjoint | None = None,
 ) -> tuple[Float[Array, "state state+1 element interval"], Bool[Array, ""]]:
@@ -76,7 +76,7 @@ class Pieces(eqx.Module):
     half: Float[Array, " interval"]
 
 
-def pieces(equations: Equations, course: Course, period: Float[Array, ""]) -> Pieces:
+def pieces(equations: Equations, course: ExcitationCourse, period: Float[Array, ""]) -> Pieces:
     """Coefficients of all intervals; `half` is proportional to the period."""
 
     def in_turn(values: Float[Array, "*b element node"]) -> Float[Array, "interval degree *b"]:

@@ -10,13 +10,13 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.energy import relative_closure
-from pitchpoint.dynamics.excitation import Waves
+from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.joint import Joint, respond
 from pitchpoint.factored import Arrays
 from pitchpoint.programs import looping_program, program
 from pitchpoint.status import Code, Status
 
-__all__ = ["Course", "Drive", "Settled", "course", "fading", "settled"]
+__all__ = ["JointCourse", "MotorRun", "SteadyVibration", "course", "fading", "settled"]
 
 CLOSED = 1e-8
 """Largest part of the energy that may be left over."""
@@ -50,7 +50,7 @@ One = Float[Arrays, ""]
 Times = Float[Array, "*time"]
 
 
-class Drive(eqx.Module):
+class MotorRun(eqx.Module):
     """How the motor runs: at a rate that rises or falls evenly, then stays.
 
     A motor of finite inertia starts at the first rate and has the torque that balances the load.
@@ -65,7 +65,7 @@ class Drive(eqx.Module):
     duration: One
 
     @classmethod
-    def steady(cls, speed: float | Array) -> "Drive":
+    def steady(cls, speed: float | Array) -> "MotorRun":
         """One speed throughout [rad/s]."""
         return cls(jnp.asarray(speed), jnp.asarray(speed), jnp.ones(()))
 
@@ -85,7 +85,7 @@ class Drive(eqx.Module):
         return jnp.where(time < self.duration, (self.stop - self.start) / self.duration, 0.0)
 
 
-class Course(eqx.Module):
+class JointCourse(eqx.Module):
     """Motion of a joint over time.
 
     Attributes:
@@ -122,7 +122,7 @@ class Course(eqx.Module):
         return relative_closure(left, parts)
 
 
-class Settled(eqx.Module):
+class SteadyVibration(eqx.Module):
     """Steady vibration by one wave of the error, with the whole curve of the wind-up.
 
     Attributes:
@@ -144,11 +144,11 @@ class Settled(eqx.Module):
 @program
 def course(
     joint: Joint,
-    excitation: Waves,
-    drive: Drive,
+    excitation: ErrorOrders,
+    drive: MotorRun,
     times: Float[Arrays, " time"],
     start: Float[Arrays, "4"],
-) -> Course:
+) -> JointCourse:
     """Motion of a joint from a start.
 
     Args:
@@ -189,14 +189,14 @@ def course(
     return _judged(described, reached, solution.stats["num_steps"])
 
 
-def _judged(motion: Course, reached: Bool[Array, ""], steps: Int[Array, ""]) -> Course:
+def _judged(motion: JointCourse, reached: Bool[Array, ""], steps: Int[Array, ""]) -> JointCourse:
     """The course with what became of it: the energy has to close."""
     closes = reached & (motion.closure <= CLOSED)
     code = jnp.where(closes, int(Code.SOLVED), int(Code.NOT_CONVERGED))
     return replace(motion, status=Status(code, motion.closure, steps))
 
 
-def _length(joint: Joint, excitation: Waves, drive: Drive, start: Array) -> Array:
+def _length(joint: Joint, excitation: ErrorOrders, drive: MotorRun, start: Array) -> Array:
     """Scale of the vibration [rad]: error, start, and what the torque that speeds up the load winds up."""
     gain = jnp.abs(drive.stop - drive.start) / drive.duration / joint.ratio
     parts = [
@@ -212,8 +212,8 @@ class _Motion(eqx.Module):
     """Equations of motion of the state: motor, wind-up with the error, the rates of both, and works."""
 
     joint: Joint
-    excitation: Waves
-    drive: Drive
+    excitation: ErrorOrders
+    drive: MotorRun
     length: Array
 
     @property
@@ -246,14 +246,14 @@ class _Motion(eqx.Module):
         """True for a motor that holds its speed."""
         return jnp.isinf(self.joint.motor)
 
-    def _powers(self, there: "_State") -> Array:
+    def _powers(self, there: "_JointState") -> Array:
         """Net power of motor and load, and those lost to damping and friction [W]."""
         driving = jnp.where(self.held, there.torque * (1.0 - there.slope), self.joint.torque)
         put_in = driving * there.motor_rate - self.joint.torque * there.output_rate
         lost = self.joint.damping * there.rate**2
         return jnp.stack([put_in, lost, there.friction * there.rate])
 
-    def _at(self, time: Array, state: Array) -> "_State":
+    def _at(self, time: Array, state: Array) -> "_JointState":
         joint, drive = self.joint, self.drive
         motor_rate = drive.rate(time) / joint.ratio + state[1]
         turns = (drive.turned(time) + joint.ratio * state[0]) / TURN
@@ -261,7 +261,9 @@ class _Motion(eqx.Module):
         wind_up, rate = state[2] - error, state[3] - slope * motor_rate
         friction = self._friction(rate, drive.rate(time))
         torque = joint.curve.torque_at(wind_up) + joint.damping * rate + friction
-        return _State(wind_up, rate, torque, friction, slope, motor_rate, motor_rate - state[3])
+        return _JointState(
+            wind_up, rate, torque, friction, slope, motor_rate, motor_rate - state[3]
+        )
 
     def _friction(self, rate: Array, driver: Array) -> Array:
         """Friction of the flanks beyond that at an even motion [N m]."""
@@ -270,11 +272,11 @@ class _Motion(eqx.Module):
         share = jnp.tanh((even_rate + rate) / creep) - jnp.tanh(even_rate / creep)
         return jnp.sum(sliding.held * share)
 
-    def described(self, time: Array, state: Array) -> Course:
+    def described(self, time: Array, state: Array) -> JointCourse:
         """What is kept of a state."""
         there, joint = self._at(time, state), self.joint
         of_motor = jnp.where(self.held, 0.0, joint.motor) * there.motor_rate**2
-        return Course(
+        return JointCourse(
             time=time,
             motor=state[0],
             wind_up=there.wind_up,
@@ -289,7 +291,7 @@ class _Motion(eqx.Module):
         )
 
 
-class _State(eqx.Module):
+class _JointState(eqx.Module):
     """Wind-up and its rate, torque with friction, slope of the error, rates of motor and load."""
 
     wind_up: Array
@@ -304,7 +306,7 @@ class _State(eqx.Module):
 @looping_program
 def settled(
     joint: Joint, order: One, amplitude: One, speed: One, periods: Float[Arrays, ""]
-) -> Settled:
+) -> SteadyVibration:
     """Steady vibration by one wave of the error, from the linear one on.
 
     Args:
@@ -320,13 +322,13 @@ def settled(
     place, rate = jnp.real(linear.wind_up), jnp.real(1j * frequency * linear.wind_up)
     start = jnp.stack([jnp.zeros(()), jnp.zeros(()), joint.wind_up + place + amplitude, rate])
     sampled = period * (periods + jnp.linspace(0.0, 2.0, 2 * POINTS + 1))
-    wave = Waves(*(jnp.reshape(value, 1) for value in (amplitude, order, jnp.zeros(()))))
+    wave = ErrorOrders(*(jnp.reshape(value, 1) for value in (amplitude, order, jnp.zeros(()))))
     times = jnp.concatenate([jnp.zeros(1), sampled])
-    motion = course(joint, wave, Drive.steady(speed), times, start)
+    motion = course(joint, wave, MotorRun.steady(speed), times, start)
     return _settled(joint, wave, motion, speed)
 
 
-def _settled(joint: Joint, wave: Waves, motion: Course, speed: One) -> Settled:
+def _settled(joint: Joint, wave: ErrorOrders, motion: JointCourse, speed: One) -> SteadyVibration:
     before, after = motion.wind_up[1 : POINTS + 2], motion.wind_up[POINTS + 1 :]
     swing = jnp.ptp(after) / 2.0
     changed = jnp.max(jnp.abs(after - before)) / jnp.where(swing > 0.0, swing, 1.0)
@@ -334,7 +336,7 @@ def _settled(joint: Joint, wave: Waves, motion: Course, speed: One) -> Settled:
     torque = motion.torque[POINTS + 1 :]
     alike = jnp.where(changed <= REPEATS, int(Code.SOLVED), int(Code.NOT_SETTLED))
     code = jnp.where(motion.status.code == int(Code.SOLVED), alike, motion.status.code)
-    return Settled(
+    return SteadyVibration(
         torque=jnp.ptp(torque) / 2.0,
         wind_up=swing,
         output=jnp.ptp(after + error) / 2.0,

@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.bodies import damping, on_all_coordinates, stiffness
-from pitchpoint.dynamics.right_hand_side import Moving, contact_forces
+from pitchpoint.dynamics.right_hand_side import MovingMesh, contact_forces
 from pitchpoint.gears.period import nodes
 
 __all__ = ["Modes", "along_action", "mean_stiffness", "modes"]
@@ -18,7 +18,7 @@ RIGID = 1e-6
 Matrix = Float[Array, "coordinate coordinate"]
 
 
-def mean_stiffness(moving: Moving) -> Matrix:
+def mean_stiffness(moving: MovingMesh) -> Matrix:
     """Stiffness of mesh and bearings on all coordinates, in the mean over a mesh cycle.
 
     Args:
@@ -69,7 +69,7 @@ class Modes(eqx.Module):
     share: Float[Array, "coordinate place"]
 
 
-def modes(moving: Moving) -> Modes:
+def modes(moving: MovingMesh) -> Modes:
     """Modes of mesh and bodies about the mean of a mesh cycle.
 
     Args:
@@ -95,7 +95,7 @@ def modes(moving: Moving) -> Modes:
     )
 
 
-def _damping(moving: Moving, springs: Matrix) -> Matrix:
+def _damping(moving: MovingMesh, springs: Matrix) -> Matrix:
     """Of the bearings, of the contacts in proportion to their stiffness, and along the line of action."""
     still = jnp.zeros(moving.mass.shape[0])
     line = contact_forces(moving, still, still).line

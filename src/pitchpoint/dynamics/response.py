@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Complex, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.equations import Equations
-from pitchpoint.dynamics.excitation import Course
+from pitchpoint.dynamics.excitation import ExcitationCourse
 from pitchpoint.dynamics.floquet import STABLE, multipliers
 from pitchpoint.dynamics.registry import ContactLaw
 from pitchpoint.factored import Numbers
@@ -41,7 +41,7 @@ class Response(eqx.Module):
         status: what became of the search for it.
     """
 
-    course: Course
+    course: ExcitationCourse
     displacement: Coordinates
     velocity: Coordinates
     static_displacement: Coordinates
@@ -125,7 +125,7 @@ class Response(eqx.Module):
 
 
 def respond(
-    course: Course,
+    course: ExcitationCourse,
     equations: Equations,
     law: ContactLaw,
     backlash: Float[Array, ""],
@@ -187,12 +187,12 @@ def respond(
     )
 
 
-def _separated(course: Course, stretch: Pairs) -> Bool[Array, ""]:
+def _separated(course: ExcitationCourse, stretch: Pairs) -> Bool[Array, ""]:
     carries = (course.stiffness > 0.0) & (course.length[:, None] > 0.0)
     return jnp.any(carries & (stretch < 0.0))
 
 
-def _coarse(course: Course, displacement: Coordinates) -> Bool[Array, ""]:
+def _coarse(course: ExcitationCourse, displacement: Coordinates) -> Bool[Array, ""]:
     motion = jax.lax.stop_gradient(displacement)
     size = jnp.max(jnp.abs(motion), axis=(-2, -1))
     return jnp.any(course.grid.tail(motion) > UNRESOLVED * size)

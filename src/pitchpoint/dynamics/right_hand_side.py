@@ -16,7 +16,7 @@ from pitchpoint.dynamics.bodies import (
     moved_masses,
     on_all_coordinates,
 )
-from pitchpoint.dynamics.excitation import Waves
+from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.passage import Passage, on_springs
 from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
@@ -27,7 +27,7 @@ from pitchpoint.lubrication.conditions import Conditions, evaluate
 __all__ = [
     "WORKS",
     "ContactForces",
-    "Moving",
+    "MovingMesh",
     "acceleration",
     "column",
     "conditions_at",
@@ -52,7 +52,7 @@ WORKS = ("put_in", "error", "friction", "rolling", "damping", "drag", "pressed")
 """What `powers` tells, in its order; the names are those of `energy.Account`."""
 
 
-class Moving(eqx.Module):
+class MovingMesh(eqx.Module):
     """A mesh and its bodies as they move.
 
     Coordinates q are those of the mesh, then the translations that bearings allow, body by body.
@@ -96,7 +96,7 @@ class Moving(eqx.Module):
     passage: Passage | None = None
     law: ContactLaw = eqx.field(static=True, default=CONTACT_LAWS["separating"])
     backlash: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.asarray(jnp.inf))
-    error: Waves | None = None
+    error: ErrorOrders | None = None
     mesh_damping: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.asarray(0.0))
     slowest: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.asarray(STANDSTILL))
 
@@ -199,7 +199,7 @@ def relaxation_time(ratio: ArrayLike, mass: ArrayLike, stiffness: ArrayLike) -> 
     return 2.0 * jnp.asarray(ratio) * jnp.sqrt(jnp.asarray(mass) / stiffness)
 
 
-def contact_forces(moving: Moving, place: Coordinates, rate: Coordinates) -> ContactForces:
+def contact_forces(moving: MovingMesh, place: Coordinates, rate: Coordinates) -> ContactForces:
     """Forces at the contacts in given places and at given rates; see `forces_beside`.
 
     Args:
@@ -214,7 +214,7 @@ def contact_forces(moving: Moving, place: Coordinates, rate: Coordinates) -> Con
 
 
 def forces_beside(
-    moving: Moving,
+    moving: MovingMesh,
     engaged: tuple[Contacts, Lanes],
     phase: Each,
     beside: Coordinates,
@@ -273,7 +273,7 @@ def forces_beside(
 
 
 def torques(
-    moving: Moving, time: Each, place: Coordinates, rate: Coordinates, found: ContactForces
+    moving: MovingMesh, time: Each, place: Coordinates, rate: Coordinates, found: ContactForces
 ) -> Coordinates:
     """External torques and forces Q [N m or N], those that hold prescribed speeds among them.
 
@@ -284,7 +284,7 @@ def torques(
     return external + jnp.where(jnp.isinf(column(moving.mass, missing)), missing, 0.0)
 
 
-def torques_beside_contacts(moving: Moving, rate: Coordinates) -> Coordinates:
+def torques_beside_contacts(moving: MovingMesh, rate: Coordinates) -> Coordinates:
     """External torques as given at the first knot, less the drag of the bodies [N m or N].
 
     Args:
@@ -295,7 +295,7 @@ def torques_beside_contacts(moving: Moving, rate: Coordinates) -> Coordinates:
 
 
 def acceleration(
-    moving: Moving, time: Each, place: Coordinates, rate: Coordinates, found: ContactForces
+    moving: MovingMesh, time: Each, place: Coordinates, rate: Coordinates, found: ContactForces
 ) -> Coordinates:
     """Accelerations q'' of all coordinates.
 
@@ -312,7 +312,7 @@ def acceleration(
 
 
 def powers(
-    moving: Moving, time: Each, place: Coordinates, rate: Coordinates, found: ContactForces
+    moving: MovingMesh, time: Each, place: Coordinates, rate: Coordinates, found: ContactForces
 ) -> Float[Array, "7 *b"]:
     """Powers [W] of `WORKS`: put in by torques and by the error; lost; stored in contacts.
 
@@ -337,7 +337,7 @@ def powers(
     )
 
 
-def kinetic(moving: Moving, rate: Coordinates) -> Each:
+def kinetic(moving: MovingMesh, rate: Coordinates) -> Each:
     """Kinetic energy of all bodies whose speed is not prescribed [J].
 
     From m v^2/2.
@@ -346,14 +346,14 @@ def kinetic(moving: Moving, rate: Coordinates) -> Each:
     return energy
 
 
-def _driving(moving: Moving, values: Coordinates) -> Each:
+def _driving(moving: MovingMesh, values: Coordinates) -> Each:
     """That of the driver, in its nominal sense."""
     design = moving.design
     of_driver: Each = jnp.tensordot(moving.padded(design.driver), values, axes=1)
     return of_driver * (design.driver @ design.motion)
 
 
-def _engaged(moving: Moving, phase: Each) -> tuple[Contacts, Lanes]:
+def _engaged(moving: MovingMesh, phase: Each) -> tuple[Contacts, Lanes]:
     """Contacts of the mesh, and stiffness of each slice along its normal, zero out of contact [N/m]."""
     if moving.passage is not None:
         return moving.passage.at(phase)
@@ -377,14 +377,16 @@ def _on_mesh(arms: Float[Array, "dof pair slice *b"], contacts: Contacts) -> Arr
     return jnp.pad(arms, ((0, translations), *((0, 0) for _ in arms.shape[1:])))
 
 
-def _error(moving: Moving, phase: Each, pace: Each) -> tuple[Each, Each]:
+def _error(moving: MovingMesh, phase: Each, pace: Each) -> tuple[Each, Each]:
     """Separation by the error, and its rate."""
     if moving.error is None:
         return jnp.zeros_like(phase), jnp.zeros_like(phase)
     return moving.error.at(phase), moving.error.slope(phase) * pace
 
 
-def _normal(moving: Moving, springs: Lanes, stretch: Lanes, closing: Lanes) -> tuple[Lanes, Lanes]:
+def _normal(
+    moving: MovingMesh, springs: Lanes, stretch: Lanes, closing: Lanes
+) -> tuple[Lanes, Lanes]:
     """Compression of the springs, and normal force."""
     pressed, touching = moving.law.function(stretch, moving.backlash)
     force = springs * (pressed + touching * moving.relaxation * closing)
@@ -394,7 +396,7 @@ def _normal(moving: Moving, springs: Lanes, stretch: Lanes, closing: Lanes) -> t
     return pressed, pushes
 
 
-def _external(moving: Moving, time: Each) -> Coordinates:
+def _external(moving: MovingMesh, time: Each) -> Coordinates:
     """External torques and forces at a time, as given."""
     knots = moving.knots
     every = [jnp.broadcast_to(body.torque, knots.shape) for body in moving.bodies]
@@ -404,7 +406,7 @@ def _external(moving: Moving, time: Each) -> Coordinates:
 
 
 def _push(
-    moving: Moving,
+    moving: MovingMesh,
     external: Coordinates,
     place: Coordinates,
     rate: Coordinates,
@@ -416,7 +418,7 @@ def _push(
     return external - held - _drag(moving, rate) - forces.on_coordinates
 
 
-def _drag(moving: Moving, rate: Coordinates) -> Coordinates:
+def _drag(moving: MovingMesh, rate: Coordinates) -> Coordinates:
     """Torques against the motion of the bodies for themselves."""
     every = [
         body.resistance * jnp.tanh(speed / body.creep) + body.viscous * speed
@@ -427,7 +429,7 @@ def _drag(moving: Moving, rate: Coordinates) -> Coordinates:
 
 
 def conditions_at(
-    moving: Moving, contacts: Contacts, force: Lanes, rate: Coordinates
+    moving: MovingMesh, contacts: Contacts, force: Lanes, rate: Coordinates
 ) -> Conditions:
     """What laws of friction, rolling and film are told, at the forces and rates of the moment.
 

@@ -4,14 +4,14 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.equations import Equations
-from pitchpoint.dynamics.excitation import Course
+from pitchpoint.dynamics.excitation import ExcitationCourse
 from pitchpoint.dynamics.maps import Map, compose, identity, inverse_matrix, on_last, product
 
 __all__ = ["by_series"]
 
 TERMS = 13
 """Terms of the series: exact to 1e-13 up to 0.7 rad of vibration on either side of its middle, the
-most that `Grid.resolving` leaves."""
+most that `PeriodGrid.resolving` leaves."""
 
 LAST = 1e-9
 """Largest last term, of states of order one."""
@@ -22,7 +22,7 @@ term, those with the latest one first."""
 
 
 def by_series(
-    equations: Equations, course: Course, period: Float[Array, ""]
+    equations: Equations, course: ExcitationCourse, period: Float[Array, ""]
 ) -> tuple[Float[Array, "state state+1 element interval"], Bool[Array, ""]]:
     """Affine maps of the state from each node to the next, for teeth that never part.
 

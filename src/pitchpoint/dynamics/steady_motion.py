@@ -15,13 +15,13 @@ from pitchpoint.contact.contacts import total
 from pitchpoint.dynamics.bodies import bearing_forces, damping, moved_masses, stiffness
 from pitchpoint.dynamics.energy import Account
 from pitchpoint.dynamics.floquet import STABLE, multipliers
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.modes import mean_stiffness
 from pitchpoint.dynamics.passage import Passage, passage
 from pitchpoint.dynamics.right_hand_side import (
     WORKS,
     ContactForces,
-    Moving,
+    MovingMesh,
     acceleration,
     column,
     conditions_at,
@@ -114,9 +114,9 @@ class Motion(eqx.Module):
     nodes: int = eqx.field(static=True)
 
     @property
-    def grid(self) -> Grid:
+    def grid(self) -> PeriodGrid:
         """The grid of one mesh cycle."""
-        return Grid(self.elements, self.nodes)
+        return PeriodGrid(self.elements, self.nodes)
 
     def mean(self, values: Values) -> Float[Array, "*b"]:
         """Mean over time."""
@@ -186,7 +186,7 @@ class Motion(eqx.Module):
 
 
 def film(
-    moving: Moving, motion: Motion, law: FilmThickness
+    moving: MovingMesh, motion: Motion, law: FilmThickness
 ) -> Float[Array, "pair slice element node"]:
     """Film thickness at the contacts of a motion [m], NaN where nothing carries.
 
@@ -203,9 +203,9 @@ def film(
 
 
 def steady_motion(
-    moving: Moving,
+    moving: MovingMesh,
     speed: float,
-    grid: Grid | None = None,
+    grid: PeriodGrid | None = None,
     *,
     cycles: int = 1,
     start: State | None = None,
@@ -240,14 +240,16 @@ def steady_motion(
     Source: Nayfeh and Balachandran (1995), chapter 6, shooting; Poincaré's section at a phase of the mesh.
     """
     ready = _checked(moving, [speed], cycles)
-    motion: Motion = _steady(ready, array(speed), grid or Grid(), cycles, start, array(tolerance))
+    motion: Motion = _steady(
+        ready, array(speed), grid or PeriodGrid(), cycles, start, array(tolerance)
+    )
     return motion
 
 
 def steady_motions(
-    moving: Moving,
+    moving: MovingMesh,
     speeds: ArrayLike | Sequence[float],
-    grid: Grid | None = None,
+    grid: PeriodGrid | None = None,
     *,
     cycles: int = 1,
     follow: bool = False,
@@ -267,14 +269,14 @@ def steady_motions(
     """
     every = np.atleast_1d(np.asarray(speeds, float))
     ready = _checked(moving, every, cycles)
-    motions: Motion = _many(ready, array(every), grid or Grid(), cycles, follow)
+    motions: Motion = _many(ready, array(every), grid or PeriodGrid(), cycles, follow)
     return motions
 
 
 def periodic_motion(
-    moving: Moving,
+    moving: MovingMesh,
     speed: Float[Array, ""],
-    grid: Grid,
+    grid: PeriodGrid,
     cycles: int = 1,
     start: State | None = None,
     tolerance: Float[Array, ""] | float = TOLERANCE,
@@ -298,9 +300,9 @@ def periodic_motion(
 
 @fast_program
 def _steady(
-    moving: Moving,
+    moving: MovingMesh,
     speed: Float[Array, ""],
-    grid: Grid,
+    grid: PeriodGrid,
     cycles: int,
     start: State | None,
     tolerance: Float[Array, ""],
@@ -310,7 +312,7 @@ def _steady(
 
 @fast_program
 def _many(
-    moving: Moving, speeds: Float[Array, " speed"], grid: Grid, cycles: int, follow: bool
+    moving: MovingMesh, speeds: Float[Array, " speed"], grid: PeriodGrid, cycles: int, follow: bool
 ) -> Motion:
     if not follow:
         every: Motion = jax.vmap(lambda speed: periodic_motion(moving, speed, grid, cycles))(speeds)
@@ -324,7 +326,7 @@ def _many(
     return motions
 
 
-def _checked(moving: Moving, speeds: Sequence[float] | np.ndarray, cycles: int) -> Moving:
+def _checked(moving: MovingMesh, speeds: Sequence[float] | np.ndarray, cycles: int) -> MovingMesh:
     """What moves with a passage, or InputError in one sentence."""
     demand_bodies(moving, "a steady motion")
     demand_effects(moving, "a steady motion")
@@ -344,7 +346,7 @@ def _checked(moving: Moving, speeds: Sequence[float] | np.ndarray, cycles: int) 
     return replace(moving, passage=sampled)
 
 
-def _check_damping(moving: Moving) -> None:
+def _check_damping(moving: MovingMesh) -> None:
     dampers = [moving.relaxation, moving.mesh_damping, jnp.max(damping(moving.bodies), initial=0.0)]
     if not any(float(damper) > 0.0 for damper in dampers):
         raise InputError(
@@ -353,7 +355,7 @@ def _check_damping(moving: Moving) -> None:
         )
 
 
-def _check_orders(moving: Moving, cycles: int) -> None:
+def _check_orders(moving: MovingMesh, cycles: int) -> None:
     orders = np.zeros(0) if moving.error is None else np.asarray(moving.error.order)
     odd = orders[np.abs(orders * cycles - np.round(orders * cycles)) > WHOLE]
     if odd.size:
@@ -363,7 +365,7 @@ def _check_orders(moving: Moving, cycles: int) -> None:
         )
 
 
-class _Place(NamedTuple):
+class _SegmentPlace(NamedTuple):
     """Segment of the passage, and mesh cycles since the first one."""
 
     segment: Int[Array, "*b"]
@@ -380,7 +382,7 @@ class _Turning:
 
     def __init__(
         self,
-        moving: Moving,
+        moving: MovingMesh,
         speed: Float[Array, ""],
         cycles: int,
         tolerance: Float[Array, ""] | float,
@@ -410,7 +412,7 @@ class _Turning:
 
     def _lost(self, places: Float[Array, " coordinate"]) -> Float[Array, ""]:
         """Mean power that the nominal motion loses in its contacts [W]."""
-        phase, weight = nodes(self.passage.edges[:-1], Grid().nodes)
+        phase, weight = nodes(self.passage.edges[:-1], PeriodGrid().nodes)
 
         def at(phase: Float[Array, ""]) -> Float[Array, ""]:
             engaged = self.passage.at(phase)
@@ -442,13 +444,13 @@ class _Turning:
         begin = jnp.where(self.onward > 0.0, self.passage.edges[0], self.passage.edges[-1])
         return begin + self.onward * turned
 
-    def segments(self, edges: Float[Array, " edge"]) -> "_Place":
+    def segments(self, edges: Float[Array, " edge"]) -> "_SegmentPlace":
         """Where the passage holds the elements between such edges."""
         phase = self.phase((edges[1:] + edges[:-1]) / 2.0)
-        return _Place(self.passage.segment(phase), jnp.floor(phase - self.passage.edges[0]))
+        return _SegmentPlace(self.passage.segment(phase), jnp.floor(phase - self.passage.edges[0]))
 
     def forces(
-        self, moving: Moving, turned: Array, place: "_Place", beside: Array, rate: Array
+        self, moving: MovingMesh, turned: Array, place: "_SegmentPlace", beside: Array, rate: Array
     ) -> ContactForces:
         """Forces at the contacts, in an element whose place in the passage is known."""
         phase = self.phase(turned)
@@ -456,7 +458,7 @@ class _Turning:
         return forces_beside(moving, engaged, phase, beside, rate)
 
     def change(
-        self, moving: Moving, turned: Array, place: "_Place", state: Array, works: bool
+        self, moving: MovingMesh, turned: Array, place: "_SegmentPlace", state: Array, works: bool
     ) -> Array:
         """Derivative of the scaled state by the mesh cycles of the driver."""
         beside, rate, _ = self.parts(state)
@@ -482,7 +484,7 @@ class _Turning:
         lag = jnp.sum(driver * places, axis=0) / self.speed
         return places * (1.0 - driver), rate, lag
 
-    def started(self, state: State) -> tuple[Moving, State]:
+    def started(self, state: State) -> tuple[MovingMesh, State]:
         """What moves under the torque that a state of the search holds, and the state of its motion."""
         half = self.size // 2
         torque = jnp.sum(self.driver * state[:half]) * self.push
@@ -501,12 +503,12 @@ class _Turning:
         return states[-1, -1], fine
 
     def integrated(
-        self, moving: Moving, start: State, edges: Array, place: np.ndarray, *, works: bool
+        self, moving: MovingMesh, start: State, edges: Array, place: np.ndarray, *, works: bool
     ) -> tuple[Float[Array, "element node part"], Bool[Array, ""], Int[Array, ""]]:
         """States at places of all elements in turn, whether all were reached, and the steps."""
 
         def element(
-            carry: tuple[State, Array, Array], segment: tuple[Array, Array, _Place]
+            carry: tuple[State, Array, Array], segment: tuple[Array, Array, _SegmentPlace]
         ) -> tuple[tuple[State, Array, Array], Array]:
             state, fine, steps = carry
             low, length, where = segment
@@ -577,7 +579,7 @@ class _Turning:
         return end, slope, fine
 
 
-def _units(moving: Moving) -> tuple[Array, Array, Array, Array]:
+def _units(moving: MovingMesh) -> tuple[Array, Array, Array, Array]:
     """Units of places, rates, energy and of the torque on the driver.
 
     Energy is what the torques and the error store in the stiffest springs.
@@ -634,7 +636,11 @@ def _polished(turning: _Turning, shot: Shot) -> State:
 
 
 def _described(
-    turning: _Turning, state: State, shot: Shot, floquet: Complex[Array, " multiplier"], grid: Grid
+    turning: _Turning,
+    state: State,
+    shot: Shot,
+    floquet: Complex[Array, " multiplier"],
+    grid: PeriodGrid,
 ) -> Motion:
     """Everything at the nodes of a period."""
     moving, start = turning.started(state)
@@ -698,7 +704,7 @@ def _status(
     fine: Bool[Array, ""],
     closure: Float[Array, ""],
     values: dict[str, Any],
-    grid: Grid,
+    grid: PeriodGrid,
 ) -> Status:
     """How the search ended."""
     slowest = SLOWEST * turning.speed
@@ -722,7 +728,7 @@ def _status(
     return Status(code, closure, shot.marched + shot.tries)
 
 
-def _finite(moving: Moving) -> Bool[Array, ""]:
+def _finite(moving: MovingMesh) -> Bool[Array, ""]:
     """True if nothing but inertias and backlash is infinite, and nothing is no number."""
     parts = (moving.passage, [body.torque for body in moving.bodies], moving.relaxation)
     others = (moving.mesh_damping, moving.error, moving.creep)
@@ -730,12 +736,12 @@ def _finite(moving: Moving) -> Bool[Array, ""]:
     return jnp.all(jnp.stack([jnp.all(jnp.isfinite(leaf)) for leaf in leaves]))
 
 
-def _arrays(moving: Moving) -> Moving:
-    arrays: Moving = eqx.filter(moving, eqx.is_inexact_array)
+def _arrays(moving: MovingMesh) -> MovingMesh:
+    arrays: MovingMesh = eqx.filter(moving, eqx.is_inexact_array)
     return arrays
 
 
-def _driver(moving: Moving) -> Float[Array, " coordinate"]:
+def _driver(moving: MovingMesh) -> Float[Array, " coordinate"]:
     return moving.padded(moving.design.driver)
 
 

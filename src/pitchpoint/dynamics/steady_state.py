@@ -6,8 +6,8 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.dynamics.equations import Equations, equations
-from pitchpoint.dynamics.excitation import Course, Excitation
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.excitation import Excitation, ExcitationCourse
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.integration import pieces
 from pitchpoint.dynamics.maps import Map, chain, inverse_matrix
 from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
@@ -19,13 +19,13 @@ from pitchpoint.dynamics.system import System
 __all__ = ["respond_to", "resting", "scaled_start", "separating_steady_state", "steady_state"]
 
 State = Float[Array, " state"]
-Integrator = Callable[[Equations, Course, Float[Array, ""]], tuple[Map, Bool[Array, ""]]]
+Integrator = Callable[[Equations, ExcitationCourse, Float[Array, ""]], tuple[Map, Bool[Array, ""]]]
 
 
 def steady_state(
     system: System,
     excitation: Excitation,
-    grid: Grid | None = None,
+    grid: PeriodGrid | None = None,
     *,
     integrator: Integrator = by_series,
 ) -> Response:
@@ -38,7 +38,7 @@ def steady_state(
     Args:
         system: mass, damping, load, period.
         excitation: stiffness, arms, errors.
-        grid: static; `Grid.resolving` the ratio of natural and mesh frequency.
+        grid: static; `PeriodGrid.resolving` the ratio of natural and mesh frequency.
         integrator: `by_series`, differentiable in both modes, or `by_steps`, which is diffrax with an
             explicit method of order eight, in reverse unless it is given another adjoint.
 
@@ -48,7 +48,7 @@ def steady_state(
 
     From z(T) = z(0): (1 - monodromy) z(0) is the state reached from rest.
     """
-    course = excitation.on(grid or Grid())
+    course = excitation.on(grid or PeriodGrid())
     scaled = equations(system, course)
     maps, resolved = integrator(scaled, course, system.period)
     linked = chain(maps)
@@ -72,7 +72,7 @@ def steady_state(
 def separating_steady_state(
     system: System,
     excitation: Excitation,
-    grid: Grid | None = None,
+    grid: PeriodGrid | None = None,
     *,
     law: ContactLaw | None = None,
     backlash: Float[Array, ""] | float = jnp.inf,
@@ -98,7 +98,7 @@ def separating_steady_state(
     Source: Nayfeh and Balachandran (1995), chapter 6, shooting.
     """
     law = law or CONTACT_LAWS["separating"]
-    course = excitation.on(grid or Grid())
+    course = excitation.on(grid or PeriodGrid())
     scaled = equations(system, course)
     begin = resting(scaled, course) if start is None else scaled_start(scaled, start)
     intervals = pieces(scaled, course, system.period)
@@ -107,7 +107,11 @@ def separating_steady_state(
 
 
 def respond_to(
-    shot: Shot, course: Course, scaled: Equations, law: ContactLaw, backlash: Float[Array, ""]
+    shot: Shot,
+    course: ExcitationCourse,
+    scaled: Equations,
+    law: ContactLaw,
+    backlash: Float[Array, ""],
 ) -> Response:
     """Response of the motion that a search found."""
     states = shot.nodes(course.length.shape[0])
@@ -115,7 +119,7 @@ def respond_to(
     return respond(course, scaled, law, backlash, *orbit, iterations=shot.marched + shot.tries)
 
 
-def resting(scaled: Equations, course: Course) -> State:
+def resting(scaled: Equations, course: ExcitationCourse) -> State:
     """Balance with the mean stiffness, at rest."""
     stiffness, load = course.mean(scaled.total_stiffness), course.mean(scaled.total_load)
     place = jnp.linalg.solve(stiffness, load)

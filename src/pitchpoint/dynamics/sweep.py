@@ -6,7 +6,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.equations import equations
 from pitchpoint.dynamics.excitation import Excitation
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.integration import pieces
 from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.response import Response
@@ -21,7 +21,7 @@ def speed_sweep(
     system: System,
     excitation: Excitation,
     periods: Float[Array, " speed"],
-    grid: Grid | None = None,
+    grid: PeriodGrid | None = None,
     *,
     law: ContactLaw | None = None,
     backlash: Float[Array, ""] | float = jnp.inf,
@@ -48,7 +48,7 @@ def speed_sweep(
     Source: Nayfeh and Balachandran (1995), chapter 6, sequential continuation.
     """
     law = law or CONTACT_LAWS["separating"]
-    course = excitation.on(grid or Grid())
+    course = excitation.on(grid or PeriodGrid())
     scaled = equations(system, course)
     unit = pieces(scaled, course, jnp.asarray(1.0))
     free = jnp.asarray(backlash) / scaled.unit

@@ -16,7 +16,7 @@ from pitchpoint.dynamics.energy import Account
 from pitchpoint.dynamics.right_hand_side import (
     WORKS,
     ContactForces,
-    Moving,
+    MovingMesh,
     acceleration,
     contact_forces,
     kinetic,
@@ -96,7 +96,7 @@ class Transient(eqx.Module):
 
 
 def transient(
-    moving: Moving,
+    moving: MovingMesh,
     times: ArrayLike | Sequence[float],
     *,
     place: ArrayLike | Sequence[float] = 0.0,
@@ -109,7 +109,7 @@ def transient(
     driver is prescribed, pairs enter and leave at steps' ends. The works of all
     forces are integrated beside the motion, so that the balance of energy says how well both are known.
     Friction needs speed: at rest nothing sticks, and bodies under it creep at a speed of the order of
-    `Moving.creep`. Nothing is kept between the times, so that a run may be long and its end be kept.
+    `MovingMesh.creep`. Nothing is kept between the times, so that a run may be long and its end be kept.
 
     Args:
         moving: mesh and bodies.
@@ -130,7 +130,7 @@ def transient(
 
 
 def _hand_overs(
-    moving: Moving, times: np.ndarray, place: Vector, rate: Vector
+    moving: MovingMesh, times: np.ndarray, place: Vector, rate: Vector
 ) -> Float[Array, " event"] | None:
     """Times at which pairs enter or leave, where they are known; put behind the end to fill a bucket."""
     phase, pace, held, edges = (np.asarray(values) for values in _course(moving, place, rate))
@@ -159,7 +159,7 @@ def _apart(events: np.ndarray, stops: np.ndarray, nearest: float) -> np.ndarray:
 
 
 @program
-def _course(moving: Moving, place: Vector, rate: Vector) -> tuple[Array, Array, Array, Array]:
+def _course(moving: MovingMesh, place: Vector, rate: Vector) -> tuple[Array, Array, Array, Array]:
     """Phase at the start, periods in a second, whether these are prescribed, and phases of the events."""
     design = moving.design
     forces = contact_forces(moving, place, rate)
@@ -169,13 +169,13 @@ def _course(moving: Moving, place: Vector, rate: Vector) -> tuple[Array, Array, 
     return forces.phase, pace, held, _edges(moving)
 
 
-def _edges(moving: Moving) -> Float[Array, " edge"]:
+def _edges(moving: MovingMesh) -> Float[Array, " edge"]:
     if moving.passage is not None:
         return moving.passage.edges[:-1]
     return moving.design.mesh.events()
 
 
-def _start(moving: Moving, name: str, given: ArrayLike | Sequence[float]) -> Vector:
+def _start(moving: MovingMesh, name: str, given: ArrayLike | Sequence[float]) -> Vector:
     """Values of all coordinates, or InputError."""
     values, size = np.asarray(given, float), moving.mass.shape[0]
     if values.shape not in ((), (1,), (size,)):
@@ -186,7 +186,7 @@ def _start(moving: Moving, name: str, given: ArrayLike | Sequence[float]) -> Vec
     return jnp.asarray(np.broadcast_to(values, (size,)))
 
 
-def _check(moving: Moving, times: np.ndarray) -> None:
+def _check(moving: MovingMesh, times: np.ndarray) -> None:
     """InputError in one sentence."""
     demand_bodies(moving, "a transient")
     if times.size < 2 or not np.all(np.diff(times) > 0.0):
@@ -197,7 +197,7 @@ def _check(moving: Moving, times: np.ndarray) -> None:
     demand_effects(moving, "a transient")
 
 
-def demand_bodies(moving: Moving, what: str) -> None:
+def demand_bodies(moving: MovingMesh, what: str) -> None:
     """InputError if the bodies do not suit the mesh or themselves.
 
     Args:
@@ -238,7 +238,7 @@ def _check_support(name: str, support: Support) -> None:
         )
 
 
-def demand_effects(moving: Moving, what: str) -> None:
+def demand_effects(moving: MovingMesh, what: str) -> None:
     """InputError for effects that a motion with friction leaves out.
 
     Args:
@@ -269,13 +269,13 @@ def demand_effects(moving: Moving, what: str) -> None:
 
 @fast_program
 def _travel(
-    moving: Moving, times: Array, place: Vector, rate: Vector, events: Array | None
+    moving: MovingMesh, times: Array, place: Vector, rate: Vector, events: Array | None
 ) -> Transient:
     return transient_motion(moving, times, place, rate, events)
 
 
 def transient_motion(
-    moving: Moving,
+    moving: MovingMesh,
     times: Float[Array, " time"],
     place: Vector,
     rate: Vector,
@@ -287,21 +287,21 @@ def transient_motion(
         moving, times, place, rate: as in `transient`, a number for each coordinate.
         events: times at which pairs enter or leave, where they are known; found by the steps if not.
     """
-    scale = _Scale(moving, times, place, rate)
+    scale = _StateScale(moving, times, place, rate)
     start = scale.scaled(place, rate)
     states, reached, steps = _integrated(moving, times, scale, start, events)
     solved = scale.parts(jnp.where(jnp.isfinite(states), states, jnp.nan).T)
     return _described(moving, times, solved, reached, steps)
 
 
-class _Scale:
+class _StateScale:
     """Units in which all parts of the state are of order one.
 
     Energy is counted in what the torques store as they deflect the bodies, or what is there at the
     start, and places and rates as their shares of it at the highest natural frequency.
     """
 
-    def __init__(self, moving: Moving, times: Array, place: Vector, rate: Vector) -> None:
+    def __init__(self, moving: MovingMesh, times: Array, place: Vector, rate: Vector) -> None:
         mass, held = moving.mass, stiffness(moving.bodies)
         forces = contact_forces(moving, place, rate)
         pushed = forces.stiffness * forces.contacts.normal**2
@@ -331,14 +331,14 @@ class _Scale:
         return jnp.concatenate([rate / self.place, faster / self.rate, powers / self.energy])
 
 
-def _pushes(moving: Moving) -> Vector:
+def _pushes(moving: MovingMesh) -> Vector:
     """Largest external torque and resistance on each coordinate."""
     largest = [jnp.max(jnp.abs(body.torque)) + body.resistance for body in moving.bodies]
     return moving.padded(jnp.stack(largest))
 
 
 def _integrated(
-    moving: Moving, times: Array, scale: _Scale, start: Array, events: Array | None
+    moving: MovingMesh, times: Array, scale: _StateScale, start: Array, events: Array | None
 ) -> tuple[Float[Array, "time state"], Bool[Array, ""], Int[Array, ""]]:
     """States without dimensions at all times, whether all were reached, and the steps taken."""
     shortest = SHORTEST * (times[-1] - times[0])
@@ -375,7 +375,7 @@ def _bends(knots: Array, times: Array, events: Array | None) -> Array | None:
     return jnp.sort(jnp.concatenate(every)) if every else None
 
 
-def _rate(moving: Moving, scale: _Scale) -> Callable[..., Array]:
+def _rate(moving: MovingMesh, scale: _StateScale) -> Callable[..., Array]:
     def rate(time: Array, state: Array, _: None) -> Array:
         place, moved, _works = scale.parts(state)
         forces = contact_forces(moving, place, moved)
@@ -386,7 +386,7 @@ def _rate(moving: Moving, scale: _Scale) -> Callable[..., Array]:
 
 
 def _described(
-    moving: Moving,
+    moving: MovingMesh,
     times: Array,
     states: tuple[Array, Array, Array],
     reached: Bool[Array, ""],

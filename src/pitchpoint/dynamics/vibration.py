@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.excitation import Excitation
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.steady_state import separating_steady_state, steady_state
 from pitchpoint.dynamics.system import System, modal_damping, reduced_mass
@@ -126,7 +126,7 @@ def excited(
 def steady(
     moved: System,
     driven: Excitation,
-    grid: Grid,
+    grid: PeriodGrid,
     *,
     separating: bool = False,
     backlash: Float[Array, ""] | float = jnp.inf,
@@ -138,7 +138,7 @@ def steady(
     Args:
         moved: mass, damping, load, period.
         driven: stiffness, arms, errors.
-        grid: static, see `Grid.resolving`.
+        grid: static, see `PeriodGrid.resolving`.
         separating: static; True if teeth may part.
         backlash: free motion along the normal before back flanks meet [m].
     """

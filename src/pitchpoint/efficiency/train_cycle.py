@@ -406,7 +406,7 @@ class _Balanced(eqx.Module):
     code: Int[Array, " node"]
 
 
-class _Search(NamedTuple):
+class _ForceSearch(NamedTuple):
     """A step of the search for forces, with the changes of flanks up to it."""
 
     forces: Forces
@@ -426,7 +426,7 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
         [jnp.broadcast_to(meshing.mesh.count > 1.0, meshing.nominal.shape) for meshing in every]
     )
 
-    def step(held: _Search) -> _Search:
+    def step(held: _ForceSearch) -> _ForceSearch:
         forces, turns, _, steps = held
         by_mesh = _by_mesh(every, forces)
         laws = [meshing.laws(force) for meshing, force in zip(every, by_mesh, strict=True)]
@@ -454,9 +454,9 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
         scale = jnp.where(turns < MOST_TURNS, usual, 0.0)
         renewed = scale * _least(arms * scale, wanted, _apart(train))
         turned = one_of_several & (renewed * forces < 0.0)
-        return _Search(renewed, turns + turned, residual, steps + 1)
+        return _ForceSearch(renewed, turns + turned, residual, steps + 1)
 
-    def goes_on(held: _Search) -> Array:
+    def goes_on(held: _ForceSearch) -> Array:
         return (held.steps < MOST_STEPS) & jnp.any(held.residual > NEAR)
 
     nominal = jnp.concatenate([meshing.nominal for meshing in every])
@@ -466,7 +466,7 @@ def _solve(train: Train, every: Sequence[_Meshing], operation: Operation) -> _Ba
     # Forces of a mesh that idles without losses are free to become what these ask for.
     usual = jnp.where(idle & (largest > 0.0), largest, nominal)
     turns, unknown = jnp.zeros(nominal.shape, int), jnp.full(nominal.shape[1], jnp.inf)
-    begin = _Search(nominal, turns, unknown, jnp.asarray(0))
+    begin = _ForceSearch(nominal, turns, unknown, jnp.asarray(0))
     forces, _, residual, steps = jax.lax.while_loop(goes_on, step, begin)
     pulled = forces < -IDLE * jnp.max(jnp.abs(forces), axis=0)
     # Where other flanks may be pressed, no forces hold a train that is locked.
@@ -583,7 +583,7 @@ def _torques(
     train: Train,
     every: Sequence[_Meshing],
     forces: Sequence[Copies],
-    places: "Sequence[_Place]",
+    places: "Sequence[_NodePlace]",
 ) -> dict[str, Nodes]:
     """Torques from outside on each body; those on free ones are rounding."""
     torques: dict[str, Nodes] = {}
@@ -599,7 +599,7 @@ def _torques(
     return torques
 
 
-class _Place(NamedTuple):
+class _NodePlace(NamedTuple):
     """A place beside the teeth at the nodes.
 
     Attributes:
@@ -615,7 +615,7 @@ class _Place(NamedTuple):
 
 def _places(
     train: Train, every: Sequence[_Meshing], forces: Sequence[Copies], operation: Operation
-) -> list[_Place]:
+) -> list[_NodePlace]:
     """What brakes bodies beside the teeth under normal forces of the copies of each mesh."""
     viscosity = every[0].mesh.design.lubricant.kinematic_viscosity(operation.temperature)
     places = []
@@ -635,7 +635,7 @@ def _places(
         }
         lost = jnp.sum(torque, axis=0) * speed * turns
         mean = jnp.sum(load * there, axis=0) / jnp.sum(there, axis=0)
-        places.append(_Place(torques, mean, lost))
+        places.append(_NodePlace(torques, mean, lost))
     return places
 
 
@@ -711,7 +711,7 @@ def _size(vector: Float[Array, "3 _ node"]) -> OfPlanets:
     return size
 
 
-def _on_rows(train: Train, places: Sequence[_Place]) -> Rows:
+def _on_rows(train: Train, places: Sequence[_NodePlace]) -> Rows:
     """Torques that overcome losses beside the teeth, on the bodies in equilibrium."""
     nodes = places[0].pressed.shape
     rows = {row: jnp.zeros(nodes) for row in train.rows()}

@@ -15,7 +15,7 @@ from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
 
-__all__ = ["Heated", "WarmTeeth", "balance", "warm_teeth"]
+__all__ = ["ToothHeating", "WarmTeeth", "balance", "warm_teeth"]
 
 TOLERANCE = 1e-11
 """Relative change of the temperatures of a pass at which they are in balance."""
@@ -27,7 +27,7 @@ MOST = 40
 _TINY = 1e-300
 
 
-class Heated(eqx.Module):
+class ToothHeating(eqx.Module):
     """What decides how warm the teeth get, beside the loss.
 
     Attributes:
@@ -72,12 +72,16 @@ class WarmTeeth(eqx.Module):
 
 
 @program
-def balance(design: Design, operation: Operation, models: Models, heated: Heated) -> WarmTeeth:
+def balance(
+    design: Design, operation: Operation, models: Models, heated: ToothHeating
+) -> WarmTeeth:
     """`warm_teeth` as a program that is kept."""
     return warm_teeth(design, operation, models, heated)
 
 
-def warm_teeth(design: Design, operation: Operation, models: Models, heated: Heated) -> WarmTeeth:
+def warm_teeth(
+    design: Design, operation: Operation, models: Models, heated: ToothHeating
+) -> WarmTeeth:
     """Temperatures at which the loss of the teeth, with the modulus that they have there, is their heat.
 
     A pure function that can be traced and differentiated: passes from heat to modulus to heat are repeated
@@ -109,7 +113,7 @@ def warm_teeth(design: Design, operation: Operation, models: Models, heated: Hea
     )
 
 
-Given = tuple[Design, Operation, Models, Heated]
+Given = tuple[Design, Operation, Models, ToothHeating]
 
 
 def _loss(at: Float[Array, "2"], inputs: Given) -> Float[Array, "2"]:
@@ -154,7 +158,7 @@ _settled.def_jvp(_by_balance)  # type: ignore[no-untyped-call]
 
 
 def _temperatures(
-    loss: Float[Array, "2"], design: Design, operation: Operation, heated: Heated
+    loss: Float[Array, "2"], design: Design, operation: Operation, heated: ToothHeating
 ) -> ToothTemperature:
     """Temperatures of flanks and roots of both gears for a loss [K]."""
     around = operation.temperature
@@ -182,6 +186,6 @@ def _temperatures(
     )
 
 
-def _moduli(root: Float[Array, "2"], heated: Heated) -> Float[Array, "2"]:
+def _moduli(root: Float[Array, "2"], heated: ToothHeating) -> Float[Array, "2"]:
     """Young's moduli at the temperatures of the roots [Pa]."""
     return jnp.stack([jnp.interp(root[k], heated.known[k], heated.moduli[k]) for k in (0, 1)])

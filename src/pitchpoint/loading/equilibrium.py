@@ -101,7 +101,7 @@ class _Solution(NamedTuple):
     slack: Rows
 
 
-class _Scale(NamedTuple):
+class _ContactScale(NamedTuple):
     """What turns numbers of order one into quantities: force [N], compliance [m/N], arm, approach."""
 
     force: Each
@@ -317,7 +317,7 @@ def _normalised(
     arm: Lanes,
     active: Bool[Arrays, "pair slice *#b"],
     load: Each,
-) -> tuple[_Problem, _Scale]:
+) -> tuple[_Problem, _ContactScale]:
     """The problem counted from first touch, with mean compliance, arm and load of one.
 
     Scales are constants to a derivative: the solution does not depend on them.
@@ -365,7 +365,7 @@ def _normalised(
         load=jnp.where(light, 1.0, force / reference),
     )
     scale = jnp.where(light, force, reference)
-    return problem, _Scale(scale, mean_compliance, mean_arm, touch)
+    return problem, _ContactScale(scale, mean_compliance, mean_arm, touch)
 
 
 def _mean(values: Rows, over: Bool[Array, "*b lane"]) -> Each:
@@ -383,7 +383,7 @@ def _masked(
     return jnp.where(both, matrix, jnp.eye(matrix.shape[-1]))
 
 
-class _Search(NamedTuple):
+class _LaneSearch(NamedTuple):
     """State of the search for the loaded lanes.
 
     Attributes:
@@ -414,7 +414,7 @@ def _loaded(
     if problem.matrix is None:
         return start, jnp.asarray(1)
     batch, lanes = start.shape[:-1], start.shape[-1]
-    begin = _Search(
+    begin = _LaneSearch(
         loaded=start,
         force=jnp.zeros(start.shape),
         open=jnp.ones(batch, bool),
@@ -429,7 +429,7 @@ def _loaded(
     return search.loaded & (_solve(problem, search.loaded).force > 0.0), search.steps
 
 
-def _try(problem: _Problem, at: _Search) -> _Search:
+def _try(problem: _Problem, at: _LaneSearch) -> _LaneSearch:
     """Exchange all wrong lanes while that leaves fewer of them, else one lane at a time."""
     found = _solve(problem, at.loaded)
     pulls = at.loaded & (found.force < -FEASIBLE)
@@ -442,7 +442,7 @@ def _try(problem: _Problem, at: _Search) -> _Search:
     first = _feasible(problem, found)
     descent, force = _descend(at, found, pulls, overlaps)
     loaded = jnp.where((patience < 0)[..., None], first > 0.0, at.loaded ^ (pulls | overlaps))
-    return _Search(
+    return _LaneSearch(
         loaded=jnp.where(careful[..., None], descent, loaded),
         force=jnp.where(careful[..., None], force, first),
         open=count > 0,
@@ -460,7 +460,7 @@ def _feasible(problem: _Problem, found: _Solution) -> Rows:
 
 
 def _descend(
-    at: _Search,
+    at: _LaneSearch,
     found: _Solution,
     pulls: Bool[Array, "*b lane"],
     overlaps: Bool[Array, "*b lane"],

@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.programs import program
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 
 __all__ = ["of_sharp_flank", "readings"]
 
@@ -26,7 +26,7 @@ _TOUCHING = 1e-5  # modules
 Points = Float[Array, "branch place"]
 
 
-def readings(point: Point) -> dict[str, float]:
+def readings(point: ReadingPoint) -> dict[str, float]:
     """Where points of the flank touch their envelope, how they roll on it, and what the groove leaves of it.
 
     Every point does so twice, deep in the space near the long axis and again on its way out. Ends are

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from pitchpoint.efficiency.quasi_static import Design, Models, Operation
     from pitchpoint.input.tables import Table
 
-__all__ = ["Beside", "Curves", "Maps", "Point", "Publication", "Read", "Reading"]
+__all__ = ["Beside", "Curves", "Maps", "Publication", "Read", "Reading", "ReadingPoint"]
 
 
 @dataclass(frozen=True)
-class Point:
+class ReadingPoint:
     """What formulas are read at.
 
     Attributes:
@@ -45,7 +45,7 @@ class Point:
 Read = Mapping[str, "float | Float[np.ndarray, ' place']"]
 """Numbers and courses by name."""
 
-Reading = Callable[[Point], Read]
+Reading = Callable[[ReadingPoint], Read]
 """What its formulas give at a point."""
 
 
@@ -157,7 +157,7 @@ class Publication:
             )
         VARIABLES.update(self.variables)
 
-    def read(self, point: Point) -> Read:
+    def read(self, point: ReadingPoint) -> Read:
         """Values of all readings at a point."""
         functions = (
             code_at(source) if isinstance(source, str) else source for source in self.readings

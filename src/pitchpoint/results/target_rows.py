@@ -5,11 +5,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-__all__ = ["Row", "counts", "in_words"]
+__all__ = ["TargetRow", "counts", "in_words"]
 
 
 @dataclass(frozen=True)
-class Row:
+class TargetRow:
     """One printed number, in the unit of the print, and what was computed for it.
 
     `bound` says whether the number, or so many times it, is to be exceeded (">") or not reached ("<")
@@ -50,9 +50,9 @@ FITTED = ("calibrated", "fitted")
 """Kinds of numbers with which a constant, a reading or an input was found: that they are met tests little."""
 
 
-def in_words(rows: Iterable[Row]) -> str:
+def in_words(rows: Iterable[TargetRow]) -> str:
     """How many numbers of the publication were met, and apart from them of an independent calculation."""
-    of_both: dict[str, list[Row]] = {}
+    of_both: dict[str, list[TargetRow]] = {}
     for row in rows:
         independent = row.kind == "reference"
         source = "of an independent calculation" if independent else "printed numbers"
@@ -64,7 +64,7 @@ def in_words(rows: Iterable[Row]) -> str:
     )
 
 
-def _tally(rows: Sequence[Row]) -> str:
+def _tally(rows: Sequence[TargetRow]) -> str:
     ordered = sorted(rows, key=lambda row: ([*_VERDICTS].index(row.verdict), row.surprises))
     fitted = sum(row.verdict == "pass" and row.kind in FITTED for row in rows)
     counted = ", ".join(
@@ -77,14 +77,14 @@ def _tally(rows: Sequence[Row]) -> str:
     )
 
 
-def _verdict(row: Row) -> str:
+def _verdict(row: TargetRow) -> str:
     if row.verdict == "miss":
         return "missed with a reason" if row.expected_miss else "missed without a reason"
     in_spite = row.verdict == "pass" and row.expected_miss
     return _VERDICTS[row.verdict] + " in spite of its reason" * in_spite
 
 
-def counts(rows: Iterable[Row]) -> dict[str, Counter[str]]:
+def counts(rows: Iterable[TargetRow]) -> dict[str, Counter[str]]:
     """Verdicts counted for each kind of target, never summed over kinds."""
     kinds: dict[str, Counter[str]] = {}
     for row in rows:

@@ -311,7 +311,7 @@ def _flat(tables: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _model(tree: Mapping[str, Any]) -> type[BaseModel]:
-    return DriveCase if STAGES in tree else schema.Case
+    return DriveCase if STAGES in tree else schema.CaseFile
 
 
 def _every_key(tree: Mapping[str, Any]) -> Iterator[str]:

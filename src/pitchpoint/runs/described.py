@@ -13,9 +13,9 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import double_precision
-from pitchpoint.analyses.analysis import Progress as AnalysisProgress
+from pitchpoint.analyses.analysis import PieceProgress as AnalysisProgress
 from pitchpoint.analyses.analysis import silent
-from pitchpoint.analyses.designs import Designs
+from pitchpoint.analyses.designs import CaseDesigns
 from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.variant import Variant
 from pitchpoint.programs import bound_programs, surroundings
@@ -103,7 +103,7 @@ class StudyDescription:
         """
         bound_programs()  # those of the pieces before
         columns = self.layout.columns(first, stop)
-        data = Designs(self.variant, self.layout.changes(first, stop)).compute(progress)
+        data = CaseDesigns(self.variant, self.layout.changes(first, stop)).compute(progress)
         labels = {"case": self.variant.label, "variant": self.variant.variant}
         keys: dict[str, Any] = {
             key: (ALONG, *self.layout.axes[key].stored(values)) for key, values in columns.items()

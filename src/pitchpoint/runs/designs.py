@@ -24,7 +24,7 @@ from pitchpoint.units import si_unit
 
 __all__ = [
     "DESIGNS",
-    "Figure",
+    "MainFigure",
     "Wanted",
     "as_json",
     "designs",
@@ -188,7 +188,7 @@ def _file_name(title: str) -> str:
 
 
 @dataclass(frozen=True)
-class Figure:
+class MainFigure:
     """A main figure of several designs, under one friction law or whatever law each of them has.
 
     Attributes:
@@ -251,7 +251,7 @@ _LABELLED = (STAGE, "case")
 Keys = tuple[str, str, str, str, Variable]
 
 
-def main_results(outcomes: Mapping[str, Outcome]) -> list[Figure]:
+def main_results(outcomes: Mapping[str, Outcome]) -> list[MainFigure]:
     """Main figures of some designs; those that one design alone has stand there for it alone.
 
     What is zero in all of them is left out.
@@ -265,7 +265,7 @@ def main_results(outcomes: Mapping[str, Outcome]) -> list[Figure]:
         for key, value in _of_design(outcome, shared):
             by_key.setdefault(key, {})[design] = value
     order = {name: position for position, name in enumerate(ANALYSES)}
-    every = [Figure(*key, values) for key, values in by_key.items() if any(values.values())]
+    every = [MainFigure(*key, values) for key, values in by_key.items() if any(values.values())]
     return sorted(every, key=lambda one: (one.part != "operation", order[one.part]))
 
 

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject, silent
+from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Several, Subject, silent
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.schema import Study
@@ -47,16 +47,18 @@ class Job:
         """True if there may be more pieces than one."""
         return len(self.pieces) > 1 or self.analysis.onward is not None
 
-    def compute(self, piece: Piece, progress: Progress = silent) -> xr.Dataset:
+    def compute(self, piece: Piece, progress: PieceProgress = silent) -> xr.Dataset:
         """Dataset of a piece."""
         return self.analysis.compute(self.built, piece, progress)
 
-    def onward(self, last: xr.Dataset, progress: Progress = silent) -> xr.Dataset | None:
+    def onward(self, last: xr.Dataset, progress: PieceProgress = silent) -> xr.Dataset | None:
         """Next piece of a march after the last one, None at its end or where nothing marches."""
         march = self.analysis.onward
         return None if march is None else march(self.built, last, progress)
 
-    def piece(self, number: int, last: xr.Dataset | None, progress: Progress) -> xr.Dataset | None:
+    def piece(
+        self, number: int, last: xr.Dataset | None, progress: PieceProgress
+    ) -> xr.Dataset | None:
         """Dataset of the piece of a number, which a march makes from the last one; None after the end."""
         if number < len(self.pieces):
             return self.compute(self.pieces[number], progress)

@@ -63,7 +63,7 @@ from pitchpoint.results.store import (
     without_nan,
     write_text,
 )
-from pitchpoint.results.target_rows import Row
+from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.runs.case import Case, CaseLike, as_case, held
 from pitchpoint.runs.jobs import Job, chosen_jobs, job_of, jobs, with_read
 from pitchpoint.runs.python_values import demand_arguments
@@ -146,9 +146,9 @@ class Outcome:
         return {**vars(self), "manifest": self.manifest}  # laws of the user's own cannot be pickled
 
     @property
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[TargetRow]:
         """Printed against computed."""
-        return [Row(**row) for row in self.manifest["rows"]]
+        return [TargetRow(**row) for row in self.manifest["rows"]]
 
     def tell(self, sentences: Sequence[str]) -> None:
         """Add sentences to what is implausible, and to the warnings: as far as parts are there for them."""
@@ -517,7 +517,7 @@ def compare_case(
     case: str,
     variant: str | None = None,
     watch: Callable[[Path | None], AbstractContextManager[Progress]] | None = None,
-) -> tuple[str, str, list[Row]]:
+) -> tuple[str, str, list[TargetRow]]:
     """Name, variant and rows of a case with targets: computed afresh, or those that a result of it holds.
 
     Raises:
@@ -533,7 +533,7 @@ def compare_case(
     return published.label, published.variant, rows_of(published, watch)
 
 
-def _kept_rows(case: str, variant: str | None) -> tuple[str, str, list[Row]] | None:
+def _kept_rows(case: str, variant: str | None) -> tuple[str, str, list[TargetRow]] | None:
     """What a finished result of these programs says of a variant; None for anything else."""
     if not os.path.isfile(Path(case) / RUN):
         return None
@@ -550,7 +550,7 @@ def _kept_rows(case: str, variant: str | None) -> tuple[str, str, list[Row]] | N
 
 def rows_of(
     made: Variant, watch: Callable[[Path | None], AbstractContextManager[Progress]] | None = None
-) -> list[Row]:
+) -> list[TargetRow]:
     """Rows of a variant with targets: no more is computed than they read.
 
     Raises:
@@ -769,7 +769,7 @@ def _measured(variant: Variant) -> bool:
     return variant.variant in ("as_published", "default") or "targets" in overlay
 
 
-def _rows(built: Ready, variant: Variant, parts: Mapping[str, xr.Dataset]) -> list[Row]:
+def _rows(built: Ready, variant: Variant, parts: Mapping[str, xr.Dataset]) -> list[TargetRow]:
     if not _measured(variant):
         return []
     targets = [

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pitchpoint.analyses.figures import covers
-from pitchpoint.runs.designs import Figure, main_results, shared_laws
+from pitchpoint.runs.designs import MainFigure, main_results, shared_laws
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import law_title
@@ -143,7 +143,7 @@ def result_table(outcomes: Mapping[str, Outcome]) -> Compared:
 
 
 def figure_row(
-    figure: Figure, title: str, outcomes: Mapping[str, Outcome], others: Sequence[str]
+    figure: MainFigure, title: str, outcomes: Mapping[str, Outcome], others: Sequence[str]
 ) -> tuple[str, ...]:
     """A figure in words: title with unit, value of each design, differences of some from the first one.
 
@@ -176,7 +176,7 @@ _OF_BODIES = ("reaction", "contact_ratio", "bearing_load")
 """Parts of the names of figures that are of the bodies of a drive."""
 
 
-def _unlike(figure: Figure, first: Outcome, other: Outcome) -> bool:
+def _unlike(figure: MainFigure, first: Outcome, other: Outcome) -> bool:
     """True for figures of which one design has those of its teeth and another those of its drive or bodies.
 
     What is of other things has a difference, but it says nothing of the designs.
@@ -252,23 +252,23 @@ def _yields(outcome: Outcome) -> str:
     return f"{attributes.get('covers', '')}{attributes.get('assumed', '')}"
 
 
-def _shown(figure: Figure, value: float) -> float:
+def _shown(figure: MainFigure, value: float) -> float:
     return float(show.displayed(figure.variable, value))
 
 
-def left_by_rounding(figure: Figure) -> bool:
+def left_by_rounding(figure: MainFigure) -> bool:
     """True if all values are shown as zero; that of a temperature is as good as any other one."""
     values = (_shown(figure, value) for value in figure.values.values())
     return figure.variable.kind != "temperature" and not any(values)
 
 
-def _value(figure: Figure, design: str) -> str:
+def _value(figure: MainFigure, design: str) -> str:
     if design not in figure.values:
         return NOTHING
     return show.number(_shown(figure, figure.values[design]))
 
 
-def _difference(figure: Figure, first: str, design: str) -> str:
+def _difference(figure: MainFigure, first: str, design: str) -> str:
     """Difference from the first design; in points of a percentage, else in its unit and in percent."""
     if first not in figure.values or design not in figure.values:
         return NOTHING

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, zip_longest
 
 from pitchpoint.doubts import as_doubt
-from pitchpoint.runs.designs import Figure, main_results, shared_laws
+from pitchpoint.runs.designs import MainFigure, main_results, shared_laws
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.columns import fitted, lines_of
@@ -144,7 +144,7 @@ def _answers(outcomes: Mapping[str, Outcome]) -> tuple[list[tuple[str, ...]], li
     return [*ratios, *rows], alike
 
 
-def _main_figures(outcomes: Mapping[str, Outcome]) -> list[Figure]:
+def _main_figures(outcomes: Mapping[str, Outcome]) -> list[MainFigure]:
     """Figures of more than one design that stand on the first screen, in their order."""
     shared = shared_laws(outcomes)[:1]
     order = [*SHORT]
@@ -162,7 +162,7 @@ def _main_figures(outcomes: Mapping[str, Outcome]) -> list[Figure]:
     )
 
 
-def _short(figure: Figure) -> str:
+def _short(figure: MainFigure) -> str:
     name = SHORT.get((figure.part, figure.name))
     return figure.title if name is None else ", ".join(filter(None, (name, figure.place)))
 

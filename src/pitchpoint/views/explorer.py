@@ -24,9 +24,9 @@ from pitchpoint.views.lines import folded, gapped, titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.report import environment, packed, packed_plotly
-from pitchpoint.views.section import Moving
+from pitchpoint.views.section import Animation
 
-__all__ = ["Point", "Reader", "render", "write_explorer"]
+__all__ = ["ExplorerPoint", "Reader", "render", "write_explorer"]
 
 _COURSES = {
     "cycle": ("efficiency", "input_torque"),
@@ -49,7 +49,7 @@ _OF_SOLUTIONS = (
 
 
 @dataclass(frozen=True)
-class Course:
+class PhaseCourse:
     """One course over the mesh cycle.
 
     Attributes:
@@ -66,18 +66,18 @@ class Course:
 
 
 @dataclass(frozen=True)
-class Point:
+class ExplorerPoint:
     """What the page shows of a case at one point.
 
     Attributes:
         courses: by name.
         implausible, warnings: sentences.
         drawing: numbers of its drawings, one of each stage; none where nothing is drawn.
-        acting: of each drawing, see `Moving`.
+        acting: of each drawing, see `Animation`.
         pace: of each drawing, what its slider counts while that of the first counts one.
     """
 
-    courses: Mapping[str, Course]
+    courses: Mapping[str, PhaseCourse]
     implausible: Sequence[str]
     warnings: Sequence[str]
     drawing: Sequence[int]
@@ -93,12 +93,12 @@ class Reader:
     """
 
     def __init__(self) -> None:
-        self.drawings: list[Moving] = []
+        self.drawings: list[Animation] = []
         self._known: dict[str, int] = {}
 
     def __call__(
         self, outcome: Outcome, stages: Mapping[int, Outcome] = MappingProxyType({})
-    ) -> Point:
+    ) -> ExplorerPoint:
         """What the page shows of a case at one point, and of the teeth of its stages by number."""
         titled_ones = {f"Stage {number}": one for number, one in stages.items()} or {"": outcome}
         drawn = [one for title, of in titled_ones.items() for one in self._drawn(of, title)]
@@ -106,7 +106,7 @@ class Reader:
         with shown_in(recorded_units({"": outcome})):
             courses = _courses(outcome)
         rates = [rate for *_, rate in drawn]
-        return Point(
+        return ExplorerPoint(
             courses,
             manifest["implausible"],
             manifest["warnings"],
@@ -126,7 +126,7 @@ class Reader:
             yield number, moving.acting, moving.period / period_of(outcome).time
 
 
-def _movings(outcome: Outcome, name: str) -> Iterator[Moving]:
+def _movings(outcome: Outcome, name: str) -> Iterator[Animation]:
     """Drawings of the sections that have one and whose parts are there."""
     for section in in_order():
         if section.moving is not None and all(_has(outcome, part) for part in section.parts):
@@ -138,7 +138,7 @@ def _has(outcome: Outcome, part: str) -> bool:
     return name in outcome.parts and (not variable or variable in outcome.parts[name])
 
 
-def _courses(outcome: Outcome) -> dict[str, Course]:
+def _courses(outcome: Outcome) -> dict[str, PhaseCourse]:
     return {
         name: _course(outcome, outcome.parts[part], name)
         for part, names in _COURSES.items()
@@ -147,10 +147,10 @@ def _courses(outcome: Outcome) -> dict[str, Course]:
     }
 
 
-def _course(outcome: Outcome, data: xr.Dataset, name: str) -> Course:
+def _course(outcome: Outcome, data: xr.Dataset, name: str) -> PhaseCourse:
     values = np.atleast_2d(display(name, data[name].values, data))
     courses = [_thinned(*gapped(*folded(data["phase"].values, row))) for row in values]
-    return Course(
+    return PhaseCourse(
         title=f"{titled(name, data)} over the mesh cycle",
         axis=short_axis(name, data),
         abscissa=period_of(outcome).axis,
@@ -168,7 +168,9 @@ def _thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return x[shown], y[shown]
 
 
-def write_explorer(found: Explored[Point], drawings: Sequence[Moving], path: str | Path) -> None:
+def write_explorer(
+    found: Explored[ExplorerPoint], drawings: Sequence[Animation], path: str | Path
+) -> None:
     """Write the page; a reader never sees half of it.
 
     Args:
@@ -179,7 +181,7 @@ def write_explorer(found: Explored[Point], drawings: Sequence[Moving], path: str
     write_text(Path(path), render(found, drawings))
 
 
-def render(found: Explored[Point], drawings: Sequence[Moving]) -> str:
+def render(found: Explored[ExplorerPoint], drawings: Sequence[Animation]) -> str:
     """The page as text.
 
     Args:
@@ -190,7 +192,7 @@ def render(found: Explored[Point], drawings: Sequence[Moving]) -> str:
         return _rendered(found, drawings)
 
 
-def _rendered(found: Explored[Point], drawings: Sequence[Moving]) -> str:
+def _rendered(found: Explored[ExplorerPoint], drawings: Sequence[Animation]) -> str:
     manifest, data = found.own.manifest, found.figures
     axes = [_axis(axis, found) for axis in found.axes]
     figures = list(_figures(found))
@@ -238,7 +240,7 @@ def _rendered(found: Explored[Point], drawings: Sequence[Moving]) -> str:
     )
 
 
-def _axis(axis: Axis, found: Explored[Point]) -> dict[str, Any]:
+def _axis(axis: Axis, found: Explored[ExplorerPoint]) -> dict[str, Any]:
     """What a slider needs, in the unit in which a case file shows the values."""
     quantity = axis.quantity
     values, own_value = (_shown(axis, one) for one in (axis.values, np.array([axis.own])))
@@ -305,7 +307,7 @@ def _words(key: str, manifest: Mapping[str, Any]) -> str:
     )
 
 
-def _shapes(axis: Axis, found: Explored[Point]) -> bool:
+def _shapes(axis: Axis, found: Explored[ExplorerPoint]) -> bool:
     """True if the teeth, or the phases at which pairs come and go, change along an axis."""
     where = [slider.key for slider in found.axes].index(axis.key)
     numbers = np.moveaxis(
@@ -318,14 +320,14 @@ def _shapes(axis: Axis, found: Explored[Point]) -> bool:
     )
 
 
-def _differ(one: Point | None, other: Point | None) -> bool:
+def _differ(one: ExplorerPoint | None, other: ExplorerPoint | None) -> bool:
     if one is None or other is None:
         return False
     phases = ([course.x for course in point.courses.values()] for point in (one, other))
     return one.drawing != other.drawing or len({*map(str, phases)}) > 1
 
 
-def _figures(found: Explored[Point]) -> Iterator[dict[str, Any]]:
+def _figures(found: Explored[ExplorerPoint]) -> Iterator[dict[str, Any]]:
     """Figures of the study with a finite value, the main ones first, at all points of the grid."""
     data, main = found.figures, main_figures(found.figures)
     others = sorted(map(str, data.data_vars), key=lambda name: (name not in main, name))
@@ -341,7 +343,9 @@ def _figures(found: Explored[Point]) -> Iterator[dict[str, Any]]:
                 yield _figure(name, str(label), flat, found)
 
 
-def _figure(name: str, label: str, values: np.ndarray, found: Explored[Point]) -> dict[str, Any]:
+def _figure(
+    name: str, label: str, values: np.ndarray, found: Explored[ExplorerPoint]
+) -> dict[str, Any]:
     variable = show.described(name, found.figures)
     finite = values[np.isfinite(values)]
     words = [variable.long_name, *([label.replace("_", " ")] if label else [])]
@@ -360,14 +364,14 @@ def _percent(share: float) -> str:
     return f"{show.number(100.0 * share, 2)} %" if share >= 5e-6 else "below 0.001 %"
 
 
-def _error_words(found: Explored[Point]) -> str:
+def _error_words(found: Explored[ExplorerPoint]) -> str:
     """How far interpolated figures are off, the worst one first."""
     errors = sorted(found.errors.items(), key=lambda one: -one[1])
     named = {show.described(name, found.figures).long_name: _percent(off) for name, off in errors}
     return ", ".join(f"{percent} {words}" for words, percent in named.items())
 
 
-def _sentences(found: Explored[Point]) -> dict[str, Any]:
+def _sentences(found: Explored[ExplorerPoint]) -> dict[str, Any]:
     """Sentences once, and by point and law which of them say why there are no figures, or warn."""
     sentences: dict[str, int] = {"": 0}
 
@@ -390,7 +394,7 @@ _LEVEL = {"automargin": False, "tickangle": 0}
 """Labels that turned upright would change the margin, and with it whether they turn: plotly.js gives up."""
 
 
-def _drawn_courses(found: Explored[Point]) -> list[dict[str, Any]]:
+def _drawn_courses(found: Explored[ExplorerPoint]) -> list[dict[str, Any]]:
     """Courses that have a finite value somewhere, phases once."""
     names = dict.fromkeys(name for one in found.seen if one is not None for name in one.courses)
     drawn = []

@@ -33,7 +33,7 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import REGRESSED, folded, gapped, regimes, titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, KeyFigure, Paragraph, Printed, Table, key_figure
+from pitchpoint.views.section import Block, KeyFigure, Paragraph, Printed, SectionTable, key_figure
 
 __all__ = [
     "MOST",
@@ -438,7 +438,7 @@ def _warmth(data: xr.Dataset) -> str:
     return f"With heat ({named}): films up to {film} above their inlet, surfaces up to {flash}."
 
 
-def figures_table(outcome: Outcome, data: xr.Dataset) -> Table:
+def figures_table(outcome: Outcome, data: xr.Dataset) -> SectionTable:
     """Figures of the cycle, with those of lines without ends and of the friction laws beside them."""
     law_names, lines = laws(data), [LINES] * ("mean_line_loss" in data)
 
@@ -457,7 +457,7 @@ def figures_table(outcome: Outcome, data: xr.Dataset) -> Table:
         rows.append(row(figure, [show.quantity(by_law, float(value), of=data) for value in values]))
         rows += [row(part, empty) for part in _PARTS.get(figure, ())]
     named = [law_title(outcome, law) for law in law_names]
-    return Table(["", "by films", *lines, *named], rows, compact=True)
+    return SectionTable(["", "by films", *lines, *named], rows, compact=True)
 
 
 LINES = "lines without ends"
@@ -477,14 +477,14 @@ def film_laws(data: xr.Dataset) -> Iterator[Block]:
     )
 
 
-def _film_laws_table(data: xr.Dataset) -> Table:
+def _film_laws_table(data: xr.Dataset) -> SectionTable:
     titles, places = (json.loads(data.attrs[f"film_{what}"]) for what in ("titles", "places"))
     names = ("film_deviation", "largest_film_deviation")
     rows = [
         (title, place, *(_compared(name, float(data[name].values[k])) for name in names))
         for k, (title, place) in enumerate(zip(titles, places, strict=True))
     ]
-    return Table(["Film law", "place", "mean", "largest"], rows, compact=True)
+    return SectionTable(["Film law", "place", "mean", "largest"], rows, compact=True)
 
 
 def _compared(name: str, value: float) -> str:

@@ -22,7 +22,7 @@ from pitchpoint.views.point import (
 from pitchpoint.views.section import (
     Page,
     Paragraph,
-    Table,
+    SectionTable,
     figures_by_members,
     key_figures,
     made_of,
@@ -68,7 +68,7 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
             for block in made_of([outcome], partial(section.sums_up, outcome))
         ]
     )
-    tables = [block for block in blocks if isinstance(block, Table)]
+    tables = [block for block in blocks if isinstance(block, SectionTable)]
     if not any(table.caption == "Gears" for table in tables):
         summed_up = any(table.caption.startswith("Gears") for table in tables)
         tables = [_given_gears(outcome, _SUMMED_UP if summed_up else ()), *tables]
@@ -94,10 +94,10 @@ def one_page(page: Page, shown: Sequence[Panel]) -> dict[str, Any]:
     }
 
 
-def _columns(tables: Sequence[Table]) -> tuple[list[Table], list[Table]]:
+def _columns(tables: Sequence[SectionTable]) -> tuple[list[SectionTable], list[SectionTable]]:
     """Tables of the gears on the left and, as far as these are longer, under the picture on the right."""
-    left: list[Table] = []
-    right: list[Table] = []
+    left: list[SectionTable] = []
+    right: list[SectionTable] = []
     heights = [0, _PICTURE]
     for table in tables:
         side = int(heights[0] > heights[1])
@@ -106,7 +106,7 @@ def _columns(tables: Sequence[Table]) -> tuple[list[Table], list[Table]]:
     return left, right
 
 
-def _cut(table: Table, room: int) -> Table:
+def _cut(table: SectionTable, room: int) -> SectionTable:
     """A table of as many rows as there is room for."""
     rows = list(table.rows)
     hidden = len(rows) - room
@@ -119,7 +119,7 @@ _SUMMED_UP = ("teeth", "module", "face_width", "profile_shift")
 """Keys whose values stand in the tables of gears."""
 
 
-def _given_gears(outcome: Outcome, apart: Sequence[str]) -> Table:
+def _given_gears(outcome: Outcome, apart: Sequence[str]) -> SectionTable:
     """Inputs of gears that no section sums up, those left as they are by default apart."""
     rows = [
         (_plain_key(row["key"]), show.pretty(row["value"]))
@@ -128,7 +128,9 @@ def _given_gears(outcome: Outcome, apart: Sequence[str]) -> Table:
         and row["status"] not in _USUAL
         and row["key"].rpartition(".")[2] not in apart
     ]
-    return Table(["Drive, as given" if apart else "Gears, as given", ""], rows, caption="Gears")
+    return SectionTable(
+        ["Drive, as given" if apart else "Gears, as given", ""], rows, caption="Gears"
+    )
 
 
 def _plain_key(key: str) -> str:
@@ -182,7 +184,7 @@ def _facts(outcome: Outcome) -> list[tuple[str, str]]:
     return [(term, words) for term, words in facts if words]
 
 
-def _standing(page: Page) -> Table | None:
+def _standing(page: Page) -> SectionTable | None:
     """What the numbers of designs stand on, side by side."""
     few = dict([*page.outcomes.items()][:_COLUMNS])
     if not page.designs:
@@ -192,7 +194,7 @@ def _standing(page: Page) -> Table | None:
         term for standing in facts.values() for term in standing if term not in _OF_MODELS
     )
     rows = [(term, *(standing.get(term, "–") for standing in facts.values())) for term in terms]
-    return Table(["", *few], rows, caption="Designs")
+    return SectionTable(["", *few], rows, caption="Designs")
 
 
 def _doubts(page: Page) -> list[str]:
@@ -202,7 +204,7 @@ def _doubts(page: Page) -> list[str]:
     return [t if len(of[t]) == everyone else f"{', '.join(of[t])}: {t}" for t in of]
 
 
-def _differing(page: Page) -> Table | None:
+def _differing(page: Page) -> SectionTable | None:
     """Inputs that differ between designs or variants; None of one alone, or where none differ."""
     few = dict([*page.outcomes.items()][:_COLUMNS])
     table, _ = input_tables(few)
@@ -210,18 +212,18 @@ def _differing(page: Page) -> Table | None:
         return None
     title, rows = "Inputs that differ", named_inputs(table)
     room = _INPUTS if page.designs else _INPUTS // 2  # the gears of a case stand above
-    return _cut(Table(["", *few], rows, caption=title), room)
+    return _cut(SectionTable(["", *few], rows, caption=title), room)
 
 
-def _results(page: Page, outcome: Outcome) -> Table:
+def _results(page: Page, outcome: Outcome) -> SectionTable:
     """Key figures: of one variant with what goes with them, of several side by side."""
     if page.several:
         few = dict([*page.outcomes.items()][:_COLUMNS])
         rows = [[*row.values()] for row in beside_each_other(few)][:_RESULTS]
-        return Table(["", *few], rows, caption="Results")
+        return SectionTable(["", *few], rows, caption="Results")
     every = stages_together(key_figures(page.sections, outcome))
     figures = figures_by_members(outcome, every)[:_RESULTS]
-    return Table(
+    return SectionTable(
         ["", "", ""], [(f.name, f.value, _detail(f.detail)) for f in figures], caption="Results"
     )
 

@@ -7,11 +7,11 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["PathOfContact", "marks", "path_of"]
+__all__ = ["StraightPath", "marks", "path_of"]
 
 
 @dataclass(frozen=True)
-class PathOfContact:
+class StraightPath:
     """The way of a pair whose contacts run along a straight path.
 
     Attributes:
@@ -45,11 +45,11 @@ class PathOfContact:
         return bool(self.against)
 
 
-def path_of(outcome: Outcome) -> PathOfContact:
+def path_of(outcome: Outcome) -> StraightPath:
     """Path of contact of a result whose teeth have one."""
     teeth = outcome.parts["teeth"]
     ratio = float(teeth["transverse_contact_ratio"])
-    return PathOfContact(
+    return StraightPath(
         points=_inside(teeth, ratio),
         transverse_ratio=ratio,
         overlap_ratio=float(teeth["overlap_ratio"]),
@@ -66,7 +66,7 @@ def _inside(teeth: xr.Dataset, ratio: float) -> dict[str, float]:
     return {str(name): place for place, name in named if -1e-9 <= place <= ratio + 1e-9}
 
 
-def marks(path: PathOfContact) -> dict[str, Any]:
+def marks(path: StraightPath) -> dict[str, Any]:
     """Vertical lines and letters at the points of the path."""
     places: list[tuple[float, str]] = []
     for letter, place in path.points.items():

@@ -17,10 +17,10 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.outlines import simplified
-from pitchpoint.views.path import PathOfContact, path_of
+from pitchpoint.views.path import StraightPath, path_of
 from pitchpoint.views.point import named_members, period_of
 
-__all__ = ["Body", "Picture", "picture_of"]
+__all__ = ["Picture", "PictureBody", "picture_of"]
 
 _FINE = 2e-4
 """Largest distance that a corner of an outline may be moved by, in tooth heights."""
@@ -46,7 +46,7 @@ _LEGENDS = {
 
 
 @dataclass(frozen=True)
-class Body:
+class PictureBody:
     """One body of a picture.
 
     Attributes:
@@ -166,8 +166,8 @@ class Picture:
     """
 
     teeth: xr.Dataset
-    path: PathOfContact
-    bodies: tuple[Body, ...]
+    path: StraightPath
+    bodies: tuple[PictureBody, ...]
     driver: tuple[str, float]
 
     @property
@@ -317,13 +317,13 @@ def picture_of(outcome: Outcome) -> Picture:
     return Picture(teeth, path_of(outcome), bodies, (names[driver], motion[driver]))
 
 
-def _body(layer: xr.Dataset, name: str, moved: float) -> Body:
+def _body(layer: xr.Dataset, name: str, moved: float) -> PictureBody:
     """A body that moves on by a rotation or a way in each period."""
     x, y = (float(v) for v in layer["layer_place"].values)
     across, up = (float(v) for v in layer["layer_travel"].values)
     turns = across == up == 0.0
     levels = zip(layer["level"].values, layer["layer_level"].values, strict=True)
-    return Body(
+    return PictureBody(
         name=name,
         tooth=layer["layer_tooth"].values,
         place=(x, y),
@@ -337,7 +337,7 @@ def _body(layer: xr.Dataset, name: str, moved: float) -> Body:
     )
 
 
-def _where(body: Body, bodies: tuple[Body, ...]) -> str:
+def _where(body: PictureBody, bodies: tuple[PictureBody, ...]) -> str:
     """Where a body is seen in the picture."""
     if body.ring:
         return "a ring; its rim is cut off"

@@ -31,7 +31,7 @@ from pitchpoint.views.section import (
     Heading,
     Page,
     Section,
-    Table,
+    SectionTable,
     Variants,
     panels,
     said,
@@ -143,7 +143,7 @@ def _captioned(blocks: Iterable[Block], title: str) -> list[Block]:
     for block in blocks:
         if isinstance(block, Heading):
             title = str(block.words)
-        elif isinstance(block, Table) and not block.caption:
+        elif isinstance(block, SectionTable) and not block.caption:
             block = replace(block, caption=title, repeats=True)
         elif isinstance(block, Variants):
             captioned = {

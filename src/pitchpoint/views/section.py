@@ -22,17 +22,17 @@ if TYPE_CHECKING:
 
 __all__ = [
     "OF_MESHES",
+    "Animation",
     "Block",
     "Drawn",
     "Folded",
     "Heading",
     "KeyFigure",
-    "Moving",
     "Page",
     "Paragraph",
     "Printed",
     "Section",
-    "Table",
+    "SectionTable",
     "Variants",
     "by_mesh",
     "by_variant",
@@ -75,7 +75,7 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
-class Table:
+class SectionTable:
     """A table: names in the first columns, one of them unless `names` says how many, numbers in the others.
 
     Its caption is the heading above it unless it has one of its own. A wide one keeps its numbers whole and
@@ -96,7 +96,7 @@ _ACROSS = 4
 """Columns of numbers that stand on a narrow screen; a table of more is wide."""
 
 
-def turned(heads: Sequence[str], columns: Sequence[Sequence[str]], first: str = "") -> Table:
+def turned(heads: Sequence[str], columns: Sequence[Sequence[str]], first: str = "") -> SectionTable:
     """A table of a few things with many figures each, which stand under each other: it is then narrow.
 
     Args:
@@ -112,7 +112,7 @@ def turned(heads: Sequence[str], columns: Sequence[Sequence[str]], first: str = 
     names, *figures = zip(*columns, strict=True)
     rows = [(head, *cells) for head, cells in zip(heads, figures, strict=True)]
     wide = len(names) > _ACROSS
-    return Table([first, *names], rows, compact=not wide, wide=wide)
+    return SectionTable([first, *names], rows, compact=not wide, wide=wide)
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ class Variants:
 
 
 @dataclass(frozen=True)
-class Moving:
+class Animation:
     """A drawing that moves by itself, for a page that has nothing else to say of the teeth.
 
     Attributes:
@@ -172,7 +172,7 @@ class Folded:
     block: ClassVar[str] = "folded"
 
 
-Block = Heading | Paragraph | Table | Panel | Drawn | Variants | Folded
+Block = Heading | Paragraph | SectionTable | Panel | Drawn | Variants | Folded
 
 
 @dataclass(frozen=True)
@@ -562,12 +562,12 @@ class Section:
     card: Callable[[Outcome, str], Iterable[tuple[str, str]]] = lambda outcome, law: ()
     closing: Callable[[Page], Iterable[Block]] = lambda page: ()
     screen: Callable[[Outcome], Iterable[Printed]] = lambda outcome: ()
-    sums_up: Callable[[Outcome], Iterable[Table | Paragraph]] = lambda outcome: ()
+    sums_up: Callable[[Outcome], Iterable[SectionTable | Paragraph]] = lambda outcome: ()
     main_figure: str = ""
     of_a_mesh: bool = False
     folded: bool = False
     picture: str = ""
-    moving: Callable[[Outcome, str], Moving] | None = None
+    moving: Callable[[Outcome, str], Animation] | None = None
 
     def lacking(self, page: Page) -> str | None:
         """None if the section is shown, else why not."""
@@ -680,7 +680,7 @@ def _lacking(manifest: Mapping[str, Any], error: KeyError) -> str:
 
 def _settled(block: Block) -> Block:
     """A block that reads no result any more."""
-    if isinstance(block, Table):
+    if isinstance(block, SectionTable):
         return replace(block, rows=[*block.rows])
     if isinstance(block, Folded):
         return replace(block, inside=[*map(_settled, block.inside)])

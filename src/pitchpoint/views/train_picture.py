@@ -9,7 +9,7 @@ from math import atan2, degrees, pi
 from typing import Any
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views.picture import Body, picture_of
+from pitchpoint.views.picture import PictureBody, picture_of
 from pitchpoint.views.section import of_meshes
 
 __all__ = ["train_pictures"]
@@ -28,7 +28,7 @@ def train_pictures(outcome: Outcome, train: Record) -> list[dict[str, Any]]:
         train: its record in the manifest.
     """
     meshes = dict(of_meshes(outcome, "teeth"))
-    planes: dict[tuple[float, int], list[tuple[Record, dict[str, Body]]]] = {}
+    planes: dict[tuple[float, int], list[tuple[Record, dict[str, PictureBody]]]] = {}
     for one in train["meshes"]:
         mesh = meshes.get(f"stage {one['label']}")
         if one["carrier"] not in train["rates"] or mesh is None:
@@ -42,10 +42,10 @@ def train_pictures(outcome: Outcome, train: Record) -> list[dict[str, Any]]:
     return [one | {"window": (-outside, -outside, 2.0 * outside, 2.0 * outside)} for one in drawn]
 
 
-def _plane(meshes: list[tuple[Record, dict[str, Body]]], train: Record) -> dict[str, Any]:
+def _plane(meshes: list[tuple[Record, dict[str, PictureBody]]], train: Record) -> dict[str, Any]:
     """Gears in one plane, each placed by those before it."""
     settled: dict[tuple[str, int], float] = {}
-    gears: dict[tuple[str, int], Body] = {}
+    gears: dict[tuple[str, int], PictureBody] = {}
     distance = 0.0
     for copy, angle in enumerate(train["angles"]):
         for one, bodies in meshes:
@@ -81,13 +81,15 @@ def _plane(meshes: list[tuple[Record, dict[str, Body]]], train: Record) -> dict[
     }
 
 
-def _reaches(gears: Mapping[tuple[str, int], Body], train: Record) -> list[tuple[Body, bool]]:
+def _reaches(
+    gears: Mapping[tuple[str, int], PictureBody], train: Record
+) -> list[tuple[PictureBody, bool]]:
     return [(body, name in train["planets"]) for (name, _), body in gears.items()]
 
 
 def _place(
     names: list[str],
-    bodies: Mapping[str, Body],
+    bodies: Mapping[str, PictureBody],
     planets: list[str],
     copy: int,
     angle: float,

@@ -42,8 +42,8 @@ from pitchpoint.wear.film_share import asperity_share
 __all__ = [
     "ROOM",
     "Cells",
+    "DriverTurn",
     "Start",
-    "Turn",
     "WearModel",
     "as_new",
     "cells_on",
@@ -257,7 +257,7 @@ class WearModel(eqx.Module):
         return jnp.where(rubs, rise, 0.0)
 
 
-class Turn(eqx.Module):
+class DriverTurn(eqx.Module):
     """What one turn of the driver does to a flank of each member.
 
     Attributes:
@@ -518,7 +518,7 @@ def one_turn(
     cells: Cells,
     start: Start,
     depth: Depths,
-) -> Turn:
+) -> DriverTurn:
     """What one turn of the driver wears off flanks that have lost so much already.
 
     Args:
@@ -555,7 +555,7 @@ def turn_alone(
     cells: Cells,
     start: Start,
     depth: Depths,
-) -> Turn:
+) -> DriverTurn:
     """`one_turn`, all traced together: for meshes with few contacts, and for many drives.
 
     Arguments as there.
@@ -628,7 +628,7 @@ def wear_of(
     wear: WearModel,
     cells: Cells,
     known: Engagement,
-) -> Turn:
+) -> DriverTurn:
     """What contacts that are known wear off in one turn of the driver.
 
     Args:
@@ -663,7 +663,7 @@ def wear_of(
         values = jnp.stack([rubbed, slid_over + jnp.zeros_like(rubbed), passed, held])
         places = _of_places(_at_places(values, cells.nearest, known.nodes))
         depths = jnp.concatenate([depths, places], axis=1)
-    return Turn(
+    return DriverTurn(
         depth=depths,
         volume=jnp.sum(gone, axis=(1, 2, 3)),
         pressure=jnp.max(jnp.where(carries, at.pressure, 0.0)),

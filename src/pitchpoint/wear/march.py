@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.integrate import RK23
 from scipy.optimize import brentq
 
-from pitchpoint.wear.history import Turn
+from pitchpoint.wear.history import DriverTurn
 
 __all__ = ["FIRST", "End", "Limit", "Rate", "Reached", "after", "as_new"]
 
@@ -51,7 +51,7 @@ class Rate:
     lost: bool
 
     @classmethod
-    def of(cls, turn: Turn) -> Self:
+    def of(cls, turn: DriverTurn) -> Self:
         """What a turn does, on the host."""
         return cls(
             depth=np.asarray(turn.depth),

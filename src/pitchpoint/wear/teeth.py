@@ -16,7 +16,7 @@ from pitchpoint.gears.tooth_section import chebyshev_nodes, tooth_sections
 from pitchpoint.programs import program
 from pitchpoint.wear.history import Cells, Start
 
-__all__ = ["STEEPEST", "HalfTeeth", "Tips", "backlash_growth", "half_teeth", "tips_of"]
+__all__ = ["STEEPEST", "HalfTeeth", "TipThickness", "backlash_growth", "half_teeth", "tips_of"]
 
 STEEPEST = np.deg2rad(60.0)
 """Angle between flank and axis of the tooth beyond which a tip is rounded."""
@@ -27,7 +27,7 @@ SAME = 1e-6
 Values = NDArray[np.float64]
 
 
-class Tips(NamedTuple):
+class TipThickness(NamedTuple):
     """Thickness of the teeth of both members at their tips.
 
     It is that at the outermost place of the flank that is reached, where the tooth is thinnest, in the
@@ -92,7 +92,7 @@ def _at_cells(nodes: tuple[Values, ...], flank: Values) -> Values:
     return np.asarray(chebval(np.clip(2.0 * place - 1.0, -1.0, 1.0), series))
 
 
-def tips_of(mesh: Mesh, cells: Cells, start: Start) -> Tips:
+def tips_of(mesh: Mesh, cells: Cells, start: Start) -> TipThickness:
     """Tips of the teeth of a mesh that has any, see `tooth_sections`.
 
     Args:
@@ -116,7 +116,7 @@ def tips_of(mesh: Mesh, cells: Cells, start: Start) -> Tips:
         else:
             apart = np.abs(np.asarray(start.places[member]) - places[at])
             rows[member, cells.count :] = apart <= np.nanmin(apart) + SAME * abs(ends[1] - ends[0])
-    return Tips(np.array(width), np.array(taken), rows)
+    return TipThickness(np.array(width), np.array(taken), rows)
 
 
 @program

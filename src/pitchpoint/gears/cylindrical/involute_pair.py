@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
-from pitchpoint.contact.surface import Flank, Spot, Surfaces
+from pitchpoint.contact.surface import FlankEnds, Spot, Surfaces
 from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.bodies import completed, drawing, independent, main_dimensions, plain_inertia
 from pitchpoint.gears.contact_lines import (
@@ -253,7 +253,7 @@ class InvolutePair(InvoluteMesh):
         ends, arcs = self.active_flanks, 2.0 * jnp.abs(self.base_radii)
         pinion, wheel = (
             tuple(
-                surface.fitted(Flank(ends[k, 0], ends[k, 1], arcs[k], self.face_width))
+                surface.fitted(FlankEnds(ends[k, 0], ends[k, 1], arcs[k], self.face_width))
                 for surface in of_gear
             )
             for k, of_gear in enumerate(self.surfaces)

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.contact.modifications import Crowning, EndRelief, LeadSlope, Relief
-from pitchpoint.contact.surface import Flank, Surface, Surfaces
+from pitchpoint.contact.surface import FlankEnds, Surface, Surfaces
 from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
@@ -126,7 +126,7 @@ def _reliefs(
 ) -> Iterator[Relief]:
     root, tip = (array(float(end)) for end in flanks[member])
     arcs = array(2.0 * abs(float(pair.base_radii[member])))
-    flank = Flank(root, tip, arcs, pair.face_width)
+    flank = FlankEnds(root, tip, arcs, pair.face_width)
     for amounts, lengths, at_tip in (
         (given.tip_relief, given.tip_relief_length, True),
         (given.root_relief, given.root_relief_length, False),

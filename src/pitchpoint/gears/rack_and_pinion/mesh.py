@@ -30,7 +30,7 @@ from pitchpoint.roots import hypot
 __all__ = ["RackAndPinion"]
 
 
-class LineOfAction(PathOfContact):
+class RackLineOfAction(PathOfContact):
     """Lengths on the line of action of rack and pinion.
 
     Args:
@@ -119,9 +119,9 @@ class RackAndPinion(InvoluteMesh):
     surfaces: Surfaces = ((), ())
 
     @property
-    def line(self) -> LineOfAction:
+    def line(self) -> RackLineOfAction:
         """Lengths on the line of action, for one question."""
-        return LineOfAction(self)
+        return RackLineOfAction(self)
 
     @property
     def zero_backlash_distance(self) -> Float[Array, ""]:
@@ -189,7 +189,7 @@ class RackAndPinion(InvoluteMesh):
         )
 
     def _at(
-        self, line: LineOfAction, position: Float[Array, "pair slice *b"], width: Array
+        self, line: RackLineOfAction, position: Float[Array, "pair slice *b"], width: Array
     ) -> dict[str, Array]:
         """Curvature, motion and place at positions on the line of action [m from N1]."""
         side, none = self._side, jnp.zeros_like(position)
@@ -229,7 +229,7 @@ class RackAndPinion(InvoluteMesh):
         passed = jnp.broadcast_to(self._side * (number - jnp.floor(phase)), rack_spot.tooth.shape)
         return pinion_spot, dataclasses.replace(rack_spot, tooth=passed.astype(int))
 
-    def _layers(self, line: LineOfAction) -> dict[str, Float[Array, "..."]]:
+    def _layers(self, line: RackLineOfAction) -> dict[str, Float[Array, "..."]]:
         """The transverse section at the middle of the face, the rack above the pinion."""
         side, base = self._side, line.base_radius
         sine, cosine = jnp.sin(line.angle), jnp.cos(line.angle)

@@ -18,8 +18,8 @@ from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.materials.solids import Solid
 
 __all__ = [
-    "BallBearing",
     "Balls",
+    "ThinRaceBearing",
     "ball_bearing",
     "ball_circle",
     "on_balls",
@@ -64,7 +64,7 @@ class Balls:
         }
 
 
-class BallBearing(eqx.Module):
+class ThinRaceBearing(eqx.Module):
     """Balls under a thin ring.
 
     Attributes:
@@ -81,7 +81,7 @@ class BallBearing(eqx.Module):
     stretching: Float[Array, ""]
 
     @property
-    def elsewhere(self) -> "BallBearing":
+    def elsewhere(self) -> "ThinRaceBearing":
         """The same with the balls as far from where they stand as they come.
 
         Every half of their pitch the ends of the long axis change places if their number is odd, so that a
@@ -137,7 +137,7 @@ def ball_circle(balls: Balls, diameter: float, bore: float) -> float:
     return bore - 2.0 * sizes["race_thickness"] - sizes["ball_diameter"]
 
 
-def ball_bearing(balls: Balls, diameter: float, bore: float, width: float) -> BallBearing:
+def ball_bearing(balls: Balls, diameter: float, bore: float, width: float) -> ThinRaceBearing:
     """The bearing of a drive.
 
     Args:
@@ -154,7 +154,7 @@ def ball_bearing(balls: Balls, diameter: float, bore: float, width: float) -> Ba
             key="balls" if balls.number is not None else "ball_diameter",
         )
     young, poisson = STEEL["young"], STEEL["poisson"]
-    return BallBearing(
+    return ThinRaceBearing(
         angle=array(2.0 * pi * np.arange(number) / number),
         stiffness=array(palmgren_1959(ball)),
         play=array(balls.play),
@@ -170,7 +170,7 @@ class _Modes(NamedTuple):
     balls: Float[Array, "ball mode"]
 
 
-def _modes(bearing: BallBearing, ring: FlexibleRing, solid: Solid, loads: RingLoads) -> _Modes:
+def _modes(bearing: ThinRaceBearing, ring: FlexibleRing, solid: Solid, loads: RingLoads) -> _Modes:
     nothing, outward = jnp.zeros_like(bearing.angle), jnp.ones_like(bearing.angle)
     pushes = RingLoads(*(x[:, None] for x in (bearing.angle, nothing, outward, nothing)))
     return _Modes(
@@ -179,7 +179,7 @@ def _modes(bearing: BallBearing, ring: FlexibleRing, solid: Solid, loads: RingLo
 
 
 def on_balls(
-    bearing: BallBearing, ring: FlexibleRing, line: NeutralLine, solid: Solid, loads: RingLoads
+    bearing: ThinRaceBearing, ring: FlexibleRing, line: NeutralLine, solid: Solid, loads: RingLoads
 ) -> OnBalls:
     """How teeth and balls move each other through the ring and the outer race.
 
@@ -211,7 +211,7 @@ def on_balls(
 
 
 def _seated(
-    bearing: BallBearing,
+    bearing: ThinRaceBearing,
     balls: Float[Array, "ball ball"],
     line: NeutralLine,
     play: Float[Array, ""],
@@ -221,7 +221,7 @@ def _seated(
 
 
 def parts_on_balls(
-    bearing: BallBearing,
+    bearing: ThinRaceBearing,
     ring: FlexibleRing,
     line: NeutralLine,
     solid: Solid,

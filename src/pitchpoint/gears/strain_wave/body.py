@@ -12,9 +12,9 @@ from pitchpoint.factored import Arrays
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.strain_wave import MEMBERS
-from pitchpoint.gears.strain_wave.ball_bearing import BallBearing, on_balls, parts_on_balls
+from pitchpoint.gears.strain_wave.ball_bearing import ThinRaceBearing, on_balls, parts_on_balls
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
-from pitchpoint.gears.strain_wave.flexspline_tooth import Flank
+from pitchpoint.gears.strain_wave.flexspline_tooth import FlexsplineFlank
 from pitchpoint.gears.strain_wave.in_series import InSeries
 from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance, ring_parts
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
@@ -42,10 +42,10 @@ class StrainWaveBody(GearBody):
     couples: ClassVar[bool] = True
     inner_bearing: ClassVar[frozenset[str]] = frozenset(MEMBERS[:2])
 
-    flank: Flank
+    flank: FlexsplineFlank
     line: NeutralLine
     rim: FlexibleRing
-    bearing: BallBearing | None
+    bearing: ThinRaceBearing | None
     series: InSeries
     teeth: Float[Array, "2"]
 

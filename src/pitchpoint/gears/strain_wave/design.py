@@ -18,12 +18,16 @@ from pitchpoint.gears.designs import Designs, Faults, Group, Number, check_count
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing
 from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for, survey
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
-from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
+from pitchpoint.gears.strain_wave.flexspline_tooth import (
+    DoubleArcFlank,
+    FlexsplineFlank,
+    InvoluteFlank,
+)
 from pitchpoint.gears.strain_wave.groove import (
     NEWTON_STEPS,
     NODES,
     Groove,
-    Tips,
+    SplineTips,
     given,
     swept,
     tip_with_land,
@@ -239,9 +243,9 @@ class _Plan:
     backlash: float
 
     @property
-    def tips(self) -> Tips:
+    def tips(self) -> SplineTips:
         """How tips are made."""
-        tips: Tips = self.parts["tips"]
+        tips: SplineTips = self.parts["tips"]
         return tips
 
     @property
@@ -306,7 +310,7 @@ def _touching(found: Survey, module: Float[Array, ""]) -> _Contact:
 def _swept(
     cutter: ToothMotion,
     low: Float[Array, ""],
-    tips: Tips,
+    tips: SplineTips,
     mate_angle: Float[Array, ""],
     land: Float[Array, ""],
 ) -> tuple[Groove, Float[Array, ""], Float[Array, ""]]:
@@ -383,7 +387,7 @@ def _planned(
     w0 = deflection * module * (z2 - z1) / 2.0
     rim = _rim(walls, module, z1, w0) if rim_thickness is None else rim_thickness
     sizes = (tip_rounding, tip_relief, relief_length, bottom_clearance, RIDGE)
-    tips = Tips(*(array(size * module) for size in sizes))
+    tips = SplineTips(*(array(size * module) for size in sizes))
     flank = _flank(form, z1, module, rim, tips)
     dedendum = (
         form.dedendum if isinstance(form, DoubleArcForm) else form.dedendum - form.profile_shift
@@ -641,11 +645,11 @@ def double_arc_flank(
         InputError: arcs without a common tangent, or in the wrong order.
     """
     tip_sizes = (array(v * module) for v in (tip_rounding, tip_relief, relief_length, 0.0, RIDGE))
-    return _double_arc(form, module, rim_thickness, Tips(*tip_sizes))
+    return _double_arc(form, module, rim_thickness, SplineTips(*tip_sizes))
 
 
 def _double_arc(
-    form: DoubleArcForm, module: float, rim_thickness: float, tips: Tips
+    form: DoubleArcForm, module: float, rim_thickness: float, tips: SplineTips
 ) -> DoubleArcFlank:
     values = {field.name: array(module * getattr(form, field.name)) for field in fields(form)}
     flank = DoubleArcFlank(
@@ -678,7 +682,7 @@ def _double_arc(
     return flank
 
 
-def _check_relief(flank: float, rounding: float, tips: Tips, module: float) -> None:
+def _check_relief(flank: float, rounding: float, tips: SplineTips, module: float) -> None:
     """InputError if the relief of a tip takes more of its flank or its rounding than there is, in modules."""
     amount, length = float(tips.relief) / module, float(tips.relief_length) / module
     if amount > 0.0 and length == 0.0:
@@ -711,8 +715,8 @@ def _arcs(flank: DoubleArcFlank) -> dict[str, jnp.ndarray]:
 
 
 def _flank(
-    form: DoubleArcForm | InvoluteForm, teeth: int, module: float, rim: float, tips: Tips
-) -> Flank:
+    form: DoubleArcForm | InvoluteForm, teeth: int, module: float, rim: float, tips: SplineTips
+) -> FlexsplineFlank:
     if isinstance(form, DoubleArcForm):
         return _double_arc(form, module, rim, tips)
     flank = _involute(form, teeth, module, rim, tips)
@@ -730,7 +734,7 @@ def _flank(
 
 
 def _involute(
-    form: InvoluteForm, teeth: int, module: float, rim: float, tips: Tips | None
+    form: InvoluteForm, teeth: int, module: float, rim: float, tips: SplineTips | None
 ) -> InvoluteFlank:
     tip_sizes = (tips.rounding, tips.relief, tips.relief_length) if tips else (0.0, 0.0, 0.0)
     root = module * (teeth / 2.0 + form.profile_shift - form.dedendum)
@@ -751,7 +755,7 @@ def _involute(
     )
 
 
-def _check_land(land: float, module: float, tips: Tips) -> None:
+def _check_land(land: float, module: float, tips: SplineTips) -> None:
     rounding = float(tips.rounding) / module
     least = 2.0 * rounding * module
     if not land > least:
@@ -857,7 +861,7 @@ def _last(found: Survey, module: float) -> float:
 
 
 @program
-def _prepared(flank: Flank) -> Flank:
+def _prepared(flank: FlexsplineFlank) -> FlexsplineFlank:
     return flank.prepared()
 
 

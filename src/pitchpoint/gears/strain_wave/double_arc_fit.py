@@ -12,7 +12,7 @@ from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.strain_wave.design import LEAST_LAND, RIDGE, SWEPT_ACCURACY, build_strain_wave
 from pitchpoint.gears.strain_wave.drive import StrainWave, nearest_points
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
-from pitchpoint.gears.strain_wave.groove import Groove, Tips, swept, tip_with_land
+from pitchpoint.gears.strain_wave.groove import Groove, SplineTips, swept, tip_with_land
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, DoubleArcForm
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
@@ -367,7 +367,7 @@ def _in_order(flank: DoubleArcFlank) -> Array:
 def _with_land(motion: ToothMotion, low: Array, edge: Array, pitch: Array) -> tuple[Groove, Array]:
     """Groove whose teeth between keep a tip land, and whether anything is left of them."""
     none = jnp.zeros(())
-    tips = Tips(edge, none, none, none, jnp.asarray(RIDGE))
+    tips = SplineTips(edge, none, none, none, jnp.asarray(RIDGE))
 
     def cut(low: Array, _: None) -> tuple[Array, tuple[Groove, Array]]:
         groove = swept(motion, low, tips)

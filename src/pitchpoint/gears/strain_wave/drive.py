@@ -25,14 +25,14 @@ from pitchpoint.gears.pairs import (
     way,
 )
 from pitchpoint.gears.strain_wave import MEMBERS
-from pitchpoint.gears.strain_wave.ball_bearing import BallBearing
+from pitchpoint.gears.strain_wave.ball_bearing import ThinRaceBearing
 from pitchpoint.gears.strain_wave.body import StrainWaveBody, end_of_wave, left_behind
 from pitchpoint.gears.strain_wave.contact_width import curvature_in_contact
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
-from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
-from pitchpoint.gears.strain_wave.groove import Groove, Tips, swept
+from pitchpoint.gears.strain_wave.flexspline_tooth import FlexsplineFlank, unit
+from pitchpoint.gears.strain_wave.groove import Groove, SplineTips, swept
 from pitchpoint.gears.strain_wave.in_series import InSeries
-from pitchpoint.gears.strain_wave.tooth_motion import Passing, ToothMotion
+from pitchpoint.gears.strain_wave.tooth_motion import PassingPoint, ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes, tooth_sections
 from pitchpoint.roots import hypot, root
@@ -95,7 +95,7 @@ class Touching(eqx.Module):
     """
 
     along: Each
-    at: Passing
+    at: PassingPoint
     clearance: Each
     mate: Each
     held: Bool[Array, "*b"]
@@ -162,14 +162,14 @@ class StrainWave(Mesh):
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
     face_width: Float[Array, ""]
-    flank: Flank
+    flank: FlexsplineFlank
     line: NeutralLine
     groove: Groove
     rim: FlexibleRing
-    bearing: BallBearing | None
+    bearing: ThinRaceBearing | None
     series: InSeries
     tip_height: Float[Array, ""]
-    tips: Tips
+    tips: SplineTips
     backlash: Float[Array, ""]
     held: Float[Array, ""]
     surveyed: Survey
@@ -214,7 +214,7 @@ class StrainWave(Mesh):
         """The same of a tooth without relief, which sweeps the groove."""
         return self._motion_of(self.flank.unrelieved)
 
-    def _motion_of(self, flank: Flank) -> ToothMotion:
+    def _motion_of(self, flank: FlexsplineFlank) -> ToothMotion:
         return ToothMotion(flank.prepared(), self.line, 1.0 - self.teeth[0] / self.teeth[1])
 
     @property

@@ -14,7 +14,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.involute import involute
 
-__all__ = ["ArcChain", "DoubleArcFlank", "Flank", "InvoluteFlank", "unit"]
+__all__ = ["ArcChain", "DoubleArcFlank", "FlexsplineFlank", "InvoluteFlank", "unit"]
 
 Along = Float[Arrays, "*#b"]
 Place = Complex[Array, "*#b"]
@@ -34,7 +34,7 @@ def _on_circle(angle: Array) -> Array:
     return jax.lax.complex(jnp.cos(angle), jnp.sin(angle))
 
 
-class Flank(eqx.Module):
+class FlexsplineFlank(eqx.Module):
     """One flank of a tooth, the one that faces in the sense of positive rotation.
 
     Places are complex numbers `y + i x`: y outwards along the axis of the tooth from the neutral
@@ -72,7 +72,7 @@ class Flank(eqx.Module):
     def curvature(self, along: Along) -> Along:
         """Curvature, positive where the flank is convex [1/m]."""
 
-    def prepared(self) -> "Flank":
+    def prepared(self) -> "FlexsplineFlank":
         """The same curve in the form that is evaluated with the least work."""
         return self
 
@@ -111,7 +111,7 @@ class Flank(eqx.Module):
         return jnp.real(self.place(jnp.zeros(())))
 
 
-class ArcChain(Flank):
+class ArcChain(FlexsplineFlank):
     """Circular arcs and straight lines that go over into each other without a bend.
 
     Attributes:
@@ -140,7 +140,7 @@ class ArcChain(Flank):
         angle: Along,
         pieces: Sequence[Float[Array, ""]],
         curvatures: Sequence[Float[Array, ""]],
-        like: Flank,
+        like: FlexsplineFlank,
     ) -> "ArcChain":
         """Arcs that follow each other from a place and a flank angle on."""
         lengths, bends = jnp.stack(pieces), jnp.stack(curvatures)
@@ -197,7 +197,7 @@ def _chord(angle: Along, curvature: Along, way: Along) -> Place:
     return way * jnp.sinc(half / jnp.pi) * unit(-(angle + half))
 
 
-class DoubleArcFlank(Flank):
+class DoubleArcFlank(FlexsplineFlank):
     """Convex arc at the tip, concave arc at the root, and the common tangent between them.
 
     The centre of the convex arc lies `convex_offset` beyond the tooth's axis and `convex_shift`
@@ -318,7 +318,7 @@ class DoubleArcFlank(Flank):
         return self.prepared().curvature(along)
 
 
-class InvoluteFlank(Flank):
+class InvoluteFlank(FlexsplineFlank):
     """Involute with a large profile shift, from the root circle to a rounded tip.
 
     Attributes:

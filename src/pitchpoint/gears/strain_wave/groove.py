@@ -11,7 +11,7 @@ from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.roots import hypot
 
-__all__ = ["NEWTON_STEPS", "NODES", "Groove", "Tips", "given", "swept", "tip_with_land"]
+__all__ = ["NEWTON_STEPS", "NODES", "Groove", "SplineTips", "given", "swept", "tip_with_land"]
 
 NODES = 640
 """Heights at which the flank is known; cubic between them."""
@@ -38,7 +38,7 @@ _FROM_TOP = np.stack([np.ones(NODES), np.linspace(1.0, 0.0, NODES) ** 2])
 Each = Float[Array, "*b"]
 
 
-class Tips(eqx.Module):
+class SplineTips(eqx.Module):
     """How the tips of both splines are made, and the bottom of the spaces.
 
     Attributes:
@@ -187,7 +187,7 @@ def given(flank: InvoluteFlank, low: Float[Array, ""], high: Float[Array, ""]) -
     )
 
 
-def swept(motion: ToothMotion, low: Float[Array, ""], tips: Tips) -> Groove:
+def swept(motion: ToothMotion, low: Float[Array, ""], tips: SplineTips) -> Groove:
     """Flank that a tooth just clears at every phase: the outermost place that it reaches at each height.
 
     Conjugate profiles are part of it where they lie outermost; roots of the conjugate condition that

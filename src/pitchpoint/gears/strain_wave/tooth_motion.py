@@ -5,16 +5,16 @@ from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
+from pitchpoint.gears.strain_wave.flexspline_tooth import FlexsplineFlank, unit
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 
-__all__ = ["Passing", "ToothMotion"]
+__all__ = ["PassingPoint", "ToothMotion"]
 
 Each = Float[Arrays, "*#b"]
 Place = Complex[Array, "*#b"]
 
 
-class Passing(eqx.Module):
+class PassingPoint(eqx.Module):
     """A point of a flank at one phase, and how it moves for a unit rate of the phase.
 
     Attributes:
@@ -90,7 +90,7 @@ class ToothMotion(eqx.Module):
         lag: turn of the tooth against its space for a unit of p, 1 - z1/z2.
     """
 
-    flank: Flank
+    flank: FlexsplineFlank
     line: NeutralLine
     lag: Float[Array, ""]
 
@@ -131,7 +131,7 @@ class ToothMotion(eqx.Module):
         height = jnp.tensordot(parts, jnp.stack([jnp.real(foot), cosine, -sine]), 1)
         return height, jnp.tensordot(parts, jnp.stack([jnp.imag(foot), sine, cosine]), 1)
 
-    def at(self, along: Each, angle: Each) -> Passing:
+    def at(self, along: Each, angle: Each) -> PassingPoint:
         """Place and motion of a point of the flank.
 
         Args:
@@ -150,7 +150,7 @@ class ToothMotion(eqx.Module):
         place = foot + arm
         bend = rise_2 + 2j * rise * polar + 1j * reach * turn_2 - reach * polar**2
         shift = (rise + 1j * reach * turn) * outwards + 1j * (turn + tilt) * arm
-        return Passing(
+        return PassingPoint(
             place=place,
             direction=axis - flank.angle(along),
             curvature=flank.curvature(along),

@@ -9,9 +9,9 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.lubrication.ehl.grid import Grid, lowest
+from pitchpoint.lubrication.ehl.grid import LineGrid, lowest
 from pitchpoint.lubrication.ehl.heat import Temperatures, temperatures
-from pitchpoint.lubrication.ehl.line import NEAR, LineContact, Problem
+from pitchpoint.lubrication.ehl.line import NEAR, LineContact, LineProblem
 from pitchpoint.lubrication.ehl.work import filled, shear_stress, work_of_pressure
 
 __all__ = ["LineFilm", "line_film"]
@@ -106,11 +106,11 @@ class LineFilm(eqx.Module):
 
 def line_film(
     contact: LineContact,
-    problem: Problem,
+    problem: LineProblem,
     pressure: Array,
     level: Array,
     response: tuple[Array, Array],
-    at: Grid,
+    at: LineGrid,
 ) -> LineFilm:
     """Fields of one contact from a solution in its own units.
 

@@ -17,8 +17,8 @@ __all__ = [
     "ENDS",
     "Along",
     "Ends",
-    "Grid",
-    "Row",
+    "LineGrid",
+    "NodeRow",
     "fewer",
     "grid",
     "line_kernel",
@@ -51,7 +51,7 @@ _COARSER_FROM, _COARSER_OVER = 1.2, 0.8
 """Distance from which on nodes grow apart, and over which they do."""
 
 
-class Grid(eqx.Module):
+class LineGrid(eqx.Module):
     """Nodes across a line contact; all lengths in units of the length of the contact.
 
     Attributes:
@@ -83,7 +83,7 @@ class Grid(eqx.Module):
         return jnp.argmin(jnp.abs(jnp.asarray(self.x)))
 
 
-class Row(NamedTuple):
+class NodeRow(NamedTuple):
     """Nodes along the entrainment, and what flows between them needs alone; attributes as of a grid."""
 
     widths: Float[Array, " node"]
@@ -91,11 +91,11 @@ class Row(NamedTuple):
     ahead: Bool[Array, " face"]
 
 
-Along = Grid | Row
+Along = LineGrid | NodeRow
 
 
 @lru_cache(maxsize=16)
-def grid(nodes: int, ends: Ends = "entrained") -> Grid:
+def grid(nodes: int, ends: Ends = "entrained") -> LineGrid:
     """The grid of a line contact.
 
     Args:
@@ -120,7 +120,7 @@ def grid(nodes: int, ends: Ends = "entrained") -> Grid:
     kernel = line_kernel(x, edges)
     reached = np.concatenate((kernel[:1], kernel))[:, 1:-1]
     fields: Any = x, np.diff(edges), np.diff(x), faces < 0.0, kernel, reached
-    return Grid(*fields)
+    return LineGrid(*fields)
 
 
 def fewer(nodes: int) -> int | None:

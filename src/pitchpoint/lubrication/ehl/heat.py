@@ -10,9 +10,9 @@ from jaxtyping import Array, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import Grid
-from pitchpoint.lubrication.ehl.line import LineContact, Problem
-from pitchpoint.lubrication.ehl.newton import ENOUGH, State, iterated, residual
+from pitchpoint.lubrication.ehl.grid import LineGrid
+from pitchpoint.lubrication.ehl.line import LineContact, LineProblem
+from pitchpoint.lubrication.ehl.newton import ENOUGH, LineIterate, iterated, residual
 from pitchpoint.lubrication.ehl.strips import (
     MOST_TURNS,
     NEAR,
@@ -87,7 +87,7 @@ def _conduction(contact: LineContact) -> Conduction:
 
 
 def _strip(
-    contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
+    contact: LineContact, problem: LineProblem, pressure: Array, level: Array, at: LineGrid
 ) -> Strip:
     """What heat is made of at a pressure."""
     flow = problem.flow
@@ -101,14 +101,14 @@ def _strip(
     return Strip(*fields, length, _power(problem), spread)
 
 
-def _power(problem: Problem) -> Array:
+def _power(problem: LineProblem) -> Array:
     """Unit of power per length of contact line [W/m]."""
     return problem.flow.pressure * problem.flow.height * problem.speed
 
 
-def warmed(problem: Problem, rise: Array) -> Problem:
+def warmed(problem: LineProblem, rise: Array) -> LineProblem:
     """The contact with a film that is so much warmer than its inlet, shape (node,) [K]."""
-    warm: Problem = eqx.tree_at(lambda tree: tree.flow, problem, warmer(problem.flow, rise))
+    warm: LineProblem = eqx.tree_at(lambda tree: tree.flow, problem, warmer(problem.flow, rise))
     return warm
 
 
@@ -123,7 +123,7 @@ class Warm(NamedTuple):
         total: steps of Newton's method for the pressure.
     """
 
-    state: State
+    state: LineIterate
     rise: Float[Array, " node"]
     change: Float[Array, ""]
     turns: Int[Array, ""]
@@ -131,7 +131,7 @@ class Warm(NamedTuple):
     past: Past
 
 
-def turned(contact: LineContact, problem: Problem, state: State, at: Grid) -> Warm:
+def turned(contact: LineContact, problem: LineProblem, state: LineIterate, at: LineGrid) -> Warm:
     """Pressure and temperature in turns, from the isothermal solution or any other pressure."""
 
     def onward(warm: Warm) -> Warm:
@@ -158,8 +158,8 @@ def turned(contact: LineContact, problem: Problem, state: State, at: Grid) -> Wa
 
 
 def settled(
-    contact: LineContact, problem: Problem, warm: Warm, at: Grid
-) -> tuple[Problem, Array, Array]:
+    contact: LineContact, problem: LineProblem, warm: Warm, at: LineGrid
+) -> tuple[LineProblem, Array, Array]:
     """Contact as warm as it is, pressure and level, with their derivatives to all that it is made of.
 
     A last step of pressure, level and temperature together carries them (implicit function theorem), with the
@@ -173,11 +173,11 @@ def settled(
     """
     nodes = at.x.shape[0]
 
-    def parts(solution: Array) -> tuple[Problem, Array, Array]:
+    def parts(solution: Array) -> tuple[LineProblem, Array, Array]:
         inner, level, rise = solution[: nodes - 2], solution[nodes - 2], solution[nodes - 1 :]
         return warmed(problem, rise), jnp.pad(inner, 1), level
 
-    def left(contact: LineContact, problem: Problem, solution: Array) -> Array:
+    def left(contact: LineContact, problem: LineProblem, solution: Array) -> Array:
         _, pressure, level = parts(solution)
         so_warm = warmed(problem, solution[nodes - 1 :])
         rise, heated, *_ = _balance(contact, so_warm, pressure, level, at)
@@ -191,7 +191,7 @@ def settled(
 
 
 def defect(
-    contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
+    contact: LineContact, problem: LineProblem, pressure: Array, level: Array, at: LineGrid
 ) -> Array:
     """Rise of the film against that by its heat, over the largest rise."""
     rise, heated, *_ = _balance(contact, problem, pressure, level, at)
@@ -199,7 +199,7 @@ def defect(
 
 
 def _balance(
-    contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
+    contact: LineContact, problem: LineProblem, pressure: Array, level: Array, at: LineGrid
 ) -> tuple[Array, Array, Array, Strip]:
     """Rise of the film, that by its heat, the heat per area, and what it is made of."""
     strip = _strip(contact, problem, pressure, level, at)
@@ -207,7 +207,7 @@ def _balance(
 
 
 def temperatures(
-    contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
+    contact: LineContact, problem: LineProblem, pressure: Array, level: Array, at: LineGrid
 ) -> Temperatures | None:
     """Heat and temperatures of one contact along its grid; None of an isothermal one."""
     if contact.conduction is None:

@@ -12,7 +12,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.hertz import line_half_width, line_pressure
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import Grid, lowest, restricted
+from pitchpoint.lubrication.ehl.grid import LineGrid, lowest, restricted
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth, Texture
@@ -20,7 +20,7 @@ from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials._leaves import as_array
 from pitchpoint.materials.fluid import Fluid
 
-__all__ = ["SLOWEST", "LineContact", "Problem", "length_of", "problem_of"]
+__all__ = ["SLOWEST", "LineContact", "LineProblem", "length_of", "problem_of"]
 
 SLOWEST: Final = 1e-9
 """Least unit of speed [m/s], for contacts that stand still."""
@@ -110,7 +110,7 @@ class LineContact(eqx.Module):
         return line_pressure(line_load=self.line_load, radius=self.radius, modulus=self.modulus)
 
 
-class Problem(eqx.Module):
+class LineProblem(eqx.Module):
     """One line contact in units of its own.
 
     Attributes:
@@ -132,30 +132,30 @@ class Problem(eqx.Module):
     inlet: Float[Arrays, ""]
     lowered: Float[Arrays, "..."]
 
-    def gap(self, pressure: Array, level: Array, at: Grid) -> Array:
+    def gap(self, pressure: Array, level: Array, at: LineGrid) -> Array:
         """Gap of the mean planes at every node, shape (node,)."""
         lowered = self.lowered
         while lowered.shape > at.x.shape:
             lowered = restricted(lowered)
         return level + 0.5 * at.x**2 - lowered + self.yielding * (at.kernel @ pressure)
 
-    def films(self, pressure: Array, level: Array, at: Grid) -> Array:
+    def films(self, pressure: Array, level: Array, at: LineGrid) -> Array:
         """Gap of the mean planes at the middle node, the smallest and the mean one, shape (3,)."""
         gap = self.gap(pressure, level, at)
         _, least = lowest(at.x, gap, self._narrowest(gap, at))
         return jnp.stack([gap[at.middle], least, self.mean_film(pressure, level, at)])
 
-    def opening(self, gap: Array, at: Grid) -> Array:
+    def opening(self, gap: Array, at: LineGrid) -> Array:
         """Half of what a gap opens from its narrowest node to both neighbours."""
         node = jnp.clip(self._narrowest(gap, at), 1, gap.shape[0] - 2)
         return 0.5 * (gap[node - 1] + gap[node + 1]) - gap[node]
 
-    def _narrowest(self, gap: Array, at: Grid) -> Array:
+    def _narrowest(self, gap: Array, at: LineGrid) -> Array:
         """Node of the smallest gap near the contact."""
         near = jnp.abs(at.x) < NEAR / self.yielding
         return jnp.argmin(jnp.where(near, gap, jnp.inf))
 
-    def mean_film(self, pressure: Array, level: Array, at: Grid) -> Array:
+    def mean_film(self, pressure: Array, level: Array, at: LineGrid) -> Array:
         """Mean gap of the mean planes over the dry contact, of the lines between the nodes."""
         film, half_width = self.gap(pressure, level, at), self.yielding
         low, high = (jnp.clip(x, -half_width, half_width) for x in (at.x[:-1], at.x[1:]))
@@ -164,26 +164,26 @@ class Problem(eqx.Module):
         lines = film[:-1] + share * jnp.diff(film)
         return jnp.sum(lines * (high - low)) / (2.0 * half_width)
 
-    def carrying(self, pressure: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
+    def carrying(self, pressure: Array, gap: Array, at: LineGrid) -> tuple[Array, Array]:
         """Pressure of a shape that carries the load, and the level for a gap in the middle."""
         carries = pressure * self.load / (at.widths @ pressure)
         return carries, gap - self.gap(carries, jnp.zeros(()), at)[at.middle]
 
-    def wet(self, at: Grid) -> Array:
+    def wet(self, at: LineGrid) -> Array:
         """Whether there is oil at each inner node, shape (node - 2,)."""
         half_way = 0.5 * (at.x[1:-1] + at.x[2:])
         wet: Array = half_way > -self.inlet
         return wet
 
-    def at_speed(self, factor: Array) -> Problem:
+    def at_speed(self, factor: Array) -> LineProblem:
         """The same contact at another speed."""
-        changed: Problem = eqx.tree_at(
+        changed: LineProblem = eqx.tree_at(
             lambda tree: tree.flow.resistance, self, self.flow.resistance * factor
         )
         return changed
 
 
-def problem_of(contact: LineContact, at: Grid) -> Problem:
+def problem_of(contact: LineContact, at: LineGrid) -> LineProblem:
     """One contact in units of its own length, pressure and speed.
 
     Args:
@@ -208,7 +208,7 @@ def problem_of(contact: LineContact, at: Grid) -> Problem:
         contact.approach * contact.radius / (length * unit),
         jnp.zeros(()),
     )
-    return Problem(
+    return LineProblem(
         flow,
         1.0 / ratio,
         0.5 * jnp.pi / ratio,
@@ -231,7 +231,7 @@ def length_of(contact: LineContact) -> Float[Array, "*b"]:
     return contact.half_width * _longer(contact, guess(contact))
 
 
-def _lowered(contact: LineContact, at: Grid, length: Array) -> Array:
+def _lowered(contact: LineContact, at: LineGrid, length: Array) -> Array:
     """By how much less heights make the gap in each cell, shape (node,); zero without any [m]."""
     if not contact.heights:
         return jnp.zeros(())

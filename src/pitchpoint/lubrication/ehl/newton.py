@@ -11,14 +11,14 @@ from jaxtyping import Array, Float, Int
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.lubrication.ehl.grid import Grid, prolongation
-from pitchpoint.lubrication.ehl.line import Problem
+from pitchpoint.lubrication.ehl.grid import LineGrid, prolongation
+from pitchpoint.lubrication.ehl.line import LineProblem
 from pitchpoint.lubrication.ehl.reynolds import REACH, banded
 
 __all__ = [
     "ENOUGH",
     "TOLERANCE",
-    "State",
+    "LineIterate",
     "from_coarse",
     "polished",
     "residual",
@@ -46,7 +46,7 @@ FASTER: Final = (1.0, 8.0, 4.0, 2.0, 1.0)
 from a thick film, which every guess leads to, down to the thin one."""
 
 
-class State(NamedTuple):
+class LineIterate(NamedTuple):
     """Where an iteration stands, of one contact, in units of the contact.
 
     Attributes:
@@ -56,7 +56,7 @@ class State(NamedTuple):
         steps: since the last start.
         total: all steps.
         residual: largest one.
-        coarse: films of `Problem.films` on the grid before and on the one before that, shape (2, 3); NaN
+        coarse: films of `LineProblem.films` on the grid before and on the one before that, shape (2, 3); NaN
             where there is no such grid, or no solution on it.
     """
 
@@ -69,7 +69,7 @@ class State(NamedTuple):
     coarse: Float[Array, "2 3"]
 
 
-def residual(problem: Problem, pressure: Array, level: Array, at: Grid) -> Array:
+def residual(problem: LineProblem, pressure: Array, level: Array, at: LineGrid) -> Array:
     """What is left of the balance of every inner cell, and of the load at last, shape (node - 1,).
 
     A cell is full of oil, and balanced, or its oil is without pressure: the smaller of the oil pressure and
@@ -81,13 +81,13 @@ def residual(problem: Problem, pressure: Array, level: Array, at: Grid) -> Array
     return _rest(problem, pressure, oil, gain, _scale(diagonal, at), at)[0]
 
 
-def _scale(diagonal: Array, at: Grid) -> Array:
+def _scale(diagonal: Array, at: LineGrid) -> Array:
     """What turns a defect of balances into one of pressures; no part of derivatives."""
     return jax.lax.stop_gradient(diagonal + at.widths[1:-1])
 
 
 def _rest(
-    problem: Problem, pressure: Array, oil: Array, gain: Array, scale: Array, at: Grid
+    problem: LineProblem, pressure: Array, oil: Array, gain: Array, scale: Array, at: LineGrid
 ) -> tuple[Array, Array]:
     """What is left of balances and load, and which cells are full of oil."""
     defect = -gain / scale
@@ -96,7 +96,7 @@ def _rest(
     return jnp.append(residuals, at.widths @ pressure - problem.load), full
 
 
-def step(problem: Problem, pressure: Array, level: Array, at: Grid) -> tuple[Array, Array]:
+def step(problem: LineProblem, pressure: Array, level: Array, at: LineGrid) -> tuple[Array, Array]:
     """Residual, and its derivatives to what is unknown, shape (node - 1, node - 1).
 
     Unknown are the pressures at the inner nodes, which oil and asperities carry together, and the level of
@@ -121,7 +121,7 @@ def _shifted(values: Array) -> Array:
     return jnp.stack([padded[k : k + inner] for k in range(REACH)])
 
 
-def _matrix(by_deflection: Array, by_pressure: Array, by_level: Array, at: Grid) -> Array:
+def _matrix(by_deflection: Array, by_pressure: Array, by_level: Array, at: LineGrid) -> Array:
     """Derivatives of all balances to pressures and level, shape (node - 1, node - 1)."""
     inner = by_level.shape[0]
     block = sum(by_deflection[k][:, None] * at.reached[k : k + inner] for k in range(REACH))
@@ -141,7 +141,7 @@ def _bands(inner: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.i
     return rows.reshape(-1)[inside], columns.reshape(-1)[inside], inside
 
 
-def dry(problem: Problem, at: Grid, factor: Array | float = 1.0) -> tuple[Array, Array]:
+def dry(problem: LineProblem, at: LineGrid, factor: Array | float = 1.0) -> tuple[Array, Array]:
     """Pressure without oil, and the level at which the film in the middle is as guessed.
 
     Args:
@@ -154,15 +154,15 @@ def dry(problem: Problem, at: Grid, factor: Array | float = 1.0) -> tuple[Array,
     return problem.carrying(jnp.sqrt(inside), THICK * problem.film * factor**0.7, at)
 
 
-def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State:
+def iterated(problem: LineProblem, pressure: Array, level: Array, at: LineGrid) -> LineIterate:
     """Newton's iteration on one grid, from a guess; from thick films where that fails."""
     faster = jnp.asarray(FASTER)
     last_speed = len(FASTER) - 1
 
-    def unfinished(state: State) -> Array:
+    def unfinished(state: LineIterate) -> Array:
         return state.speed <= last_speed
 
-    def onward(state: State) -> State:
+    def onward(state: LineIterate) -> LineIterate:
         factor = faster[state.speed]
         residuals, matrix = step(problem.at_speed(factor), state.pressure, state.level, at)
         size = jnp.max(jnp.abs(residuals))
@@ -171,10 +171,10 @@ def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State
         ended = (size < tolerance) | ~jnp.isfinite(size) | (state.steps > MOST)
         lost = ~(size < jnp.maximum(tolerance, ENOUGH))
         ways = lambda: _next(state, lost), lambda: _moved(state, residuals, matrix)
-        advanced: State = jax.lax.cond(ended, *ways)
+        advanced: LineIterate = jax.lax.cond(ended, *ways)
         return advanced
 
-    def _next(state: State, lost: Array) -> State:
+    def _next(state: LineIterate, lost: Array) -> LineIterate:
         solved = ~lost & (faster[state.speed] == 1.0)
         give_up = lost & (state.speed > 0)
         speed = jnp.where(solved | give_up, last_speed + 1, state.speed + 1)
@@ -183,7 +183,7 @@ def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State
         level = jnp.where(lost & ~give_up, again[1], state.level)
         return state._replace(pressure=pressure, level=level, speed=speed, steps=jnp.asarray(0))
 
-    def _moved(state: State, residuals: Array, matrix: Array) -> State:
+    def _moved(state: LineIterate, residuals: Array, matrix: Array) -> LineIterate:
         change = jnp.linalg.solve(matrix, -residuals)
         limit = jnp.minimum(1.0, LONGEST_STEP / jnp.max(jnp.abs(change[:-1])))
         return state._replace(
@@ -192,14 +192,14 @@ def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State
         )
 
     zero = jnp.asarray(0)
-    begin = State(
+    begin = LineIterate(
         pressure, level, zero, zero, zero, jnp.asarray(jnp.inf), jnp.full((2, 3), jnp.nan)
     )
-    end: State = jax.lax.while_loop(unfinished, onward, begin)
+    end: LineIterate = jax.lax.while_loop(unfinished, onward, begin)
     return end
 
 
-def from_coarse(problem: Problem, grids: Sequence[Grid]) -> State:
+def from_coarse(problem: LineProblem, grids: Sequence[LineGrid]) -> LineIterate:
     """Solution on the last of some grids, on each of them started from that on the one before.
 
     Args:
@@ -217,14 +217,14 @@ def from_coarse(problem: Problem, grids: Sequence[Grid]) -> State:
     return state._replace(total=total)
 
 
-def solved_films(problem: Problem, state: State, at: Grid) -> Array:
-    """Films of `Problem.films`, shape (3,); NaN where the iteration found no solution."""
+def solved_films(problem: LineProblem, state: LineIterate, at: LineGrid) -> Array:
+    """Films of `LineProblem.films`, shape (3,); NaN where the iteration found no solution."""
     films = problem.films(state.pressure, state.level, at)
     return jnp.where(state.residual < ENOUGH, films, jnp.nan)
 
 
 def polished(
-    problem: Problem, state: State, at: Grid, pushed: Array | None = None
+    problem: LineProblem, state: LineIterate, at: LineGrid, pushed: Array | None = None
 ) -> tuple[Array, Array, Array]:
     """Pressure and level of a solution, with their derivatives to all that the problem is made of.
 

@@ -9,15 +9,15 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.lubrication.ehl.grid import Grid
+from pitchpoint.lubrication.ehl.grid import LineGrid
 from pitchpoint.lubrication.ehl.heat import warmed
-from pitchpoint.lubrication.ehl.line import LineContact, Problem, problem_of
+from pitchpoint.lubrication.ehl.line import LineContact, LineProblem, problem_of
 from pitchpoint.lubrication.ehl.newton import residual, step
 
 __all__ = ["answer", "pushed", "pushed_rest", "stiffness_and_damping"]
 
 
-def pushed(contact: LineContact, problem: Problem, at: Grid) -> Problem:
+def pushed(contact: LineContact, problem: LineProblem, at: LineGrid) -> LineProblem:
     """Changes of a problem with the load of its contact, as a part of it, and with the approach [s/m].
 
     They are the last axis of every number. The film stays as warm as it is.
@@ -28,7 +28,7 @@ def pushed(contact: LineContact, problem: Problem, at: Grid) -> Problem:
         at: the grid.
     """
 
-    def changed(change: Array) -> Problem:
+    def changed(change: Array) -> LineProblem:
         load, approach = contact.line_load * (1.0 + change[0]), contact.approach + change[1]
         load_and_approach: Any = load, approach
         changed_contact = eqx.tree_at(
@@ -36,7 +36,7 @@ def pushed(contact: LineContact, problem: Problem, at: Grid) -> Problem:
         )
         return warmed(problem_of(changed_contact, at), problem.flow.temperature_rise)
 
-    push: Problem = jax.jacfwd(changed)(jnp.zeros(2))
+    push: LineProblem = jax.jacfwd(changed)(jnp.zeros(2))
     return push
 
 
@@ -50,7 +50,7 @@ def _both(
 
 
 def pushed_rest(
-    problem: Problem, push: Problem, pressure: Array, level: Array, at: Grid
+    problem: LineProblem, push: LineProblem, pressure: Array, level: Array, at: LineGrid
 ) -> Float[Array, "rest 2"]:
     """Changes of what is left of all balances at a pressure.
 
@@ -65,7 +65,7 @@ def pushed_rest(
 
 
 def answer(
-    problem: Problem, push: Problem, pressure: Array, level: Array, at: Grid
+    problem: LineProblem, push: LineProblem, pressure: Array, level: Array, at: LineGrid
 ) -> Float[Array, "rest 2"]:
     """Changes of pressures and level of a solution, by the implicit function theorem, see `pushed_rest`."""
     _, matrix = step(problem, pressure, level, at)
@@ -75,12 +75,12 @@ def answer(
 
 def stiffness_and_damping(
     contact: LineContact,
-    problem: Problem,
-    push: Problem,
+    problem: LineProblem,
+    push: LineProblem,
     pressure: Array,
     level: Array,
     answers: Array,
-    at: Grid,
+    at: LineGrid,
 ) -> tuple[Float[Array, ""], Float[Array, ""]]:
     """Load that a thinner mean film carries more, and load by an approach that holds it.
 

@@ -7,11 +7,11 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.lubrication.ehl.grid import Along, Grid
+from pitchpoint.lubrication.ehl.grid import Along, LineGrid
 from pitchpoint.lubrication.ehl.texture import Texture
 from pitchpoint.materials.fluid import Fluid
 
-__all__ = ["REACH", "Balance", "Flow", "at_faces", "banded", "third_order", "upwind"]
+__all__ = ["REACH", "Flow", "NodeBalance", "at_faces", "banded", "third_order", "upwind"]
 
 REACH = 4
 """Nodes on which the balance of a cell depends: two before it, its own, one behind it."""
@@ -51,7 +51,7 @@ class Flow(eqx.Module):
         """Pressure that asperities carry."""
         return self.texture.pressure(gap * self.height) / self.pressure
 
-    def balance(self, film_pressure: Nodes, gap: Nodes, at: Grid) -> tuple[Array, Array]:
+    def balance(self, film_pressure: Nodes, gap: Nodes, at: LineGrid) -> tuple[Array, Array]:
         """What flows into each inner cell more than out of it, and what a pressure of one there takes out.
 
         Flow by pressure: its conductance at a face is the geometric mean of those beside it ahead of the
@@ -114,7 +114,7 @@ def third_order(before: Places, here: Places, behind: Places) -> Places:
     return (2.0 * behind + 5.0 * here - before) / 6.0
 
 
-class Balance(NamedTuple):
+class NodeBalance(NamedTuple):
     """Balance of the inner cells with its derivatives, for REACH nodes from two before to one behind."""
 
     gain: Float[Array, " inner"]
@@ -123,7 +123,7 @@ class Balance(NamedTuple):
     by_gap: Float[Array, "reach inner"]
 
 
-def banded(flow: Flow, film_pressure: Nodes, gap: Nodes, at: Grid) -> Balance:
+def banded(flow: Flow, film_pressure: Nodes, gap: Nodes, at: LineGrid) -> NodeBalance:
     """Balance of every cell, and its derivatives to pressure and gap at the nodes that it knows.
 
     Nodes that no cell knows together are moved together: four directions find a whole band matrix.
@@ -141,4 +141,4 @@ def banded(flow: Flow, film_pressure: Nodes, gap: Nodes, at: Grid) -> Balance:
     height = jax.vmap(lambda direction: by(still, direction))(moved)
     inner = jnp.arange(1, nodes - 1)
     which = (inner - 2 + jnp.arange(REACH)[:, None]) % REACH, inner - 1
-    return Balance(gain, diagonal, pressure[which], height[which])
+    return NodeBalance(gain, diagonal, pressure[which], height[which])

@@ -17,17 +17,17 @@ from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import SolvedLines, check, warnings
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
-from pitchpoint.lubrication.ehl.grid import ENDS, Ends, Grid, fewer, grid, prolongation
+from pitchpoint.lubrication.ehl.grid import ENDS, Ends, LineGrid, fewer, grid, prolongation
 from pitchpoint.lubrication.ehl.heat import defect, settled, turned, warmed
 from pitchpoint.lubrication.ehl.line import (
     LEAST,
     LineContact,
-    Problem,
+    LineProblem,
     problem_of,
 )
 from pitchpoint.lubrication.ehl.newton import (
     ENOUGH,
-    State,
+    LineIterate,
     from_coarse,
     iterated,
     polished,
@@ -174,7 +174,9 @@ def line_films(contact: LineContact, nodes: int = NODES, ends: Ends = "entrained
     return one(even) if even.line_load.ndim == 0 else jax.lax.map(one, even)
 
 
-def _followed(contact: LineContact, grids: tuple[Grid, ...]) -> tuple[Problem, Array, Array, Array]:
+def _followed(
+    contact: LineContact, grids: tuple[LineGrid, ...]
+) -> tuple[LineProblem, Array, Array, Array]:
     """A contact as warm as it is, its pressure and level with derivatives, and whether they were found."""
     at = grids[-1]
     problem = problem_of(contact, at)
@@ -259,7 +261,7 @@ def usual_nodes(load: float, light: int = NODES) -> int:
     return 2 * light - 1 if load > HEAVY else light
 
 
-def _ladder(nodes: int, ends: Ends) -> tuple[Grid, ...]:
+def _ladder(nodes: int, ends: Ends) -> tuple[LineGrid, ...]:
     """Grids from the coarsest to that of so many nodes."""
     numbers = [nodes]
     while (less := fewer(numbers[0])) is not None:
@@ -310,7 +312,7 @@ def _portion(
     contact: LineContact,
     wanted: Bool[Any, " b"],
     start: tuple[Float[Any, "b node"], Float[Any, " b"]] | None,
-    grids: tuple[Grid, ...],
+    grids: tuple[LineGrid, ...],
 ) -> tuple[LineFilm, Ended, Float[Array, "b 2"]]:
     heights, even = contact.heights, replace(contact, heights=())
 
@@ -349,7 +351,7 @@ def _before(contact: LineContact) -> Array:
 
 
 def _solved(
-    contact: LineContact, begin: tuple[Array, Array] | None, grids: tuple[Grid, ...]
+    contact: LineContact, begin: tuple[Array, Array] | None, grids: tuple[LineGrid, ...]
 ) -> tuple[LineFilm, Ended, Array]:
     at = grids[-1]
     problem, state, turns = _iterated(contact, begin, grids)
@@ -387,8 +389,8 @@ def _solved(
 
 
 def _iterated(
-    contact: LineContact, begin: tuple[Array, Array] | None, grids: tuple[Grid, ...]
-) -> tuple[Problem, State, Array | None]:
+    contact: LineContact, begin: tuple[Array, Array] | None, grids: tuple[LineGrid, ...]
+) -> tuple[LineProblem, LineIterate, Array | None]:
     """The contact as warm as it becomes, its solution, and the turns to its temperature."""
     at = grids[-1]
     problem = problem_of(contact, at)
@@ -407,7 +409,9 @@ def _iterated(
     return warmed(problem, warm.rise), warm_state, warm.turns
 
 
-def _onward(problem: Problem, shape: Array, gap: Array, grids: tuple[Grid, ...]) -> State:
+def _onward(
+    problem: LineProblem, shape: Array, gap: Array, grids: tuple[LineGrid, ...]
+) -> LineIterate:
     """Solution from a pressure that is near it; those on the two grids before tell the error by the grid."""
     at = grids[-1]
     state = iterated(problem, *problem.carrying(shape, gap, at), at)
@@ -426,8 +430,8 @@ def _grid_errors(films: Array, opening: Array, coarse: Array, rq: Array) -> Arra
     the smallest one also how the gap opens beside it.
 
     Args:
-        films: of `Problem.films`, shape (3,).
-        opening: of `Problem.opening`.
+        films: of `LineProblem.films`, shape (3,).
+        opening: of `LineProblem.opening`.
         coarse: the same on the two grids before, shape (2, 3).
         rq: composite roughness.
     """
@@ -437,7 +441,7 @@ def _grid_errors(films: Array, opening: Array, coarse: Array, rq: Array) -> Arra
     return errors / jnp.maximum(jnp.abs(films[:2]), THINNEST * rq)
 
 
-def _torn(gap: Array, problem: Problem) -> Array:
+def _torn(gap: Array, problem: LineProblem) -> Array:
     """Whether smooth surfaces come nearer than any solution has them; trials may, and coarse grids."""
     return jnp.min(gap) < LEAST * problem.film
 

@@ -24,7 +24,7 @@ __all__ = [
     "REMEMBERED",
     "STEADY",
     "WARM_ENOUGH",
-    "Passing",
+    "PassingSurfaces",
     "Past",
     "Spread",
     "Strip",
@@ -108,7 +108,7 @@ class Spread(NamedTuple):
         return rise
 
 
-class Passing(NamedTuple):
+class PassingSurfaces(NamedTuple):
     """Surfaces that pass the cells of a strip in either sense, see `moving_strip`.
 
     Attributes:
@@ -120,14 +120,18 @@ class Passing(NamedTuple):
     against: Float[Array, "node node"]
 
 
-def passing(x: Float[Arrays, " node"], edges: Float[Arrays, " edge"]) -> Passing:
+def passing(x: Float[Arrays, " node"], edges: Float[Arrays, " edge"]) -> PassingSurfaces:
     """Surfaces that pass cells with such edges, in units of length."""
     against = moving_strip(-x[::-1], -edges[::-1])
-    return Passing(moving_strip(x, edges), against[::-1, ::-1])
+    return PassingSurfaces(moving_strip(x, edges), against[::-1, ::-1])
 
 
 def spread_of(
-    given: Conduction, speeds: tuple[Array, Array], length: Array, film: Array, passes: Passing
+    given: Conduction,
+    speeds: tuple[Array, Array],
+    length: Array,
+    film: Array,
+    passes: PassingSurfaces,
 ) -> Spread:
     """How temperatures follow from heat in one strip.
 
@@ -145,7 +149,7 @@ def spread_of(
     return Spread(strips[0], strips[1], given.oil_conductivity / film)
 
 
-def _warms(body: Conductor, speed: Array, length: Array, passes: Passing) -> Array:
+def _warms(body: Conductor, speed: Array, length: Array, passes: PassingSurfaces) -> Array:
     """Rise of a surface by heat per area into it, shape (node, node) [K m2/W]."""
     passed = jnp.where(speed >= 0.0, passes.along, passes.against)
     fast = jnp.maximum(jnp.abs(speed), SLOWEST)

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import jnp
-from pitchpoint.lubrication.ehl.grid import Along, Grid
+from pitchpoint.lubrication.ehl.grid import Along, LineGrid
 from pitchpoint.lubrication.ehl.reynolds import Flow, upwind
 
 __all__ = [
@@ -32,7 +32,7 @@ def shear_stress(flow: Flow, oil: Array, room: Array, sliding: Array) -> Array:
     return flow.fluid.shear_stress(sliding / (room * flow.height), pressure, flow.temperature_rise)
 
 
-def work_of_pressure(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
+def work_of_pressure(flow: Flow, oil: Array, gap: Array, at: LineGrid) -> tuple[Array, Array]:
     """Half of the flow that surfaces draw along times the rise of pressure; the same of that under pressure.
 
     Both per volume: mass over the density between two nodes. Over a film that begins and ends without
@@ -46,7 +46,7 @@ def work_of_pressure(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Arra
     return 0.5 * jnp.sum(drawn * volume), jnp.sum(conductance * rise * volume)
 
 
-def work_of_expansion(flow: Flow, oil: Array, gap: Array, at: Grid) -> Array:
+def work_of_expansion(flow: Flow, oil: Array, gap: Array, at: LineGrid) -> Array:
     """What the flow as a whole does as it expands warm after it was compressed cold."""
     mass, conductance = flow.mass_and_conductance(oil, gap, at)
     rise, inside = jnp.diff(oil), jnp.argmax(oil)

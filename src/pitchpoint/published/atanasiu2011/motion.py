@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.dynamics.excitation import Excitation
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.system import System
 from pitchpoint.dynamics.vibration import (
     excited,
@@ -22,7 +22,7 @@ from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.programs import program
 from pitchpoint.published.atanasiu2011.table import PairInMotion
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 
 __all__ = ["PROCEDURES", "readings"]
 
@@ -42,7 +42,7 @@ Course = Float[np.ndarray, " place"]
 Excited = tuple[MeshStiffness, System, Excitation]
 
 
-def readings(point: Point) -> dict[str, float | Course]:
+def readings(point: ReadingPoint) -> dict[str, float | Course]:
     """Courses from the entry of a pair into mesh to its exit, over meshing time in base pitches.
 
     They are those of the line stiffness that the case chooses; numbers are those of both.
@@ -77,7 +77,7 @@ def readings(point: Point) -> dict[str, float | Course]:
     }
 
 
-def _difference(point: Point, *, common: bool) -> float:
+def _difference(point: ReadingPoint, *, common: bool) -> float:
     """Largest difference of the stiffness by both procedures, over the mean."""
     terms = replace(point.models[0].compliance, common=array(common))
     pair = point.design.mesh, point.design.loaded, point.design.solids
@@ -99,7 +99,7 @@ _NUMBERS = {
 }
 
 
-def _parts(point: Point, formulas: PairInMotion) -> list[Excited]:
+def _parts(point: ReadingPoint, formulas: PairInMotion) -> list[Excited]:
     """Springs and masses for both line stiffnesses, each at both torques."""
     mesh = point.design.mesh
     assert isinstance(mesh, CylindricalPair)
@@ -125,7 +125,7 @@ _stiffness = program(mesh_stiffness)
 _ratio = program(frequency_ratio)
 
 
-def _grid(parts: list[Excited]) -> Grid:
+def _grid(parts: list[Excited]) -> PeriodGrid:
     ratio = max(float(_ratio(stiffness, moved)) for stiffness, moved, _ in parts)
     if not ratio <= _MOST_RATIO:
         sentence = (
@@ -133,11 +133,11 @@ def _grid(parts: list[Excited]) -> Grid:
             f"are resolved up to {_MOST_RATIO:g} times"
         )
         raise InputError(sentence, key="operation.speed")
-    return Grid.resolving(ratio)
+    return PeriodGrid.resolving(ratio)
 
 
 @program
-def _moved(parts: Excited, grid: Grid) -> dict[str, Float[Array, "..."]]:
+def _moved(parts: Excited, grid: PeriodGrid) -> dict[str, Float[Array, "..."]]:
     """Steady vibration of each part: figures, and courses at kept nodes of one period."""
     nodes = np.append(np.arange(0, grid.nodes - 1, _EVERY), grid.nodes - 1)
 

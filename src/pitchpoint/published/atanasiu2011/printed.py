@@ -13,7 +13,7 @@ from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.rated_pair import bare
 from pitchpoint.programs import program
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 
 __all__ = ["equivalent_mass", "readings", "undercut_limit"]
 
@@ -53,7 +53,7 @@ def equivalent_mass(*, inertia: Sequence[float], base_radius: Sequence[float]) -
     return j_1 * j_2 / (j_1 * r_1**2 + j_2 * r_2**2)
 
 
-def readings(point: Point) -> dict[str, float]:
+def readings(point: ReadingPoint) -> dict[str, float]:
     """Both formulas for a case, under the names of result variables."""
     gears, design = point.gears, point.design
     mesh = design.mesh

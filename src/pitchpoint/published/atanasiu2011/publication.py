@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from pitchpoint.published.atanasiu2011.table import PairInMotion
-from pitchpoint.published.publication import Beside, Curves, Point, Publication, Read
+from pitchpoint.published.publication import Beside, Curves, Publication, Read, ReadingPoint
 from pitchpoint.results.variable import deviation, dimensionless, force, mass, percent, stiffness
 
 __all__ = ["PUBLICATION"]
@@ -126,7 +126,7 @@ _MOTION = Beside(
 )
 
 
-def _in_motion(point: Point) -> Read:
+def _in_motion(point: ReadingPoint) -> Read:
     """Courses of a pair; the code is imported when a case asks for them."""
     if not isinstance(point.formulas, PairInMotion):
         return {}

@@ -8,15 +8,20 @@ from pitchpoint.contact.ellipse import hamrock_brewe_1983
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
 from pitchpoint.lubrication.rolling_resistance import wu_cheng_1991, wu_cheng_1991_strips
 from pitchpoint.programs import program
-from pitchpoint.published.liu_xiong_torus.motion import Course, Drive, friction_forces, pairs
+from pitchpoint.published.liu_xiong_torus.motion import (
+    TorusCourse,
+    TorusDrive,
+    friction_forces,
+    pairs,
+)
 
-__all__ = ["CYCLE_COURSES", "Oil", "cycle_places", "figures"]
+__all__ = ["CYCLE_COURSES", "TorusOil", "cycle_places", "figures"]
 
 BINS = 2**14
 """Instants of equal distance of which the spectrum is taken."""
 
 
-class Oil(eqx.Module):
+class TorusOil(eqx.Module):
     """What film and rolling take beside the motion.
 
     Attributes:
@@ -56,7 +61,7 @@ def cycle_places() -> Float[Array, " place"]:
 
 
 @program
-def figures(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..."]]:
+def figures(drive: TorusDrive, moved: TorusCourse, oil: TorusOil) -> dict[str, Float[Array, "..."]]:
     """Numbers and courses of a motion by the end of their names.
 
     Where flanks would pull, a pair has neither friction nor rolling, and no film to be counted.
@@ -88,22 +93,24 @@ def figures(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..
     }
 
 
-def _heat(moved: Course) -> Float[Array, " time"]:
+def _heat(moved: TorusCourse) -> Float[Array, " time"]:
     """Power lost to sliding by both pairs [W]."""
     return jnp.sum(jnp.abs(moved.friction * moved.pairs.sliding), axis=1)
 
 
-def _presses(moved: Course) -> Bool[Array, "time 2"]:
+def _presses(moved: TorusCourse) -> Bool[Array, "time 2"]:
     return moved.pairs.active & (moved.force > 0.0)
 
 
-def _efficiency(drive: Drive, moved: Course, oil: Oil) -> Float[Array, " time"]:
+def _efficiency(drive: TorusDrive, moved: TorusCourse, oil: TorusOil) -> Float[Array, " time"]:
     """Efficiency of each moment, eq. 23 with the sliding friction in its first term."""
     lost = _heat(moved) + jnp.sum(_rolling(drive, moved, oil), axis=1)
     return 1.0 - lost / (drive.input_torque * drive.speed)
 
 
-def _cycle_courses(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, " place"]]:
+def _cycle_courses(
+    drive: TorusDrive, moved: TorusCourse, oil: TorusOil
+) -> dict[str, Float[Array, " place"]]:
     """What both pairs carry over the last whole mesh cycle, by the names of `CYCLE_COURSES`."""
     cycle = _last_cycle(drive, moved, oil)
     contacts, touches = cycle.pairs, cycle.pairs.active
@@ -118,7 +125,7 @@ def _cycle_courses(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Arr
     return courses
 
 
-def _last_cycle(drive: Drive, moved: Course, oil: Oil) -> Course:
+def _last_cycle(drive: TorusDrive, moved: TorusCourse, oil: TorusOil) -> TorusCourse:
     """The last whole mesh cycle, at places of equal distance."""
     part = cycle_places()
     time = (oil.whole - 1.0 + part) * drive.period
@@ -132,7 +139,7 @@ def _last_cycle(drive: Drive, moved: Course, oil: Oil) -> Course:
     older = read(1.0 * moved.pairs.active[:, 0]) > 0.5
     contacts = jax.vmap(pairs, (None, 0, 0))(drive, part, older)
     force = jnp.where(contacts.active, columns(moved.force), 0.0)
-    return Course(
+    return TorusCourse(
         time=time,
         weight=jnp.full(CYCLE, 1.0 / CYCLE),
         error=read(moved.error),
@@ -143,23 +150,23 @@ def _last_cycle(drive: Drive, moved: Course, oil: Oil) -> Course:
     )
 
 
-def _courses(drive: Drive, moved: Course) -> dict[str, Float[Array, " instant"]]:
+def _courses(drive: TorusDrive, moved: TorusCourse) -> dict[str, Float[Array, " instant"]]:
     """Transmission error and speed of the gear from the start on [m, rad/s]."""
     times = jnp.arange(INSTANTS) / (INSTANTS - 1.0) * moved.time[-1]
     motion = {"error": moved.error, "gear_speed": _gear_speed(drive, moved)}
     return {name: jnp.interp(times, moved.time, values) for name, values in motion.items()}
 
 
-def _gear_speed(drive: Drive, moved: Course) -> Float[Array, " time"]:
+def _gear_speed(drive: TorusDrive, moved: TorusCourse) -> Float[Array, " time"]:
     """Speed of the gear: that beside the nominal motion, and the nominal one [rad/s]."""
     return (moved.rate[:, 5] + drive.speed * drive.base_radii[0]) / drive.base_radii[1]
 
 
-def _mean(moved: Course, values: Float[Array, " time"]) -> Float[Array, ""]:
+def _mean(moved: TorusCourse, values: Float[Array, " time"]) -> Float[Array, ""]:
     return jnp.sum(moved.weight * values) / jnp.sum(moved.weight)
 
 
-def _rolling(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "time 2"]:
+def _rolling(drive: TorusDrive, moved: TorusCourse, oil: TorusOil) -> Float[Array, "time 2"]:
     """Rolling power of both pairs: F_pr of eq. 24 times v_p + v_g [W].
 
     As published F_pr is taken as a force, with the group W = F/(E' R'^2); by Hertz's radii it is one per
@@ -180,13 +187,13 @@ def _rolling(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "time 2"]:
     return 2.0 * force * moved.pairs.entrainment
 
 
-def _profile(drive: Drive, moved: Course) -> Float[Array, "time 2"]:
+def _profile(drive: TorusDrive, moved: TorusCourse) -> Float[Array, "time 2"]:
     """Relative radius of curvature of the profiles [m]."""
     place = moved.pairs.place
     return place * (drive.tangent - place) / drive.tangent
 
 
-def _oil(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..."]]:
+def _oil(drive: TorusDrive, moved: TorusCourse, oil: TorusOil) -> dict[str, Float[Array, "..."]]:
     return {
         "entrainment": moved.pairs.entrainment,
         "viscosity": drive.viscosity,
@@ -195,7 +202,7 @@ def _oil(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..."]
     }
 
 
-def _films(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "time 2"]:
+def _films(drive: TorusDrive, moved: TorusCourse, oil: TorusOil) -> Float[Array, "time 2"]:
     """Least film of both pairs, eq. 25 or 26 [m]; of no meaning where they do not press.
 
     As published R' and W = F/(E' R'^2) are those printed, and kappa that of R_y over the radius of the
@@ -210,7 +217,7 @@ def _films(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "time 2"]:
     return jnp.where(drive.pointed > 0.0, points, lines)
 
 
-def _mean_films(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "2"]:
+def _mean_films(drive: TorusDrive, moved: TorusCourse, oil: TorusOil) -> Float[Array, "2"]:
     """Mean least film of both pairs while they press [m]."""
     presses = _presses(moved)
     weight = moved.weight[:, None] * presses
@@ -218,7 +225,7 @@ def _mean_films(drive: Drive, moved: Course, oil: Oil) -> Float[Array, "2"]:
     return jnp.sum(weight * film, axis=0) / jnp.sum(weight, axis=0)
 
 
-def _friction_power(drive: Drive, moved: Course) -> Float[Array, " time"]:
+def _friction_power(drive: TorusDrive, moved: TorusCourse) -> Float[Array, " time"]:
     """Power of friction on both gears by the signs of eqs. 17 to 20 [W].
 
     Both gears are driven by +F_f through their arms: with the nominal speeds it is F_f (v_p + v_g).
@@ -230,7 +237,7 @@ def _friction_power(drive: Drive, moved: Course) -> Float[Array, " time"]:
     return jnp.sum(moved.friction * (passing + shifting), axis=1)
 
 
-def _force(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..."]]:
+def _force(drive: TorusDrive, moved: TorusCourse, oil: TorusOil) -> dict[str, Float[Array, "..."]]:
     """Mean of the whole normal force over whole mesh cycles, its spectrum, and its highest line [N, Hz]."""
     force, end = jnp.sum(moved.force, axis=1), oil.whole * drive.period
     even = jnp.interp(jnp.arange(BINS) / BINS * end, moved.time, force)

@@ -13,7 +13,7 @@ from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.lubrication.friction_coefficient import xu_2007
 from pitchpoint.programs import fast_program
 
-__all__ = ["Course", "Drive", "Pairs", "Piece", "course", "friction_forces", "pairs"]
+__all__ = ["Pairs", "Piece", "TorusCourse", "TorusDrive", "course", "friction_forces", "pairs"]
 
 UNIT = 1e-6
 """Length in which places and speeds are integrated [m, m/s]."""
@@ -32,7 +32,7 @@ _LEAST_FORCE = 1e-9
 State = Float[Array, "12"]
 
 
-class Drive(eqx.Module):
+class TorusDrive(eqx.Module):
     """Gears, oil, bearings and excitation at one operating point.
 
     Attributes:
@@ -121,7 +121,7 @@ class Pairs(eqx.Module):
     radius: Float[Array, "*b 2"]
 
 
-def pairs(drive: Drive, cycle: Float[Array, ""], older: Bool[Array, ""]) -> Pairs:
+def pairs(drive: TorusDrive, cycle: Float[Array, ""], older: Bool[Array, ""]) -> Pairs:
     """Both pairs of teeth.
 
     Args:
@@ -151,7 +151,7 @@ def pairs(drive: Drive, cycle: Float[Array, ""], older: Bool[Array, ""]) -> Pair
 
 
 def normal_forces(
-    drive: Drive, time: Float[Array, ""], state: State, found: Pairs
+    drive: TorusDrive, time: Float[Array, ""], state: State, found: Pairs
 ) -> Float[Array, "2"]:
     """Normal forces of both pairs, eqs. 9 to 11; they pull where the flanks would part [N]."""
     swing = drive.error_rate * time
@@ -166,7 +166,7 @@ def _error(values: Float[Array, "6"]) -> Float[Array, ""]:
     return values[4] - values[5] + values[0] - values[1]
 
 
-def friction_forces(drive: Drive, force: Float[Array, "2"], found: Pairs) -> Float[Array, "2"]:
+def friction_forces(drive: TorusDrive, force: Float[Array, "2"], found: Pairs) -> Float[Array, "2"]:
     """Friction of both pairs with the sign of the nominal sliding, none where they pull [N].
 
     Source: Liu and Xiong, eqs. 6, 13 and 21.
@@ -184,7 +184,7 @@ def friction_forces(drive: Drive, force: Float[Array, "2"], found: Pairs) -> Flo
     return jnp.where(pushing, coefficient * pressed, 0.0) * jnp.sign(found.sliding)
 
 
-def _pressure(drive: Drive, force: Float[Array, "2"], contacts: Pairs) -> Float[Array, "2"]:
+def _pressure(drive: TorusDrive, force: Float[Array, "2"], contacts: Pairs) -> Float[Array, "2"]:
     """Pressure of both pairs [Pa]: that of eq. 21 without a face width, or of Hertz's ellipse and line."""
     both = {"radius": contacts.radius, "modulus": drive.modulus}
     if drive.radii == "printed":
@@ -194,7 +194,7 @@ def _pressure(drive: Drive, force: Float[Array, "2"], contacts: Pairs) -> Float[
     return jnp.where(drive.pointed > 0.0, points.pressure, lines)
 
 
-class Course(eqx.Module):
+class TorusCourse(eqx.Module):
     """The motion at the instants that are kept.
 
     Attributes:
@@ -235,7 +235,7 @@ class Piece(eqx.Module):
 
 
 @fast_program
-def course(drive: Drive, pieces: Piece) -> Course:
+def course(drive: TorusDrive, pieces: Piece) -> TorusCourse:
     """Motion from rest under the full torques.
 
     Args:
@@ -246,11 +246,11 @@ def course(drive: Drive, pieces: Piece) -> Course:
     reaction; Prince and Dormand (1981), their method of order eight, as diffrax has it.
     """
     _, motion = jax.lax.scan(partial(_travel, drive), jnp.zeros(12), pieces)
-    flat: Course = jax.tree.map(lambda value: value.reshape(-1, *value.shape[2:]), motion)
+    flat: TorusCourse = jax.tree.map(lambda value: value.reshape(-1, *value.shape[2:]), motion)
     return flat
 
 
-def _travel(drive: Drive, start: State, piece: Piece) -> tuple[State, Course]:
+def _travel(drive: TorusDrive, start: State, piece: Piece) -> tuple[State, TorusCourse]:
     """State at the end of a piece, and the motion on the way."""
     parts = jnp.linspace(0.0, 1.0, SAMPLES)
     solution = diffrax.diffeqsolve(
@@ -271,7 +271,7 @@ def _travel(drive: Drive, start: State, piece: Piece) -> tuple[State, Course]:
     return solution.ys[-1], motion
 
 
-def _rate(drive: Drive, piece: Piece, part: Array, state: State, _: None) -> State:
+def _rate(drive: TorusDrive, piece: Piece, part: Array, state: State, _: None) -> State:
     """Derivative of the state by the part of the piece."""
     cycle = piece.at(part)
     contacts = pairs(drive, cycle, piece.older)
@@ -284,7 +284,7 @@ def _rate(drive: Drive, piece: Piece, part: Array, state: State, _: None) -> Sta
 
 
 def _acceleration(
-    drive: Drive,
+    drive: TorusDrive,
     state: State,
     force: Float[Array, "2"],
     friction: Float[Array, "2"],
@@ -303,14 +303,14 @@ def _acceleration(
     return jnp.concatenate([(pushed - held) / mass, turned])
 
 
-def _kept(drive: Drive, piece: Piece, part: Array, state: State) -> Course:
+def _kept(drive: TorusDrive, piece: Piece, part: Array, state: State) -> TorusCourse:
     """What is kept of an instant; it weighs as in the trapezoidal rule."""
     cycle = piece.at(part)
     contacts = pairs(drive, cycle, piece.older)
     time = (piece.gone + cycle) * drive.period
     force = normal_forces(drive, time, state, contacts)
     inside = jnp.where((part > 0.0) & (part < 1.0), 1.0, 0.5)
-    return Course(
+    return TorusCourse(
         time=time,
         weight=inside * (piece.stop - piece.start) / (SAMPLES - 1),
         error=UNIT * _error(state[:6]),

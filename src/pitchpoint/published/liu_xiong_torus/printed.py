@@ -28,16 +28,16 @@ from pitchpoint.published.liu_xiong_torus.figures import (
     CYCLE_COURSES,
     INSTANTS,
     LINES,
-    Oil,
+    TorusOil,
     cycle_places,
     figures,
 )
-from pitchpoint.published.liu_xiong_torus.motion import Drive, Piece, course
+from pitchpoint.published.liu_xiong_torus.motion import Piece, TorusDrive, course
 from pitchpoint.published.liu_xiong_torus.publication import PAIRS
-from pitchpoint.published.liu_xiong_torus.steady import Springs
+from pitchpoint.published.liu_xiong_torus.steady import TorusSprings
 from pitchpoint.published.liu_xiong_torus.stiffness import library_stiffness, straight
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
-from pitchpoint.published.publication import Point, Read
+from pitchpoint.published.publication import Read, ReadingPoint
 
 __all__ = ["pair_stiffness", "pieces", "readings"]
 
@@ -101,7 +101,7 @@ def pieces(*, single: float, pitch: float, cycles: float) -> Piece:
     )
 
 
-def readings(point: Point) -> Read:
+def readings(point: ReadingPoint) -> Read:
     """What the formulas give for a torus pair, under the names of result variables."""
     mesh, gears = point.design.mesh, point.gears
     if not isinstance(mesh, TorusPair) or not isinstance(gears, TorusGears):
@@ -205,7 +205,7 @@ def _quadratic(gears: TorusGears) -> dict[str, float]:
     }
 
 
-def _literal(point: Point, mesh: TorusPair) -> Read:
+def _literal(point: ReadingPoint, mesh: TorusPair) -> Read:
     """The motion of both pairs by the equations as printed; nothing without their inputs."""
     formulas = point.formulas
     if not isinstance(formulas, TorusFormulas):
@@ -215,7 +215,7 @@ def _literal(point: Point, mesh: TorusPair) -> Read:
     )
     turn = _pieces(conditions, formulas)
     cycles = float(floor(formulas.mesh_cycles))
-    oil = Oil(array(conditions["pressure_viscosity"]), array(cycles))
+    oil = TorusOil(array(conditions["pressure_viscosity"]), array(cycles))
     reading: dict[str, float | Values] = {
         "start_cycles": np.linspace(0.0, formulas.mesh_cycles, INSTANTS),
         "start_orders": np.arange(1.0, LINES + 1.0) / cycles,
@@ -230,7 +230,7 @@ def _literal(point: Point, mesh: TorusPair) -> Read:
     return {**reading, **_beside(reading, power), **_stiffness(point, conditions, drives)}
 
 
-def _stiffness(point: Point, conditions: Known, drives: Mapping[str, Drive]) -> Read:
+def _stiffness(point: ReadingPoint, conditions: Known, drives: Mapping[str, TorusDrive]) -> Read:
     """Stiffness of a pair of teeth over its path: of the library, as given, and as the motion has it."""
     formulas = point.formulas
     assert isinstance(formulas, TorusFormulas)
@@ -259,13 +259,13 @@ def _roll_of(line: Known) -> float:
     return float(line["base_pitch"] / line["base_radii"][0])
 
 
-def _teeth(name: str, point: Point) -> tuple[Mesh, Array, tuple[Solid, Solid], Terms]:
+def _teeth(name: str, point: ReadingPoint) -> tuple[Mesh, Array, tuple[Solid, Solid], Terms]:
     """Pair of gears, materials and terms by which its teeth yield."""
     design = point.design
     return _mesh(name, point), design.loaded, design.solids, point.models[0].compliance
 
 
-def _mesh(name: str, point: Point) -> Mesh:
+def _mesh(name: str, point: ReadingPoint) -> Mesh:
     assert isinstance(point.gears, TorusGears)
     return point.design.mesh if name == "torus" else middle_pair(point.gears)
 
@@ -307,7 +307,7 @@ _LESS = {"friction": "sliding_friction", "efficiency": "printed_efficiency"}
 """What is told of the torus pair less the standard pair."""
 
 
-def _steady(point: Point, mesh: TorusPair) -> Read:
+def _steady(point: ReadingPoint, mesh: TorusPair) -> Read:
     """The motion of both pairs in steady state by the corrected equations, where it is asked for."""
     formulas = point.formulas
     if not isinstance(formulas, TorusFormulas) or formulas.steady_pinion is None:
@@ -330,12 +330,12 @@ def _steady(point: Point, mesh: TorusPair) -> Read:
 _OVER = ("steady_friction", "steady_film")
 
 
-def _springs(drive: Drive, conditions: Known, formulas: TorusFormulas) -> Springs:
+def _springs(drive: TorusDrive, conditions: Known, formulas: TorusFormulas) -> TorusSprings:
     """Bodies and springs of the corrected equations; a place on the path is counted in base pitches."""
     roll = _roll_of(conditions)
     by_roll, powers = np.asarray(drive.coefficients), np.arange(1, _DEGREE + 1)
     coefficients, ratio = by_roll * roll**powers, float(conditions["ratio"])
-    return Springs(
+    return TorusSprings(
         mass=drive.mass,
         inertia=drive.inertia,
         joint_mass=drive.joint_mass,
@@ -382,7 +382,7 @@ _OF_LINE = ("base_radii", "tangent", "entry", "base_pitch", "transverse_radius")
 _OF_CONDITIONS = ("inertia", "mass", "teeth", "modulus", "viscosity", "face_width")
 
 
-def _drive(name: str, point: Point, conditions: Known) -> Drive:
+def _drive(name: str, point: ReadingPoint, conditions: Known) -> TorusDrive:
     formulas, operation = point.formulas, point.operation
     assert isinstance(formulas, TorusFormulas)
     numbers: dict[str, ArrayLike] = {
@@ -399,10 +399,10 @@ def _drive(name: str, point: Point, conditions: Known) -> Drive:
     }
     of_mesh = {key: conditions[key] for key in (*_OF_LINE, *_OF_CONDITIONS)}
     values = {key: jnp.asarray(value, float) for key, value in {**of_mesh, **numbers}.items()}
-    return Drive(**values, radii=formulas.radius)
+    return TorusDrive(**values, radii=formulas.radius)
 
 
-def _coefficients(name: str, point: Point, conditions: Known) -> Values:
+def _coefficients(name: str, point: ReadingPoint, conditions: Known) -> Values:
     """Polynomial on which the motion runs, see `pair_stiffness`; InputError if it is negative somewhere.
 
     The library's stiffness is taken at the roll angles of Table 1 that lie on the path, as the table has it.

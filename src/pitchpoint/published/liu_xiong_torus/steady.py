@@ -10,12 +10,12 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 from pitchpoint.dynamics.bodies import Body, across
-from pitchpoint.dynamics.excitation import Waves
-from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.excitation import ErrorOrders
+from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.modes import modes
 from pitchpoint.dynamics.passage import passage, polynomial
 from pitchpoint.dynamics.registry import CONTACT_LAWS
-from pitchpoint.dynamics.right_hand_side import Moving, relaxation_time
+from pitchpoint.dynamics.right_hand_side import MovingMesh, relaxation_time
 from pitchpoint.dynamics.steady_motion import Motion, film, steady_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.loading.registry import LOAD_SHARING
@@ -23,7 +23,7 @@ from pitchpoint.lubrication.registry import FILM_THICKNESS, LAWS, ROLLING_RESIST
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
-__all__ = ["Springs", "corrected", "steady_figures"]
+__all__ = ["TorusSprings", "corrected", "steady_figures"]
 
 LEAST, NODES = 16, 20
 """Elements of a mesh cycle, and nodes in each of them; more elements where the mesh is slow."""
@@ -46,7 +46,7 @@ Two = Float[Array, "2"]
 Values = Float[np.ndarray, "..."]
 
 
-class Springs(eqx.Module):
+class TorusSprings(eqx.Module):
     """What the bodies and their springs are; both gears are solid discs.
 
     Attributes:
@@ -72,7 +72,7 @@ class Springs(eqx.Module):
     held: bool = eqx.field(static=True)
 
 
-def corrected(design: Design, operation: Operation, springs: Springs) -> Moving:
+def corrected(design: Design, operation: Operation, springs: TorusSprings) -> MovingMesh:
     """The gears as they move in six coordinates, with the pinion as driver.
 
     Contacts push and pull as in eq. 10. The stiffness of a pair follows its place, not time, and damping
@@ -90,7 +90,7 @@ def corrected(design: Design, operation: Operation, springs: Springs) -> Moving:
     models, design = _models(design), replace(design, elliptic=ELLIPTIC_CONTACT[_ELLIPSE])
     path_stiffness = polynomial([0.0, *np.asarray(springs.coefficients)])
     relaxed = relaxation_time(springs.mesh_damping, springs.joint_mass, springs.mean)
-    return Moving(
+    return MovingMesh(
         design,
         operation,
         models,
@@ -101,7 +101,7 @@ def corrected(design: Design, operation: Operation, springs: Springs) -> Moving:
         relaxation=relaxed,
         passage=passage(design, operation, models.compliance, path_stiffness),
         law=CONTACT_LAWS["linear"],
-        error=Waves(springs.error[None], array([1.0]), array([0.0])),
+        error=ErrorOrders(springs.error[None], array([1.0]), array([0.0])),
     )
 
 
@@ -111,7 +111,7 @@ def _models(design: Design) -> Models:
     return Models(friction, array(0), {}, LOAD_SHARING["from_stiffness"], rolling)
 
 
-def _bodies(operation: Operation, springs: Springs) -> tuple[Body, Body]:
+def _bodies(operation: Operation, springs: TorusSprings) -> tuple[Body, Body]:
     stiffness = float(springs.bearing)
     damping = 2.0 * springs.bearing_damping * np.sqrt(springs.bearing * springs.mass)
     pinion_support, gear_support = (
@@ -123,7 +123,9 @@ def _bodies(operation: Operation, springs: Springs) -> tuple[Body, Body]:
     return driver, Body(gear, operation.load[None], support=gear_support)
 
 
-def steady_figures(design: Design, operation: Operation, springs: Springs) -> dict[str, Values]:
+def steady_figures(
+    design: Design, operation: Operation, springs: TorusSprings
+) -> dict[str, Values]:
     """Numbers and courses of the motion in steady state by the end of their names.
 
     NaN where none is found, where it cannot be reached, and where the grid does not resolve it; the status
@@ -147,20 +149,20 @@ def steady_figures(design: Design, operation: Operation, springs: Springs) -> di
     return {**shown, "steady_status": np.asarray(float(code))}
 
 
-def _grid(moving: Moving, speed: float) -> Grid:
+def _grid(moving: MovingMesh, speed: float) -> PeriodGrid:
     """Grid that resolves the highest natural frequency, and friction where it turns: twice as fine."""
     ratio = float(_highest(moving)) * float(moving.design.period) / speed
-    return Grid(max(LEAST, Grid.resolving(2.0 * ratio).elements), NODES)
+    return PeriodGrid(max(LEAST, PeriodGrid.resolving(2.0 * ratio).elements), NODES)
 
 
 @program
-def _highest(moving: Moving) -> Each:
+def _highest(moving: MovingMesh) -> Each:
     """Highest natural frequency [Hz]."""
     return modes(moving).frequency[-1]
 
 
 @program
-def _told(moving: Moving, moved: Motion, law: FilmThickness) -> dict[str, Array]:
+def _told(moving: MovingMesh, moved: Motion, law: FilmThickness) -> dict[str, Array]:
     forces = moved.found
     error = forces.stretch[0, 0] + _parted(moving, forces.phase)
     friction = jnp.abs(total(forces.drawn))
@@ -216,7 +218,7 @@ _LANES = {"0": 1, "1": 0}
 """Lane of the contacts by the number that the paper has for a pair."""
 
 
-def _parted(moving: Moving, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
+def _parted(moving: MovingMesh, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
     """Static transmission error [m]."""
     assert moving.error is not None
     return moving.error.at(phase)

@@ -13,7 +13,7 @@ from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
 from pitchpoint.programs import program
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.tian2024.table import PairOnPath
 
 __all__ = ["METHODS", "readings"]
@@ -30,7 +30,7 @@ _BESIDE = 1e-9
 Course = Float[np.ndarray, " place"]
 
 
-def readings(point: Point) -> dict[str, float | Course]:
+def readings(point: ReadingPoint) -> dict[str, float | Course]:
     """Courses of a pair that begins its mesh at A, and the numbers that the paper tells of them.
 
     Args:
@@ -171,7 +171,7 @@ _TABLE_3 = {
 """Methods of Table 3 and their laws; the first one is a loss factor times a mean coefficient."""
 
 
-def _table_3(point: Point, efficiency: Mapping[str, Course]) -> dict[str, float | Course]:
+def _table_3(point: ReadingPoint, efficiency: Mapping[str, Course]) -> dict[str, float | Course]:
     """Mean and instantaneous efficiency by the methods of Table 3; nothing without its four laws."""
     if not efficiency.keys() >= {*_TABLE_3.values()}:
         return {}

@@ -5,7 +5,7 @@ Its laws of friction stand in `friction`, and any case may name them.
 
 from dataclasses import replace
 
-from pitchpoint.published.publication import Beside, Curves, Point, Publication, Read
+from pitchpoint.published.publication import Beside, Curves, Publication, Read, ReadingPoint
 from pitchpoint.published.tian2024.table import PairOnPath
 from pitchpoint.results.variable import Variable, dimensionless, percent, torque
 
@@ -160,7 +160,7 @@ _BY_METHOD = Beside(
 )
 
 
-def _on_path(point: Point) -> Read:
+def _on_path(point: ReadingPoint) -> Read:
     """Courses of a pair; the code is imported when a case asks for them."""
     if not isinstance(point.formulas, PairOnPath):
         return {}

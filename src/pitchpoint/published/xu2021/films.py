@@ -17,7 +17,7 @@ from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.published.publication import Point, Read
+from pitchpoint.published.publication import Read, ReadingPoint
 from pitchpoint.published.xu2021.printed import (
     TEMPERATURE_0,
     oil_of,
@@ -75,7 +75,7 @@ class ToothFilms:
     face_width: float
 
     @classmethod
-    def of(cls, point: Point) -> "ToothFilms":
+    def of(cls, point: ReadingPoint) -> "ToothFilms":
         """Those of a case with its table."""
         table, gears, design = point.formulas, point.gears, point.design
         assert isinstance(table, ZoneFilms)
@@ -235,7 +235,7 @@ def load_over_film_step(films: Films, more: Films, step: Course) -> Course:
     return np.array(stiffness)
 
 
-def films_at(point: Point) -> Read:
+def films_at(point: ReadingPoint) -> Read:
     """Films that the table of a case asks for, and what the paper tells of them."""
     teeth = ToothFilms.of(point)
     speed, temperature = float(point.operation.speed), float(point.operation.temperature)

@@ -11,7 +11,7 @@ from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.published.conjugate import readings as of_envelope
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.xu2021.printed import ZONE_END, oil_of, pressure_viscosity, viscosity
 from pitchpoint.published.xu2021.readings import modulus_of
 from pitchpoint.published.xu2021.zone import zone_of
@@ -22,7 +22,7 @@ _PARTS = 1e-6, 1e3
 """Parts of the operating speed between which that of a film as thick as the roughness is looked for."""
 
 
-def readings(point: Point) -> dict[str, float]:
+def readings(point: ReadingPoint) -> dict[str, float]:
     """Where flanks touch their envelope, and for involute teeth films there over what the paper says of them.
 
     Films are those of Moes' law under the load that closes the torque, fully flooded and isothermal: an upper
@@ -43,7 +43,7 @@ def readings(point: Point) -> dict[str, float]:
     }
 
 
-def _ratio(point: Point, radius: float, speed: float) -> Callable[[float], float]:
+def _ratio(point: ReadingPoint, radius: float, speed: float) -> Callable[[float], float]:
     """Film over roughness at parts of the operating speed."""
     gears, design, at = point.gears, point.design, float(point.operation.temperature)
     assert isinstance(gears, StrainWaveGears)

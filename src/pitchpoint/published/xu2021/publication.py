@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from pitchpoint.published.conjugate_variables import OF_CONJUGATES
-from pitchpoint.published.publication import Beside, Curves, Maps, Point, Publication, Read
+from pitchpoint.published.publication import Beside, Curves, Maps, Publication, Read, ReadingPoint
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.results.variable import (
     Variable,
@@ -352,7 +352,7 @@ _TEETH_BESIDE = Beside(
 )
 
 
-def _films(point: Point) -> Read:
+def _films(point: ReadingPoint) -> Read:
     """Films of the zone; the solver is imported when a case asks for them."""
     if not isinstance(point.formulas, ZoneFilms) or point.formulas.solves == "nothing":
         return {}

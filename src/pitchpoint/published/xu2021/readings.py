@@ -6,7 +6,7 @@ from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.published.publication import Point, Read
+from pitchpoint.published.publication import Read, ReadingPoint
 from pitchpoint.published.xu2021.printed import (
     ZONE_END,
     effective_modulus,
@@ -28,7 +28,7 @@ _FLAT = 20.0
 """Relative radius beyond which a curve leaves it out: it passes through infinity [m]."""
 
 
-def readings(point: Point) -> Read:
+def readings(point: ReadingPoint) -> Read:
     """What the formulas give for a case; those with base circles are left out for teeth that have none."""
     gears, design, operation = point.gears, point.design, point.operation
     assert isinstance(gears, StrainWaveGears)
@@ -53,7 +53,7 @@ def modulus_of(design: Design) -> float:
     return effective_modulus(young=(young[0], young[1]), poisson=(poisson[0], poisson[1]))
 
 
-def _of_zone(point: Point) -> Read:
+def _of_zone(point: ReadingPoint) -> Read:
     zone = zone_of(point)
     return {
         "base_radius_flexspline": zone.base_radius[0],

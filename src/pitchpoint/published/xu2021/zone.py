@@ -9,7 +9,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.xu2021.printed import (
     MAP_SPAN,
     ZONE_END,
@@ -141,7 +141,7 @@ class MeshingZone:
         return np.asarray(rolling & (self.load(angle) > 0.0))
 
 
-def zone_of(point: Point) -> MeshingZone:
+def zone_of(point: ReadingPoint) -> MeshingZone:
     """The zone of a case, with the map of its table, or the usual one without a table.
 
     Raises:

@@ -17,9 +17,9 @@ from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.lubrication.asperity_load import masjedi_khonsari_2012_regression
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
 from pitchpoint.programs import program
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.zhao2022.printed import HALF_ZONE
-from pitchpoint.published.zhao2022.table import FlankWear, Reference
+from pitchpoint.published.zhao2022.table import FlankWear, StatedContact
 from pitchpoint.status import Code
 from pitchpoint.wear.film_defect import fractional_film_defect
 from pitchpoint.wear.laws import janakiraman_2013
@@ -44,7 +44,9 @@ class MixedLubrication:
     readings: Mapping[str, float]
 
 
-def mixed_lubrication(point: Point, *, tip_angle: float, tip_force: float) -> MixedLubrication:
+def mixed_lubrication(
+    point: ReadingPoint, *, tip_angle: float, tip_force: float
+) -> MixedLubrication:
     """Coefficients of the tip of new flanks, for a case with its table.
 
     Args:
@@ -70,7 +72,7 @@ def mixed_lubrication(point: Point, *, tip_angle: float, tip_force: float) -> Mi
     }
     both = {
         field: array(np.array([getattr(reference, field), case[field]]))
-        for field in Reference.model_fields
+        for field in StatedContact.model_fields
     }
     # A strip of one pitch, whatever the number of points: the step that the paper takes.
     length = table.flank_length * gears.module

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.published.conjugate import of_sharp_flank
-from pitchpoint.published.publication import Point, Read
+from pitchpoint.published.publication import Read, ReadingPoint
 from pitchpoint.published.zhao2022.printed import (
     ENGAGED_HEIGHT,
     HALF_ZONE,
@@ -26,7 +26,7 @@ __all__ = ["readings"]
 Array = NDArray[np.float64]
 
 
-def readings(point: Point) -> Read:
+def readings(point: ReadingPoint) -> Read:
     """Depths along the flank on both branches, for a case with a table for them.
 
     Points count where the relative radius is positive and the zone of 36 degrees reaches.
@@ -47,7 +47,7 @@ def readings(point: Point) -> Read:
     return {"conjugate_way": from_tip} | branches[0] | branches[1]
 
 
-def _line_load(point: Point, angle: Array) -> Array:
+def _line_load(point: ReadingPoint, angle: Array) -> Array:
     """Tangential force of a tooth per face width by eq. 19 closed, at any angle from the long axis [N/m]."""
     gears = point.gears
     assert isinstance(gears, StrainWaveGears)

@@ -6,9 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint.gears.strain_wave.drive import StrainWave
-from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
+from pitchpoint.gears.strain_wave.flexspline_tooth import (
+    DoubleArcFlank,
+    FlexsplineFlank,
+    InvoluteFlank,
+)
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import ReadingPoint
 
 __all__ = [
     "arc_distance",
@@ -131,7 +135,7 @@ def closure_residual(
     return start_y - (end_x - start_x) / tan(theta_b) - end_y
 
 
-def readings(point: Point) -> dict[str, float]:
+def readings(point: ReadingPoint) -> dict[str, float]:
     """What the formulas give for a case, under the names of result variables."""
     gears, design, operation = point.gears, point.design, point.operation
     mesh = design.mesh
@@ -175,7 +179,7 @@ def _double_arc(flank: DoubleArcFlank) -> dict[str, float]:
     }
 
 
-def _involute(flank: Flank) -> dict[str, float]:
+def _involute(flank: FlexsplineFlank) -> dict[str, float]:
     assert isinstance(flank, InvoluteFlank)
     return {
         "involute_tip_radius": float(flank.tip_radius),

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.input.tables import Table
 
-__all__ = ["ConjugateWear", "FlankWear", "Reference"]
+__all__ = ["ConjugateWear", "FlankWear", "StatedContact"]
 
 COEFFICIENT = Quantity("dimensionless", 0.0, 1.0, open_low=True)
 HARDNESS = Quantity("pressure", 1e7, 1e11, "MPa")
@@ -30,7 +30,7 @@ RADIUS = Quantity("length", 1e-6, 10.0, "mm")
 RATE = Quantity("specific wear rate", 0.0, 1.0, "1/Pa", open_low=True)
 
 
-class Reference(Table):
+class StatedContact(Table):
     """Contact for which the coefficient is stated; eqs. 9, 10 and 29 to 31 carry it to others."""
 
     line_load: Annotated[float, LINE_LOAD]
@@ -58,7 +58,7 @@ class FlankWear(Table):
     """Equations that take these inputs: the discrete model of flank wear by Zhao et al."""
     coefficient: Annotated[float, COEFFICIENT]
     """K ψ L_a / 100 of eq. 11 at the reference, held through all cycles."""
-    reference: Reference
+    reference: StatedContact
     """Contact for which the coefficient is stated."""
     coefficient_load: Literal["reference", "case"] = "reference"
     """Load in eqs. 9, 10 and 29: that of the reference whatever the torque, or that of the case."""

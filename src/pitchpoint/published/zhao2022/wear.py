@@ -15,9 +15,13 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import jnp
 from pitchpoint.gears.strain_wave.drive import StrainWave
-from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
+from pitchpoint.gears.strain_wave.flexspline_tooth import (
+    DoubleArcFlank,
+    FlexsplineFlank,
+    InvoluteFlank,
+)
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.published.publication import Point, Read
+from pitchpoint.published.publication import Read, ReadingPoint
 from pitchpoint.published.zhao2022.coefficient import MixedLubrication, mixed_lubrication
 from pitchpoint.published.zhao2022.printed import (
     ENGAGED_HEIGHT,
@@ -229,7 +233,9 @@ def counterpart(flank: DoubleArcFlank, gears: StrainWaveGears) -> InvoluteFlank:
     )
 
 
-def strips_of(point: Point, flank: Flank, neutral: float, *, finer: int = 1) -> Strips:
+def strips_of(
+    point: ReadingPoint, flank: FlexsplineFlank, neutral: float, *, finer: int = 1
+) -> Strips:
     """Strips of a flank on a neutral line of a radius [m], at the torque of a point with its table.
 
     With `finer` there are so many times the points; each carries the force of a pitch all the same.
@@ -273,7 +279,7 @@ def strips_of(point: Point, flank: Flank, neutral: float, *, finer: int = 1) -> 
 # ------------------------------------------------------------------ readings
 
 
-def readings(point: Point) -> Read:
+def readings(point: ReadingPoint) -> Read:
     """Wear of the flank with all that the paper tells and draws of it, for a case with its table."""
     table, gears, mesh = point.formulas, point.gears, point.design.mesh
     if not isinstance(table, FlankWear):
@@ -417,7 +423,7 @@ def _profile(strips: Strips, depth: Array) -> Array:
 
 
 def _beside_involute(
-    reading: dict[str, Any], ours: March, point: Point, rate: float
+    reading: dict[str, Any], ours: March, point: ReadingPoint, rate: float
 ) -> dict[str, Any]:
     """Double arc beside the involute flank of Table 1 with the same coefficient, eqs. 11 to 33."""
     mesh, gears, table = point.design.mesh, point.gears, point.formulas

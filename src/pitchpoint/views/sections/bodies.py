@@ -7,7 +7,15 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Table, by_variant
+from pitchpoint.views.section import (
+    Block,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    SectionTable,
+    by_variant,
+)
 
 __all__ = ["INERTIA", "bodies_blocks", "bodies_facts", "bodies_printed"]
 
@@ -24,7 +32,7 @@ def bodies_blocks(page: Page) -> Iterator[Block]:
 
 def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts["bodies"]
-    yield Table(_heads(), _rows(data), compact=True)
+    yield SectionTable(_heads(), _rows(data), compact=True)
     yield Paragraph(data.attrs["note"], "note")
 
 

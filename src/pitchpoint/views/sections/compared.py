@@ -5,7 +5,7 @@ from itertools import groupby
 from math import ceil, floor, isfinite, log10
 from typing import Any
 
-from pitchpoint.results.target_rows import Row, counts, in_words
+from pitchpoint.results.target_rows import TargetRow, counts, in_words
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.section import Block, Drawn, Heading, Page, Section
@@ -70,7 +70,7 @@ def _reasoned(table: list[dict[str, str]]) -> list[dict[str, str]]:
     return done
 
 
-def _row(row: Row) -> dict[str, str]:
+def _row(row: TargetRow) -> dict[str, str]:
     unit = show.unit(row.unit)
     computed, deviation, tolerance = "not computed", "", ""
     if row.computed is not None and row.deviation is not None and isfinite(row.computed):

@@ -10,7 +10,7 @@ from pitchpoint.views.designs import (
     of_several,
     result_table,
 )
-from pitchpoint.views.section import Block, Folded, Heading, Page, Paragraph, Section, Table
+from pitchpoint.views.section import Block, Folded, Heading, Page, Paragraph, Section, SectionTable
 
 __all__ = ["DESIGNS"]
 
@@ -22,12 +22,12 @@ def _blocks(page: Page) -> Iterator[Block]:
     yield Paragraph(law_words(page.outcomes))
     results = result_table(page.outcomes)
     shared, _ = of_several(results, len(page.outcomes))
-    yield Table(shared.head, shared.rows)
+    yield SectionTable(shared.head, shared.rows)
     alone = [row for row in results.rows if row not in shared.rows]
     if alone:
         columns = slice(results.names + len(page.outcomes))
         yield Heading("Results that one design alone has")
-        yield Table(results.head[columns], [row[columns] for row in alone])
+        yield SectionTable(results.head[columns], [row[columns] for row in alone])
     for blocks in following:
         yield from blocks
 
@@ -38,9 +38,9 @@ def _inputs(title: str, table: Compared) -> Iterator[Block]:
         yield Paragraph("None.")
         return
     head, rows = ["input", *table.head[2:]], named_inputs(table)
-    yield Table(head, rows[:_OPEN])
+    yield SectionTable(head, rows[:_OPEN])
     if hidden := rows[_OPEN:]:
-        yield Folded(f"{len(hidden)} more inputs that differ", [Table(head, hidden)])
+        yield Folded(f"{len(hidden)} more inputs that differ", [SectionTable(head, hidden)])
 
 
 _OPEN = 10

@@ -20,12 +20,12 @@ from pitchpoint.views.inputs import words
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import of_geometry, period_of
 from pitchpoint.views.section import (
+    Animation,
     Block,
     Drawn,
-    Moving,
     Page,
     Section,
-    Table,
+    SectionTable,
     by_mesh,
     naming,
 )
@@ -162,12 +162,12 @@ def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
     ]
 
 
-def _sums_up(outcome: Outcome) -> Iterator[Table]:
+def _sums_up(outcome: Outcome) -> Iterator[SectionTable]:
     """Main dimensions; what both splines share stands in both columns."""
     for name, mesh in by_mesh({"": outcome}, *_PARTS).items():
         rows = [row if len(row) == 3 else (*row, row[1]) for row in wave_dimensions(mesh)]
         title = ", ".join(filter(None, ["Gears", name]))
-        yield Table([title, "flexspline", "circular spline"], rows, caption=title)
+        yield SectionTable([title, "flexspline", "circular spline"], rows, caption=title)
 
 
 def _depth(teeth: xr.Dataset) -> float:
@@ -200,7 +200,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Drawn("drive.html.jinja", {"d": values}, [gap])
 
 
-def _moving(outcome: Outcome, name: str) -> Moving:
+def _moving(outcome: Outcome, name: str) -> Animation:
     """Teeth over a turn of what turns fastest."""
     drawn = picture(outcome, name)
     motion = json.loads(drawn["motion_json"])
@@ -208,7 +208,7 @@ def _moving(outcome: Outcome, name: str) -> Moving:
     driven_by = motion["rates"][motion["members"].index(outcome.manifest["driver"])]
     period = degrees(period_of(outcome).angle) / abs(driven_by)
     words = f"Angle, {drawn['turns']}"
-    return Moving("drive", {**drawn, **still}, words, 360.0, 0.5, period, motion["arcs"])
+    return Animation("drive", {**drawn, **still}, words, 360.0, 0.5, period, motion["arcs"])
 
 
 DRIVE = Section(

@@ -19,7 +19,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Table,
+    SectionTable,
     by_variant,
 )
 from pitchpoint.views.sections.four_quadrants import OF_OUTPUT
@@ -114,7 +114,7 @@ def _of_variant(place: int, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts[_PART]
     yield Paragraph(show.sentence(cycle_words(data)))
     rows = [[row.name, row.value, row.detail] for row in cycle_figures(data)]
-    yield Table(["", "value", ""], rows, caption="Over the duty cycle")
+    yield SectionTable(["", "value", ""], rows, caption="Over the duty cycle")
     if lives := [(name, life) for name, life in part_lives(data) if not np.isnan(life)]:
         yield _lives(lives)
     if "worn" in data.coords:
@@ -130,23 +130,23 @@ def _of_variant(place: int, outcome: Outcome) -> Iterator[Block]:
         yield Panel("Operating points over the map of the actuator", figures)
 
 
-def _lives(lives: Sequence[tuple[str, float]]) -> Table:
+def _lives(lives: Sequence[tuple[str, float]]) -> SectionTable:
     """Lives of all parts, the shortest first; parts that endure behind them."""
     rows = [
         [name, show.quantity("shortest_life", life) if np.isfinite(life) else "endures"]
         for name, life in sorted(lives, key=lambda pair: pair[1])
     ]
-    return Table(["part", "life"], rows, caption="Lives of the parts")
+    return SectionTable(["part", "life"], rows, caption="Lives of the parts")
 
 
-def _worn(data: xr.Dataset) -> Table:
+def _worn(data: xr.Dataset) -> SectionTable:
     """Depth that a cycle wears off."""
     pairs = zip(data["worn"].values, data["cycle_wear"].values, strict=True)
     rows = [[str(name), show.quantity("cycle_wear", float(depth))] for name, depth in pairs]
-    return Table(["flanks", "depth in a cycle"], rows, caption="Wear of one cycle")
+    return SectionTable(["flanks", "depth in a cycle"], rows, caption="Wear of one cycle")
 
 
-def _laws(data: xr.Dataset) -> Table:
+def _laws(data: xr.Dataset) -> SectionTable:
     """Energies under each friction law."""
     names = ("law_lost_energy", "law_input_energy")
     columns = [data[name].values for name in names]
@@ -155,7 +155,7 @@ def _laws(data: xr.Dataset) -> Table:
         for law, *values in zip(data["law"].values, *columns, strict=True)
     ]
     caption = "Energies by friction law; all else is by the first one, or by duty.law"
-    return Table(["law", "lost", "driver gives"], rows, caption=caption)
+    return SectionTable(["law", "lost", "driver gives"], rows, caption=caption)
 
 
 def duty_facts(outcome: Outcome) -> Iterator[KeyFigure]:

@@ -30,7 +30,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Table,
+    SectionTable,
     by_variant,
 )
 from pitchpoint.views.sections.finite_film import maps_panel
@@ -101,14 +101,14 @@ def _how(data: xr.Dataset) -> str:
     )
 
 
-def _table(data: xr.Dataset) -> Table:
+def _table(data: xr.Dataset) -> SectionTable:
     """Thinnest films with squeeze and without."""
     rows = [
         (titled(name), told(data, name), told(data, steady)) for name, steady in _BESIDE.items()
     ]
     if np.isfinite(float(data["squeeze_change"])):
         rows.append((titled("squeeze_change"), told(data, "squeeze_change"), ""))
-    return Table(["", "with squeeze", "if all were steady"], rows, compact=True)
+    return SectionTable(["", "with squeeze", "if all were steady"], rows, compact=True)
 
 
 # ---- over the engagement

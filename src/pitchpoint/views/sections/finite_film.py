@@ -52,7 +52,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Table,
+    SectionTable,
     by_variant,
 )
 
@@ -390,7 +390,7 @@ def _pressures(name: str, outcome: Outcome, data: xr.Dataset) -> Figure:
 # ---- tables and words
 
 
-def _ends_table(data: xr.Dataset) -> Table:
+def _ends_table(data: xr.Dataset) -> SectionTable:
     """Pressures at distances from the ends of the contact that carries most, here and on a coarser grid."""
     at = tuple(data["kept_at"].values[0])
     here, coarse = data["near_ends"].values[at], data["coarse_near_ends"].values[0]
@@ -413,14 +413,16 @@ def _ends_table(data: xr.Dataset) -> Table:
     rows.append(
         ("Hertz, without ends", _or_nothing("pressure", float(data["pressure"].values[at])), "", "")
     )
-    return Table(["", "first end", "last end", "higher one on a coarser grid"], rows, compact=True)
+    return SectionTable(
+        ["", "first end", "last end", "higher one on a coarser grid"], rows, compact=True
+    )
 
 
 def _or_nothing(name: str, value: float) -> str:
     return show.quantity(name, value) if np.isfinite(value) else ""
 
 
-def _grid_table(data: xr.Dataset) -> Table:
+def _grid_table(data: xr.Dataset) -> SectionTable:
     """Values of the contact that carries most, on its grid, on one of half as many cells, and as a line."""
     at = tuple(data["kept_at"].values[0])
     lines = ["line without ends"] * ("line_central_film" in data)
@@ -433,7 +435,9 @@ def _grid_table(data: xr.Dataset) -> Table:
         coarse = float(data[f"coarse_{_COARSE.get(name, name)}"].values[0])
         beside = [value(endless) for _ in lines]
         rows.append((titled(name), value(name), _or_nothing(name, coarse), *beside))
-    return Table(["", "this grid", "half as many cells either way", *lines], rows, compact=True)
+    return SectionTable(
+        ["", "this grid", "half as many cells either way", *lines], rows, compact=True
+    )
 
 
 _ON_GRIDS = {

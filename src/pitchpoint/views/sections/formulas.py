@@ -41,7 +41,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Section,
-    Table,
+    SectionTable,
 )
 
 __all__ = ["FORMULAS"]
@@ -363,7 +363,7 @@ def _map(name: str, one: Maps, data: xr.Dataset) -> Figure:
     return Figure(name, _title(one), [heat], axes, missing="No numbers were found.")
 
 
-def _table(data: xr.Dataset, beside: Beside) -> Table:
+def _table(data: xr.Dataset, beside: Beside) -> SectionTable:
     """Points of a sweep side by side, or below each other where they are many."""
     places, rows = _places(data), _rows(data, beside).items()
     if len(places) * len(beside.columns) > _WIDE:
@@ -372,7 +372,7 @@ def _table(data: xr.Dataset, beside: Beside) -> Table:
             for label, names in rows
             for point, place in enumerate(places)
         ]
-        return Table(["Quantity", *beside.columns], long)
+        return SectionTable(["Quantity", *beside.columns], long)
     heads = [
         ", ".join(filter(None, (place, label))) for place in places for label in beside.columns
     ]
@@ -383,7 +383,7 @@ def _table(data: xr.Dataset, beside: Beside) -> Table:
         )
         for label, names in rows
     ]
-    return Table(["Quantity", *heads], wide, compact=len(heads) < 4 or len(wide) > _LONG)
+    return SectionTable(["Quantity", *heads], wide, compact=len(heads) < 4 or len(wide) > _LONG)
 
 
 def _titled(told: str, name: str) -> str:

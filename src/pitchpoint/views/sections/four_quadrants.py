@@ -26,7 +26,7 @@ from pitchpoint.views.section import (
     Paragraph,
     Printed,
     Section,
-    Table,
+    SectionTable,
     by_variant,
 )
 from pitchpoint.views.sections.beside import starts_doubtfully
@@ -137,7 +137,7 @@ def _word(data: xr.Dataset, name: str, at: tuple[int, int]) -> str:
 def _held(outcome: Outcome) -> Iterator[Block]:
     rows = _rows(outcome)
     caption = f"Torques that hold a load at {_degree(outcome)}"
-    yield Table([*rows[0]], [[*row.values()] for row in rows], caption=caption)
+    yield SectionTable([*rows[0]], [[*row.values()] for row in rows], caption=caption)
 
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:

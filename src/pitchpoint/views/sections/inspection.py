@@ -18,7 +18,7 @@ from pitchpoint.views.section import (
     Paragraph,
     Printed,
     Section,
-    Table,
+    SectionTable,
     by_variant,
 )
 
@@ -150,12 +150,16 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     data = _of_members(outcome)
     gears = [str(name) for name in data["gear"].values]
     yield Paragraph(data.attrs["note"])
-    yield Table(["backlash", *map(str, data["case"].values)], backlash_rows(data), compact=True)
-    yield Table(["dimension", *gears], measured_rows(data), compact=True)
+    yield SectionTable(
+        ["backlash", *map(str, data["case"].values)], backlash_rows(data), compact=True
+    )
+    yield SectionTable(["dimension", *gears], measured_rows(data), compact=True)
     if "flank_tolerance" in data:
         classes = [f"{value:.0f}" for value in json.loads(data.attrs["iso_class"])]
         titles = [f"{gear}, class {of}" for gear, of in zip(gears, classes, strict=True)]
-        yield Table(["tolerance by ISO 1328-1", *titles], _tolerance_rows(data), compact=True)
+        yield SectionTable(
+            ["tolerance by ISO 1328-1", *titles], _tolerance_rows(data), compact=True
+        )
     if data.sizes["case"] == 1:
         yield Paragraph(
             "Without tolerances: a table [gears.inspection] with thickness allowances and a deviation of the "

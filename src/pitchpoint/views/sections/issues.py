@@ -6,7 +6,7 @@ from typing import Any
 from pitchpoint.analyses.figures import MAIN
 from pitchpoint.views import show
 from pitchpoint.views.figures import laws
-from pitchpoint.views.section import Block, Drawn, Heading, Page, Section, Table
+from pitchpoint.views.section import Block, Drawn, Heading, Page, Section, SectionTable
 from pitchpoint.views.sections.back_driving import back_driving
 from pitchpoint.views.sections.spread import spread
 
@@ -36,7 +36,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Drawn("issues.html.jinja", {"issues": issues})
 
 
-def _side_by_side(page: Page) -> Table:
+def _side_by_side(page: Page) -> SectionTable:
     """Main figures of all variants and laws in one table, with the spread of the laws."""
     columns = [
         (variant, outcome, position, law)
@@ -53,7 +53,7 @@ def _side_by_side(page: Page) -> Table:
     ]
     within = [(spread(design) or {"text": "not computed"})["text"] for _, design, *_ in columns]
     back = [back_driving(design, law) for _, design, _, law in columns]
-    return Table(
+    return SectionTable(
         [
             "At the operating point",
             *(page.curves[variant, law].label for variant, _, _, law in columns),

@@ -30,7 +30,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Table,
+    SectionTable,
     naming,
     turned,
 )
@@ -187,13 +187,13 @@ def _title(name: str, data: xr.Dataset) -> str:
     return show.bracketed(f"{variable.long_name} {variable.symbol}", variable)
 
 
-def _own_table(outcome: Outcome) -> Table:
+def _own_table(outcome: Outcome) -> SectionTable:
     data = outcome.parts["joint"]
     rows = [
         (_title(name, data), *(shown(name, float(value), data) for value in data[name].values))
         for name in _OWN
     ]
-    return Table(["", *(str(motor) for motor in data["motor"].values)], rows, compact=True)
+    return SectionTable(["", *(str(motor) for motor in data["motor"].values)], rows, compact=True)
 
 
 def _curve_rows(outcome: Outcome) -> list[dict[str, str]]:
@@ -230,7 +230,7 @@ def joint_blocks(page: Page) -> Iterator[Block]:
         yield from naming(title, [joint_panel(f"joint{position}", "", outcome)])
         rows = _curve_rows(outcome)
         yield Paragraph(_whole(data))
-        yield Table([*rows[0]], [[*row.values()] for row in rows])
+        yield SectionTable([*rows[0]], [[*row.values()] for row in rows])
         yield Paragraph(f"{_friction(data)} {data.attrs['note']}", "note")
 
 

@@ -9,7 +9,15 @@ import xarray as xr
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Table, by_variant
+from pitchpoint.views.section import (
+    Block,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    SectionTable,
+    by_variant,
+)
 
 __all__ = ["limit_rows", "limits_blocks", "limits_facts", "limits_printed", "stress_rows"]
 
@@ -99,13 +107,13 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     torque = show.quantity("flexspline_torque", float(data["flexspline_torque"]))
     yield Paragraph(f"Torque on the flexspline: {torque}. {data.attrs['note']}")
     places = [str(name) for name in data["place"].values]
-    yield Table(["flexspline", *places], stress_rows(data), compact=True)
+    yield SectionTable(["flexspline", *places], stress_rows(data), compact=True)
     notes = [_concentrated(data), *([] if "goodman_safety" in data else [_WITHOUT])]
     yield Paragraph(" ".join(notes), "note")
     torques = limit_rows(data)
     if torques:
         unit = show.unit_of("limit_torque")
-        yield Table(["against", f"torque [{unit}]", "margin"], torques, compact=True)
+        yield SectionTable(["against", f"torque [{unit}]", "margin"], torques, compact=True)
     yield Paragraph(_limits_note(data), "note")
     if "bearing_life" in data:
         yield Paragraph(_life(data))

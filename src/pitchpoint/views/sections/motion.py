@@ -40,7 +40,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Table,
+    SectionTable,
     by_variant,
     key_figure,
     naming,
@@ -237,16 +237,16 @@ def _of_orders(name: str, title: str, variable: str, bars: list[Trace]) -> Figur
     return Figure(name, title, bars, axes, missing=NONE)
 
 
-def _table(data: xr.Dataset) -> Table:
+def _table(data: xr.Dataset) -> SectionTable:
     names = [name for name in _FIGURES if name != "largest_bearing_force" or "bearing" in data]
     rows = [
         (f"{titled(name, data)} {show.described(name, data).symbol}", _cell(data, name))
         for name in names
     ]
-    return Table(["", ""], rows, compact=True)
+    return SectionTable(["", ""], rows, compact=True)
 
 
-def _modes(data: xr.Dataset) -> Table:
+def _modes(data: xr.Dataset) -> SectionTable:
     """Natural frequencies with the mean stiffness, what yields in them, and how they are damped."""
     rows = [
         (
@@ -255,7 +255,7 @@ def _modes(data: xr.Dataset) -> Table:
         )
         for k, name in enumerate(data["mode"].values)
     ]
-    return Table(
+    return SectionTable(
         ["Mode: elastic energy in", *(titled(variable, data) for variable in _OF_MODES)],
         rows,
         compact=True,
@@ -272,13 +272,13 @@ def _cell(data: xr.Dataset, name: str) -> str:
     return show.quantity(name, value, of=data) if np.isfinite(value) else "none"
 
 
-def _works(data: xr.Dataset) -> Table:
+def _works(data: xr.Dataset) -> SectionTable:
     """Energies of one period that are not nothing, and how well they balance."""
     rows = [(titled(name, data), _cell(data, name)) for name in _WORKS if float(data[name])]
     closure = float(data["energy_closure"])
     left = f"{closure:.0e}" if np.isfinite(closure) else "not known"
     rows.append(("What is left of their balance, of the largest", left))
-    return Table(["Energy of one period", ""], rows, compact=True)
+    return SectionTable(["Energy of one period", ""], rows, compact=True)
 
 
 # ---- against speed
@@ -389,7 +389,7 @@ def _critical(data: xr.Dataset) -> Iterator[Block]:
     rows = [_crossing(data, k) for k in range(data.sizes["crossing"])]
     if rows:
         yield Paragraph("Critical speeds, where an order of the mesh frequency meets a mode:")
-        yield Table(["Mode: elastic energy in", "Order", *heads], rows)
+        yield SectionTable(["Mode: elastic energy in", "Order", *heads], rows)
     else:
         yield Paragraph(f"No order up to {CAMPBELL} meets a natural frequency at these speeds.")
 
@@ -417,7 +417,7 @@ def _crossing(data: xr.Dataset, number: int) -> tuple[str, ...]:
 # ---- from a start
 
 
-def _start_table(data: xr.Dataset) -> Table:
+def _start_table(data: xr.Dataset) -> SectionTable:
     """The largest of the forces, and where a start ends."""
     names = ["largest_mesh_force", *(["largest_bearing_force"] if "bearing" in data else [])]
     rows = [(titled(name, data), _cell(data, name)) for name in names]
@@ -429,7 +429,7 @@ def _start_table(data: xr.Dataset) -> Table:
         for name in lost
         if float(data[name][-1])
     ]
-    return Table(["", ""], rows, compact=True)
+    return SectionTable(["", ""], rows, compact=True)
 
 
 def start_panel(name: str, outcome: Outcome) -> Panel:

@@ -23,7 +23,7 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.lines import REGIMES, SHORT, Points, gapped, regimes, titled, values_of
-from pitchpoint.views.path import PathOfContact, marks, path_of
+from pitchpoint.views.path import StraightPath, marks, path_of
 from pitchpoint.views.point import named_members
 from pitchpoint.views.section import Block, Page, Paragraph, Section
 from pitchpoint.views.where_lost import where_lost
@@ -79,7 +79,7 @@ def path_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
     return Panel("Along the path of contact", figures, [curve for curve, *_ in seen])
 
 
-def loss_places(data: xr.Dataset, law: int, path: PathOfContact) -> dict[tuple[str, str], float]:
+def loss_places(data: xr.Dataset, law: int, path: StraightPath) -> dict[tuple[str, str], float]:
     """Share of the loss that is made between neighbouring points of the path; empty without loss.
 
     Args:
@@ -100,7 +100,7 @@ def loss_places(data: xr.Dataset, law: int, path: PathOfContact) -> dict[tuple[s
     }
 
 
-def along(data: xr.Dataset, name: str, law: int, path: PathOfContact) -> Points:
+def along(data: xr.Dataset, name: str, law: int, path: StraightPath) -> Points:
     """Place [base pitches] and SI value, the pairs one after the other.
 
     Quantities of a point of the flanks stand over the place on the path from A; those of a helical
@@ -156,7 +156,7 @@ def _between(x: float, path: np.ndarray, values: np.ndarray) -> float:
 
 def _seen(
     outcomes: Mapping[str, Outcome], known: Curves
-) -> Iterator[tuple[Curve, xr.Dataset, int, PathOfContact]]:
+) -> Iterator[tuple[Curve, xr.Dataset, int, StraightPath]]:
     """Curve, cycle, position of the law and path for every law of every variant."""
     for variant, outcome in outcomes.items():
         if "cycle" in outcome.parts:
@@ -166,7 +166,7 @@ def _seen(
 
 
 def _along_figure(
-    name: str, seen: list[tuple[Curve, xr.Dataset, int, PathOfContact]], first: PathOfContact
+    name: str, seen: list[tuple[Curve, xr.Dataset, int, StraightPath]], first: StraightPath
 ) -> Figure:
     unit = show.unit(VARIABLES[name].display)
     traces = []
@@ -193,7 +193,7 @@ def _along_figure(
     return Figure(f"along_{name}", title, shown, look, note, missing=missing)
 
 
-def loss_sentence(shares: Mapping[tuple[str, str], float], path: PathOfContact) -> str:
+def loss_sentence(shares: Mapping[tuple[str, str], float], path: StraightPath) -> str:
     """Where the loss is made, in words.
 
     Args:
@@ -246,7 +246,7 @@ def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
     return notes
 
 
-def _letters(path: PathOfContact, second: str) -> str:
+def _letters(path: StraightPath, second: str) -> str:
     ends = (
         "A and E are the ends of the path of contact, A at the tip of "
         f"{show.the(second)}; C is the pitch point"

@@ -15,7 +15,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Table,
+    SectionTable,
     by_variant,
     of_meshes,
 )
@@ -31,9 +31,11 @@ def sharing_blocks(page: Page) -> Iterator[Block]:
 def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts["planet_sharing"]
     if rows := _rows(data):
-        yield Table(_HEADS, rows, compact=True)
+        yield SectionTable(_HEADS, rows, compact=True)
     if "drawn_planet_load_factor" in data:
-        yield Table(["of sets sampled by tolerance", "K_γ at most"], _drawn(data), compact=True)
+        yield SectionTable(
+            ["of sets sampled by tolerance", "K_γ at most"], _drawn(data), compact=True
+        )
     yield Paragraph(_assumed(data), "note")
 
 

@@ -9,7 +9,15 @@ import xarray as xr
 from pitchpoint.registry import enumerated
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Table, by_variant
+from pitchpoint.views.section import (
+    Block,
+    KeyFigure,
+    Page,
+    Paragraph,
+    Printed,
+    SectionTable,
+    by_variant,
+)
 from pitchpoint.views.sections.bodies import INERTIA
 
 __all__ = ["reflected_blocks", "reflected_facts", "reflected_printed"]
@@ -35,8 +43,8 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
         plays = [(str(case), _cell("output_backlash", float(value))) for case, value in backlash]
         heads, cells = zip(*(plays if _by_tolerances(data) else plays[:1]), strict=True)
         row = (f"turn of the output, the input held [{unit}]", *cells)
-        yield Table(["backlash", *heads], [row], compact=True)
-    yield Table(_heads(data), _rows(data), compact=True)
+        yield SectionTable(["backlash", *heads], [row], compact=True)
+    yield SectionTable(_heads(data), _rows(data), compact=True)
     yield Paragraph(" ".join([_ASSUMED, *_of_planets(data), *_of_backlash(data)]), "note")
 
 

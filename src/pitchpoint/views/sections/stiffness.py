@@ -28,7 +28,15 @@ from pitchpoint.views.figures import (
 )
 from pitchpoint.views.lines import overlaid
 from pitchpoint.views.point import Period, period_of
-from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Table, key_figure, tabbed
+from pitchpoint.views.section import (
+    Block,
+    KeyFigure,
+    Page,
+    Paragraph,
+    SectionTable,
+    key_figure,
+    tabbed,
+)
 
 __all__ = [
     "stiffness_answer",
@@ -53,7 +61,7 @@ def stiffness_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
     ]
 
 
-def _table(page: Page) -> Table:
+def _table(page: Page) -> SectionTable:
     """Means and variations, a column for each variant."""
     parts = {name: outcome.parts["stiffness"] for name, outcome in page.outcomes.items()}
     rows = [
@@ -63,7 +71,7 @@ def _table(page: Page) -> Table:
     ]
     models = [str(data.attrs.get("model", "")) for data in parts.values()]
     head = [*parts] if page.several or "number" in page.first else ["value"]
-    return Table(["Stiffness", *head], [*rows, ("teeth yield as", *models)], compact=True)
+    return SectionTable(["Stiffness", *head], [*rows, ("teeth yield as", *models)], compact=True)
 
 
 def stiffness_answer(outcome: Outcome) -> str:

@@ -23,7 +23,7 @@ from pitchpoint.views.section import (
     Paragraph,
     Printed,
     Section,
-    Table,
+    SectionTable,
     by_variant,
     turned,
 )
@@ -148,14 +148,14 @@ def _caveats(data: xr.Dataset) -> list[str]:
     ]
 
 
-def _table(title: str, names: tuple[str, ...], data: xr.Dataset) -> Table:
+def _table(title: str, names: tuple[str, ...], data: xr.Dataset) -> SectionTable:
     variables = [
         name
         for name in names
         if name not in _WHERE_ASKED or (name in data and data[name].notnull().any())
     ]
     rows = [(_words(name, data), *_values(name, data)) for name in variables]
-    return Table([title, *(str(gear) for gear in data["gear"].values)], rows, compact=True)
+    return SectionTable([title, *(str(gear) for gear in data["gear"].values)], rows, compact=True)
 
 
 def _words(name: str, data: xr.Dataset) -> str:
@@ -169,7 +169,7 @@ def _values(name: str, data: xr.Dataset) -> tuple[str, ...]:
     return tuple(_cell(data, name, gear) for gear in range(2))
 
 
-def _by_gear(rows: Sequence[Mapping[str, str]]) -> Table:
+def _by_gear(rows: Sequence[Mapping[str, str]]) -> SectionTable:
     """Forces, stresses and safeties with a column for each gear, those of trains with their stage."""
     heads = [name for name in rows[0] if name not in ("stage", "gear")]
     columns = []
@@ -268,7 +268,7 @@ def _duty(outcome: Outcome, place: Mapping[Hashable, xr.DataArray], cycles: str)
     return f"{life}, application factor {factor}"
 
 
-def _sums_up(outcome: Outcome) -> Iterator[Table | Paragraph]:
+def _sums_up(outcome: Outcome) -> Iterator[SectionTable | Paragraph]:
     """Stresses and safeties of each gear, and what is assumed for them."""
     data = outcome.parts.get("strength")
     if data is None:
@@ -281,7 +281,9 @@ def _sums_up(outcome: Outcome) -> Iterator[Table | Paragraph]:
         for stage, pair in _pairs(outcome)
         for at in range(2)
     ]
-    yield Table(["Strength", *(head(name, data) for name in _STRESSES)], rows, caption="Strength")
+    yield SectionTable(
+        ["Strength", *(head(name, data) for name in _STRESSES)], rows, caption="Strength"
+    )
     for text in _told(data, "assumed"):
         yield Paragraph(text)
 

@@ -34,7 +34,16 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.inputs import in_words
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import efficiency_of, head, shown
-from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Section, Table
+from pitchpoint.views.section import (
+    Block,
+    Drawn,
+    Heading,
+    Page,
+    Paragraph,
+    Printed,
+    Section,
+    SectionTable,
+)
 from pitchpoint.views.sections.design_chart import design_charts, is_design_chart
 
 __all__ = [
@@ -166,7 +175,7 @@ def _table(studies: list[Seen], note: str, *, lossless: bool, named: bool) -> It
     numbers = np.array(varying[len(names) :], dtype=int)
     for part in np.array_split(numbers, max(-(-numbers.size // _MOST), 1)):
         of_part = [*names, *part]
-        yield Table(
+        yield SectionTable(
             [heads[k] for k in of_part],
             [tuple(row[k] for k in of_part) for row in rows],
             wide=len(of_part) > _WIDE,

@@ -11,16 +11,16 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, pair_key
 from pitchpoint.views.inputs import words
-from pitchpoint.views.path import PathOfContact, path_of
+from pitchpoint.views.path import StraightPath, path_of
 from pitchpoint.views.picture import picture_of
 from pitchpoint.views.point import by_bodies, named_members, of_geometry
 from pitchpoint.views.section import (
+    Animation,
     Block,
     Drawn,
-    Moving,
     Page,
     Section,
-    Table,
+    SectionTable,
     by_mesh,
     naming,
 )
@@ -62,9 +62,9 @@ def _titled(variants: str, outcome: Outcome) -> str:
     )
 
 
-def _moving(outcome: Outcome, name: str) -> Moving:
+def _moving(outcome: Outcome, name: str) -> Animation:
     """Teeth in mesh over one period, in frames as close as those of the report."""
-    return Moving("mesh", picture_of(outcome).svg(name), "Phase", 1.0, 1.0 / 48.0)
+    return Animation("mesh", picture_of(outcome).svg(name), "Phase", 1.0, 1.0 / 48.0)
 
 
 def _ring(outcome: Outcome) -> str:
@@ -138,7 +138,7 @@ _LEGIBLE = 2
 """Meshes with all their dimensions that one page holds in letters which can be read."""
 
 
-def _sums_up(outcome: Outcome) -> Iterator[Table]:
+def _sums_up(outcome: Outcome) -> Iterator[SectionTable]:
     """Dimensions that a drawing has, of many meshes the main ones; what both gears share stands twice."""
     meshes = by_mesh({"": outcome}, *_PARTS)
     for name, mesh in meshes.items():
@@ -147,7 +147,7 @@ def _sums_up(outcome: Outcome) -> Iterator[Table]:
             rows = [row for row in rows if row[0].startswith(_MAIN)]
         both = [row if len(row) == 3 else (row[0], row[1], row[1]) for row in rows]
         title = ", ".join(filter(None, ["Gears", name]))
-        yield Table([title, *named_members(mesh)[:2]], both, caption=title)
+        yield SectionTable([title, *named_members(mesh)[:2]], both, caption=title)
 
 
 Dimension = tuple[str, float, int, Variable]
@@ -241,7 +241,7 @@ def _backlash(teeth: xr.Dataset) -> list[Row]:
     ]
 
 
-def _transverse(teeth: xr.Dataset, path: PathOfContact) -> list[Row]:
+def _transverse(teeth: xr.Dataset, path: StraightPath) -> list[Row]:
     """What a helical pair has in its transverse section, a spur pair in its only one."""
     words, sign = ("transverse ", "t") if path.helical else ("", "")
     angle = f"{words}pressure angle in operation α_w{sign}"

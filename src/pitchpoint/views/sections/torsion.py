@@ -35,7 +35,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Table,
+    SectionTable,
     key_figure,
     tabbed,
 )
@@ -412,7 +412,7 @@ def slope_rows(outcome: Outcome) -> list[dict[str, str]]:
 def _table(rows: list[dict[str, str]]) -> Iterator[Block]:
     """Rows as a table of the report; nothing without any."""
     if rows:
-        yield Table([*rows[0]], [[*row.values()] for row in rows], compact=len(rows[0]) < 5)
+        yield SectionTable([*rows[0]], [[*row.values()] for row in rows], compact=len(rows[0]) < 5)
 
 
 def _down(rows: list[dict[str, str]]) -> list[dict[str, str]]:

@@ -19,7 +19,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Table,
+    SectionTable,
     of_meshes,
 )
 from pitchpoint.views.sections.planet_sharing import sharing_facts
@@ -59,8 +59,8 @@ def train_blocks(page: Page) -> Iterator[Block]:
                 planes = train_pictures(outcome, train)
                 values = {"planes": planes, "name": f"train{number}", "words": _words(train)}
                 yield Drawn("train.html.jinja", {"t": values})
-            yield Table(BODIES, _bodies(train), compact=True, caption="Speeds")
-            yield Table(MESHES, _meshes(train), compact=True, caption="Meshes", wide=True)
+            yield SectionTable(BODIES, _bodies(train), compact=True, caption="Speeds")
+            yield SectionTable(MESHES, _meshes(train), compact=True, caption="Meshes", wide=True)
             yield Paragraph(_NOTE, "note")
 
 

@@ -23,7 +23,7 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.lines import gapped, titled
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Table, naming
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, SectionTable, naming
 
 __all__ = ["train_period_blocks", "train_period_printed"]
 
@@ -47,10 +47,10 @@ def train_period_blocks(page: Page) -> Iterator[Block]:
             f"shown{by_law}."
         )
         if rows := _torques(data):
-            yield Table(_OUTSIDE, rows, compact=True)
+            yield SectionTable(_OUTSIDE, rows, compact=True)
             yield Paragraph(_OF_TORQUES, "note")
         if "body_thrust" in data and data["body_thrust"].any():
-            yield Table(_HEADS, _thrusts(data), compact=True)
+            yield SectionTable(_HEADS, _thrusts(data), compact=True)
             yield Paragraph(_tilted(data), "note")
         # Stages of one variant have figures of their own: all with whole lines, whose jumps can be seen.
         drawn = first if len(variants) == 1 and (first, laws(data)[0]) in page.curves else variant

@@ -41,7 +41,7 @@ from pitchpoint.views.section import (
     Paragraph,
     Printed,
     Section,
-    Table,
+    SectionTable,
     reason,
     tabbed,
 )
@@ -116,7 +116,7 @@ def _cell(data: xr.Dataset, name: str, torque: int) -> str:
     return show.quantity(name, float(data[name].values[torque]))
 
 
-def _table(outcome: Outcome) -> Table:
+def _table(outcome: Outcome) -> SectionTable:
     """Figures of every torque."""
     data = outcome.parts["vibration"]
     count, load = range(data.sizes["torque"]), show.described("torque", data).long_name
@@ -124,7 +124,7 @@ def _table(outcome: Outcome) -> Table:
     damping = words(outcome, "dynamics", "damping_ratio")
     if damping:
         rows.insert(3, ("damping ratio ξ", *[damping] * len(count)))
-    return Table([f"At the {load}", *_torques(data)], rows, compact=True)
+    return SectionTable([f"At the {load}", *_torques(data)], rows, compact=True)
 
 
 def _status(data: xr.Dataset) -> str:

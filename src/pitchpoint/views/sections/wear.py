@@ -37,7 +37,7 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Table,
+    SectionTable,
     by_variant,
     key_figure,
 )
@@ -102,7 +102,9 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
             "near the case: where another pair comes to carry they jump.",
             "note",
         )
-        yield Table(["1 % more of", "life", "depth", "depth per turn, new"], rows, compact=True)
+        yield SectionTable(
+            ["1 % more of", "life", "depth", "depth per turn, new"], rows, compact=True
+        )
 
 
 def _said(data: xr.Dataset, words: str) -> str:
@@ -136,7 +138,7 @@ def _by_films(data: xr.Dataset) -> str:
     return ", with the load on asperities from solved films" if films else ""
 
 
-def _whole(data: xr.Dataset) -> Table:
+def _whole(data: xr.Dataset) -> SectionTable:
     """Where the march ended, and its stages."""
     rows = [(titled(name, data), _told(data, name)) for name in _FIGURES]
     for name in ("backlash_growth", "backlash_growth_error"):
@@ -145,7 +147,7 @@ def _whole(data: xr.Dataset) -> Table:
     rows.append(("ended", _ENDS[str(data.attrs["end"])]))
     for name in ("run_in_cycles", "severe_cycles"):
         rows.append((titled(name, data), _told(data, name)))
-    return Table(["", ""], rows, compact=True)
+    return SectionTable(["", ""], rows, compact=True)
 
 
 def _told(data: xr.Dataset, name: str) -> str:
@@ -190,7 +192,7 @@ def _members(data: xr.Dataset) -> list[str]:
     return [str(name) for name in json.loads(data.attrs["members"])]
 
 
-def _table(data: xr.Dataset) -> Table:
+def _table(data: xr.Dataset) -> SectionTable:
     """What each member has lost at the end, and where most."""
     names = _members(data)
     rows = [
@@ -198,7 +200,7 @@ def _table(data: xr.Dataset) -> Table:
         for name in _OF_MEMBER
         if name in data
     ]
-    return Table(["at the end", *names], rows, compact=True)
+    return SectionTable(["at the end", *names], rows, compact=True)
 
 
 def _places(data: xr.Dataset, member: int) -> tuple[str, np.ndarray]:

@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.lubrication.ehl.patch.layout import Problem
+from pitchpoint.lubrication.ehl.patch.layout import PatchProblem
 from pitchpoint.lubrication.ehl.reynolds import at_faces, third_order, upwind
 from pitchpoint.lubrication.ehl.work import specific_volume
 
@@ -53,14 +53,14 @@ ALONG, ACROSS = 4, 4
 """Nodes of a row, and rows, that a cell knows: from two before it to one behind."""
 
 
-def balance(problem: Problem, oil: Field, gap: Field, rate: Array) -> tuple[Inner, Inner]:
+def balance(problem: PatchProblem, oil: Field, gap: Field, rate: Array) -> tuple[Inner, Inner]:
     """What flows into each cell more than out of it, and what a pressure of one there takes out.
 
     Conductances along the faces between cells of a row: geometric mean ahead of the middle, arithmetic one
     behind, as in a line. Across, where the pressure falls to the sides, the arithmetic one: with the other
     one pressures beside an ellipse never settle. Where it would empty tips with thin films it is limited by
-    the other, see `Problem.steep`, and where films end within a cell by the film before, see
-    `Problem.bounded`. Oil leaves freely beyond the first and the last row.
+    the other, see `PatchProblem.steep`, and where films end within a cell by the film before, see
+    `PatchProblem.bounded`. Oil leaves freely beyond the first and the last row.
 
     Args:
         problem: the contact.
@@ -82,7 +82,7 @@ def balance(problem: Problem, oil: Field, gap: Field, rate: Array) -> tuple[Inne
     return gain, diagonal + (flows.sides[1:] + flows.sides[:-1])[:, 1:-1]
 
 
-def _stored(problem: Problem, mass: Field, rate: Array) -> Array:
+def _stored(problem: PatchProblem, mass: Field, rate: Array) -> Array:
     """What cells store in a time: since the film before, and since the mass that they have, to tie it."""
     since = (problem.pace, problem.before), (rate, jax.lax.stop_gradient(mass))
     return sum((pace * (mass - before) for pace, before in since), jnp.zeros(()))
@@ -106,7 +106,7 @@ class Through(NamedTuple):
     carried: Array
 
 
-def through(problem: Problem, oil: Field, gap: Field) -> Through:
+def through(problem: PatchProblem, oil: Field, gap: Field) -> Through:
     """What flows through the faces between cells; arguments as in `balance`."""
     mass, ease = problem.flow.mass_and_ease(oil, gap)
     x, (width, spacing) = problem.bodies.x, _widths(problem)
@@ -123,7 +123,7 @@ def through(problem: Problem, oil: Field, gap: Field) -> Through:
     )
 
 
-def _carried(problem: Problem, mass: Array) -> Array:
+def _carried(problem: PatchProblem, mass: Array) -> Array:
     """Masses at the faces between rows, as in a line; bounded where they change by more than grids show."""
     if not problem.bounded:
         return upwind(mass)
@@ -156,7 +156,7 @@ class Work(NamedTuple):
     expansion: Array
 
 
-def work(problem: Problem, oil: Field, gap: Field) -> Work:
+def work(problem: PatchProblem, oil: Field, gap: Field) -> Work:
     """Work of the oil over the patch.
 
     Rolling resistance: half of the flow that a speed of one draws along times the rise of pressure; over a
@@ -178,7 +178,7 @@ def work(problem: Problem, oil: Field, gap: Field) -> Work:
     return Work(row, column, heat, heat - drawn)
 
 
-def heat_beside(problem: Problem, oil: Field, gap: Field) -> Array:
+def heat_beside(problem: PatchProblem, oil: Field, gap: Field) -> Array:
     """Heat per area by flow under pressure from row to row, shape (y, x), by a speed of one.
 
     Half of what a face makes belongs to each of the rows beside it, all that an end makes to its row.
@@ -189,7 +189,7 @@ def heat_beside(problem: Problem, oil: Field, gap: Field) -> Array:
     return 0.5 * (inner[1:] + inner[:-1]) / jnp.asarray(problem.bodies.areas)[:, None]
 
 
-def _volume_beside(problem: Problem, oil: Array) -> Array:
+def _volume_beside(problem: PatchProblem, oil: Array) -> Array:
     """Mean of one over the density between rows, and between them and the ends, shape (y + 1, x)."""
     rise = problem.flow.temperature_rise
     if rise.ndim:
@@ -202,7 +202,7 @@ def _walled(oil: Array) -> Array:
     return jnp.pad(oil, ((1, 1), (0, 0)))
 
 
-def _widths(problem: Problem) -> tuple[Array, Array]:
+def _widths(problem: PatchProblem) -> tuple[Array, Array]:
     """Widths of the rows, shape (y, 1), and spacing of the nodes along them."""
     x, edges = problem.bodies.x, problem.bodies.edges
     return jnp.diff(jnp.asarray(edges))[:, None], (x[-1] - x[0]) / (x.shape[0] - 1)
@@ -238,7 +238,7 @@ class Stencil(NamedTuple):
 
 
 def stencil(
-    problem: Problem, oil: Field, gap: Field, rate: Array
+    problem: PatchProblem, oil: Field, gap: Field, rate: Array
 ) -> tuple[Inner, Inner, Stencil, Stencil]:
     """Balance with its derivatives to the pressure of the oil and to gaps.
 

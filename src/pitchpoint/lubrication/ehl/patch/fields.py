@@ -13,7 +13,7 @@ from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.balance import work
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.heat import PatchTemperatures, heated, temperatures
-from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem
+from pitchpoint.lubrication.ehl.patch.layout import Layout, PatchProblem
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.strips import warmer
 from pitchpoint.lubrication.ehl.work import filled, shear_stress
@@ -23,8 +23,8 @@ __all__ = [
     "FIELDS",
     "STRESSES",
     "VECTORS",
+    "ElasticResponse",
     "PatchFilm",
-    "Response",
     "patch_film",
 ]
 
@@ -58,7 +58,7 @@ VECTORS: Final = ("minimum_place", "largest_place", "shear_force", "boundary_for
 """Names of what has a value along x and one along y, shape (2,)."""
 
 
-class Response(NamedTuple):
+class ElasticResponse(NamedTuple):
     """How the bodies of a contact answer, in own units.
 
     Attributes:
@@ -177,11 +177,11 @@ class PatchFilm(eqx.Module):
 def patch_film(
     contact: PatchContact,
     layout: Layout,
-    problem: Problem,
+    problem: PatchProblem,
     pressure: Array,
     level: Array,
     held: Array,
-    response: Response,
+    response: ElasticResponse,
 ) -> PatchFilm:
     """Fields of a contact from a solution in its own units, as the grid lies.
 
@@ -274,7 +274,7 @@ def _filled(flow: Flow, oil: Array, room: Array) -> Array:
 
 
 def _heat(
-    contact: PatchContact, problem: Problem, pressure: Array, level: Array, layout: Layout
+    contact: PatchContact, problem: PatchProblem, pressure: Array, level: Array, layout: Layout
 ) -> PatchTemperatures | None:
     heats = heated(contact)
     if heats is None:
@@ -283,7 +283,7 @@ def _heat(
 
 
 def _apart(
-    contact: PatchContact, problem: Problem, level: Array, response: Response
+    contact: PatchContact, problem: PatchProblem, level: Array, response: ElasticResponse
 ) -> tuple[Array, Array, Array]:
     """Separation, stiffness and damping; constants for derivatives, as dry bodies have none here."""
     height = problem.flow.height

@@ -26,8 +26,8 @@ from pitchpoint.lubrication.ehl.patch.fields import (
     FIELDS,
     STRESSES,
     VECTORS,
+    ElasticResponse,
     PatchFilm,
-    Response,
     patch_film,
 )
 from pitchpoint.lubrication.ehl.patch.grid_error import grid_errors, of_patches
@@ -40,7 +40,7 @@ from pitchpoint.lubrication.ehl.patch.heat import (
     rests_somewhere,
     warmed,
 )
-from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, leaks, problem_on
+from pitchpoint.lubrication.ehl.patch.layout import Layout, PatchProblem, leaks, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import polished, polished_warm, settled
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps, check_standing, unseen
@@ -138,7 +138,7 @@ class PatchFilms:
     pressure: NDArray[np.float64]
     level: float
     held: NDArray[np.float64]
-    response: Response
+    response: ElasticResponse
     turned: Turned
     warnings: tuple[Doubt, ...]
     rise: NDArray[np.float64] | None = None
@@ -239,7 +239,7 @@ def _solved(
     held, approach, by_load = dry_bodies(problem)
     end = _settled(problem, array(state.pressure), array(state.level))
     pressure: Any = np.asarray(end.pressure)
-    response = Response(array(approach), array(by_load), end.by_load, end.by_approach)
+    response = ElasticResponse(array(approach), array(by_load), end.by_load, end.by_approach)
     ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)
     if code == Code.SOLVED and ended.reynolds < ENOUGH:
         errors = grid_errors(contact, layout, problem, pressure, end.level, held)
@@ -265,11 +265,11 @@ class Told(NamedTuple):
 def told_film(
     own: PatchContact,
     layout: Layout,
-    problem: Problem,
+    problem: PatchProblem,
     pressure: NDArray[np.float64],
     level: float,
     held: NDArray[np.float64],
-    response: Response,
+    response: ElasticResponse,
     ended: PatchEnded,
 ) -> Told:
     """Film of a solution, NaN where it is none, and what to be wary of; arguments as in `patch_film`.

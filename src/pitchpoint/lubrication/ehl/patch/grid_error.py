@@ -12,7 +12,7 @@ from pitchpoint._jax import array
 from pitchpoint.doubts import Doubt
 from pitchpoint.lubrication.ehl.doubts import of_grid
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.layout import FEWEST, Layout, Problem, problem_on
+from pitchpoint.lubrication.ehl.patch.layout import FEWEST, Layout, PatchProblem, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import CAREFUL, ENOUGH, iterated
 from pitchpoint.lubrication.ehl.patch.solve import (
     WARM_TIME,
@@ -49,7 +49,7 @@ LINE_FALLS: Final = 0.6
 def grid_errors(
     contact: PatchContact,
     layout: Layout,
-    problem: Problem,
+    problem: PatchProblem,
     pressure: NDArray[np.float64],
     level: Any,
     held: NDArray[np.float64],
@@ -110,7 +110,7 @@ def of_patches(
 
 
 def _films(
-    problem: Problem, gap: NDArray[np.float64], dry: NDArray[np.float64]
+    problem: PatchProblem, gap: NDArray[np.float64], dry: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Film in the middle, NaN where nothing touches near it, mean and smallest one, shape (3,)."""
     y, weight = np.asarray(problem.bodies.y), np.asarray(problem.bodies.areas)[:, None] * dry
@@ -118,7 +118,7 @@ def _films(
     return np.array([middle, np.sum(gap * weight) / np.sum(weight), np.min(gap)])
 
 
-def _ridge(problem: Problem, gap: NDArray[np.float64]) -> NDArray[np.float64]:
+def _ridge(problem: PatchProblem, gap: NDArray[np.float64]) -> NDArray[np.float64]:
     """Gap at x = 0 in every row, shape (y,)."""
     return np.array([np.interp(0.0, problem.bodies.x, row) for row in gap])
 

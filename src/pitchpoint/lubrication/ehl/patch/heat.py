@@ -12,14 +12,14 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import Row
+from pitchpoint.lubrication.ehl.grid import NodeRow
 from pitchpoint.lubrication.ehl.patch.balance import heat_beside, work
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.layout import Problem
+from pitchpoint.lubrication.ehl.patch.layout import PatchProblem
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.strips import (
     NEAR,
-    Passing,
+    PassingSurfaces,
     Past,
     Strip,
     accelerated,
@@ -35,9 +35,9 @@ from pitchpoint.lubrication.flash_temperature import Conductor, peclet_number
 
 __all__ = [
     "TEMPERATURES",
-    "Heated",
+    "ContactHeat",
+    "HeatStep",
     "PatchTemperatures",
-    "Turn",
     "check_heat",
     "defect",
     "heated",
@@ -92,7 +92,7 @@ class PatchTemperatures(eqx.Module):
     peclet_b: One
 
 
-class Heated(NamedTuple):
+class ContactHeat(NamedTuple):
     """What decides about the heat of a contact besides its pressure; see `PatchContact`.
 
     Attributes:
@@ -113,11 +113,11 @@ class Heated(NamedTuple):
         return speed_a, speed_b
 
 
-def heated(contact: PatchContact) -> Heated | None:
+def heated(contact: PatchContact) -> ContactHeat | None:
     """What decides about the heat of a contact, entrained along x; None of an isothermal one."""
     if contact.conduction is None:
         return None
-    return Heated(contact.places, contact.speed_a, contact.speed_b, contact.conduction)
+    return ContactHeat(contact.places, contact.speed_a, contact.speed_b, contact.conduction)
 
 
 def check_heat(contact: PatchContact) -> None:
@@ -137,9 +137,9 @@ def rests_somewhere(contact: PatchContact) -> bool:
     return contact.conduction is not None and bool(np.any(stands))
 
 
-def warmed(problem: Problem, rise: Field) -> Problem:
+def warmed(problem: PatchProblem, rise: Field) -> PatchProblem:
     """The contact with a film that is so much warmer than its inlet, shape (y, x) [K]."""
-    warm: Problem = eqx.tree_at(lambda tree: tree.flow, problem, warmer(problem.flow, rise))
+    warm: PatchProblem = eqx.tree_at(lambda tree: tree.flow, problem, warmer(problem.flow, rise))
     return warm
 
 
@@ -157,8 +157,8 @@ class _Rows(NamedTuple):
 
     flow: Flow
     conduction: Conduction
-    passes: Passing
-    at: Row
+    passes: PassingSurfaces
+    at: NodeRow
     length: Array
     power: Array
 
@@ -185,7 +185,9 @@ class _Row(NamedTuple):
     speeds: tuple[Array, Array]
 
 
-def _rows(heats: Heated, problem: Problem, pressure: Array, level: Array) -> tuple[_Rows, _Row]:
+def _rows(
+    heats: ContactHeat, problem: PatchProblem, pressure: Array, level: Array
+) -> tuple[_Rows, _Row]:
     flow, bodies, length = problem.flow, problem.bodies, problem.length
     gap = problem.gap(pressure, level)
     asperities = flow.asperity_pressure(gap)
@@ -194,7 +196,7 @@ def _rows(heats: Heated, problem: Problem, pressure: Array, level: Array) -> tup
     spacing = (x[-1] - x[0]) / (nodes - 1)
     edges = x[0] + spacing * (jnp.arange(nodes + 1) - 0.5)
     ahead = 0.5 * (x[1:] + x[:-1]) < 0.0
-    at = Row(jnp.full(nodes, spacing), jnp.full(nodes - 1, spacing), ahead)
+    at = NodeRow(jnp.full(nodes, spacing), jnp.full(nodes - 1, spacing), ahead)
     power = flow.pressure * flow.height * problem.speed
     beside = heat_beside(problem, oil, gap) * power / length
     shared = flow, heats.conduction, passing(x, edges), at, length, power
@@ -203,7 +205,7 @@ def _rows(heats: Heated, problem: Problem, pressure: Array, level: Array) -> tup
     return _Rows(*shared), _Row(*per_row)
 
 
-class Turn(NamedTuple):
+class HeatStep(NamedTuple):
     """A turn from pressure to temperature.
 
     Attributes:
@@ -220,8 +222,13 @@ class Turn(NamedTuple):
 
 
 def next_turn(
-    heats: Heated, problem: Problem, pressure: Array, level: Array, past: Past, before: Array
-) -> Turn:
+    heats: ContactHeat,
+    problem: PatchProblem,
+    pressure: Array,
+    level: Array,
+    past: Past,
+    before: Array,
+) -> HeatStep:
     """Temperature at a pressure: row by row, with the flow from row to row as warm as it was.
 
     Args:
@@ -243,24 +250,24 @@ def next_turn(
     near = (change < NEAR) & (before < NEAR)
     quicker, past = accelerated(past, jnp.ravel(begun), jnp.ravel(rise), near)
     begin = jnp.where(near, quicker.reshape(rise.shape), rise)
-    return Turn(rise, begin, change, past)
+    return HeatStep(rise, begin, change, past)
 
 
-def risen(heats: Heated, problem: Problem, pressure: Array, level: Array) -> Array:
+def risen(heats: ContactHeat, problem: PatchProblem, pressure: Array, level: Array) -> Array:
     """Rise of the film that its heat makes, shape (y, x) [K]."""
     shared, rows = _rows(heats, problem, pressure, level)
     rise: Array = jax.lax.map(lambda row: by_heat(*shared.strip(row), shared.at)[0], rows)
     return rise
 
 
-def defect(heats: Heated, problem: Problem, pressure: Array, level: Array) -> Array:
+def defect(heats: ContactHeat, problem: PatchProblem, pressure: Array, level: Array) -> Array:
     """Rise of the film against that by its heat, over the largest rise."""
     rise = risen(heats, problem, pressure, level)
     return change_of(problem.flow.temperature_rise, rise)
 
 
 def temperatures(
-    heats: Heated, problem: Problem, pressure: Array, level: Array, half_width: Array
+    heats: ContactHeat, problem: PatchProblem, pressure: Array, level: Array, half_width: Array
 ) -> PatchTemperatures:
     """Heat and temperatures over the patch of a contact.
 

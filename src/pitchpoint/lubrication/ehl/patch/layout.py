@@ -31,7 +31,7 @@ __all__ = [
     "NEARBY",
     "Ends",
     "Layout",
-    "Problem",
+    "PatchProblem",
     "extents",
     "ladder",
     "laid_out",
@@ -455,7 +455,7 @@ class Coated(Smooth):
         return self.stiff * jnp.maximum(1.0 - gap / self.least, 0.0)
 
 
-class Problem(eqx.Module):
+class PatchProblem(eqx.Module):
     """One contact on a grid, in units of its own length, pressure and speed.
 
     Attributes:
@@ -496,10 +496,10 @@ class Problem(eqx.Module):
         """Gap of the mean planes in every cell, shape (y, x)."""
         return level + self.apart + self.bodies.deflection(pressure, 1.0 / self.yielding)
 
-    def thicker(self, factor: float) -> Problem:
+    def thicker(self, factor: float) -> PatchProblem:
         """The same contact at a speed at which its film is so many times as thick."""
         changed = self.flow.resistance * factor ** (1.0 / BY_SPEED), self.film * factor
-        thick: Problem = eqx.tree_at(
+        thick: PatchProblem = eqx.tree_at(
             lambda tree: (tree.flow.resistance, tree.film), self, tuple(map(array, changed))
         )
         return thick
@@ -511,7 +511,7 @@ class Problem(eqx.Module):
 
 def problem_on(
     contact: PatchContact, layout: Layout, nodes: int, cells: int, finest: int
-) -> Problem:
+) -> PatchProblem:
     """A contact on one grid of a ladder; what the layout gives counts as constant for derivatives."""
     length, pressure = layout.length, layout.pressure
     bodies = layout.bodies(nodes, cells, finest, contact.ends)
@@ -550,4 +550,4 @@ def problem_on(
         array(layout.steep),
         bool(layout.bounded),
     )
-    return Problem(*fields)
+    return PatchProblem(*fields)

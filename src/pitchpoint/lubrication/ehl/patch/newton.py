@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.lubrication.ehl.patch.balance import ALONG, Stencil, balance, stencil
-from pitchpoint.lubrication.ehl.patch.layout import Problem
+from pitchpoint.lubrication.ehl.patch.layout import PatchProblem
 from pitchpoint.programs import fast_program
 
 __all__ = [
@@ -21,9 +21,9 @@ __all__ = [
     "TOLERANCE",
     "Linear",
     "Manner",
+    "PatchIterate",
     "Progress",
     "Rows",
-    "State",
     "by_rows",
     "iterated",
     "linear",
@@ -100,7 +100,7 @@ NEAR: Final = 0.05
 """Residual from which on they are not inverted anew in each step."""
 
 
-class State(NamedTuple):
+class PatchIterate(NamedTuple):
     """Where an iteration stands.
 
     Attributes:
@@ -141,7 +141,7 @@ class Linear(NamedTuple):
     share: Float[Array, " y"]
     full: Bool[Array, "y inner"]
     scale: Float[Array, "y inner"]
-    problem: Problem
+    problem: PatchProblem
 
 
 class Rows(NamedTuple):
@@ -159,7 +159,7 @@ class Rows(NamedTuple):
     carried: Float[Array, ""]
 
 
-class _Search(NamedTuple):
+class _LinearSearch(NamedTuple):
     """Where a linear solve stands.
 
     Attributes:
@@ -177,7 +177,7 @@ class _Search(NamedTuple):
     number: Array
 
 
-def linear(problem: Problem, pressure: Array, level: Array, rate: Array) -> Linear:
+def linear(problem: PatchProblem, pressure: Array, level: Array, rate: Array) -> Linear:
     """Balances and their derivatives at a pressure.
 
     A cell is full of oil, and balanced, or its oil is without pressure, as in a line. Cells at the first and
@@ -272,7 +272,7 @@ def _with_images(by_row: Array, share: Array) -> Array:
     return every
 
 
-def _even(problem: Problem) -> bool:
+def _even(problem: PatchProblem) -> bool:
     """Whether the rows of a contact are images of each other; cells across are even in number."""
     warm = np.atleast_1d(problem.flow.temperature_rise)
     across = [np.diff(problem.bodies.edges), problem.along, problem.apart, problem.before, warm]
@@ -317,21 +317,21 @@ def mended(at: Linear, alone: Rows, rest: Array) -> Array:
     """
     size = rest.shape[0]
     directions = jnp.zeros((DIRECTIONS, size))
-    begin = _Search(jnp.zeros(size), rest, directions, directions, jnp.zeros((), int))
+    begin = _LinearSearch(jnp.zeros(size), rest, directions, directions, jnp.zeros((), int))
     enough = INEXACT * jnp.linalg.norm(rest)
 
-    def unfinished(search: _Search) -> Array:
+    def unfinished(search: _LinearSearch) -> Array:
         going: Array = (search.number < DIRECTIONS) & (jnp.linalg.norm(search.left) > enough)
         return going
 
-    def onward(search: _Search) -> _Search:
+    def onward(search: _LinearSearch) -> _LinearSearch:
         return _searched(at, alone, search)
 
     change: Array = jax.lax.while_loop(unfinished, onward, begin).change
     return change
 
 
-def _searched(at: Linear, alone: Rows, search: _Search) -> _Search:
+def _searched(at: Linear, alone: Rows, search: _LinearSearch) -> _LinearSearch:
     """The best change along one more direction: rows mended alone, less what is known to do nothing new."""
     move = by_rows(alone, at.share, search.left)
     effect = product(at, move)
@@ -341,7 +341,7 @@ def _searched(at: Linear, alone: Rows, search: _Search) -> _Search:
     size = jnp.linalg.norm(effect)
     effect, move = effect / size, move / size
     length = effect @ search.left
-    return _Search(
+    return _LinearSearch(
         search.change + length * move,
         search.left - length * effect,
         search.moves.at[search.number].set(move),
@@ -417,7 +417,7 @@ CAREFUL: Final = Manner(True, 1.0)
 USUAL: Final = Manner(False, 1.0)
 
 
-def _mass(problem: Problem, pressure: Array, gap: Array) -> Array:
+def _mass(problem: PatchProblem, pressure: Array, gap: Array) -> Array:
     """Mass of the oil under each cell."""
     oil = pressure - problem.flow.asperity_pressure(gap)
     mass, _ = problem.flow.mass_and_ease(oil, gap)
@@ -439,7 +439,7 @@ _mended, _moved = fast_program(mended), fast_program(moved)
 
 
 def iterated(
-    problem: Problem,
+    problem: PatchProblem,
     pressure: Any,
     level: Any,
     time: float = FIRST_TIME,
@@ -447,7 +447,7 @@ def iterated(
     manner: Manner = USUAL,
     most: int = MOST,
     enough: float = TOLERANCE,
-) -> State:
+) -> PatchIterate:
     """Newton's iteration from a guess, with the time that oil has to flow growing as it goes.
 
     Args:
@@ -460,7 +460,7 @@ def iterated(
         most: steps after which an attempt is given up.
         enough: residual at which the iteration ends.
     """
-    state = State(pressure, level, np.inf, np.inf, 0)
+    state = PatchIterate(pressure, level, np.inf, np.inf, 0)
     rate, alone, age = 1.0 / time, None, 0
     lowest: list[float] = []
     stuck = 0

@@ -15,7 +15,13 @@ from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.films import Turned, check, oriented, turned
-from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, ladder, laid_out, problem_on
+from pitchpoint.lubrication.ehl.patch.layout import (
+    Layout,
+    PatchProblem,
+    ladder,
+    laid_out,
+    problem_on,
+)
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 
 __all__ = ["Plan", "all_lie", "check_times", "passed", "placed"]
@@ -129,7 +135,7 @@ class Plan:
     def _placed(self, contact: PatchContact, distances: NDArray[np.float64]) -> PatchContact:
         return replace(_moved(contact, distances), approach=array(0.0))
 
-    def problem(self, time: float) -> Problem:
+    def problem(self, time: float) -> PatchProblem:
         """The contact at a time, in units of the common grid."""
         nodes, cells = self.grid
         return problem_on(self.contact(time), self.layout, nodes, cells, cells)

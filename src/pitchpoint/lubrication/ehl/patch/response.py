@@ -10,12 +10,12 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.lubrication.ehl.patch.balance import balance
-from pitchpoint.lubrication.ehl.patch.heat import Heated, risen, warmed
-from pitchpoint.lubrication.ehl.patch.layout import Problem
+from pitchpoint.lubrication.ehl.patch.heat import ContactHeat, risen, warmed
+from pitchpoint.lubrication.ehl.patch.layout import PatchProblem
 from pitchpoint.lubrication.ehl.patch.newton import Linear, Rows, by_rows, linear, product, rows
 from pitchpoint.lubrication.ehl.strips import LEAST_RISE
 
-__all__ = ["Settled", "polished", "polished_warm", "settled"]
+__all__ = ["PolishedSolution", "polished", "polished_warm", "settled"]
 
 Map = Callable[[Array], Array]
 
@@ -29,7 +29,7 @@ RESTARTS: Final = 10
 """Times that these are looked for."""
 
 
-def polished(problem: Problem, pressure: Array, level: Array) -> tuple[Array, Array]:
+def polished(problem: PatchProblem, pressure: Array, level: Array) -> tuple[Array, Array]:
     """Pressure and level of a solution, with their derivatives to all that the problem is made of.
 
     A last step from the solution carries them (implicit function theorem), with the cells that are full and
@@ -48,8 +48,8 @@ def polished(problem: Problem, pressure: Array, level: Array) -> tuple[Array, Ar
 
 
 def polished_warm(
-    heats: Heated, problem: Problem, pressure: Array, level: Array
-) -> tuple[Problem, Array, Array]:
+    heats: ContactHeat, problem: PatchProblem, pressure: Array, level: Array
+) -> tuple[PatchProblem, Array, Array]:
     """Contact as warm as it is, pressure and level, with their derivatives to all that it is made of.
 
     As `polished`, with pressure, level and temperature together.
@@ -72,7 +72,7 @@ def polished_warm(
         there = pressure + jnp.pad(inner, ((0, 0), (1, 1))), level + change[size - 1]
         return *there, rise + unit * change[size:].reshape(rise.shape)
 
-    def rest(heats: Heated, problem: Problem, change: Array) -> Array:
+    def rest(heats: ContactHeat, problem: PatchProblem, change: Array) -> Array:
         there, risen_to = parts(change)[:2], parts(change)[2]
         warm = warmed(problem, risen_to)
         off = (risen_to - risen(heats, warm, *there)) / unit
@@ -88,7 +88,7 @@ def polished_warm(
     return warmed(problem, rise), pressure, level
 
 
-def _rest(problem: Problem, at: Linear, pressure: Array, level: Array) -> Array:
+def _rest(problem: PatchProblem, at: Linear, pressure: Array, level: Array) -> Array:
     """What is left of all balances, as those of the solution but for the problem, see `linear`."""
     gap = problem.gap(pressure, level)
     oil = pressure - problem.flow.asperity_pressure(gap)
@@ -141,7 +141,7 @@ def _solved(times: Map, nearly: Map, right_side: Array) -> Array:
     return solution
 
 
-class Settled(NamedTuple):
+class PolishedSolution(NamedTuple):
     """A solution after a last step, in own units.
 
     Attributes:
@@ -161,7 +161,7 @@ class Settled(NamedTuple):
     by_approach: Float[Array, ""]
 
 
-def settled(problem: Problem, pressure: Array, level: Array) -> Settled:
+def settled(problem: PatchProblem, pressure: Array, level: Array) -> PolishedSolution:
     """A last step from a solution, whose linear solve leaves nothing, and what the level answers there.
 
     Args:
@@ -176,10 +176,10 @@ def settled(problem: Problem, pressure: Array, level: Array) -> Settled:
     closing = _closing(problem, end, pressure, level)
     by_load, by_approach = (answered(end, alone, push)[-1] for push in (load_step, closing))
     largest = jnp.max(jnp.abs(end.rest))
-    return Settled(pressure, level, largest, end.load, by_load, by_approach)
+    return PolishedSolution(pressure, level, largest, end.load, by_load, by_approach)
 
 
-def _closing(problem: Problem, at: Linear, pressure: Array, level: Array) -> Array:
+def _closing(problem: PatchProblem, at: Linear, pressure: Array, level: Array) -> Array:
     """Change of all balances, taken away, with an approach of one."""
     asperities = problem.flow.asperity_pressure(problem.gap(pressure, level))
     oil = problem.flow.density(pressure - asperities)

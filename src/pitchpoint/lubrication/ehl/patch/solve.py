@@ -15,10 +15,10 @@ from pitchpoint._jax import array
 from pitchpoint.contact.dry_contact import DryContact
 from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.heat import Heated, heated, next_turn, warmed
+from pitchpoint.lubrication.ehl.patch.heat import ContactHeat, heated, next_turn, warmed
 from pitchpoint.lubrication.ehl.patch.layout import (
     Layout,
-    Problem,
+    PatchProblem,
     ladder,
     laid_out,
     leaks,
@@ -31,8 +31,8 @@ from pitchpoint.lubrication.ehl.patch.newton import (
     MOST,
     TOLERANCE,
     Manner,
+    PatchIterate,
     Progress,
-    State,
     iterated,
 )
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
@@ -134,16 +134,16 @@ class Found(NamedTuple):
         state: the solution.
     """
 
-    problem: Problem
+    problem: PatchProblem
     dry: NDArray[np.float64]
-    state: State
+    state: PatchIterate
 
-    def faster(self, problem: Problem) -> bool:
+    def faster(self, problem: PatchProblem) -> bool:
         """Whether oil flows faster in it than in the problem, as where a grid shows no film that is thin."""
         return float(self.problem.film) != float(problem.film)
 
 
-def dry_start(problem: Problem, bed: float = BED) -> tuple[NDArray[np.float64], Any]:
+def dry_start(problem: PatchProblem, bed: float = BED) -> tuple[NDArray[np.float64], Any]:
     """Dry pressure of bodies with a soft layer on them, and the level at which the mean film is as guessed.
 
     The layer yields as film and asperities do, and spreads the pressure: that of a thick film reaches far
@@ -155,7 +155,7 @@ def dry_start(problem: Problem, bed: float = BED) -> tuple[NDArray[np.float64], 
     return pressure, float(problem.film) - _mean_gap(problem, pressure, array(pressure), 0.0)
 
 
-def touches(problem: Problem, state: State) -> bool:
+def touches(problem: PatchProblem, state: PatchIterate) -> bool:
     """Whether smooth surfaces carry load without oil, as where a grid is too coarse for their film."""
     if float(problem.flow.texture.rq) > 0.0:
         return False
@@ -163,20 +163,20 @@ def touches(problem: Problem, state: State) -> bool:
     return bool(np.any(np.asarray(problem.flow.asperity_pressure(gap)) > 0.0))
 
 
-def dry_under(problem: Problem, part: float = 1.0) -> DryContact:
+def dry_under(problem: PatchProblem, part: float = 1.0) -> DryContact:
     """The contact without oil under a part of its load."""
     load = problem.load * part
     return without_oil(problem.bodies, problem.apart, 1.0 / problem.yielding, load)
 
 
-def dry_bodies(problem: Problem) -> tuple[NDArray[np.float64], float, float]:
+def dry_bodies(problem: PatchProblem) -> tuple[NDArray[np.float64], float, float]:
     """Pressure without oil, shape (y, x), approach of the bodies, and its change with ln of the load."""
     dry, lighter, heavier = (dry_under(problem, part) for part in (1.0, 1.0 - MORE, 1.0 + MORE))
     slope = float(heavier.approach - lighter.approach) / (2.0 * MORE)
     return np.asarray(dry.pressure), float(dry.approach), slope
 
 
-def _bedded(problem: Problem, bed: float) -> HalfSpace:
+def _bedded(problem: PatchProblem, bed: float) -> HalfSpace:
     """The bodies with a layer on them that yields in every cell to the pressure there alone."""
     bodies, flow = problem.bodies, problem.flow
     film = float(problem.film) + float(flow.texture.rq) / float(flow.height)
@@ -192,14 +192,14 @@ def _bedded(problem: Problem, bed: float) -> HalfSpace:
     return bedded
 
 
-def _mean_gap(problem: Problem, dry: NDArray[np.float64], pressure: Any, level: Any) -> float:
+def _mean_gap(problem: PatchProblem, dry: NDArray[np.float64], pressure: Any, level: Any) -> float:
     """Mean gap where a dry contact carries, as much as it carries."""
     weight = np.asarray(problem.bodies.areas)[:, None] * dry
     gap = np.asarray(gap_on(problem, pressure, array(level)))
     return float(np.sum(gap * weight) / np.sum(weight))
 
 
-def _gap_of(problem: Problem, pressure: Array, level: Array) -> Array:
+def _gap_of(problem: PatchProblem, pressure: Array, level: Array) -> Array:
     return problem.gap(pressure, level)
 
 
@@ -207,7 +207,7 @@ gap_on = fast_program(_gap_of)
 """Gap of the mean planes in every cell of a solution, in units of its own, shape (y, x)."""
 
 
-def finer(coarse: Found, fine: Problem, fine_dry: NDArray[np.float64]) -> tuple[Any, Any]:
+def finer(coarse: Found, fine: PatchProblem, fine_dry: NDArray[np.float64]) -> tuple[Any, Any]:
     """Pressure and level on a finer grid: what the film adds to the dry pressure changes slowly."""
     before = coarse.problem
     along = _between(np.asarray(before.bodies.x), np.asarray(fine.bodies.x))
@@ -218,7 +218,7 @@ def finer(coarse: Found, fine: Problem, fine_dry: NDArray[np.float64]) -> tuple[
 
 
 def _together(
-    problem: Problem, dry: NDArray[np.float64], added: NDArray[np.float64], film: float
+    problem: PatchProblem, dry: NDArray[np.float64], added: NDArray[np.float64], film: float
 ) -> tuple[Any, Any]:
     """Pressure of the load from a dry one and what a film adds, and the level for a mean film."""
     pressure = np.maximum(dry + added, 0.0)
@@ -244,14 +244,14 @@ class Earlier(NamedTuple):
 
 
 def warm_start(
-    earlier: Earlier, layout: Layout, problem: Problem, dry: NDArray[np.float64]
+    earlier: Earlier, layout: Layout, problem: PatchProblem, dry: NDArray[np.float64]
 ) -> tuple[Any, Any]:
     """Pressure and level of a start from the dry pressure and a solution of a contact that is alike."""
     added = _as_laid(earlier, layout, problem, earlier.added)
     return _together(problem, dry, added, earlier.film * float(problem.film))
 
 
-def as_warm(earlier: Earlier, layout: Layout, problem: Problem) -> Problem:
+def as_warm(earlier: Earlier, layout: Layout, problem: PatchProblem) -> PatchProblem:
     """The contact as warm as one that is alike, where both have temperatures."""
     if earlier.rise is None or not problem.flow.temperature_rise.ndim:
         return problem
@@ -259,7 +259,7 @@ def as_warm(earlier: Earlier, layout: Layout, problem: Problem) -> Problem:
 
 
 def _as_laid(
-    earlier: Earlier, layout: Layout, problem: Problem, field: NDArray[np.float64]
+    earlier: Earlier, layout: Layout, problem: PatchProblem, field: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """A field of an earlier solution on the grid of a contact."""
     rows, nodes = np.shape(problem.apart)
@@ -270,7 +270,7 @@ def _as_laid(
     return _between(y, fine_y) @ field @ _between(x, fine_x).T
 
 
-def as_warm_as(coarse: Problem, fine: Problem) -> Problem:
+def as_warm_as(coarse: PatchProblem, fine: PatchProblem) -> PatchProblem:
     """The contact on a finer grid, with temperatures of a coarse one."""
     rise = np.asarray(coarse.flow.temperature_rise)
     if not rise.ndim:
@@ -286,7 +286,7 @@ def _between(coarse: NDArray[np.float64], fine: NDArray[np.float64]) -> NDArray[
     return np.stack([np.interp(fine, coarse, row) for row in identity], axis=1)
 
 
-def shown_film(problem: Problem) -> float:
+def shown_film(problem: PatchProblem) -> float:
     """Film, in own units, below which the grid shows none."""
     spacing = float(problem.bodies.x[1] - problem.bodies.x[0])
     return float(SHOWN * spacing**1.5)
@@ -306,8 +306,8 @@ class Solved(NamedTuple):
     """
 
     layout: Layout
-    problem: Problem
-    state: State
+    problem: PatchProblem
+    state: PatchIterate
     turns: int
 
 
@@ -326,10 +326,10 @@ class _Solver:
     told: Progress | None
     steps: int = 0
     left: int = MOST_ON_GRID
-    last: State | None = None
+    last: PatchIterate | None = None
     turns: int = 0
 
-    def on_grid(self, problem: Problem, before: Found | None, *, last: bool) -> Found | None:
+    def on_grid(self, problem: PatchProblem, before: Found | None, *, last: bool) -> Found | None:
         """Solution on one grid, None where none is found.
 
         From one on a coarser grid, else from dry contacts, else from the coarser one in strides.
@@ -349,13 +349,13 @@ class _Solver:
             solution = self.thinner(problem, times, before)
         return solution
 
-    def onward(self, problem: Problem, solution: Found) -> Found | None:
+    def onward(self, problem: PatchProblem, solution: Found) -> Found | None:
         """Solution from that on a coarser grid."""
         dry, _ = dry_start(problem)
         state = self.iterated(problem, finer(solution, problem, dry), FINER_TIME, CAREFUL)
         return Found(problem, dry, state) if state.residual < ENOUGH else None
 
-    def thinner(self, problem: Problem, times: float, solution: Found) -> Found | None:
+    def thinner(self, problem: PatchProblem, times: float, solution: Found) -> Found | None:
         """Solution with a film so many times as thick as it is, by films that become thinner and thinner."""
         now, stride = float(solution.problem.film / problem.film), STRIDE
         for _ in range(MOST_STRIDES):
@@ -374,7 +374,7 @@ class _Solver:
                 return solution
         return None
 
-    def from_dry(self, problem: Problem) -> Found | None:
+    def from_dry(self, problem: PatchProblem) -> Found | None:
         """Solution from a dry contact, by one attempt or another."""
         for attempt in ATTEMPTS:
             dry, level = dry_start(problem, attempt.bed)
@@ -383,7 +383,7 @@ class _Solver:
                 return Found(problem, dry, state)
         return None
 
-    def warm(self, heats: Heated, solution: Found, steady: float = STEADY) -> Found | None:
+    def warm(self, heats: ContactHeat, solution: Found, steady: float = STEADY) -> Found | None:
         """A solution as warm as its heat makes it, by turns between pressure and temperature."""
         problem, state = solution.problem, solution.state
         past = cold_past(problem.flow.temperature_rise.size)
@@ -401,7 +401,7 @@ class _Solver:
         return None
 
     def settled(
-        self, heats: Heated | None, solution: Found | None, steady: float = STEADY
+        self, heats: ContactHeat | None, solution: Found | None, steady: float = STEADY
     ) -> Found | None:
         """A solution as warm as it becomes, itself where it is isothermal; None where none is found."""
         if heats is None or solution is None:
@@ -409,7 +409,7 @@ class _Solver:
         return self.warm(heats, solution, steady)
 
     def onto(
-        self, problem: Problem, heats: Heated | None, before: Found | None, *, last: bool
+        self, problem: PatchProblem, heats: ContactHeat | None, before: Found | None, *, last: bool
     ) -> Found | None:
         """Solution on a finer grid, about as warm as that before becomes."""
         warm = self.settled(heats, before, NEARLY_WARM)
@@ -428,12 +428,12 @@ class _Solver:
         problem, state = solution.problem, solution.state
         if not touches(problem, state):
             return None
-        limited: Problem = eqx.tree_at(lambda tree: tree.steep, problem, array(1.0))
+        limited: PatchProblem = eqx.tree_at(lambda tree: tree.steep, problem, array(1.0))
         self.left, start = MOST_ON_GRID, (state.pressure, state.level)
         after = self.near(limited, start, boldly=True)
         return solution._replace(problem=limited, state=after) if after.residual < ENOUGH else None
 
-    def from_earlier(self, problem: Problem, earlier: Earlier, layout: Layout) -> Found | None:
+    def from_earlier(self, problem: PatchProblem, earlier: Earlier, layout: Layout) -> Found | None:
         """Solution from one of a contact that is alike."""
         dry = np.asarray(dry_under(problem).pressure)
         start = warm_start(earlier, layout, problem, dry)
@@ -441,7 +441,7 @@ class _Solver:
         return Found(problem, dry, state) if state.residual < ENOUGH else None
 
     def ended(
-        self, layout: Layout, solution: Found | None, last_problem: Problem | None = None
+        self, layout: Layout, solution: Found | None, last_problem: PatchProblem | None = None
     ) -> Solved:
         """Where the solve ended, without a solution as well."""
         assert self.last is not None
@@ -451,7 +451,9 @@ class _Solver:
         assert last_problem is not None
         return Solved(layout, last_problem, self.last._replace(residual=np.inf), self.turns)
 
-    def after_turn(self, problem: Problem, state: State, change: float, enough: float) -> State:
+    def after_turn(
+        self, problem: PatchProblem, state: PatchIterate, change: float, enough: float
+    ) -> PatchIterate:
         """Pressure of a film that became warmer or colder, from the one before."""
         self.left, start = MOST_ON_GRID, (state.pressure, state.level)
         time = WARM_TIME if change > LEAPS else np.inf
@@ -460,7 +462,7 @@ class _Solver:
             after = self.iterated(problem, start, FINER_TIME, BOLD, enough)
         return after
 
-    def near(self, problem: Problem, start: tuple[Any, Any], *, boldly: bool) -> State:
+    def near(self, problem: PatchProblem, start: tuple[Any, Any], *, boldly: bool) -> PatchIterate:
         """Where iterations from another film end, in one manner, and the other where that is asked for."""
         state = self.iterated(problem, start, FINER_TIME, CAREFUL)
         if boldly and not state.residual < ENOUGH:
@@ -469,12 +471,12 @@ class _Solver:
 
     def iterated(
         self,
-        problem: Problem,
+        problem: PatchProblem,
         start: tuple[Any, Any],
         time: float,
         manner: Manner,
         enough: float = TOLERANCE,
-    ) -> State:
+    ) -> PatchIterate:
         pressure, level = map(array, start)
         most = min(MOST, self.left)
         state = iterated(problem, pressure, level, time, self.told, manner, most, enough)
@@ -484,7 +486,7 @@ class _Solver:
         return state
 
 
-def _film_of(problem: Problem, dry: NDArray[np.float64], state: State) -> float:
+def _film_of(problem: PatchProblem, dry: NDArray[np.float64], state: PatchIterate) -> float:
     """Mean film of a solution [m]."""
     gap = _mean_gap(problem, dry, state.pressure, state.level)
     return gap * float(problem.flow.height)

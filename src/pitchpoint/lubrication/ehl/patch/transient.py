@@ -15,7 +15,7 @@ from pitchpoint._jax import array, jax
 from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, Response
+from pitchpoint.lubrication.ehl.patch.fields import ElasticResponse, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import (
     CELLS,
     NODES,
@@ -25,14 +25,14 @@ from pitchpoint.lubrication.ehl.patch.films import (
     before,
     told_film,
 )
-from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem
-from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress, State, iterated
+from pitchpoint.lubrication.ehl.patch.layout import Layout, PatchProblem
+from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, PatchIterate, Progress, iterated
 from pitchpoint.lubrication.ehl.patch.plan import Plan, all_lie, check_times
 from pitchpoint.lubrication.ehl.patch.solve import dry_under, solve
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
-__all__ = ["STEPS", "Course", "PatchMoment", "march_patches", "steady_beside"]
+__all__ = ["STEPS", "MarchState", "PatchMoment", "march_patches", "steady_beside"]
 
 STEPS: Final = ("given", "by_error")
 """Ways to choose steps of time: from each given time to the next, or by an estimate of the error."""
@@ -73,7 +73,7 @@ FEWEST_NODES: Final = 8
 Field = NDArray[np.float64]
 
 
-class Course(NamedTuple):
+class MarchState(NamedTuple):
     """Where a march stands, in units of its layout.
 
     Attributes:
@@ -115,7 +115,7 @@ class PatchMoment:
     film: PatchFilm
     ended: PatchEnded
     time_steps: int
-    course: Course
+    course: MarchState
     warnings: tuple[Doubt, ...]
 
     @property
@@ -132,7 +132,7 @@ def march_patches(
     tolerance: float = TOLERANCE,
     nodes: int = NODES,
     cells: int = CELLS,
-    after: PatchMoment | Course | None = None,
+    after: PatchMoment | MarchState | None = None,
     progress: Progress | None = None,
 ) -> Iterator[PatchMoment]:
     """Films of a contact whose load, speeds, form and oil change over time, one after the other.
@@ -185,7 +185,7 @@ def march_patches(
 
 
 def steady_beside(
-    contact: PatchContact, course: Course, *, progress: Progress | None = None
+    contact: PatchContact, course: MarchState, *, progress: Progress | None = None
 ) -> PatchMoment:
     """The steady film of a contact on the grid of a march, to set beside the one that is squeezed.
 
@@ -208,7 +208,9 @@ def steady_beside(
     return _moment(plan, 0, problem, course, state, (0, state.steps))
 
 
-def _plan_on(course: Course, contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> Plan:
+def _plan_on(
+    course: MarchState, contacts: Sequence[PatchContact], times: NDArray[np.float64]
+) -> Plan:
     """Contacts at times on the grid of a course."""
     rows, places = course.pressure.shape
     return Plan(contacts, times, course.lies, places, rows, course.layout)
@@ -220,8 +222,8 @@ def _plan_on(course: Course, contacts: Sequence[PatchContact], times: NDArray[np
 class _Step(NamedTuple):
     """A film that a step of time found."""
 
-    problem: Problem
-    state: State
+    problem: PatchProblem
+    state: PatchIterate
     mass: Field
 
 
@@ -237,7 +239,7 @@ class _Stepper:
     def __init__(self, plan: Plan, told: Progress | None, tolerance: float | None) -> None:
         self.plan, self.told, self.tolerance = plan, told, tolerance
 
-    def begun(self) -> tuple[Course, Problem, State]:
+    def begun(self) -> tuple[MarchState, PatchProblem, PatchIterate]:
         """The steady film of the first contact."""
         plan = self.plan
         contact = plan.contact(plan.times[0])
@@ -246,9 +248,9 @@ class _Stepper:
         state = state._replace(pressure=np.asarray(state.pressure), level=float(state.level))
         mass = np.asarray(_mass(problem, array(state.pressure), array(state.level)))
         stands = state.pressure, state.level, (float(plan.times[0]),), (mass,), None
-        return Course(plan.layout, plan.lies, *stands), problem, state
+        return MarchState(plan.layout, plan.lies, *stands), problem, state
 
-    def to(self, course: Course, time: float) -> tuple[Course, _Step, int, int]:
+    def to(self, course: MarchState, time: float) -> tuple[MarchState, _Step, int, int]:
         """Course at a time, the last step to it, and how many steps of time and of Newton's method."""
         steps, newton = 0, 0
         while True:
@@ -258,7 +260,7 @@ class _Stepper:
             if course.times[0] == time or not last_step.state.residual < ENOUGH:
                 return course, last_step, steps, newton
 
-    def _length(self, course: Course, time: float) -> float:
+    def _length(self, course: MarchState, time: float) -> float:
         """Length of the next step: parts of the way to the time that are all alike [s]."""
         left = time - course.times[0]
         if self.tolerance is None:
@@ -266,7 +268,7 @@ class _Stepper:
         step = FIRST * left if course.step is None else course.step
         return left / float(np.ceil(left / step * (1.0 - 1e-9)))
 
-    def _accepted(self, course: Course, time: float, step: float) -> tuple[Course, _Step]:
+    def _accepted(self, course: MarchState, time: float, step: float) -> tuple[MarchState, _Step]:
         """A step that finds a film, within the tolerance if there is one, cut as often as that takes."""
         for _ in range(MOST_CUTS):
             near = abs(course.times[0] + step - time) < 1e-6 * step
@@ -279,7 +281,7 @@ class _Stepper:
         lost = trial._replace(state=trial.state._replace(residual=np.inf))
         return _onward(course, trial, at), lost
 
-    def _factor(self, course: Course, taken: _Step, time: float) -> float:
+    def _factor(self, course: MarchState, taken: _Step, time: float) -> float:
         """By how much longer the next step may be, or has to be shorter where it is below `SAFETY`."""
         if not taken.state.residual < ENOUGH:
             return HALF
@@ -288,7 +290,7 @@ class _Stepper:
         off = max(_error(course, taken, time), 1e-12)
         return float(np.clip(SAFETY * (self.tolerance / off) ** (1.0 / 3.0), SHRINKING, GROWING))
 
-    def _found(self, course: Course, time: float) -> _Step:
+    def _found(self, course: MarchState, time: float) -> _Step:
         """The film at a time, from the one before."""
         problem = _since(self.plan.problem(time), course, time)
         guess = array(course.pressure), array(course.level)
@@ -299,7 +301,7 @@ class _Stepper:
         return _Step(problem, state, mass)
 
 
-def _mass_of(problem: Problem, pressure: Array, level: Array) -> Array:
+def _mass_of(problem: PatchProblem, pressure: Array, level: Array) -> Array:
     """Mass under every cell, shape (y, x)."""
     gap = problem.gap(pressure, level)
     return problem.flow.mass_and_ease(pressure - problem.flow.asperity_pressure(gap), gap)[0]
@@ -308,7 +310,7 @@ def _mass_of(problem: Problem, pressure: Array, level: Array) -> Array:
 _mass = program(_mass_of)
 
 
-def _since(problem: Problem, course: Course, time: float) -> Problem:
+def _since(problem: PatchProblem, course: MarchState, time: float) -> PatchProblem:
     """The problem of a film that follows those of a course.
 
     Backward differences over two steps: d m/dt = (m - before)/(the time of that), exact for masses that are
@@ -320,13 +322,13 @@ def _since(problem: Problem, course: Course, time: float) -> Problem:
     if ratio:
         mass = mass - ratio**2 / (1.0 + ratio) * course.masses[1]
     pace = weight * course.layout.length / (course.layout.speed * step)
-    following: Problem = eqx.tree_at(
+    following: PatchProblem = eqx.tree_at(
         lambda tree: (tree.pace, tree.before), problem, (array(pace), array(mass / weight))
     )
     return following
 
 
-def _ratio(course: Course, time: float) -> tuple[float, float]:
+def _ratio(course: MarchState, time: float) -> tuple[float, float]:
     """A step of time [s], and its length over that of the one before; none after the first film."""
     step = time - course.times[0]
     if len(course.times) < 2:
@@ -334,7 +336,7 @@ def _ratio(course: Course, time: float) -> tuple[float, float]:
     return step, step / (course.times[0] - course.times[1])
 
 
-def _onward(course: Course, taken: _Step, time: float) -> Course:
+def _onward(course: MarchState, taken: _Step, time: float) -> MarchState:
     state = taken.state
     return course._replace(
         pressure=np.asarray(state.pressure),
@@ -344,7 +346,7 @@ def _onward(course: Course, taken: _Step, time: float) -> Course:
     )
 
 
-def _error(course: Course, taken: _Step, time: float) -> float:
+def _error(course: MarchState, taken: _Step, time: float) -> float:
     """Error of a step: mean over the contact, weighed by pressure, over the mean mass.
 
     The parabola through the three films before differs from the film by its own error and that of the step,
@@ -375,7 +377,7 @@ def _parabola(times: Sequence[float], masses: Sequence[Field], time: float) -> F
     return parabola
 
 
-def _march(plan: Plan, stepper: _Stepper, after: Course | None) -> Iterator[PatchMoment]:
+def _march(plan: Plan, stepper: _Stepper, after: MarchState | None) -> Iterator[PatchMoment]:
     course, solved = after, True
     if course is None:
         course, problem, state = stepper.begun()
@@ -394,9 +396,9 @@ def _march(plan: Plan, stepper: _Stepper, after: Course | None) -> Iterator[Patc
 def _moment(
     plan: Plan,
     number: int,
-    problem: Problem,
-    course: Course,
-    state: State,
+    problem: PatchProblem,
+    course: MarchState,
+    state: PatchIterate,
     steps: tuple[int, int],
 ) -> PatchMoment:
     """Film at one of the times."""
@@ -405,7 +407,7 @@ def _moment(
     ended = PatchEnded(code, float(state.residual), abs(float(state.load)), steps[1])
     dry, unknown = dry_under(problem), array(np.nan)
     solution = np.asarray(state.pressure), float(state.level), np.asarray(dry.pressure)
-    response = Response(array(dry.approach), unknown, unknown, unknown)
+    response = ElasticResponse(array(dry.approach), unknown, unknown, unknown)
     judged = told_film(contact, layout, problem, *solution, response, ended)
     film: Any = jax.tree.map(np.asarray, back(judged.film, plan.lies))
     warnings = (*judged.warnings, *_few(layout, plan.grid[0]))
