@@ -938,6 +938,17 @@ def test_gears_of_a_set_that_do_not_fit_are_refused_with_what_mends_all_of_it(tr
         load_case(TABLES | tree, settings=cure)
 
 
+def test_advice_for_one_mesh_mends_what_it_leaves_wrong_in_the_other():
+    """Both meshes complain of the dedendum; what suits one alone led from each to the other."""
+    tree = {"gears": SET | {"dedendum": 0.3}, **TABLES}
+    with pytest.raises(InputError) as caught:
+        load_case(tree)
+    cures = [cure for complaint in caught.value.every for cure in complaint.cures]
+    assert len(cures) == 2
+    for cure in cures:
+        load_case(tree, settings=cure)
+
+
 @pytest.mark.parametrize("key", ["gears.profile_shift", "gears.second.profile_shift"])
 def test_shifts_that_follow_are_set_from_python(key):
     shifts = [0.1, 0.0, "from centre distance"][-3 if key.startswith("gears.p") else -2 :]

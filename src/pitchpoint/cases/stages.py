@@ -98,13 +98,16 @@ def _spelt(document: Document, advised: bool = False) -> Iterator[None]:
         raise as_spelt(error, document, advised=advised).at(file=document.name) from None
 
 
-def as_spelt(error: InputError, document: Document, *, advised: bool = False) -> InputError:
+def as_spelt(
+    error: InputError, document: Document, *, advised: bool = False, further: bool = True
+) -> InputError:
     """An error with the keys that the file has, where a planetary set stands for its meshes.
 
     Args:
         error: of the meshes.
         document: of the set.
         advised: True for changes that mend it: those of one mesh that do so for the set, which is tried.
+        further: True for changes that need those of another mesh beside them.
     """
     if not is_planetary(document.tree):
         return error
@@ -120,21 +123,39 @@ def as_spelt(error: InputError, document: Document, *, advised: bool = False) ->
             if spelt.cures and (complaint.key or "").startswith(STAGES):
                 others = {key for key in keys if key != complaint.key}
                 every = spelt.cures if advised else ()
-                sound = [change for change in every if _mends(change, document, others)]
-                spelt = _ended_with_cures(spelt, sound)
+                mended = (_mended(change, document, others, further) for change in every)
+                spelt = _ended_with_cures(spelt, [*filter(None, mended)])
             wrong.add(spelt)
     return wrong.error if wrong else error
 
 
-def _mends(change: Tree, document: Document, others: set[str | None]) -> bool:
-    """True if a set runs after a change, but for what is wrong with other keys."""
+def _mended(
+    change: Tree, document: Document, others: set[str | None], further: bool
+) -> Tree | None:
+    """A change after which a set runs, but for what is wrong with other keys; None where it does not.
+
+    What such a change leaves wrong with one of its own keys, in another mesh, is mended beside it.
+    """
     try:
         _changed_drive(document, change)
     except InputError as left:
-        return {
-            complaint.key for complaint in left.every if isinstance(complaint, InputError)
-        } <= others
-    return True
+        keys = {complaint.key for complaint in left.every if isinstance(complaint, InputError)}
+        if not keys <= others:
+            return None
+        leaves = {(key or "").rpartition(".")[2] for key in keys}
+        if leaves.isdisjoint(key.rpartition(".")[2] for key in change):
+            return change
+        if not further:
+            return None
+        rest = as_spelt(left, _changed(document, change), advised=True, further=False)
+        cures = (
+            cure
+            for complaint in rest.every
+            if isinstance(complaint, InputError)
+            for cure in complaint.cures
+        )
+        return next(({**change, **cure} for cure in cures), None)
+    return change
 
 
 def _ended_with_cures(error: InputError, sound: Sequence[Tree]) -> InputError:
