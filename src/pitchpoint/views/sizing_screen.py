@@ -119,8 +119,11 @@ def _doubts(sizing: Sizing) -> Iterator[str]:
 
 
 def _foot(sizing: Sizing, written: Path | None) -> Iterator[str]:
-    for words, families in families_by_reason(sizing.without).items():
-        yield f"Without a design: {families} ({words})."
+    without = [
+        f"{families} ({words})" for words, families in families_by_reason(sizing.without).items()
+    ]
+    if without:
+        yield f"Without a design: {'; '.join(without)}."
     balanced = sizing.best["balanced"]
     if written is None:
         yield f"-o FOLDER writes the {len(sizing.front)} as case files; --json has all designs."
