@@ -14,6 +14,7 @@ from pitchpoint.contact.worn import FLATTEST
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.table import GearsTable
+from pitchpoint.registry import enumerated
 from pitchpoint.results.by_stage import OF_STAGES, of_stage, stages_of
 from pitchpoint.results.store import load
 from pitchpoint.wear.history import Cells
@@ -130,15 +131,12 @@ def _of_gears(data: xr.Dataset, digest: str, stage: float | None, name: str) -> 
     }
     chosen = [label for label, number in numbers.items() if stage in (None, number)]
     if len(chosen) != 1:
-        stages = " and ".join(map(str, numbers.values()))
         is_given = "is missing" if stage is None else f"{stage:.0f} was given"
-        advice = (
-            f"give {' or '.join(map(str, numbers.values()))}"
-            if len(numbers) > 1
-            else "leave it out"
-        )
+        allowed = " or ".join(map(str, numbers.values()))
+        advice = f"give {allowed}" if len(numbers) > 1 else "leave it out"
         message = (
-            f'{is_given}, and "{name}" holds the wear of such gears in stage {stages}; {advice}'
+            f'{is_given}, and "{name}" holds the wear of such gears in stage '
+            f"{enumerated(numbers.values())}; {advice}"
         )
         raise InputError(message, key="worn.stage")
     return of_stage(data, chosen[0])
