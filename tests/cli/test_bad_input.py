@@ -25,9 +25,20 @@ from pydantic import BaseModel, BeforeValidator
 from sound import PAIR, quick_first
 
 from pitchpoint import cli, units
-from pitchpoint.cases import schema
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.laws import FRICTION
+from pitchpoint.cases.schema import (
+    CaseFile,
+    DriveCase,
+    DriveMaterials,
+    FrictionChoice,
+    HeightTables,
+    StageTable,
+    TrainTable,
+    WornTable,
+    validate,
+    validated,
+)
 from pitchpoint.cases.variant import Variant
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.duty_cycle import table as duty_table
@@ -35,18 +46,17 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears import planetary
 from pitchpoint.gears import table as every
 from pitchpoint.gears.ball_on_disc import table as ball_on_disc
-from pitchpoint.gears.cylindrical import table as cylindrical
 from pitchpoint.gears.rack_and_pinion import table as rack_and_pinion
 from pitchpoint.gears.strain_wave import table as strain_wave
 from pitchpoint.gears.table import MODULE
 from pitchpoint.gears.torus import table as torus
+from pitchpoint.input.kinds import COEFFICIENT
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table, tag
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.published.atanasiu2011.table import PairInMotion
 from pitchpoint.published.tian2024.table import PairOnPath
 from pitchpoint.published.xu2021.table import ZoneFilms
-from pitchpoint.published.zhao2022 import table as wear_table
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.results.store import dataset, save
 from pitchpoint.runs.jobs import jobs
@@ -484,7 +494,7 @@ def worn_file(gears: dict[str, Any]) -> str:
         },
         {},
         title="wear",
-        gears=gears_digest(schema.validated(schema.CaseFile, document).gears),
+        gears=gears_digest(validated(CaseFile, document).gears),
         driver="gear 1",
     )
     path = Path(_FOLDER.name) / "wear.nc"
@@ -593,7 +603,7 @@ BASES = {
     "train": TRAIN,
 }
 WALKS = [
-    ("cylindrical", schema.CaseFile, ()),
+    ("cylindrical", CaseFile, ()),
     ("strain wave", strain_wave.StrainWaveGears, ("gears",)),
     ("strain wave", ZoneFilms, ("formulas",)),
     ("involute", FlankWear, ("formulas",)),
@@ -605,14 +615,14 @@ WALKS = [
     ("rack", rack_and_pinion.RackAndPinionGears, ("gears",)),
     ("torus", torus.TorusGears, ("gears",)),
     ("rig", ball_on_disc.BallOnDiscRig, ("gears",)),
-    ("rig", schema.HeightTables, ("film", "heights")),
-    ("worn", schema.WornTable, ("worn",)),
+    ("rig", HeightTables, ("film", "heights")),
+    ("worn", WornTable, ("worn",)),
     ("duty", duty_table.DutyTable, ("duty",)),
     ("planetary", planetary.PlanetaryGears, ("gears",)),
-    ("materials of a set", schema.DriveMaterials, ("materials",)),
+    ("materials of a set", DriveMaterials, ("materials",)),
     ("drawings of a set", planetary.InspectionOfSet, ("gears", "inspection")),
     ("3K", planetary.SecondGears, ("gears", "second")),
-    ("train", schema.TrainTable, ("train",)),
+    ("train", TrainTable, ("train",)),
 ]
 """Sound case, table and its place: together every table of the schema."""
 
@@ -719,8 +729,8 @@ def put(bad: Bad) -> dict[str, Any]:
 
 TABLES = [table for walk in WALKS for table in tables(*walk)]
 TABLES += [
-    (schema.DriveCase, "drive", ()),
-    (schema.StageTable, "drive", ("stages", "1")),
+    (DriveCase, "drive", ()),
+    (StageTable, "drive", ("stages", "1")),
 ]
 SITES = [site for model, base, path in TABLES for site in places(base, model, path)]
 
@@ -856,7 +866,7 @@ def bad_structures(site: Site) -> Iterator[Bad]:
 
 def bad_keys() -> Iterator[Bad]:
     for model, base, path in TABLES:
-        if model is schema.FrictionChoice:
+        if model is FrictionChoice:
             continue  # its keys are parameters, see below
         first = next(iter(model.model_fields))
         wrong = f"{first}x"
@@ -909,8 +919,8 @@ def bad_parameters() -> Iterator[Bad]:
         words = ("no parameter", law.name, *own)
         yield Bad(f"{law.name} unknown", path, table, words, "models.friction.qqqq")
         for key in own:
-            for name, value, shown in of_quantity(schema.COEFFICIENT):
-                words = (shown, schema.COEFFICIENT.allowed)
+            for name, value, shown in of_quantity(COEFFICIENT):
+                words = (shown, COEFFICIENT.allowed)
                 where = f"models.friction.{key}"
                 yield Bad(
                     f"{law.name} {key} {name}", path, {"name": law.name, key: value}, words, where
@@ -1283,25 +1293,17 @@ def test_the_whole_case_is_sound(
     assert json.loads(capsys.readouterr().out)[0]["title"] == BASES[base].get("title", "bad.toml")
 
 
+def _subclasses(model: type[BaseModel]) -> Iterator[type[BaseModel]]:
+    for below in model.__subclasses__():
+        yield below
+        yield from _subclasses(below)
+
+
 def test_the_walk_reaches_every_table() -> None:
     defined = {
-        each
-        for module in (
-            schema,
-            ball_on_disc,
-            cylindrical,
-            every,
-            planetary,
-            rack_and_pinion,
-            strain_wave,
-            torus,
-            wear_table,
-            duty_table,
-        )
-        for each in vars(module).values()
-        if isinstance(each, type) and issubclass(each, BaseModel)
+        model for model in _subclasses(BaseModel) if model.__module__.startswith("pitchpoint.")
     }
-    assert {model for model, *_ in TABLES} == defined - {BaseModel, Table, every.GearsTable}
+    assert {model for model, *_ in TABLES} == defined - {Table, every.GearsTable}
     tested = {(bad.base, bad.path[:n]) for bad in WALKED + LISTED for n in range(len(bad.path) + 1)}
     assert tested >= {(site.base, site.path) for site in SITES if site.annotation is not Any}
 
@@ -1330,7 +1332,7 @@ def demand_words(told: str, bad: Bad) -> None:
 def test_the_schema_refuses_wrong_values(place: str) -> None:
     for bad in IN_SCHEMA[place]:
         with pytest.raises(InputError) as caught:
-            schema.validate(resolve(put(bad), name="bad.toml", variant="default"))
+            validate(resolve(put(bad), name="bad.toml", variant="default"))
         (error,) = caught.value.every
         demand_words(str(error), bad)
 

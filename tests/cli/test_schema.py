@@ -17,10 +17,10 @@ from pitchpoint.cases.document import resolve
 from pitchpoint.cases.handed_over import as_toml
 from pitchpoint.cases.json_schema import case_schema
 from pitchpoint.cases.library import find, names, path_of
-from pitchpoint.cases.schema import CaseFile, DriveCase, quantity_of
+from pitchpoint.cases.schema import CaseFile, DriveCase
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.quantities import Quantity
-from pitchpoint.input.tables import alternatives, sentences
+from pitchpoint.input.tables import alternatives, quantity_of, sentences
 from pitchpoint.units import plain
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

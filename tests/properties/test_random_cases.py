@@ -24,14 +24,12 @@ from pitchpoint.cases.schema import (
     POISSON,
     ROUGHNESS,
     SLOPE,
-    SPEED,
-    TEMPERATURE,
-    TORQUE,
     VISCOSITY,
 )
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.table import WIDTH
+from pitchpoint.input.kinds import SPEED, TEMPERATURE, TORQUE
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids

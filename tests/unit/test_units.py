@@ -12,9 +12,9 @@ import pint
 import pytest
 
 from pitchpoint import units
-from pitchpoint.cases.schema import HARDNESS
 from pitchpoint.errors import InputError
 from pitchpoint.gears.table import HELIX
+from pitchpoint.input.kinds import HARDNESS
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.units import UnitError, convert, kind_of, kinds, parse, si_unit, units_of
 

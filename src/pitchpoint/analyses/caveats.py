@@ -11,11 +11,11 @@ import numpy as np
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import SPEED, TEMPERATURE
 from pitchpoint.doubts import GUESSED, WITHHELD, Checks, Doubt, fails, in_percent, reworded
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import largest_radius, touching
+from pitchpoint.input.kinds import SPEED, TEMPERATURE
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.applicability import Limited, limits_words
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL

@@ -11,9 +11,9 @@ from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
 from pitchpoint.analyses.lacking import untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.cases.schema import TEMPERATURE
 from pitchpoint.doubts import Doubt, measured
 from pitchpoint.efficiency.quasi_static import Operation
+from pitchpoint.input.kinds import TEMPERATURE
 from pitchpoint.results.store import dataset, without_nan
 from pitchpoint.status import locked_or_lost, told
 

@@ -12,7 +12,7 @@ import xarray as xr
 from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.schema import HARDNESS, WEAR_LAND, WearTable
+from pitchpoint.cases.schema import WEAR_LAND, WearTable
 from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
@@ -24,6 +24,7 @@ from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.tooth_section import tooth_sections
+from pitchpoint.input.kinds import HARDNESS
 from pitchpoint.lubrication.ehl.grid import fewer
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code

@@ -16,9 +16,6 @@ from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets, named_set
 from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import (
-    FORCE,
-    TEMPERATURE,
-    TORQUE,
     CaseFile,
     Choices,
     Dynamics,
@@ -68,6 +65,7 @@ from pitchpoint.gears.nominal_motion import (
 )
 from pitchpoint.gears.pairs import touching, way
 from pitchpoint.gears.tooth_section import tooth_sections
+from pitchpoint.input.kinds import FORCE, TEMPERATURE, TORQUE
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE

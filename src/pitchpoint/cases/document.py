@@ -23,6 +23,7 @@ __all__ = [
     "STATUSES",
     "Document",
     "Provenance",
+    "at_most",
     "check_name",
     "demand_shallow",
     "files_of",
@@ -32,6 +33,7 @@ __all__ = [
     "read",
     "setting",
     "strip",
+    "too_many",
     "unknown_variant",
 ]
 
@@ -514,3 +516,22 @@ def _of_gear(values: Any, gear: str, value: Any) -> Any:
     mark = value if isinstance(value, dict) else {"value": value}
     of_gears[int(gear) - 1] = mark["value"]
     return {**mark, "value": of_gears}
+
+
+def at_most(most: int) -> Callable[[Any], Any]:
+    """Validator of tables under names of the user's own, which are counted before they are read."""
+
+    def check(value: Any) -> Any:
+        entries = value if isinstance(value, dict) else {}
+        if len(entries) > most:
+            raise InputError(too_many(len(entries), most))
+        for name in entries:
+            check_name(name, "")
+        return value
+
+    return check
+
+
+def too_many(count: int, most: int) -> str:
+    """What is wrong with a list or a table of so many entries."""
+    return f"{count} were given; allowed are at most {most}"

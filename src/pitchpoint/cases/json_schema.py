@@ -11,9 +11,9 @@ from pydantic_core import core_schema
 
 from pitchpoint.cases.document import DIAMETRAL_PITCH, MARKS, STAGES, STATUSES
 from pitchpoint.cases.loss_sets import NOT_THERE, SET, SET_TOLD
-from pitchpoint.cases.schema import CaseFile, DriveCase, measure_of, usual_words
+from pitchpoint.cases.schema import CaseFile, DriveCase
 from pitchpoint.gears.table import GearsTable
-from pitchpoint.input.tables import alternatives, sentences
+from pitchpoint.input.tables import alternatives, measure_of, sentences, usual_words
 
 __all__ = ["case_schema", "table_schema"]
 

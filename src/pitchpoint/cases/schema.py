@@ -1,7 +1,7 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
 import json
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import count, pairwise
@@ -23,7 +23,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 
 from pitchpoint import units
-from pitchpoint.cases.document import STAGES, Document, check_name
+from pitchpoint.cases.document import STAGES, Document, at_most, too_many
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import expanded, named_set
 from pitchpoint.contact.registry import (
@@ -48,8 +48,37 @@ from pitchpoint.gears.planetary import (
     PlanetaryGears,
 )
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, STIFFNESS, Deviation, GearsTable
+from pitchpoint.input.kinds import (
+    COEFFICIENT,
+    FORCE,
+    HARDNESS,
+    LIFE,
+    LOAD_FACTOR,
+    LOADED,
+    MAP_SPEED,
+    MOST_STAGES,
+    PLACE,
+    PRESSED,
+    RATIO,
+    SPEED,
+    TEMPERATURE,
+    TORQUE,
+    Flag,
+    Text,
+)
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
-from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
+from pitchpoint.input.tables import (
+    DECIDING,
+    Numbered,
+    Table,
+    alternatives,
+    by,
+    fields_at,
+    forms,
+    holds_named_tables,
+    is_stated,
+    quantity_of,
+)
 from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.ehl.registry import (
     ASPERITIES,
@@ -89,12 +118,8 @@ __all__ = [
     "bearings_of",
     "in_form",
     "keys",
-    "marks",
-    "measure_of",
     "quantity_at",
-    "quantity_of",
     "usual_at",
-    "usual_words",
     "validate",
     "validated",
 ]
@@ -102,13 +127,11 @@ __all__ = [
 _ZERO_CELSIUS = 273.15
 
 INERTIA = Quantity("moment of inertia", 0.0, 1e9, "kg m2", open_low=True)
-RATIO = Quantity("dimensionless", 0.0, 1.0, open_low=True)
 ORDER = Quantity("dimensionless", 0, 40, whole=True)
 SLICES = Quantity("dimensionless", 1, 400, whole=True)
 THERMAL_RESISTANCE = Quantity("thermal resistance", 0.0, 10.0, "K m2/W")
 AREA = Quantity("area", 1e-8, 1e4, "m2")
 MODULUS = Quantity("pressure", 1e6, 1e13, "GPa")
-HARDNESS = Quantity("hardness", 1e6, 1e11, "GPa")
 SOLID_CONDUCTIVITY = Quantity("thermal conductivity", 0.01, 1000.0, "W/m/K")
 SPECIFIC_HEAT = Quantity("specific heat", 50.0, 5000.0, "J/kg/K")
 POISSON = Quantity("dimensionless", 0.0, 0.5)
@@ -121,12 +144,6 @@ ALPHA = Quantity("pressure-viscosity coefficient", 1e-10, 1e-6, "1/GPa")
 FACTOR = Quantity("dimensionless", 0.0, 10.0, open_low=True)
 CONDUCTIVITY = Quantity("thermal conductivity", 0.01, 10.0, "W/m/K")
 ROUGHNESS = Quantity("length", 0.0, 1e-4, "um")
-TORQUE = Quantity("torque", 0.0, 1e8, "N m")
-LOADED = Quantity("torque", 0.0, 1e8, "N m", open_low=True)
-SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
-MAP_SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm")
-TEMPERATURE = Quantity("temperature", 150.0, 600.0, "degC")
-COEFFICIENT = Quantity("dimensionless", 0.0, 2.0)
 SPREAD = Quantity("dimensionless", 1.0, 10.0)
 COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
 MAP_COUNT = Quantity("dimensionless", 2, 200, whole=True)
@@ -134,10 +151,7 @@ DESIGNS = Quantity("dimensionless", 1, 10_000_000, whole=True)
 DESIGN_SEED = Quantity("dimensionless", 0, 1_000_000, whole=True)
 WORKERS = Quantity("dimensionless", 1, 1000, whole=True)
 BEARING_FACTOR = Quantity("dimensionless", 0.0, 100.0)
-FORCE = Quantity("force", 0.0, 1e7, "N")
 RATING = Quantity("force", 0.0, 1e9, "N", open_low=True)
-PRESSED = Quantity("force", 0.0, 1e7, "N", open_low=True)
-PLACE = Quantity("length", -10.0, 10.0, "mm")
 TURN = Quantity("angle", -2 * pi, 2 * pi, "deg")
 OVER_SQUARE = Quantity("line load", 0.0, 1e6, "N/m")
 PRELOAD_RATIO = Quantity("dimensionless", 0.0, 100.0)
@@ -169,8 +183,6 @@ MAP_UNIT = Quantity("length", 0.0, 1.0, "um", open_low=True)
 MAP_PLACE = Quantity("length", -1.0, 1.0, "mm")
 WEAR_TURNS = Quantity("dimensionless", 0.0, 1e15, open_low=True)
 WORN_TURNS = Quantity("dimensionless", 0.0, 1e15)
-MOST_STAGES = 5
-"""Stages of a drive: the meetings of their phases multiply."""
 
 WORN_STAGE = Quantity("dimensionless", 1, MOST_STAGES, whole=True)
 WEAR_COEFFICIENT = Quantity("dimensionless", 0.0, 1.0)
@@ -184,10 +196,8 @@ WEAR_PRESSURE = Quantity("dimensionless", 1.0, 1000.0, open_low=True)
 ADSORPTION_HEAT = Quantity("molar energy", 0.0, 1e6, "kJ/mol")
 MOLECULE = Quantity("length", 1e-11, 1e-7, "nm")
 VIBRATION = Quantity("time", 1e-15, 1e-6, "s")
-LOAD_FACTOR = Quantity("dimensionless", 1.0, 10.0)
 ACCURACY = Quantity("dimensionless", 3, 8, whole=True)
 OFFSET = Quantity("length", -100.0, 100.0, "mm")
-LIFE = Quantity("time", 0.0, 4e9, "h", open_low=True)
 ENDURED = Quantity("pressure", 1e6, 2.5e9, "MPa")
 HARDENING = Quantity("dimensionless", 0.5, 2.0)
 REVERSED = Quantity("dimensionless", 0.1, 1.0)
@@ -198,8 +208,6 @@ ON_PATH = Quantity("dimensionless", 0.0, 40.0)
 TIMES = Quantity("dimensionless", 0.0, 1000.0, open_low=True)
 NOT_NEGATIVE = Quantity("dimensionless", 0.0, inf)
 POSITION = Quantity("dimensionless", 0, 11, whole=True)
-
-Text = Annotated[str, BeforeValidator(text)]
 
 BodyName = Annotated[str, BeforeValidator(lambda value: _name_of_body(value))]
 Unit = Annotated[str, BeforeValidator(lambda value: _unit(value))]
@@ -227,12 +235,6 @@ def _places(value: Any) -> tuple[Any, ...]:
     if not 1 <= len(several) <= 12:
         raise InputError(f"{len(several)} places were given; allowed are 1 to 12")
     return tuple(several)
-
-
-def _flag(value: Any) -> bool:
-    if not isinstance(value, bool):
-        raise InputError(f"{shown(value)} was given; allowed are true and false")
-    return value
 
 
 def _variables() -> list[str]:
@@ -591,7 +593,7 @@ class Loss(Table):
     """Exponent of that life over the load, 3 of balls, 10/3 of rollers and needles; 3 unless given."""
     position: Annotated[float, PLACE] | None = None
     """Place of one of two bearings along the axis, from the middle of the face; of stages, as their place."""
-    locating: Annotated[bool, BeforeValidator(_flag)] | None = None
+    locating: Flag | None = None
     """Whether this one of two bearings takes the axial force; the first one unless either says."""
     seal_torque: Annotated[float, TORQUE] = 0.0
     """Torque of sliding seals, the same at every speed."""
@@ -651,14 +653,14 @@ class Loss(Table):
             "a bearing",
         )
         alone = of_bearing if self.bearing == "none" else {}
-        if not _given(self, "dynamic_load_rating"):
+        if not is_stated(self, "dynamic_load_rating"):
             alone |= {"life_exponent": "dynamic_load_rating"}
             alone = {"static_load_rating": "dynamic_load_rating"} | alone
-        if not _given(self, "churning_torque"):
+        if not is_stated(self, "churning_torque"):
             alone |= dict.fromkeys(("churning_speed", "churning_exponent"), "churning_torque")
-        if not (held or _given(self, "breakaway_torque")):
+        if not (held or is_stated(self, "breakaway_torque")):
             alone |= {"breakaway_spread": "a breakaway model or breakaway_torque"}
-        for name in (key for key in alone if _given(self, key)):
+        for name in (key for key in alone if is_stated(self, key)):
             raise InputError(f"was given without {alone[name]}, to which it belongs", key=name)
         beside = (self.seal_torque, self.churning_torque, self.breakaway_torque)
         parts = (self.breakaway_dry, self.breakaway_viscous)
@@ -760,7 +762,7 @@ class MotionTable(Table):
     """Places of a table of pair stiffness, in base pitches, growing from 0 at the entry of a pair."""
     pair_stiffness: Annotated[tuple[Annotated[float, STIFFNESS], ...], Field(max_length=400)] = ()
     """Stiffness of a pair at these places; that of the tooth compliance unless given."""
-    prescribed_speed: Annotated[bool, BeforeValidator(_flag)] = False
+    prescribed_speed: Flag = False
     """Whether the speed of the driver is held; else it has its inertia and a torque."""
     stall_torque: Annotated[float, LOADED] | None = None
     """Torque of a motor at rest, which falls to 0 at no_load_speed; no motor unless given."""
@@ -774,7 +776,7 @@ class MotionTable(Table):
     @model_validator(mode="after")
     def _complete(self) -> "MotionTable":
         for key, needed, why in _TOGETHER:
-            if _given(self, key) and not _given(self, needed):
+            if is_stated(self, key) and not is_stated(self, needed):
                 raise InputError(f"is missing; {why}", key=needed)
         if self.prescribed_speed and self.stall_torque is not None:
             message = (
@@ -898,7 +900,7 @@ class HeightTable(Table):
     """Middle of the map from that of the contact, along the surface speeds."""
     middle_across: Annotated[float, MAP_PLACE] = 0.0
     """Middle of the map from that of the contact, across the surface speeds."""
-    periodic: Annotated[bool, BeforeValidator(_flag)] = False
+    periodic: Flag = False
     """Whether the map repeats; else it has to cover the contact."""
 
 
@@ -926,7 +928,7 @@ class FilmTable(Table):
     """Contacts that are solved: lines without ends, lines as long as they are, or ellipses."""
     phases: Annotated[float, FILM_PHASES] = 24.0
     """Least number of states over a mesh cycle."""
-    in_series: Annotated[bool, BeforeValidator(_flag)] = False
+    in_series: Flag = False
     """Whether to tell what films in series take from the torsional stiffness."""
     nodes: Annotated[float, FILM_NODES, AfterValidator(_nodes)] | None = None
     """Nodes along the motion: 33, 65, ...; unless given 129, or 65 over patches, doubled above M = 100."""
@@ -1378,24 +1380,6 @@ class Issue(Table):
     """What is taken in its place, or what follows."""
 
 
-def _at_most(most: int) -> Callable[[Any], Any]:
-    """Validator of tables under names of the user's own, which are counted before they are read."""
-
-    def check(value: Any) -> Any:
-        entries = value if isinstance(value, dict) else {}
-        if len(entries) > most:
-            raise InputError(_too_many(len(entries), most))
-        for name in entries:
-            check_name(name, "")
-        return value
-
-    return check
-
-
-def _too_many(count: int, most: int) -> str:
-    return f"{count} were given; allowed are at most {most}"
-
-
 def _of_set(value: Any, info: ValidationInfo) -> Any:
     """Losses of one mesh with those of the set that they name."""
     return expanded(value, info.data.get("gears"))
@@ -1409,9 +1393,9 @@ def _of_no_set(value: Any) -> Any:
     return value
 
 
-Losses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20)), BeforeValidator(_of_set)]
+Losses = Annotated[dict[str, Loss], BeforeValidator(at_most(20)), BeforeValidator(_of_set)]
 """Losses of one mesh, by value or by the name of a set."""
-DriveLosses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20)), BeforeValidator(_of_no_set)]
+DriveLosses = Annotated[dict[str, Loss], BeforeValidator(at_most(20)), BeforeValidator(_of_no_set)]
 Formulas = Annotated[
     Annotated[TorusFormulas, Tag("motion")]
     | Annotated[ZoneFilms, Tag("films")]
@@ -1488,7 +1472,7 @@ class WearTable(Table):
     """Phases between two events of the mesh cycle."""
     tolerance: Annotated[float, WEAR_ERROR] = 3e-4
     """Error of a step over the largest depth."""
-    sensitivities: Annotated[bool, BeforeValidator(_flag)] | None = None
+    sensitivities: Flag | None = None
     """Whether to tell what the life depends on; where it takes seconds unless given."""
 
 
@@ -1645,7 +1629,7 @@ class StrengthTable(Table):
         return self
 
 
-Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]
+Studies = Annotated[dict[str, Study], BeforeValidator(at_most(200))]
 Targets = Annotated[tuple[Target, ...], Field(max_length=2000)]
 Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
 
@@ -1732,13 +1716,13 @@ class CaseFile(Table):
             wrong.tried(check, self)
         wrong.demand_none()
         operation, models = self.operation, self.models
-        driver = operation.driver if _given(operation, "driver") else self.gears.drivers[0]
+        driver = operation.driver if is_stated(operation, "driver") else self.gears.drivers[0]
         usual: dict[str, Any] = {
             "friction": (FrictionChoice(name=self.gears.friction),),
             "load_sharing": self.gears.load_sharing,
             "film_thickness": self.gears.film_thickness,
         }
-        left = {name: value for name, value in usual.items() if not _given(models, name)}
+        left = {name: value for name, value in usual.items() if not is_stated(models, name)}
         return self.model_copy(
             update={
                 "operation": operation.model_copy(update={"driver": driver}),
@@ -1750,7 +1734,7 @@ class CaseFile(Table):
 
 def _damped(dynamics: Dynamics | None, usual: float) -> Dynamics | None:
     """The table with the damping ratio that is usual for the gears where it gives none."""
-    if dynamics is None or _given(dynamics, "damping_ratio"):
+    if dynamics is None or is_stated(dynamics, "damping_ratio"):
         return dynamics
     return dynamics.model_copy(update={"damping_ratio": usual})
 
@@ -1804,10 +1788,6 @@ def _listed(value: Any) -> Any:
     return [value] if isinstance(value, str) else value
 
 
-class _Numbered:
-    """Annotation of tables by number, 1, 2, ..., in a table or a list."""
-
-
 def _stages(value: Any) -> Any:
     """Stages by number, from a list or a table of them."""
     stages = value if isinstance(value, dict) else {}
@@ -1818,7 +1798,7 @@ def _stages(value: Any) -> Any:
     if strange := [key for key in stages if key not in numbers]:
         raise _no_stage(strange[0], stages)
     if len(stages) > MOST_STAGES:
-        raise InputError(_too_many(len(stages), MOST_STAGES))
+        raise InputError(too_many(len(stages), MOST_STAGES))
     return dict(sorted(stages.items()))
 
 
@@ -1894,7 +1874,7 @@ class DriveCase(Table):
     """Key of the publication that the case is from, in the bibliography."""
     gears: PlanetaryGears | None = None
     """Gears of a planetary set, in the place of the stages and the train that follow from them."""
-    stages: Annotated[dict[str, StageTable], BeforeValidator(_stages), _Numbered()]
+    stages: Annotated[dict[str, StageTable], BeforeValidator(_stages), Numbered()]
     """Meshes and planetary sets from the input to the output, each a table [[stages]]; at most 5."""
     film: FilmTable | None = None
     """Asks for films solved over the cycle of each mesh of a planetary set; stages have their own."""
@@ -2218,10 +2198,6 @@ def _along(variable: str, source: str) -> str:
     return VARIABLES[places].kind if places else ""
 
 
-def _given(table: Table, key: str) -> bool:
-    return key in table.model_fields_set
-
-
 def _check_load(case: CaseFile | DriveCase, gears: GearsTable | PlanetaryGears) -> None:
     """InputError unless the load is given that the driven member takes, and no table asks for the other."""
     point, wanted = case.operation, gears.load
@@ -2290,7 +2266,7 @@ def _check_meant(case: CaseFile) -> None:
 def _check_driver(case: CaseFile) -> None:
     """InputError if the member that is to drive is fixed, or none of these gears."""
     driver, gears = case.operation.driver, case.gears
-    if _given(case.operation, "driver") and driver not in gears.drivers:
+    if is_stated(case.operation, "driver") and driver not in gears.drivers:
         fixed = (
             "is fixed and cannot drive" if driver == getattr(gears, "fixed", "") else "cannot drive"
         )
@@ -2621,7 +2597,7 @@ def _quantity(key: str, tree: Any, models: list[type[BaseModel]]) -> Quantity | 
         if part == STAGES:
             tree = None
         models = [model for info in holding for model in forms(info.annotation, tree)]
-        named = _named_tables(holding[0])
+        named = holds_named_tables(holding[0])
         if not models:
             raise InputError(f"{shown(part)} is a value, not a table", key=key)
     return None
@@ -2665,43 +2641,6 @@ def keys(table: type[BaseModel] = CaseFile) -> Iterator[str]:
         if kind not in (dict, tuple):
             below = (f"{name}.{key}" for inside in inner.values() for key in keys(inside))
             yield from dict.fromkeys(below)
-
-
-def _named_tables(info: FieldInfo) -> bool:
-    """True if a field holds tables under names of the user's own."""
-    numbered = any(isinstance(mark, _Numbered) for mark in info.metadata)
-    return get_origin(info.annotation) is dict and not numbered
-
-
-def quantity_of(info: FieldInfo) -> Quantity | None:
-    """Kind and range of the values of a field, None where they are no quantities."""
-    measure = measure_of(info)
-    return measure.each if isinstance(measure, Pair) else measure
-
-
-def measure_of(info: FieldInfo) -> Quantity | Pair | None:
-    """The same, of both gears together where a field holds a value for each."""
-    every = (*info.metadata, *marks(info.annotation))
-    return next((mark for mark in every if isinstance(mark, Quantity | Pair)), None)
-
-
-def usual_words(info: FieldInfo) -> str:
-    """The value that a quantity has where none is given, in words; empty where there is none."""
-    quantity, usual = quantity_of(info), info.default
-    if quantity is None or usual is None or info.is_required():
-        return ""
-    values = usual if isinstance(usual, tuple) else (usual,)
-    shown_values = dict.fromkeys(
-        quantity.show(value) for value in values if isinstance(value, float)
-    )
-    return f"default {' / '.join(shown_values)}" if shown_values else ""
-
-
-def marks(annotation: Any) -> Iterator[Any]:
-    """What is said of the values that a field may hold, alone or in a list."""
-    for option in getattr(annotation, "__args__", ()):
-        yield from getattr(option, "__metadata__", ())
-        yield from marks(option)
 
 
 _MOST_TOLD = 20
@@ -2845,7 +2784,10 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
     if kind == "missing":
         return f"is missing{_needed(detail['loc'], model)}"
     if kind == "extra_forbidden":
-        what, fields = "table" if isinstance(stated, dict) else "key", _fields(detail["loc"], model)
+        what, fields = (
+            "table" if isinstance(stated, dict) else "key",
+            fields_at(detail["loc"], model),
+        )
         from pitchpoint.cases.wishes import answer
 
         place = _place_of(detail, document)
@@ -2869,13 +2811,13 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
     if kind in ("tuple_type", "list_type"):
         return f"{shown(stated)} was given where a list belongs{_as_list(detail['loc'], model)}"
     if kind == "too_long":
-        return _too_many(len(stated), context["max_length"])
+        return too_many(len(stated), context["max_length"])
     return f"{shown(stated)} is not allowed: {detail['msg'].lower()}"
 
 
 def _as_list(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     """End of a sentence on a value in the place of a list of quantities: what to write."""
-    info = _fields(location, model).get(str(location[-1]))
+    info = fields_at(location, model).get(str(location[-1]))
     quantity = None if info is None else quantity_of(info)
     return "" if quantity is None else f"; write [{quantity.example}]; {quantity.allowed}"
 
@@ -2883,7 +2825,7 @@ def _as_list(location: tuple[Any, ...], model: type[BaseModel]) -> str:
 def _inner(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     """End of a sentence on a value in the place of a table of the user's own: where it belongs."""
     *above, key = map(str, location)
-    if key in _fields((*location, ""), model):
+    if key in fields_at((*location, ""), model):
         table = ".".join(above)
         return f"; {key} is a key of each table in [{table}], such as {table}.{_ANY_NAME}.{key}"
     return ""
@@ -2956,7 +2898,7 @@ def _holding(key: str, model: type[BaseModel], tree: Any, above: str = "") -> It
     Of a table with several forms only the form that the tree has counts, or all where it has none.
     """
     inner = [
-        (f"{above}{name}" + f".{_ANY_NAME}" * _named_tables(info), form, _inside(tree, name))
+        (f"{above}{name}" + f".{_ANY_NAME}" * holds_named_tables(info), form, _inside(tree, name))
         for name, info in model.model_fields.items()
         if name not in ("formulas", STAGES)
         for form in forms(info.annotation, _inside(tree, name))
@@ -2977,31 +2919,14 @@ def _options(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     *above, _, key = location
     if key not in DECIDING:
         return ""
-    info = _fields(tuple(above), model).get(above[-1]) if above else None
+    info = fields_at(tuple(above), model).get(above[-1]) if above else None
     sets = [PLANETARY] * (above == ["gears"])
     names = [*alternatives(info.annotation), *sets] if info else []
     return " or ".join(f"'{name}'" for name in names)
 
 
-def _fields(location: tuple[Any, ...], model: type[BaseModel]) -> Mapping[str, FieldInfo]:
-    """Fields of the table in which the last part of a location stands."""
-    fields: Mapping[str, FieldInfo] = model.model_fields
-    tables: Mapping[str, type[BaseModel]] = {}
-    named = False
-    for part in location[:-1]:
-        if named:
-            named = False
-        elif part in tables:
-            fields, tables = tables[part].model_fields, {}
-        elif isinstance(part, str) and part in fields:
-            named = _named_tables(fields[part])
-            tables = alternatives(fields[part].annotation)
-            fields = next(iter(tables.values())).model_fields if tables else {}
-    return fields
-
-
 def _needed(location: tuple[Any, ...], model: type[BaseModel]) -> str:
-    fields = _fields(location, model)
+    fields = fields_at(location, model)
     info = fields.get(str(location[-1]))
     if info is None:
         return ""

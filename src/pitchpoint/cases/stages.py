@@ -25,7 +25,6 @@ from pitchpoint.cases.document import STAGES, Document, Provenance, Tree, settin
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import (
     OF_SET,
-    TEMPERATURE,
     UNRATED,
     CaseFile,
     DriveCase,
@@ -41,6 +40,7 @@ from pitchpoint.efficiency.drive import Drive, chained, owner
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.planetary import PlanetaryGears, in_words_of_set
+from pitchpoint.input.kinds import TEMPERATURE
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.lubrication.registry import ChosenLaws
 

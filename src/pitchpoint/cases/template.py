@@ -13,13 +13,13 @@ from pydantic.fields import FieldInfo
 
 from pitchpoint.cases.document import STAGES, Tree
 from pitchpoint.cases.loss_sets import SET
-from pitchpoint.cases.schema import CaseFile, DriveCase, quantity_of
+from pitchpoint.cases.schema import CaseFile, DriveCase
 from pitchpoint.cases.wishes import no_family
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.gears.planetary import PLANETARY
 from pitchpoint.input.quantities import Pair, Quantity
-from pitchpoint.input.tables import alternatives, forms, sentences, tag
+from pitchpoint.input.tables import alternatives, forms, quantity_of, sentences, tag
 from pitchpoint.registry import known_as
 
 __all__ = ["FAMILIES", "sample_tree", "table_lines", "template"]

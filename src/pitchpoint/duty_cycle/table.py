@@ -2,9 +2,10 @@
 
 from typing import Annotated
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from pitchpoint.input.quantities import Quantity, text
+from pitchpoint.input.kinds import Text
+from pitchpoint.input.quantities import Quantity
 from pitchpoint.input.tables import Table
 
 __all__ = [
@@ -17,7 +18,6 @@ __all__ = [
     "WarmBody",
 ]
 
-Text = Annotated[str, BeforeValidator(text)]
 
 TORQUE_CONSTANT = Quantity("torque constant", 0.0, 1e6, "N m/A", open_low=True)
 OHMS = Quantity("electrical resistance", 0.0, 1e6, "ohm", open_low=True)

@@ -6,11 +6,30 @@ import sys
 from collections.abc import Hashable, Iterator, Mapping
 from functools import cache
 from itertools import pairwise
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Discriminator
+from pydantic.fields import FieldInfo
 
-__all__ = ["DECIDING", "Table", "alternatives", "by", "forms", "sentences", "tag"]
+from pitchpoint.input.quantities import Pair, Quantity
+
+__all__ = [
+    "DECIDING",
+    "Numbered",
+    "Table",
+    "alternatives",
+    "by",
+    "fields_at",
+    "forms",
+    "holds_named_tables",
+    "is_stated",
+    "marks",
+    "measure_of",
+    "quantity_of",
+    "sentences",
+    "tag",
+    "usual_words",
+]
 
 DECIDING = ("family", "form")
 """Keys whose value says which of several tables is meant."""
@@ -106,3 +125,66 @@ def _tables(annotation: Any) -> Iterator[type[BaseModel]]:
         yield annotation
     for option in getattr(annotation, "__args__", ()):
         yield from _tables(option)
+
+
+class Numbered:
+    """Annotation of tables by number, 1, 2, ..., in a table or a list."""
+
+
+def is_stated(table: Table, key: str) -> bool:
+    """True if a table says something of a key, be it what is usual."""
+    return key in table.model_fields_set
+
+
+def holds_named_tables(info: FieldInfo) -> bool:
+    """True if a field holds tables under names of the user's own."""
+    numbered = any(isinstance(mark, Numbered) for mark in info.metadata)
+    return get_origin(info.annotation) is dict and not numbered
+
+
+def quantity_of(info: FieldInfo) -> Quantity | None:
+    """Kind and range of the values of a field, None where they are no quantities."""
+    measure = measure_of(info)
+    return measure.each if isinstance(measure, Pair) else measure
+
+
+def measure_of(info: FieldInfo) -> Quantity | Pair | None:
+    """The same, of both gears together where a field holds a value for each."""
+    every = (*info.metadata, *marks(info.annotation))
+    return next((mark for mark in every if isinstance(mark, Quantity | Pair)), None)
+
+
+def usual_words(info: FieldInfo) -> str:
+    """The value that a quantity has where none is given, in words; empty where there is none."""
+    quantity, usual = quantity_of(info), info.default
+    if quantity is None or usual is None or info.is_required():
+        return ""
+    values = usual if isinstance(usual, tuple) else (usual,)
+    shown_values = dict.fromkeys(
+        quantity.show(value) for value in values if isinstance(value, float)
+    )
+    return f"default {' / '.join(shown_values)}" if shown_values else ""
+
+
+def marks(annotation: Any) -> Iterator[Any]:
+    """What is said of the values that a field may hold, alone or in a list."""
+    for option in getattr(annotation, "__args__", ()):
+        yield from getattr(option, "__metadata__", ())
+        yield from marks(option)
+
+
+def fields_at(location: tuple[Any, ...], model: type[BaseModel]) -> Mapping[str, FieldInfo]:
+    """Fields of the table in which the last part of a location stands."""
+    fields: Mapping[str, FieldInfo] = model.model_fields
+    tables: Mapping[str, type[BaseModel]] = {}
+    named = False
+    for part in location[:-1]:
+        if named:
+            named = False
+        elif part in tables:
+            fields, tables = tables[part].model_fields, {}
+        elif isinstance(part, str) and part in fields:
+            named = holds_named_tables(fields[part])
+            tables = alternatives(fields[part].annotation)
+            fields = next(iter(tables.values())).model_fields if tables else {}
+    return fields

@@ -10,7 +10,6 @@ from typing import Any
 from pydantic import BaseModel
 
 from pitchpoint import units
-from pitchpoint.cases import schema
 from pitchpoint.cases.document import (
     STAGES,
     Document,
@@ -21,7 +20,15 @@ from pitchpoint.cases.document import (
     unknown_variant,
     variants,
 )
-from pitchpoint.cases.schema import DriveCase, StageTable, in_form, keys, quantity_at, validate
+from pitchpoint.cases.schema import (
+    CaseFile,
+    DriveCase,
+    StageTable,
+    in_form,
+    keys,
+    quantity_at,
+    validate,
+)
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
@@ -311,7 +318,7 @@ def _flat(tables: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _model(tree: Mapping[str, Any]) -> type[BaseModel]:
-    return DriveCase if STAGES in tree else schema.CaseFile
+    return DriveCase if STAGES in tree else CaseFile
 
 
 def _every_key(tree: Mapping[str, Any]) -> Iterator[str]:

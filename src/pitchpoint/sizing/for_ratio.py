@@ -13,7 +13,6 @@ import xarray as xr
 from pitchpoint import units
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.strength import ratings_of
-from pitchpoint.cases.schema import LIFE, SPEED
 from pitchpoint.cases.template import sample_tree, template
 from pitchpoint.cases.trains import USUAL_BEARING
 from pitchpoint.drive.assembly import clear_neighbours, fit_at_equal_angles
@@ -22,6 +21,7 @@ from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.planetary import PLANETARY, PLANETS
 from pitchpoint.gears.rated_pair import rated_pair
 from pitchpoint.gears.table import DISTANCE
+from pitchpoint.input.kinds import LIFE, SPEED
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.registry import letters
 from pitchpoint.runs.run import load_case

@@ -8,12 +8,12 @@ from typing import Annotated, Any, Literal, Self, get_args
 from pydantic import BeforeValidator, ValidationError
 
 from pitchpoint.cases.document import read, strip
-from pitchpoint.cases.schema import LIFE, LOAD_FACTOR, LOADED, SPEED, TEMPERATURE, quantity_of
 from pitchpoint.cases.template import table_lines
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.table import DISTANCE
+from pitchpoint.input.kinds import LIFE, LOAD_FACTOR, LOADED, SPEED, TEMPERATURE
 from pitchpoint.input.quantities import Quantity, shown
-from pitchpoint.input.tables import Table
+from pitchpoint.input.tables import Table, quantity_of
 from pitchpoint.registry import alike, enumerated, known_as, nearest
 
 __all__ = ["AIMS", "SIZED_FAMILIES", "TASK_TABLE", "Task", "read_task", "task_template"]
