@@ -13,9 +13,10 @@ import pitchpoint
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import MARKS, STATUSES
 from pitchpoint.cases.loss_sets import SET, SET_TOLD
-from pitchpoint.cases.schema import CaseFile, DriveCase, DriveMaterials, StageTable, TrainTable
+from pitchpoint.cases.schema import CaseFile, DriveCase, StageTable, TrainTable
 from pitchpoint.gears.planetary import PlanetaryGears
 from pitchpoint.input.tables import alternatives, quantity_of, sentences, usual_words
+from pitchpoint.materials.material_tables import DriveMaterials
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.strength import EXTREMES, STRENGTH
 from pitchpoint.results.variable import Variable

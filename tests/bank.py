@@ -16,7 +16,7 @@ from typing import Any
 
 from pitchpoint import kept
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.schema import Study
+from pitchpoint.cases.study_tables import Study
 from pitchpoint.programs import surroundings
 from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.runs.run import Outcome, compare_case, open_result, run

@@ -18,7 +18,7 @@ import typer
 from pitchpoint.errors import InputError, PitchpointError, shorten, visible
 
 if TYPE_CHECKING:
-    from pitchpoint.cases.schema import Study, Sweep
+    from pitchpoint.cases.study_tables import Study, Sweep
     from pitchpoint.results.target_rows import TargetRow
     from pitchpoint.runs.case import Case
     from pitchpoint.runs.run import Outcome, Progress
@@ -1294,7 +1294,7 @@ def _value(text: str) -> Any:
 
 
 def _studies(texts: list[str]) -> dict[str, "Study"]:
-    from pitchpoint.cases.schema import Study
+    from pitchpoint.cases.study_tables import Study
     from pitchpoint.input.quantities import shown
 
     studies: dict[str, Study] = {}
@@ -1307,7 +1307,7 @@ def _studies(texts: list[str]) -> dict[str, "Study"]:
 
 
 def _sweeps(texts: list[str], option: str) -> "Iterator[Sweep]":
-    from pitchpoint.cases.schema import Sweep, one_value
+    from pitchpoint.cases.study_tables import Sweep, one_value
     from pitchpoint.input.quantities import shown
 
     for text in texts:

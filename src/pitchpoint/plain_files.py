@@ -9,11 +9,11 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Final
 
 from pitchpoint.errors import InputError
 
-__all__ = ["content", "digest", "plain_file"]
+__all__ = ["MOST_BYTES", "content", "digest", "digest_of", "plain_file"]
 
 _PIECE = 1 << 20
 _WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -87,3 +87,15 @@ def _demand_small(size: int, most: int, path: Path, what: str) -> None:
     if size > most:
         told = f"has {size / 1e6:.4g} MB; a {what} has at most {most / 1e6:g} MB"
         raise InputError(told, file=str(path))
+
+
+MOST_BYTES: Final = 64_000_000
+"""Size of the largest file."""
+
+
+def digest_of(file: str, largest: int = MOST_BYTES) -> str:
+    """Digest of what a file holds; empty where it cannot be read, or holds more bytes than the largest."""
+    try:
+        return digest(Path(file), largest)
+    except InputError:
+        return ""

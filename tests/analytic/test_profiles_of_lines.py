@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pitchpoint.cases.schema import FilmTable
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.profiles import check_profiles

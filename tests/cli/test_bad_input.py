@@ -26,19 +26,8 @@ from sound import PAIR, quick_first
 
 from pitchpoint import cli, units
 from pitchpoint.cases.document import resolve
-from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import (
-    CaseFile,
-    DriveCase,
-    DriveMaterials,
-    FrictionChoice,
-    HeightTables,
-    StageTable,
-    TrainTable,
-    WornTable,
-    validate,
-    validated,
-)
+from pitchpoint.cases.laws import FRICTION, FrictionChoice
+from pitchpoint.cases.schema import CaseFile, DriveCase, StageTable, TrainTable, validate, validated
 from pitchpoint.cases.variant import Variant
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.duty_cycle import table as duty_table
@@ -54,12 +43,15 @@ from pitchpoint.input.kinds import COEFFICIENT
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table, tag
 from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.lubrication.ehl.film_tables import HeightTables
+from pitchpoint.materials.material_tables import DriveMaterials
 from pitchpoint.published.atanasiu2011.table import PairInMotion
 from pitchpoint.published.tian2024.table import PairOnPath
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.results.store import dataset, save
 from pitchpoint.runs.jobs import jobs
+from pitchpoint.wear.wear_tables import WornTable
 
 BASE = tomllib.loads("""
 title = "a title"

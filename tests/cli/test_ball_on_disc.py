@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from pages import payload
 
-from pitchpoint.cases.schema import Study, Sweep
+from pitchpoint.cases.study_tables import Study, Sweep
 from pitchpoint.errors import InputError
 from pitchpoint.runs.catalogue import entries, figures
 from pitchpoint.runs.run import Outcome, describe, run

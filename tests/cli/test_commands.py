@@ -22,7 +22,7 @@ import xarray as xr
 
 from pitchpoint import cli
 from pitchpoint.analyses import studies
-from pitchpoint.cases.schema import Study, Sweep
+from pitchpoint.cases.study_tables import Study, Sweep
 from pitchpoint.materials import lubricants
 from pitchpoint.runs import run as running
 from pitchpoint.runs.run import describe, open_result

@@ -21,11 +21,11 @@ from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import film_model
-from pitchpoint.cases.schema import FilmTable
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import Doubt, stored
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.materials.lubricants import find

@@ -13,9 +13,9 @@ import pytest
 
 from pitchpoint import double_precision
 from pitchpoint.cases.height_maps import MOST_HEIGHTS, height_maps
-from pitchpoint.cases.schema import FilmTable
 from pitchpoint.cases.x3p import read_x3p
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 
 WAVE = 0.3 * np.cos(0.4 * np.arange(60)) + 0.01 * np.arange(60)

@@ -11,7 +11,7 @@ import pytest
 
 from pitchpoint import cli
 from pitchpoint.analyses.torsion import _on_edges_of_meshes
-from pitchpoint.cases.schema import Study, Sweep
+from pitchpoint.cases.study_tables import Study, Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.results.by_stage import of_stage, stages_of

@@ -36,14 +36,14 @@ from pitchpoint.analyses.films import (
     film_notes,
 )
 from pitchpoint.cases.document import read
-from pitchpoint.cases.height_maps import digest_of, height_maps
+from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.record import Manifest, Record
-from pitchpoint.cases.schema import FilmTable
 from pitchpoint.dynamics.energy import relative_closure
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import evaluator
 from pitchpoint.exports.files import export
-from pitchpoint.plain_files import content, digest
+from pitchpoint.lubrication.ehl.film_tables import FilmTable
+from pitchpoint.plain_files import content, digest, digest_of
 from pitchpoint.results import store
 from pitchpoint.results.store import load
 from pitchpoint.runs.run import Outcome, describe

@@ -16,7 +16,14 @@ from sound import PAIR
 from pitchpoint.analyses.operation import OPERATION
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import (
+from pitchpoint.cases.variant import Variant
+from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.gears.table import WIDTH
+from pitchpoint.input.kinds import SPEED, TEMPERATURE, TORQUE
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.material_tables import (
     ALPHA,
     DENSITY,
     FACTOR,
@@ -26,13 +33,6 @@ from pitchpoint.cases.schema import (
     SLOPE,
     VISCOSITY,
 )
-from pitchpoint.cases.variant import Variant
-from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.gears.table import WIDTH
-from pitchpoint.input.kinds import SPEED, TEMPERATURE, TORQUE
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
-from pitchpoint.materials import lubricants, solids
 from pitchpoint.units import si_unit
 
 LANES = 5  # one compiled program serves all contact ratios below it

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from properties.test_random_cases import between, cases, drawn, of, pair
 
 from pitchpoint.analyses.strength import STRENGTH
-from pitchpoint.cases.schema import ENDURED, PEAK_TO_VALLEY
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.cylindrical.din_3967 import FIELDS
 from pitchpoint.input.kinds import LIFE
+from pitchpoint.strength.strength_table import ENDURED, PEAK_TO_VALLEY
 from pitchpoint.strength.treatments import TREATMENTS
 
 SEED, EXAMPLES = 2, 60

@@ -11,13 +11,13 @@ import pytest
 from pitchpoint.analyses import caveats, four_quadrants
 from pitchpoint.cases.build import _roughness
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import RoughnessTable
 from pitchpoint.cases.solids import SolidInUse, failures
 from pitchpoint.doubts import apart, fails, moves
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.applicability import limits_words
 from pitchpoint.materials import solids
+from pitchpoint.materials.material_tables import RoughnessTable
 from pitchpoint.runs.catalogue import entries
 
 XU, ISO = FRICTION["xu_2007"], FRICTION["iso_tr_14179_2"]

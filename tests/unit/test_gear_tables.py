@@ -493,7 +493,7 @@ def test_the_parts_of_a_drive() -> None:
 
 
 def test_sweeps_of_a_drive_are_looked_at_before_they_run() -> None:
-    from pitchpoint.cases.schema import Study, Sweep
+    from pitchpoint.cases.study_tables import Study, Sweep
 
     for key, start, stop in [
         ("gears.wave_generator.deflection", 0.98, 1.02),

@@ -12,8 +12,9 @@ import pytest
 from pitchpoint import Case
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.schema import CaseFile as Schema
-from pitchpoint.cases.schema import Loss, validate
+from pitchpoint.cases.schema import validate
 from pitchpoint.cases.wishes import WISHES
+from pitchpoint.efficiency.drag_tables import Loss
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import Inspection
 from pitchpoint.gears.families import TABLES

@@ -9,7 +9,7 @@ import xarray as xr
 
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, Ready
-from pitchpoint.cases.schema import Study
+from pitchpoint.cases.study_tables import Study
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import Doubt, doubts_of, stored
 from pitchpoint.errors import InputError

@@ -12,9 +12,9 @@ from pitchpoint._jax import array
 from pitchpoint.analyses.strength import mesh_load_of
 from pitchpoint.analyses.train_period import over_period
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.cases.schema import Loss
 from pitchpoint.duty_cycle.history import load_steps
 from pitchpoint.duty_cycle.life import BALL, RatedBearing
+from pitchpoint.efficiency.drag_tables import Loss
 
 __all__ = ["bearing_limits", "bearing_lives", "rated_bearings"]
 

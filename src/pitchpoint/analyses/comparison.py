@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.cases.schema import Target
+from pitchpoint.cases.study_tables import Target
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest

@@ -12,10 +12,10 @@ from pitchpoint.analyses.film_contacts import LEAST, Done, alike, asked, film_mo
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.cases.build import Built, tooth_size
 from pitchpoint.cases.height_maps import height_maps
-from pitchpoint.cases.schema import FilmTable
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import UNSOLVED
 from pitchpoint.lubrication.ehl.fields import LineFilm
+from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines

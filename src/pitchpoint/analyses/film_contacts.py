@@ -11,7 +11,6 @@ from jaxtyping import Array
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import PATCH_NODES, patch_grid
-from pitchpoint.cases.schema import FilmTable
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.efficiency.in_turns import balance_under
 from pitchpoint.efficiency.quasi_static import (
@@ -27,6 +26,7 @@ from pitchpoint.efficiency.summary import engaged
 from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
+from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import usual_nodes
 from pitchpoint.lubrication.groups import load_parameter

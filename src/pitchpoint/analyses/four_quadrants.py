@@ -16,9 +16,9 @@ from pitchpoint.analyses.finer_map import finer_map
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
 from pitchpoint.analyses.running import creeping_speed, from_rest, has_spread
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.cases.schema import LossMap
 from pitchpoint.doubts import Doubt, doubts_of, in_percent
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
+from pitchpoint.efficiency.operation_tables import LossMap
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told

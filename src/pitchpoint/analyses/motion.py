@@ -14,7 +14,6 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.figures import CAMPBELL
 from pitchpoint.analyses.vibration import MOST_RATIO, ORDERS, status_sentences, vibrating_of
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.schema import MotionTable
 from pitchpoint.contact.contacts import along
 from pitchpoint.doubts import Doubt
 from pitchpoint.dynamics.bodies import Body, Support, across, bearing_forces, motor
@@ -27,6 +26,7 @@ from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.dynamics.steady_motion import Motion, film, periodic_motion
 from pitchpoint.dynamics.system import modal_damping, reduced_mass
 from pitchpoint.dynamics.transient import Transient, transient
+from pitchpoint.dynamics.vibration_tables import MotionTable
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import line_of_action

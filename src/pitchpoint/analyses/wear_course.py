@@ -12,7 +12,6 @@ import xarray as xr
 from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.schema import WEAR_LAND, WearTable
 from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
@@ -25,7 +24,7 @@ from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.input.kinds import HARDNESS
-from pitchpoint.lubrication.ehl.grid import fewer
+from pitchpoint.lubrication.ehl.registry import fewer
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
@@ -35,6 +34,7 @@ from pitchpoint.wear.march import FIRST, End, Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
 from pitchpoint.wear.stages import run_in_end, severe_start
 from pitchpoint.wear.teeth import TipThickness, backlash_growth, half_teeth, tips_of
+from pitchpoint.wear.wear_tables import WEAR_LAND, WearTable
 
 __all__ = ["asked", "further", "joined", "wear_part"]
 

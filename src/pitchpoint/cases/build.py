@@ -12,21 +12,10 @@ from pydantic import TypeAdapter, ValidationError
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.brief import brief
 from pitchpoint.cases.document import STAGES, Document
-from pitchpoint.cases.laws import FRICTION
+from pitchpoint.cases.laws import FRICTION, Choices
 from pitchpoint.cases.loss_sets import loss_sets, named_set
 from pitchpoint.cases.remembered import remembering
-from pitchpoint.cases.schema import (
-    CaseFile,
-    Choices,
-    Dynamics,
-    FilmTable,
-    Loss,
-    Oil,
-    Operating,
-    RoughnessTable,
-    StageTable,
-    bearings_of,
-)
+from pitchpoint.cases.schema import CaseFile, StageTable
 from pitchpoint.cases.solids import (
     SolidInUse,
     datum,
@@ -43,7 +32,10 @@ from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.doubts import GUESSED, Doubt, as_doubt
 from pitchpoint.drive.kinematics import HOUSING
+from pitchpoint.dynamics.vibration_tables import Dynamics
 from pitchpoint.efficiency.drag import Drag
+from pitchpoint.efficiency.drag_tables import Loss, bearings_of
+from pitchpoint.efficiency.operation_tables import Operating
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
 from pitchpoint.efficiency.running_torque import no_load_torque, torques_at_rest
@@ -73,6 +65,7 @@ from pitchpoint.loading.sharing import demand_sharing
 from pitchpoint.loading.tooth_compliance import Terms, terms_of, uncovered
 from pitchpoint.lubrication.applicability import applies
 from pitchpoint.lubrication.conditions import FILM, Law, arguments, demand_shape
+from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.lubrication.inlet_heating import Inlet, with_inlet_heating
 from pitchpoint.lubrication.registry import (
     ASPERITY_LOAD,
@@ -88,6 +81,7 @@ from pitchpoint.lubrication.registry import (
 )
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.data import Datum
+from pitchpoint.materials.material_tables import Oil, RoughnessTable
 from pitchpoint.materials.solids import SolidRecord, reduced_modulus
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program

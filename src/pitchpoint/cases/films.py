@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any, Final
 
-from pitchpoint.cases.schema import OF_VISCOSITY, FilmTable
 from pitchpoint.contact.registry import END_PROFILES
 from pitchpoint.contact.surface import Surface
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.film_tables import OF_VISCOSITY, FilmTable
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH

@@ -12,7 +12,8 @@ from tomlkit.items import AoT, InlineTable, Item, Table
 from pitchpoint.cases.document import STAGES, Document, Provenance, files_of
 from pitchpoint.cases.library import as_text
 from pitchpoint.cases.record import CASE
-from pitchpoint.cases.schema import Study, quantity_at
+from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.study_tables import Study
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.plain_files import content, digest

@@ -10,19 +10,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from pitchpoint.cases.schema import FilmTable, HeightTable
 from pitchpoint.cases.x3p import Heights, read_x3p
 from pitchpoint.errors import LONGEST_PLACE, InputError, shorten, visible
+from pitchpoint.lubrication.ehl.film_tables import MEMBERS, FilmTable, HeightTable
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
-from pitchpoint.plain_files import content, digest, plain_file
+from pitchpoint.plain_files import MOST_BYTES, content, plain_file
 
-__all__ = ["MEMBERS", "digest_of", "height_maps"]
-
-MEMBERS: Final[Mapping[str, int | None]] = {"gear_1": 0, "gear_2": 1, "both": None}
-"""Surfaces that a map is of, by key, and the body that takes it along."""
-
-MOST_BYTES: Final = 64_000_000
-"""Size of the largest file."""
+__all__ = ["height_maps"]
 
 MOST_HEIGHTS: Final = 16_000_000
 """Heights of the largest map; each takes eight bytes once it is used, be it one byte in its file."""
@@ -60,14 +54,6 @@ def height_maps(table: FilmTable, *, moving: bool = False) -> tuple[HeightMap, .
         for name, height_table in heights
         if height_table is not None
     )
-
-
-def digest_of(file: str, largest: int = MOST_BYTES) -> str:
-    """Digest of what a file holds; empty where it cannot be read, or holds more bytes than the largest."""
-    try:
-        return digest(Path(file), largest)
-    except InputError:
-        return ""
 
 
 def _map(table: HeightTable, member: int | None, key: str) -> HeightMap:

@@ -11,23 +11,20 @@ from pitchpoint._jax import array
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
-from pitchpoint.cases.height_maps import MEMBERS, digest_of
+from pitchpoint.cases.laws import FrictionChoice
 from pitchpoint.cases.loss_sets import SET, marks_of
 from pitchpoint.cases.record import OUTPUT
-from pitchpoint.cases.schema import (
-    CaseFile,
-    DriveCase,
-    FrictionChoice,
-    Study,
-    quantity_at,
-    with_meshes,
-)
+from pitchpoint.cases.schema import CaseFile, DriveCase, quantity_at, with_meshes
+from pitchpoint.cases.study_tables import Study
+from pitchpoint.duty_cycle.table import LARGEST
 from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.family import Followed
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.table import SmallerOfTwo
+from pitchpoint.lubrication.ehl.film_tables import MEMBERS
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
+from pitchpoint.plain_files import digest_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.units import hardness_scale
 
@@ -174,8 +171,6 @@ def _digests(built: Built) -> Iterator[Row]:
 def _digest_of_duty(built: Ready) -> Iterator[Row]:
     """What tells a load over time in a file from any other."""
     if built.case.duty is not None:
-        from pitchpoint.duty_cycle.history import LARGEST
-
         yield _digest("duty", "digest", digest_of(built.case.duty.file, LARGEST))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from pitchpoint._jax import array
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.remembered import remembering
-from pitchpoint.cases.schema import CaseFile, Materials, SolidValues
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.doubts import GUESSED, LEFT_OUT, REMARKED, Doubt, fails
 from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
@@ -20,6 +20,7 @@ from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.materials import solids
 from pitchpoint.materials.data import Datum, Status
+from pitchpoint.materials.material_tables import Materials, SolidValues
 from pitchpoint.materials.solids import Solid, SolidRecord, celsius, heat_failure
 
 __all__ = [

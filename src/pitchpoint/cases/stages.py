@@ -24,25 +24,24 @@ from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree, setting
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import (
-    OF_SET,
-    UNRATED,
     CaseFile,
     DriveCase,
-    Operating,
     is_planetary,
-    of_set,
     planetary_of,
     validate,
     with_meshes,
 )
 from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
 from pitchpoint.efficiency.drive import Drive, chained, owner
+from pitchpoint.efficiency.operation_tables import Operating
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.planetary import PlanetaryGears, in_words_of_set
 from pitchpoint.input.kinds import TEMPERATURE
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.lubrication.registry import ChosenLaws
+from pitchpoint.materials.material_tables import OF_SET, of_set
+from pitchpoint.strength.strength_table import UNRATED
 
 __all__ = ["as_spelt", "ready"]
 

@@ -10,7 +10,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import array
 from pitchpoint.cases.remembered import remembering
-from pitchpoint.cases.schema import UNRATED, CaseFile, StrengthTable
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.errors import InputError
@@ -21,6 +21,7 @@ from pitchpoint.strength.flank import NO_MODIFICATION
 from pitchpoint.strength.limits import Constants
 from pitchpoint.strength.load_factors import CLASSES, running_in_relief
 from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths
+from pitchpoint.strength.strength_table import UNRATED, StrengthTable
 from pitchpoint.strength.treatments import PLASTIC, PLASTIC_CYCLES, TREATMENTS, Treatment
 
 __all__ = ["MESH_LOAD", "Rated", "check_strength", "of_planets", "rated_case"]

@@ -10,15 +10,7 @@ import numpy as np
 from pitchpoint._jax import jax
 from pitchpoint.cases.build import Built, drags
 from pitchpoint.cases.document import STAGES
-from pitchpoint.cases.schema import (
-    CaseFile,
-    DriveCase,
-    Operating,
-    SolidValues,
-    StrengthTable,
-    TrainTable,
-    WearTable,
-)
+from pitchpoint.cases.schema import CaseFile, DriveCase, TrainTable
 from pitchpoint.cases.solids import BY_VALUE
 from pitchpoint.cases.strength import MESH_LOAD, of_planets
 from pitchpoint.doubts import GUESSED, REMARKED, Doubt
@@ -31,12 +23,16 @@ from pitchpoint.drive.assembly import (
 )
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link, body_rates
 from pitchpoint.drive.torques import train_torques
+from pitchpoint.efficiency.operation_tables import Operating
 from pitchpoint.efficiency.train import Train, gear_train, presses_other_flanks
 from pitchpoint.errors import RUNS_WITH, InputError
 from pitchpoint.gears.bodies import disc
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.materials.material_tables import SolidValues
 from pitchpoint.materials.solids import SolidRecord
+from pitchpoint.strength.strength_table import StrengthTable
+from pitchpoint.wear.wear_tables import WearTable
 
 __all__ = ["USUAL_BEARING", "about_trains", "rates_of", "train_of", "turning_together"]
 

@@ -8,7 +8,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import array
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import CaseFile, WearTable
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.contact.contacts import KINDS, TOUCH
 from pitchpoint.doubts import Doubt
@@ -23,6 +23,7 @@ from pitchpoint.lubrication.registry import ASPERITY_LOAD
 from pitchpoint.wear.history import WearModel
 from pitchpoint.wear.march import Limit
 from pitchpoint.wear.registry import WEAR_LAWS, WearLaw
+from pitchpoint.wear.wear_tables import WearTable
 
 __all__ = ["ASSUMED_COEFFICIENT", "check_wear", "limit_of", "told_of_wear", "wear_model"]
 

@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import array
-from pitchpoint.cases.schema import WornTable
 from pitchpoint.contact.worn import FLATTEST
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.gears.mesh import Mesh
@@ -18,6 +17,7 @@ from pitchpoint.registry import enumerated
 from pitchpoint.results.by_stage import OF_STAGES, of_stage, stages_of
 from pitchpoint.results.store import load
 from pitchpoint.wear.history import Cells
+from pitchpoint.wear.wear_tables import WornTable
 
 __all__ = ["gears_digest", "with_wear"]
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint import units
+from pitchpoint.duty_cycle.table import LARGEST
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
 from pitchpoint.plain_files import content
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ICE_POINT",
-    "LARGEST",
     "LoadHistory",
     "demand_kelvins",
     "history_of_table",
@@ -35,9 +35,6 @@ _COLDEST, _HOTTEST = 150.0, 600.0
 
 ICE_POINT = 273.15
 """0 degC [K], which large arrays take off without the conversion of units."""
-
-LARGEST = 1 << 28
-"""Bytes of a file; ten million samples have some 200 MB."""
 
 
 class LoadHistory(NamedTuple):

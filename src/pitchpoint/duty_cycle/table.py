@@ -4,12 +4,12 @@ from typing import Annotated
 
 from pydantic import Field
 
-from pitchpoint.input.kinds import Text
+from pitchpoint.input.kinds import LIFE_EXPONENT, Text
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.input.tables import Table
 
 __all__ = [
-    "LIFE_EXPONENT",
+    "LARGEST",
     "DutyTable",
     "HeatTable",
     "MotorTable",
@@ -27,7 +27,6 @@ IRON_EXPONENT = Quantity("dimensionless", 1.0, 2.0)
 LARGEST_TORQUE = Quantity("torque", 0.0, 1e8, "N m", open_low=True)
 LARGEST_SPEED = Quantity("rotational speed", 0.0, 1e6, "rpm", open_low=True)
 TURNS = Quantity("dimensionless", 0.0, 1e15, open_low=True)
-LIFE_EXPONENT = Quantity("dimensionless", 1.0, 20.0)
 CAPACITY = Quantity("heat capacity", 0.0, 1e12, "J/K", open_low=True)
 TO_HEAT = Quantity("resistance to heat", 0.0, 1e9, "K/W", open_low=True)
 WARM = Quantity("temperature", 150.0, 600.0, "degC")
@@ -128,3 +127,7 @@ class DutyTable(Table):
     """Bearings and wave generators with their rated life, by names of one's own; none unless given."""
     heat: HeatTable | None = None
     """Bodies and resistances that give temperatures; those of the file unless given."""
+
+
+LARGEST = 1 << 28
+"""Bytes of a file; ten million samples have some 200 MB."""

@@ -12,6 +12,7 @@ __all__ = [
     "FORCE",
     "HARDNESS",
     "LIFE",
+    "LIFE_EXPONENT",
     "LOADED",
     "LOAD_FACTOR",
     "MAP_SPEED",
@@ -53,3 +54,6 @@ def _flag(value: Any) -> bool:
 
 
 Flag = Annotated[bool, BeforeValidator(_flag)]
+
+
+LIFE_EXPONENT = Quantity("dimensionless", 1.0, 20.0)

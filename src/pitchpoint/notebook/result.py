@@ -10,7 +10,7 @@ import xarray as xr
 
 from pitchpoint._jax import double_precision
 from pitchpoint.cases.record import MANIFEST
-from pitchpoint.cases.schema import Study
+from pitchpoint.cases.study_tables import Study
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import shown
 from pitchpoint.notebook import tables

@@ -11,14 +11,17 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Annotated, Any, Final
+
+from pydantic import BeforeValidator, Field
 
 from pitchpoint import units
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
+from pitchpoint.input.tables import Table
 from pitchpoint.registry import known_as, nearest
 
-__all__ = ["Choice", "UnitsByKind", "choosable", "shown_in", "unit_choice", "unit_in_use"]
+__all__ = ["Choice", "Output", "UnitsByKind", "choosable", "shown_in", "unit_choice", "unit_in_use"]
 
 Choice = Mapping[str, str]
 """Units by kind of quantity."""
@@ -130,3 +133,17 @@ def _small(kind: str) -> str:
 def _whole(kind: str) -> str:
     """The kind without its size."""
     return kind.removeprefix(_small(""))
+
+
+class Output(Table):
+    """How results are shown; numbers that are computed and kept are SI whatever it says.
+
+    `units` are those of tables, figures and exports by kind of quantity: angle, torque, torsional_stiffness,
+    rotational_speed and so on. A unit of small angles, lengths or times (arcmin, um, ms) is for these; the
+    kinds `small_angle`, `small_length` and `small_time` give them a unit of any size.
+    """
+
+    units: Annotated[dict[str, str], BeforeValidator(unit_choice)] = Field(
+        default_factory=dict, examples=[{"angle": "arcmin", "torsional stiffness": "N m/arcmin"}]
+    )
+    """Unit by kind of quantity; usual ones unless given."""

@@ -15,7 +15,8 @@ from pitchpoint.analyses.figures import main_figures
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import sweep_values
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.cases.schema import Sweep, quantity_at
+from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.study_tables import Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError
 from pitchpoint.input.quantities import Quantity

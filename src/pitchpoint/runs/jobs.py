@@ -9,7 +9,7 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Several, Subject, silent
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.cases.schema import Study
+from pitchpoint.cases.study_tables import Study
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import Complaints, InputError, shorten
 from pitchpoint.input.quantities import shown

@@ -13,7 +13,8 @@ from jaxtyping import Float
 
 from pitchpoint import units as units_of_numbers
 from pitchpoint.analyses.studies import SWEPT
-from pitchpoint.cases.schema import COUNT, one_value, quantity_at
+from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.study_tables import COUNT, one_value
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown

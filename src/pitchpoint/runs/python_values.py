@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from pitchpoint.cases.document import MAX_DEPTH
-from pitchpoint.cases.schema import Study
+from pitchpoint.cases.study_tables import Study
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import TOO_LONG, shown
 

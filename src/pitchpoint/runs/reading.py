@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from pitchpoint.cases.document import read, variants
-from pitchpoint.cases.height_maps import digest_of
 from pitchpoint.cases.library import as_text, find, path_of
 from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record, is_result
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.lubrication.registry import ChosenLaws
+from pitchpoint.plain_files import digest_of
 from pitchpoint.registry import nearest
 
 __all__ = ["variants_of"]

@@ -29,11 +29,13 @@ from pitchpoint.cases.handed_over import FILES, hand_over
 from pitchpoint.cases.library import names
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import CASE, MANIFEST, OUTPUT, RUN, Manifest, Record, is_record
-from pitchpoint.cases.schema import Loss, Study, validate
+from pitchpoint.cases.schema import validate
+from pitchpoint.cases.study_tables import Study
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
 from pitchpoint.doubts import apart, as_doubt, concerns, doubts_of
 from pitchpoint.dynamics.registry import CONTACT_LAWS
+from pitchpoint.efficiency.drag_tables import Loss
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.contact_lines import line_of_action

@@ -10,8 +10,8 @@ from jaxtyping import Array, Bool, Float, Int
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jnp
-from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.lubrication.ehl.registry import FEWEST, fewer
 
 __all__ = [
     "ENDS",
@@ -19,7 +19,6 @@ __all__ = [
     "Ends",
     "LineGrid",
     "NodeRow",
-    "fewer",
     "grid",
     "line_kernel",
     "lowest",
@@ -38,9 +37,6 @@ ENDS: Final[dict[Ends, tuple[float, float]]] = {
 With the length that a contact has between rigid bodies such an inlet takes .4 % from the film; between
 elastic ones far less.
 """
-
-FEWEST: Final = 33
-"""Nodes of the coarsest grid."""
 
 _FINER, _OVER = 3.0, 0.15
 """By how much the grid is finer about the ends of the dry contact, where pressure and film turn, and how far
@@ -121,21 +117,6 @@ def grid(nodes: int, ends: Ends = "entrained") -> LineGrid:
     reached = np.concatenate((kernel[:1], kernel))[:, 1:-1]
     fields: Any = x, np.diff(edges), np.diff(x), faces < 0.0, kernel, reached
     return LineGrid(*fields)
-
-
-def fewer(nodes: int) -> int | None:
-    """Nodes of the next coarser grid, None for the coarsest.
-
-    Raises:
-        InputError: not a number of nodes that a grid may have.
-    """
-    is_integer = isinstance(nodes, int | np.integer)
-    if not is_integer or nodes < FEWEST or (nodes - 1) & (nodes - 2):
-        raise InputError(
-            f"{nodes} nodes across a contact; their number is one more than a power of two, "
-            f"{FEWEST}, 65, 129, 257, ..."
-        )
-    return None if nodes == FEWEST else nodes // 2 + 1
 
 
 def line_kernel(x: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Integral
 from typing import TYPE_CHECKING, Final
 
+from pitchpoint.errors import InputError
 from pitchpoint.registry import Deferred, Registry
 
 if TYPE_CHECKING:
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ASPERITIES",
     "COARSE",
+    "FEWEST",
     "ISOTHERMAL",
     "MOST_LINE_NODES",
     "MOST_PATCH_NODES",
@@ -22,6 +25,7 @@ __all__ = [
     "USUAL_ASPERITIES",
     "AsperityLaw",
     "ThermalEffect",
+    "fewer",
 ]
 
 COARSE: Final = 0.03
@@ -111,3 +115,22 @@ ASPERITIES = Registry(
         ("greenwood_williamson_1966",),
     ),
 )
+
+
+FEWEST: Final = 33
+"""Nodes of the coarsest grid."""
+
+
+def fewer(nodes: int) -> int | None:
+    """Nodes of the next coarser grid, None for the coarsest.
+
+    Raises:
+        InputError: not a number of nodes that a grid may have.
+    """
+    is_integer = isinstance(nodes, Integral)
+    if not is_integer or nodes < FEWEST or (nodes - 1) & (nodes - 2):
+        raise InputError(
+            f"{nodes} nodes across a contact; their number is one more than a power of two, "
+            f"{FEWEST}, 65, 129, 257, ..."
+        )
+    return None if nodes == FEWEST else nodes // 2 + 1

@@ -17,7 +17,7 @@ from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import SolvedLines, check, warnings
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
-from pitchpoint.lubrication.ehl.grid import ENDS, Ends, LineGrid, fewer, grid, prolongation
+from pitchpoint.lubrication.ehl.grid import ENDS, Ends, LineGrid, grid, prolongation
 from pitchpoint.lubrication.ehl.heat import defect, settled, turned, warmed
 from pitchpoint.lubrication.ehl.line import (
     LEAST,
@@ -36,6 +36,7 @@ from pitchpoint.lubrication.ehl.newton import (
 )
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.profiles import check_profiles
+from pitchpoint.lubrication.ehl.registry import fewer
 from pitchpoint.lubrication.ehl.response import (
     answer,
     pushed,
