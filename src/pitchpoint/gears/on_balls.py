@@ -77,7 +77,10 @@ def ball_force(stiffness: Float[Array, ""], approach: Float[Array, "*b"]) -> Flo
 
 
 def ball_stiffness(stiffness: Float[Array, ""], approach: Float[Array, "*b"]) -> Float[Array, "*b"]:
-    """Slope of `ball_force` over the approach [N/m]; arguments as there."""
+    """Slope of `ball_force` over the approach [N/m]; arguments as there.
+
+    From the derivative of Palmgren's law of `ball_force`.
+    """
     return 1.5 * stiffness * _root(jnp.maximum(approach, 0.0))
 
 
