@@ -55,6 +55,8 @@ class Equilibrium(eqx.Module):
         residual: largest violation of the equilibrium, over the load or its deflection.
         iterations: active sets that were tried, common to the states that were solved together.
         balls: approach of the balls under the body; None where none hold it [m].
+
+    From the balance of the load, with no force on open contacts and no gap on loaded ones.
     """
 
     force: Lanes

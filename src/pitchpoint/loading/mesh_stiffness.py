@@ -35,6 +35,8 @@ class MeshStiffness(eqx.Module):
         error: closing at which these springs carry nothing, the mean over a contact line, see `Springs` [m].
         approach: of the loaded coordinate under the load [rad or m].
         state: the equilibrium; None where the flanks touch along the whole of every contact line.
+
+    Source: Atanasiu et al. (2011), eqs. 20 to 22, see its methods.
     """
 
     edges: Float[Array, " edge"]

@@ -67,6 +67,8 @@ class Hysteresis(eqx.Module):
     Attributes:
         wind_up: of the loaded member, from first touch [rad].
         loading, unloading: its torque while the wind-up grows, and while it shrinks [N m].
+
+    From Coulomb's friction, see `hysteresis`.
     """
 
     wind_up: Each
