@@ -49,6 +49,9 @@ class RootSection(eqx.Module):
         chord: s_Fn between both fillets [m].
         distance: of the section from the axis of the virtual gear, along the middle of the tooth [m].
         fillet_radius: rho_F there [m].
+
+    Source: ISO 6336-3:2019, section where tangents make 30 degrees with the middle of the tooth, 60 in a
+    ring.
     """
 
     chord: Found
@@ -62,6 +65,8 @@ class LoadPoint(eqx.Module):
     Attributes:
         angle: alpha_Fen between the force and the perpendicular to the middle [rad].
         distance: from the axis of the virtual gear, negative for a ring [m].
+
+    Source: ISO 6336-3:2019, load direction angle.
     """
 
     angle: Found
@@ -281,12 +286,18 @@ def form_factor(
 
 
 def bending_arm(section: RootSection, load: LoadPoint) -> Found:
-    """Bending moment arm h_Fe, from the section to where the force crosses the middle of the tooth [m]."""
+    """Bending moment arm h_Fe, from the section to where the force crosses the middle of the tooth [m].
+
+    Source: ISO 6336-3:2019, bending moment arm.
+    """
     return jnp.abs(jnp.abs(load.distance) - section.distance)
 
 
 def notch_parameter(section: RootSection) -> Found:
-    """Notch parameter q_s = s_Fn/(2 rho_F) [1]."""
+    """Notch parameter q_s = s_Fn/(2 rho_F) [1].
+
+    Source: ISO 6336-3:2019, notch parameter.
+    """
     return section.chord / (2.0 * section.fillet_radius)
 
 
