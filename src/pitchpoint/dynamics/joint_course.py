@@ -352,6 +352,8 @@ def fading(joint: Joint, order: One, speed: One) -> float:
         joint: what vibrates.
         order: waves in a turn of the driver.
         speed: rate of the driver [rad/s].
+
+    From the decay of a free vibration by its damping.
     """
     damping, motor, load = map(float, (joint.damping, joint.motor, joint.load))
     decay = damping * (1.0 / motor + 1.0 / load) / 2.0
