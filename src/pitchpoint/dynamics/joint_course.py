@@ -33,6 +33,7 @@ MOST_PERIODS = 2000.0
 TOLERANCE = 1e-11
 """Largest estimated error of a step, of states of order one."""
 
+# The integrator asks for a bound: 131 steps for each of `MOST_PERIODS` periods.
 MOST_STEPS = 2**18
 
 POINTS = 256

@@ -24,6 +24,7 @@ MOST = 40
 """Largest number of passes; friction hardly depends on the modulus, and two to five are usual."""
 
 
+# What is zero, as the loss of teeth without friction, would make a change of 0/0.
 _TINY = 1e-300
 
 

@@ -87,6 +87,7 @@ def ball_stiffness(stiffness: Float[Array, ""], approach: Float[Array, "*b"]) ->
 def _root(pressed: Float[Array, "*b"]) -> Float[Array, "*b"]:
     """Square root without an infinite slope at zero."""
     touches = pressed > 0.0
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     return jnp.where(touches, jnp.sqrt(jnp.where(touches, pressed, 1.0)), 0.0)
 
 

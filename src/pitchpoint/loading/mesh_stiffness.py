@@ -117,6 +117,7 @@ def _mean_gap(gap: Lanes, springs: Lanes) -> Float[Array, "pair *b"]:
     whole = jnp.sum(springs, axis=1)
     touches = whole > 0.0
     moved = jnp.sum(springs * gap, axis=1)
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     return jnp.where(touches, moved / jnp.where(touches, whole, 1.0), 0.0)
 
 
