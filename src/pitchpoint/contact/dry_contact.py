@@ -164,7 +164,10 @@ def pressed_by(
     approach: Float[Arrays, ""],
     most: int = MOST,
 ) -> DryContact:
-    """Bodies that approach each other by a given length [m], else as `pressed`."""
+    """Bodies that approach each other by a given length [m], else as `pressed`.
+
+    Source: Polonsky and Keer (1999), as `pressed`, with the approach in place of the load.
+    """
     return _solved(_Pressed(bodies, gap, modulus, None, approach), most)
 
 

@@ -30,6 +30,8 @@ class Ellipse(eqx.Module):
         pressure: largest one, in the middle [Pa].
         approach: of points of the two solids far from the contact [m].
         stiffness: load over approach for a small change of load, dF/d(approach) = 3 F/(2 approach) [N/m].
+
+    Source: Hertz (1881).
     """
 
     along: Float[Array, "*b"]

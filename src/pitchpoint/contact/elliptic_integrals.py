@@ -111,4 +111,5 @@ def _approached(x: Each, y: Each, z: Each) -> tuple[_Three, Array]:
 
 def _root(square: Array) -> Array:
     """Square root; its infinite slope at zero is left out, where a constant zero stands."""
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     return jnp.where(square > 0.0, jnp.sqrt(jnp.where(square > 0.0, square, 1.0)), 0.0)

@@ -40,6 +40,8 @@ def crowned(*, width: float, radius: float) -> tuple[Surface, ...]:
         >>> missing = missing_along(crowned(width=0.02, radius=10.0), np.array([0.0, 0.01]))
         >>> (missing * 1e6).round(6).tolist()
         [0.0, 5.0]
+
+    From the parabola of the arc.
     """
     _positive(width=width, radius=radius)
     return (Crowning(array(width**2 / (8.0 * radius)), array(width)),)
@@ -65,6 +67,8 @@ def dub_off(*, width: float, length: float, radius: float) -> tuple[Surface, ...
         width: of the face [m].
         length: of each arc along the face [m].
         radius: r, of the arc [m].
+
+    From the parabola of the arc.
     """
     _end(width, length)
     _positive(radius=radius)

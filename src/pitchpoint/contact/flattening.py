@@ -7,6 +7,7 @@ from pitchpoint.factored import Numbers
 
 __all__ = ["line_compression", "yang_sun_1985"]
 
+# A contact without load has no width; its logarithm, and the derivative of that, have to stay finite.
 _LEAST_WIDTH_RATIO = 1e-9
 
 

@@ -34,6 +34,8 @@ def line_gap(
         bodies: on their grid, which touch at x = 0 where there is no relief.
         radius: relative radius along x at every row, or one for all, shape (y,) or () [m].
         relief: by which the bodies lie apart at every row, shape (y,) or () [m]; see `missing_along`.
+
+    From the parabola of the relative radius, x^2/(2 R).
     """
     gap: Arrays = bodies.x**2 / (2.0 * _column(radius)) + _column(relief)
     return gap + 0.0 * bodies.y[:, None]

@@ -47,6 +47,8 @@ class HalfSpace(eqx.Module):
         own: the same of every row on itself, shape (y, wave) [m].
         rows: deflection times E' at a row by a pressure of one on the cell of the same row that lies 0, 1, 2,
             ... steps of x away, shape (y, x) [m].
+
+    Source: Love (1929), pressure that is even over a rectangle.
     """
 
     x: Float[Arrays, " x"]
@@ -135,6 +137,8 @@ def half_space(
         >>> deflection = bodies.deflection(pressure, 226.4e9)
         >>> round(float(deflection[5, 5]) * 1e9, 3), round(float(deflection[5, 10]) * 1e9, 3)
         (9.913, 0.563)
+
+    Source: Love (1929), pressure that is even over a rectangle.
     """
     _check(x, edges, ends)
     middles = 0.5 * (edges[1:] + edges[:-1])

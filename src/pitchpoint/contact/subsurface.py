@@ -91,6 +91,8 @@ def below_row(
         >>> shear = np.asarray(stresses.largest_shear())[:, 32]
         >>> round(float(shear.max()), 2), round(float(depth[shear.argmax()]), 2)
         (0.31, 0.48)
+
+    Source: as `stresses_below`.
     """
     _check(bodies, pressure, depth, poisson)
     rows = len(bodies.y)

@@ -254,6 +254,7 @@ def _half_width(balance: _Balance, least: Array, widest: Lanes) -> tuple[Lanes, 
         lack = square * curvature - target
         short, away = lack < 0.0, jnp.abs(lack) > _SETTLED * target
         low, high = jnp.where(short, half, low), jnp.where(short, high, half)
+        # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
         newton = square - lack / jnp.where(steep > 0.0, steep, 1.0)
         inside = (steep > 0.0) & (newton > _INSIDE * low**2) & (_INSIDE * newton < high**2)
         half = jnp.sqrt(jnp.where(inside, newton, low * high))

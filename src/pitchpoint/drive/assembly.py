@@ -85,6 +85,8 @@ def fit_at_equal_angles(
             shape, or that broadcast.
         planets: their number.
 
+    From `places_around`, whose number the planets have to divide.
+
     Example:
         >>> import numpy as np
         >>> planet = np.array([30, 31])

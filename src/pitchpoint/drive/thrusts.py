@@ -42,6 +42,8 @@ def axial_loads(
     The axial force is F_t tan β = 2 T sin β / (z m_n), opposite on both gears. Gears of one planet have the
     same hand and lie in one plane: forces across the axes of stepped planets, which tilt them too, are left
     out.
+
+    From the helix: axial over tangential force is tan(beta).
     """
     thrusts: dict[str, float] = {}
     tilting = 0.0

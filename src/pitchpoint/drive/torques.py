@@ -32,6 +32,8 @@ class TrainTorques:
         driving: for each mesh the body that drives the other one, seen from the carrier of their axes; empty
             where the train is locked.
         loaded: body that takes the power.
+
+    Source: Müller (1982), see `train_torques`.
     """
 
     rates: Mapping[str, float]

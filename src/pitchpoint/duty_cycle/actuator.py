@@ -44,6 +44,8 @@ def actuator_map(
         temperature: of the oil [K].
         winding: temperature of the winding [K].
 
+    From the power of the driver and what the motor loses.
+
     Example:
         >>> from pitchpoint.duty_cycle.motor import Motor
         >>> from pitchpoint.efficiency.loss_table import LossTable

@@ -66,6 +66,8 @@ def driver_course(
     Raises:
         InputError: samples beyond the map, where friction locks the drive against the load that is to drive
             it, or above the limits of the motor.
+
+    From the balance of power, with the torque that speeds the rotor up.
     """
     if inside:
         demand_inside(table, history)
@@ -211,6 +213,8 @@ def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
         input_energy - recovered_energy = output_energy - returned_energy + lost_energy + rotor_energy. An
         efficiency is what comes out at either end over what goes in at either: that of the drive without what
         speeds the rotor up before it, that of the actuator with it. Without a motor both are the same.
+
+    From the integral of power over time.
     """
     seconds = history.duration
     out, drawn = history.power, driver.power

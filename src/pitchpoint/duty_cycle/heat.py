@@ -64,6 +64,8 @@ class ThermalNetwork:
         InputError: a resistance between unknown bodies or a body and itself, a body without a way to the air,
             what is not above zero.
 
+    From C dT/dt = heat - sum of (T - T of the neighbour)/R.
+
     Example:
         >>> drive = ThermalNetwork(
         ...     {"gears": 120.0, "housing": 800.0},

@@ -93,6 +93,8 @@ def load_history(
     Raises:
         InputError: what is not an array of numbers, of another length, time that does not ascend.
 
+    From the trapezoidal rule.
+
     Example:
         >>> load_history([0.0, 1.0, 4.0], [5.0, 5.0, 0.0], 2.0, 313.15).duration.tolist()
         [0.5, 2.0, 1.5]

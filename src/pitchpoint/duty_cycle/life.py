@@ -35,6 +35,8 @@ class RatedLife:
     Raises:
         InputError: not above zero.
 
+    Source: ISO 281:2007, L10 = (C/P)^p.
+
     Example:
         >>> wave_generator = RatedLife(torque=67.0, revolutions=7000.0 * 60.0 * 2000.0 / 100.0)
         >>> round(wave_generator.revolutions)
@@ -87,6 +89,8 @@ class RatedBearing:
         preload: without any load [N].
         count: of equal ones, as of planets.
         static_rating: basic static load rating C_0 [N]; NaN where it is not known.
+
+    Source: ISO 281:2007, L10 = 1e6 (C/P)^p turns.
 
     Example:
         >>> bearing = RatedBearing(rating=1e4, turning=5.0, teeth=(0.0, 20.0, 0.0))

@@ -38,6 +38,8 @@ class Motor:
     Raises:
         InputError: a constant that is not above zero, or negative inertia or loss.
 
+    From torque in proportion to current, and R i^2 lost in the resistance.
+
     Example:
         >>> import numpy as np
         >>> motor = Motor(torque_constant=0.1, resistance=0.5)

@@ -40,6 +40,8 @@ class WornFlanks(NamedTuple):
         march: turns of the output, at the load of the march, until it ended; None at a limit from the start.
         depth: largest one there [m].
         limited: True where it ended at a limit, so that its end is that of the life.
+
+    Source: Archard (1953): depth is in proportion to load and way.
     """
 
     march: RatedLife | None

@@ -82,6 +82,8 @@ def motor(*, stall_torque: float, no_load_speed: float, inertia: float) -> Body:
     Raises:
         InputError: the no-load speed is not positive.
 
+    From a straight line of torque over speed.
+
     Example:
         >>> body = motor(stall_torque=-6.0, no_load_speed=300.0, inertia=1e-3)
         >>> float(body.torque[0]), float(body.viscous)
@@ -137,6 +139,8 @@ def bearing_forces(
     Args:
         bodies: of all coordinates.
         place, rate: of all coordinates.
+
+    From springs and dampers side by side.
     """
     return jnp.tensordot(stiffness(bodies), place, 1) + jnp.tensordot(damping(bodies), rate, 1)
 

@@ -20,6 +20,8 @@ class Equations(eqx.Module):
         scale: coordinates q per z [m or rad].
         unit: length along the contacts per unit of stretch, times root of mass.
         finite: False where an input was not; the equations are then those of a body at rest.
+
+    Source: Atanasiu et al. (2011), eqs. 10 and 11, for any number of coordinates and pairs.
     """
 
     damping: Float[Array, "coordinate coordinate"]

@@ -31,6 +31,8 @@ class PeriodGrid:
     Attributes:
         elements: even divisions of the period, at least 1.
         nodes: Gauss-Lobatto nodes in each element, its ends among them, at least 12.
+
+    Source: Abramowitz and Stegun (1964), eq. 25.4.32, Lobatto's formula.
     """
 
     elements: int = 8

@@ -139,6 +139,8 @@ class JointResponse(eqx.Module):
         output: rotation of the load, beyond the uniform one [rad].
         friction: torque over rate of the wind-up that stands for the friction of the flanks [N m s/rad].
         sticks: True where that friction holds the drive together.
+
+    From the equation of `respond`.
     """
 
     frequency: Float[Array, "*b"]
@@ -164,6 +166,8 @@ def respond(joint: Joint, order: Each, amplitude: Each, speed: Each) -> JointRes
 
     (K - J w^2 + i w (c + c_f)) D = J (w^2 + i n ratio T/J1) E of the reduced moment of inertia J; friction
     c_f by its first harmonic at this amplitude, found where both sides are equally large.
+
+    From Newton's law on motor and load, linear about the constant torque.
     """
     order, amplitude, speed = jnp.broadcast_arrays(*map(jnp.asarray, (order, amplitude, speed)))
     frequency, inertia = order * speed, joint.reduced

@@ -33,6 +33,7 @@ MOST_PERIODS = 2000.0
 TOLERANCE = 1e-11
 """Largest estimated error of a step, of states of order one."""
 
+# The integrator asks for a bound: 131 steps for each of `MOST_PERIODS` periods.
 MOST_STEPS = 2**18
 
 POINTS = 256
@@ -352,6 +353,8 @@ def fading(joint: Joint, order: One, speed: One) -> float:
         joint: what vibrates.
         order: waves in a turn of the driver.
         speed: rate of the driver [rad/s].
+
+    From the decay of a free vibration by its damping.
     """
     damping, motor, load = map(float, (joint.damping, joint.motor, joint.load))
     decay = damping * (1.0 / motor + 1.0 / load) / 2.0

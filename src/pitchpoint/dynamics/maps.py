@@ -101,7 +101,10 @@ def identity(size: int, batch: tuple[int, ...]) -> Map:
 
 
 def horner(coefficients: Float[Array, "power *b"], at: Float[Array, "..."]) -> Float[Array, "*b"]:
-    """Polynomial with the lowest power first."""
+    """Polynomial with the lowest power first.
+
+    Source: Horner (1819).
+    """
     value = coefficients[-1]
     for power in range(coefficients.shape[0] - 2, -1, -1):
         value = value * at + coefficients[power]

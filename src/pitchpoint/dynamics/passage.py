@@ -191,6 +191,8 @@ def on_springs(
 
     Returns:
         Stiffness of each slice along its normal, zero out of contact [N/m].
+
+    From the tangent of force over closing, see `Springs`.
     """
     tooth_springs = springs(design.mesh, design.loaded, contacts, design.solids, terms, load)
     return replace(contacts, gap=tooth_springs.gap), tooth_springs.stiffness

@@ -39,6 +39,8 @@ class Response(eqx.Module):
         force: of each pair along its normal [N].
         multipliers: Floquet multipliers of one period.
         status: what became of the search for it.
+
+    Source: Atanasiu et al. (2011), eqs. 8 to 10, see its methods.
     """
 
     course: ExcitationCourse

@@ -89,6 +89,8 @@ def shoot(
         law: force between the teeth.
         backlash: free motion in units of stretch.
         start: displacement and velocity without dimensions.
+
+    Source: as `search`.
     """
 
     def period(state: Float[Array, " state"]) -> tuple[Array, Array, Array]:

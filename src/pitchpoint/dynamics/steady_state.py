@@ -120,7 +120,10 @@ def respond_to(
 
 
 def resting(scaled: Equations, course: ExcitationCourse) -> State:
-    """Balance with the mean stiffness, at rest."""
+    """Balance with the mean stiffness, at rest.
+
+    From k z = f with the mean stiffness.
+    """
     stiffness, load = course.mean(scaled.total_stiffness), course.mean(scaled.total_load)
     place = jnp.linalg.solve(stiffness, load)
     return jnp.concatenate([jnp.where(scaled.finite, place, 0.0), jnp.zeros_like(place)])

@@ -20,6 +20,8 @@ class System(eqx.Module):
         damping: [N s/m or N m s].
         load: constant, of the nominal torques [N or N m].
         period: of the mesh [s].
+
+    Source: Atanasiu et al. (2011), eqs. 8, 9 and 12, for any number of coordinates.
     """
 
     mass: Matrix

@@ -186,6 +186,8 @@ def bearing_loads(drags: Sequence[Drag], mesh: Mesh, contacts: Contacts, load: L
         mesh: any family.
         contacts: of the mesh.
         load: normal force of each slice [N].
+
+    From the balance of the bodies under the forces of their teeth, see `Bearing`.
     """
     return [
         drag.preload if drag.seat is None else drag.preload + drag.seat.load(mesh, contacts, load)

@@ -292,6 +292,8 @@ class DriveCycle(eqx.Module):
         speed: of the input [rad/s].
         nodes: static, for each link nodes in each segment between events.
         smooth: static, for each link True if its states are smooth between events.
+
+    Source: Tian et al. (2024), eq. 10, for the ripple of several meshes.
     """
 
     states: "tuple[State | TrainState, ...]"

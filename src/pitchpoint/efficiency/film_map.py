@@ -34,6 +34,8 @@ class FilmMap:
         axes: logarithms of load and speed, and temperature [K], at which films were solved.
         friction: coefficients there [load, speed, temperature, pair, slice, node].
         rolling: rolling resistance on each surface there [N/m]; None where the case has a model of its own.
+
+    From polynomials through Chebyshev's points.
     """
 
     axes: tuple[Values, Values, Values]
@@ -100,6 +102,8 @@ def film_map(
 
     Raises:
         ConvergenceError: a film was not solved.
+
+    From polynomials through Chebyshev's points.
     """
     ends = _log(loads[loads > 0.0]), _log(speeds[speeds > 0.0]), degrees
     axes = tuple(_levels(values, most) for values, most in zip(ends, LEVELS, strict=True))

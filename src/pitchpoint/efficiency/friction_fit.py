@@ -41,6 +41,8 @@ class FrictionFit:
         stribeck: what is lost beside it towards rest [torque of the output].
         stribeck_speed: at which that has fallen to the e-th part [speed of the output].
         largest_error, mean_error: between it and what it was fitted to [torque of the output].
+
+    Source: Armstrong-Hélouvry, Dupont and Canudas de Wit (1994), Coulomb, viscous and Stribeck friction.
     """
 
     constant: float
@@ -134,6 +136,8 @@ def fit_friction(
 
     Torques of films fall with speed, which no viscous damping does: its coefficient is then 0, its bound. The
     part that falls does so exponentially, as is usual in controllers; no source fixes its form for gears.
+
+    Source: Stark and Parker (1995), least squares with bounds, as SciPy has it.
 
     Example:
         >>> import numpy as np

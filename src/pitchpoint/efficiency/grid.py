@@ -15,6 +15,8 @@ from pitchpoint.programs import fast_program
 
 __all__ = ["Block", "state_grid"]
 
+# A quick attempt takes two steps for the balance; where it leaves more than this, all is done again with as
+# many steps as it takes.
 TOLERANCE = 1e-10
 ROWS, MANY_ROWS = 256, 4096
 """Most operating points of one block, on a processor and on an accelerator."""

@@ -34,6 +34,8 @@ class Meetings(eqx.Module):
         part: of every state of the link behind in the weight of every load.
         between: of few states of the link behind in what else it asks for under every load; None where no
             phase is kept.
+
+    From a polynomial through few loads.
     """
 
     load: Float[Array, "*b load behind"]
@@ -147,6 +149,8 @@ def few_between(low: Each, high: Each, count: int = FEW) -> Float[Array, "*b few
         low: the lowest.
         high: the highest.
         count: of the few, at least two.
+
+    From Chebyshev's points, both ends among them.
     """
     return ((low + high)[..., None] + (high - low)[..., None] * _places(count)) / 2.0
 

@@ -713,6 +713,8 @@ class Cycle(eqx.Module):
         state: at the nodes, batch axes `*b node`.
         nodes: static, nodes in each segment between events.
         smooth: static, True if states are smooth between events: no pair comes to carry or ceases to.
+
+    Source: Tian et al. (2024), eqs. 7 and 10, see its methods.
     """
 
     phase: Float[Array, " node"]
@@ -856,6 +858,8 @@ def cycle(
         models: laws.
         nodes: Gauss-Lobatto nodes in each segment; its ends lie beside the events.
         engaged: contacts and shares with their nodes, where they are known already.
+
+    Source: Abramowitz and Stegun (1964), eq. 25.4.32, for the nodes; see `state` for the balance.
     """
     demand_double()
     if engaged is None:

@@ -454,7 +454,10 @@ def _summaries(
 
 
 def mean_friction(state: "State | TrainState") -> Array:
-    """Friction coefficient weighted with the load of the contacts, at phases `*b`."""
+    """Friction coefficient weighted with the load of the contacts, at phases `*b`.
+
+    From the mean of the coefficient, weighted with the load.
+    """
     normal = state.normal_force
     loaded = normal > 0.0
     return jnp.where(loaded, state.friction_force / jnp.where(loaded, normal, 1.0), 0.0)

@@ -31,6 +31,8 @@ class ToothTemperature(NamedTuple):
     Args:
         flank: at the flank, shape (...) [K].
         root: at the root, shape (...) [K].
+
+    Source: VDI 2736 Part 2 (2014), temperatures of flank and root.
     """
 
     flank: Each

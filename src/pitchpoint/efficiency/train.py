@@ -242,6 +242,8 @@ def gear_train(
     Raises:
         InputError: see `train_torques`; planets that are turned, loaded or held, a mesh that would press its
             other flanks, or has losses of its own, periods of meshes that hardly ever come together again.
+
+    Source: Müller (1982) for rates and torques without friction, see `train_torques`.
     """
     demand_double()
     if len(ends.turned) != 1:

@@ -127,6 +127,8 @@ class TrainCycle(eqx.Module):
             were alone: of its normal part, and of its friction for a coefficient of one.
         status: of the search for forces at each node.
         nodes: static, nodes in each segment between events.
+
+    Source: Tian et al. (2024), eq. 10, for the ripple of trains.
     """
 
     phase: Nodes

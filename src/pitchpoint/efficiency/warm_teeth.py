@@ -24,6 +24,7 @@ MOST = 40
 """Largest number of passes; friction hardly depends on the modulus, and two to five are usual."""
 
 
+# What is zero, as the loss of teeth without friction, would make a change of 0/0.
 _TINY = 1e-300
 
 
@@ -40,6 +41,8 @@ class ToothHeating(eqx.Module):
         duty: share of the time under load.
         mates: material of each gear's mate, "steel" or "plastic"; static.
         function: of the thermal model; static.
+
+    Source: VDI 2736 Part 2 (2014), what its temperatures ask for.
     """
 
     plastic: Bool[Array, "2"]
@@ -61,6 +64,8 @@ class WarmTeeth(eqx.Module):
         flank, root: temperatures of both gears [K].
         young: Young's moduli at the roots [Pa].
         status: of the fixed point; the residual is the last relative change of the temperatures.
+
+    Source: VDI 2736 Part 2 (2014), see `warm_teeth`.
     """
 
     mean_friction: Float[Array, ""]

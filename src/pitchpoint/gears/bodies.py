@@ -35,6 +35,8 @@ def disc(*, density: float, width: float, outer: float, inner: float) -> tuple[f
         width: along the axis [m].
         outer, inner: radii, in either order [m].
 
+    From the integral of r^2 over the mass of a ring, J = m (r_o^2 + r_i^2)/2.
+
     Example:
         >>> mass, inertia = disc(density=7850.0, width=0.02, outer=0.05, inner=0.0)
         >>> round(mass, 4), round(1e4 * inertia, 3)
@@ -46,6 +48,8 @@ def disc(*, density: float, width: float, outer: float, inner: float) -> tuple[f
 
 def as_one(bodies: Iterable[MassInertia]) -> MassInertia:
     """Mass and moment of inertia of bodies that turn as one.
+
+    From the sum over bodies on one axis.
 
     Example:
         >>> as_one([(1.0, 0.5), (2.0, 0.25)])

@@ -160,6 +160,8 @@ class PitchPoint(eqx.Module):
         radius: relative radius of curvature at the pitch point [m].
         sum_speed: sum of the surface speeds there for a unit rate of the driver [m/rad or 1].
         pitch_line_speed: speed of the pitch circles for a unit rate of the driver [m/rad or 1].
+
+    Source: ISO 21771:2007, pitch point C and pitch circles in operation.
     """
 
     width: Float[Array, ""]
@@ -175,6 +177,8 @@ class InvoluteMesh(Mesh):
     Attributes:
         right_flank: False while member 0 pushes with its left flanks (seen with the tip up), turning
             counter-clockwise when it drives; True for the other ones.
+
+    Source: ISO 21771:2007, path of contact with its points A to E.
     """
 
     shape: ClassVar[Shape] = "line"

@@ -156,12 +156,18 @@ def usual_depths(
 
 
 def involute(angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
-    """Involute function inv(alpha) = tan(alpha) - alpha [rad]."""
+    """Involute function inv(alpha) = tan(alpha) - alpha [rad].
+
+    Source: ISO 21771:2007, involute function.
+    """
     return jnp.tan(angle) - angle
 
 
 def inverse_involute(value: Float[Array, ""]) -> Float[Array, ""]:
-    """Angle [rad] whose involute function is `value`, for value > 0."""
+    """Angle [rad] whose involute function is `value`, for value > 0.
+
+    Source: ISO 21771:2007, involute function, inverted by Newton's method.
+    """
     guess = jnp.arctan(value + jnp.minimum(jnp.cbrt(3.0 * value), 1.5))
     return root(lambda angle: involute(angle) / value - 1.0, guess, jnp.pi / 2.0)[0]
 
@@ -169,12 +175,18 @@ def inverse_involute(value: Float[Array, ""]) -> Float[Array, ""]:
 def transverse_angle(
     pressure_angle: Float[Array, ""], helix_angle: Float[Array, ""]
 ) -> Float[Array, ""]:
-    """Pressure angle in the transverse section alpha_t [rad] from the normal one and the helix angle."""
+    """Pressure angle in the transverse section alpha_t [rad] from the normal one and the helix angle.
+
+    Source: ISO 21771:2007, tan(alpha_t) = tan(alpha_n)/cos(beta).
+    """
     return jnp.arctan(jnp.tan(pressure_angle) / jnp.cos(helix_angle))
 
 
 def base_helix(pressure_angle: Float[Array, ""], helix_angle: Float[Array, ""]) -> Float[Array, ""]:
-    """Helix angle on the base cylinder beta_b [rad] from the normal pressure angle and the helix angle."""
+    """Helix angle on the base cylinder beta_b [rad] from the normal pressure angle and the helix angle.
+
+    Source: ISO 21771:2007, sin(beta_b) = sin(beta) cos(alpha_n).
+    """
     return jnp.arcsin(jnp.sin(helix_angle) * jnp.cos(pressure_angle))
 
 
@@ -535,6 +547,9 @@ class InvoluteGear(eqx.Module):
 
 @cache
 def gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss-Legendre nodes and weights on [0, 1]."""
+    """Gauss-Legendre nodes and weights on [0, 1].
+
+    Source: Abramowitz and Stegun (1964), eq. 25.4.30, Gauss' formula on any interval.
+    """
     x, weight = np.polynomial.legendre.leggauss(count)
     return (x + 1.0) / 2.0, weight / 2.0

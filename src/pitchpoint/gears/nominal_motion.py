@@ -65,6 +65,8 @@ def nominal_motion(mesh: Mesh, driver: Rates, loaded: Rates) -> Rates:
         mesh: any family.
         driver: one for the coordinate that drives, zero elsewhere.
         loaded: one for the coordinate whose load is prescribed, zero elsewhere; what is left stands still.
+
+    From flanks that stay in touch: the relation of the mesh times the rates is zero.
     """
     turned, relation = turned_rates(mesh, driver), mesh.relation
     return turned - (relation @ turned) / (relation @ loaded) * loaded
@@ -76,6 +78,8 @@ def nominal_period(mesh: Mesh, motion: Rates) -> Float[Numbers, ""]:
     Args:
         mesh: any family.
         motion: of its coordinates for a unit rate of the driver.
+
+    From one engagement for every pitch that passes.
     """
     return mesh.pitch / abs(mesh.passing @ motion)
 

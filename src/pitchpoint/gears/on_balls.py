@@ -77,13 +77,17 @@ def ball_force(stiffness: Float[Array, ""], approach: Float[Array, "*b"]) -> Flo
 
 
 def ball_stiffness(stiffness: Float[Array, ""], approach: Float[Array, "*b"]) -> Float[Array, "*b"]:
-    """Slope of `ball_force` over the approach [N/m]; arguments as there."""
+    """Slope of `ball_force` over the approach [N/m]; arguments as there.
+
+    From the derivative of Palmgren's law of `ball_force`.
+    """
     return 1.5 * stiffness * _root(jnp.maximum(approach, 0.0))
 
 
 def _root(pressed: Float[Array, "*b"]) -> Float[Array, "*b"]:
     """Square root without an infinite slope at zero."""
     touches = pressed > 0.0
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     return jnp.where(touches, jnp.sqrt(jnp.where(touches, pressed, 1.0)), 0.0)
 
 

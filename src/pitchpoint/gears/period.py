@@ -35,6 +35,8 @@ def nodes(
     Args:
         events: of a mesh; two at the same phase give a segment without length.
         count: Gauss-Lobatto nodes in each segment, at least 3.
+
+    Source: Abramowitz and Stegun (1964), eq. 25.4.32, Lobatto's formula.
     """
     ends = edges(events)
     start, length = ends[:-1, None], jnp.diff(ends)[:, None]
@@ -61,7 +63,10 @@ def apart(
 
 @cache
 def lobatto(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss-Lobatto nodes, nearly on [0, 1], and weights: both ends and the roots of P'."""
+    """Gauss-Lobatto nodes, nearly on [0, 1], and weights: both ends and the roots of P'.
+
+    Source: Abramowitz and Stegun (1964), eq. 25.4.32, Lobatto's formula.
+    """
     legendre = np.polynomial.Legendre.basis(count - 1)
     inner = np.sort(legendre.deriv().roots().real)
     x = np.concatenate([[-1.0], inner, [1.0]])
@@ -75,6 +80,8 @@ def between(count: int) -> list[np.ndarray]:
 
     The points are the nodes and seven more between neighbours, on [-1, 1]; last comes their
     spacing, zero at the ends, where a level tangent means nothing.
+
+    From Legendre polynomials through the nodes.
     """
     nodes = 2.0 * lobatto(count)[0] - 1.0
     place = np.arange(8 * (count - 1) + 1) / 8.0

@@ -31,6 +31,8 @@ class RatedPair(eqx.Module):
         ring_section: half chord, distance from the axis and radius of the fillet of a ring where tangents to
             it make 60 degrees with the middle of a tooth, in the normal section [m]; zeros without a ring.
         cutter: teeth z_0 and profile shift x_0 of the pinion cutter of a ring; not numbers without one.
+
+    Source: ISO 21771:2007, symbols, and negative numbers of teeth of internal gears.
     """
 
     teeth: Float[Array, "2"]
@@ -86,6 +88,8 @@ class StandardPair(eqx.Module):
         transverse_contact_ratio: eps_alpha.
         face_width: [m].
         reference_radii: of the reference circles, positive [m].
+
+    Source: ISO 6336-1:2006, method B, see `iso_6336_stiffness`.
     """
 
     virtual_teeth: Float[Array, "2"]

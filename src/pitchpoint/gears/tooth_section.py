@@ -56,7 +56,10 @@ class ToothSection(eqx.Module):
 
 @cache
 def chebyshev_nodes(count: int = FLANK_NODES) -> np.ndarray:
-    """Chebyshev points of the second kind, from -1 to 1."""
+    """Chebyshev points of the second kind, from -1 to 1.
+
+    From the extremes of a Chebyshev polynomial, -cos(pi k/n).
+    """
     return -np.cos(np.pi * np.arange(count) / (count - 1))
 
 

@@ -56,6 +56,8 @@ class Balance(eqx.Module):
         jamming: coefficient of friction, the same at all contacts, from which on the mesh is locked:
             normal arm over -sum(share times sliding arm), at which the leverage of the contact force
             vanishes; infinite where friction pushes on.
+
+    Source: Tian et al. (2024), eqs. 1, 2 and 16, see `balance`.
     """
 
     force: Float[Array, "*b"]

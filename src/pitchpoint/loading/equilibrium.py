@@ -55,6 +55,8 @@ class Equilibrium(eqx.Module):
         residual: largest violation of the equilibrium, over the load or its deflection.
         iterations: active sets that were tried, common to the states that were solved together.
         balls: approach of the balls under the body; None where none hold it [m].
+
+    From the balance of the load, with no force on open contacts and no gap on loaded ones.
     """
 
     force: Lanes
@@ -200,6 +202,7 @@ def _held(body: OnBalls, approach: Float[Array, "*b ball"]) -> _Held:
     """The body on springs that are tangent to the balls at an approach."""
     lanes, across = (jnp.moveaxis(x, (0, 1), (-2, -1)) for x in (body.lanes, body.across))
     slope = ball_stiffness(body.stiffness, approach)
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     root = jnp.sqrt(jnp.where(slope > 0.0, slope, 1.0)) * (slope > 0.0)
     pushed = ball_force(body.stiffness, approach) - ball_force(body.stiffness, body.approach)
     pushed += slope * (body.approach - approach)
@@ -300,6 +303,7 @@ def touch(gap: Lanes, arm: Lanes, active: Bool[Array, "pair slice *#b"]) -> Each
     From the gap of each contact, which closes by its arm times the approach.
     """
     touches = active & (arm > 0.0)
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     each = jnp.where(touches, gap / jnp.where(touches, arm, 1.0), jnp.inf)
     flat = each.reshape(-1, *each.shape[2:])
     # By its number: the derivative of a least value may be 0/0, see `_solve`.
@@ -407,6 +411,8 @@ def _loaded(
     problem: _Problem, first: Bool[Array, "pair slice *b"] | None
 ) -> tuple[Bool[Array, "*b lane"], Int[Array, ""]]:
     """Lanes that carry, and the number of sets that were tried."""
+    # Active sets and no general solver of quadratic programs: most sets are those of contacts that stand alone,
+    # give or take a few; what is found is exact, and so are derivatives with the set as it is.
     start = _as_if_alone(problem)
     if first is not None:
         flat = jnp.moveaxis(first.reshape(-1, *first.shape[2:]), 0, -1)
@@ -504,6 +510,7 @@ def _solve(problem: _Problem, loaded: Bool[Array, "*b lane"]) -> _Solution:
     # With no lane at all the loaded body moves until every one is wrong. The derivative of a largest value
     # asks by an equality which one it is: 0/0 where a compiler rounds its two sides differently.
     far = FAR * (1.0 + jax.lax.stop_gradient(jnp.max(problem.gap, axis=-1)))
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     approach = jnp.where(carries, carried / jnp.where(carries, stiffness, 1.0), far)
     force = solved[..., 0] * approach[..., None] - solved[..., 1]
     slack = problem.moved(force) + problem.gap - problem.arm * approach[..., None]

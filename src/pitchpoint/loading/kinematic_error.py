@@ -64,6 +64,8 @@ def kinematic_error(contacts: Contacts, yields: Compliance, added: Lanes) -> Kin
 
     From virtual work: forces that balance a unit of the load do as much work on the added gaps as it
     does on the rotation.
+
+    From virtual work of the forces that a unit of the load adds.
     """
     teeth = yields.of_teeth(contacts)
     given = {"arm": jnp.abs(along(contacts.normal, yields.loaded)), "active": contacts.active}

@@ -35,6 +35,8 @@ class MeshStiffness(eqx.Module):
         error: closing at which these springs carry nothing, the mean over a contact line, see `Springs` [m].
         approach: of the loaded coordinate under the load [rad or m].
         state: the equilibrium; None where the flanks touch along the whole of every contact line.
+
+    Source: Atanasiu et al. (2011), eqs. 20 to 22, see its methods.
     """
 
     edges: Float[Array, " edge"]
@@ -115,6 +117,7 @@ def _mean_gap(gap: Lanes, springs: Lanes) -> Float[Array, "pair *b"]:
     whole = jnp.sum(springs, axis=1)
     touches = whole > 0.0
     moved = jnp.sum(springs * gap, axis=1)
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     return jnp.where(touches, moved / jnp.where(touches, whole, 1.0), 0.0)
 
 

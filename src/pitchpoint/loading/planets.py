@@ -15,6 +15,8 @@ __all__ = ["PinEquivalents", "path_stiffness", "planet_forces"]
 Numbers = Any
 """Numbers or arrays that broadcast."""
 
+# Bounds, not choices: of 4000 random sets of three to eight planets, floating or not, none took more than
+# eight steps; sixty halvings are the digits of a number.
 MOST_STEPS, HALVINGS = 200, 60
 SOFT = 1e-8
 """Spring of a body that no planet holds, over that of a planet: its steps are long, and halved as needed."""

@@ -33,6 +33,8 @@ class Bearing(eqx.Module):
         thrust: True if it takes the axial force; static.
         beside: load on it by other meshes of the body, as a vector in the frame of this one [N]; None
             without any.
+
+    From the balance of forces and moments on the body.
     """
 
     coordinate: int = eqx.field(static=True)
@@ -115,6 +117,8 @@ def radial_and_axial(mesh: Mesh, contacts: Contacts, force: Lanes) -> Float[Arra
         force: normal force of each slice [N].
 
     From the balance of forces on each body.
+
+    From the sum of the forces as vectors.
     """
     found = []
     for member in (0, 1):

@@ -78,6 +78,8 @@ def equal(contacts: Contacts, mesh: Mesh, yielding: Compliance | None = None) ->
     Args:
         contacts: of the mesh.
         mesh, yielding: not used, common to all models.
+
+    From one load per length on all lines in mesh.
     """
     return _normalised(jnp.where(contacts.active, contacts.weight, 0.0))
 
@@ -96,6 +98,8 @@ def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Compliance | None) 
         Shares; NaN where the equilibrium was not found.
 
     From the balance of springs side by side, see `equilibrium`.
+
+    From springs side by side, which yield by one approach.
     """
     assert yielding is not None
     if yielding.body is None and touching(mesh):

@@ -31,6 +31,8 @@ class Springs(eqx.Module):
         approach: of the loaded coordinate under the load, from where `Contacts.gap` counts [rad or m].
         loaded: True where the load presses a slice.
         state: the equilibrium; None where the flanks touch along the whole of every contact line.
+
+    From the tangent of force over closing under the load.
     """
 
     stiffness: Lanes

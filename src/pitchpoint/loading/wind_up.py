@@ -67,6 +67,8 @@ class Hysteresis(eqx.Module):
     Attributes:
         wind_up: of the loaded member, from first touch [rad].
         loading, unloading: its torque while the wind-up grows, and while it shrinks [N m].
+
+    From Coulomb's friction, see `hysteresis`.
     """
 
     wind_up: Each
@@ -141,6 +143,7 @@ def wind_up(
 def _over(work: Each, load: Each) -> Each:
     """Movement that does this work under a load; none without it."""
     carries = load > 0.0
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     return jnp.where(carries, work / jnp.where(carries, load, 1.0), 0.0)
 
 

@@ -24,6 +24,8 @@ class WindUpCurve(eqx.Module):
         torque: there, rising from zero [N m].
         stiffness: slope there, positive [N m/rad].
         play: between both flanks without load; where they press on each other it counts as none [rad].
+
+    From Hermite's cubics.
     """
 
     wind_up: Knots

@@ -126,6 +126,7 @@ class Conditions(eqx.Module):
         Source: Xu et al. (2007), SR.
         """
         mean, slip = jnp.abs(self.roll) / 2.0, jnp.abs(self.slip)
+        # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
         return jnp.where(mean > 0.0, slip / jnp.where(mean > 0.0, mean, 1.0), 0.0)
 
     @property

@@ -337,6 +337,7 @@ def _product(
     """Factor * W^a U^b G^c; zero without load, where the regressions say nothing, and at standstill."""
     load, speed, material = groups
     film = (load > 0.0) & (speed > 0.0)
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     logs = [jnp.log(jnp.where(film, group, 1.0)) for group in (load, speed, material)]
     total = sum(power * log for power, log in zip(exponents, logs, strict=True))
     return jnp.where(film, factor * jnp.exp(total), 0.0)

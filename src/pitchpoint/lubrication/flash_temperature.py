@@ -29,6 +29,8 @@ class Conductor(eqx.Module):
     Args:
         conductivity: of heat, shape (...) [W/m/K].
         heat_capacity: density times specific heat, shape (...) [J/m3/K].
+
+    Source: Jaeger (1942), a solid that a moving source heats.
     """
 
     conductivity: Float[Arrays, "..."]

@@ -110,6 +110,7 @@ def _power(base: Each, exponent: float) -> Array:
     """A power below one, with a finite slope where its base is zero."""
     argument = jnp.asarray(base)
     some = argument > _LEAST
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     return jnp.where(some, jnp.exp(exponent * jnp.log(jnp.where(some, argument, 1.0))), 0.0)
 
 

@@ -113,4 +113,5 @@ def wu_cheng_1991_strips(
 
 
 def _log(value: Each, positive: Bool[Arrays, "*#b"] | bool) -> Each:
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     return jnp.log(jnp.where(positive, value, 1.0))

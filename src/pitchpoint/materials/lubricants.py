@@ -117,6 +117,8 @@ class Lubricant(eqx.Module):
         T_max: highest temperature the values are meant for, shape (...) [K].
         nu_0: kinematic viscosity at -40 degC, shape (...) [m2/s]; None for an oil of which it is not known.
         free_volume: takes the place of Gold's law; None for an oil of which it is not known.
+
+    Source: ASTM D341 for the viscosity, Gold et al. (2001) for the coefficient, see its methods.
     """
 
     nu_1: Float[Array, "..."]
@@ -215,6 +217,8 @@ def constant_alpha(alpha: float) -> tuple[float, float]:
 
     Returns:
         s [1/GPa at 1 mm2/s] and t = 0.
+
+    Source: Gold et al. (2001), see `gold_2001`.
     """
     return alpha * 1e9, 0.0
 
@@ -416,7 +420,10 @@ def _check_order(record: LubricantRecord) -> None:
 
 
 def demand_plausible_cold(record: LubricantRecord) -> None:
-    """InputError if the viscosity of an oil at -40 degC does not go with its other two, see `ASTRAY`."""
+    """InputError if the viscosity of an oil at -40 degC does not go with its other two, see `ASTRAY`.
+
+    Source: ASTM D341, the line through both other viscosities.
+    """
     if record.nu_0 is None:
         return
     cold, line = record.nu_0.value, _viscosity(replace(record, nu_0=None), COLD)

@@ -42,6 +42,8 @@ class Solid(eqx.Module):
         hardness: of the flanks, shape (...) [Pa], force over the area of an indentation, which a Vickers or
             Brinell number counts in kgf/mm2; not a number where it is not known.
 
+    Source: Timoshenko and Goodier (1970), isotropic elasticity.
+
     Example:
         >>> steel = Solid(young=206e9, poisson=0.3, density=7830.0)
     """
@@ -118,6 +120,8 @@ class RootStrength:
     Args:
         terms: a, b, p, c, d, q, r.
         origin: status, source and note; its value says nothing.
+
+    Source: VDI 2736 Part 2 (2014), as its public program has it.
     """
 
     terms: tuple[float, ...]

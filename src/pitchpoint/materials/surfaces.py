@@ -60,6 +60,8 @@ class Roughness(eqx.Module):
         ra_2: mean deviation of the second flank, shape (...) [m].
         rq_1: root-mean-square deviation of the first flank, shape (...) [m].
         rq_2: root-mean-square deviation of the second flank, shape (...) [m].
+
+    From the mean deviation of Gaussian heights.
     """
 
     ra_1: Float[Array, "..."]

@@ -21,6 +21,8 @@ class ToothForces(eqx.Module):
         radial: F_r, along the line of centres.
         axial: F_a, along the axes.
         normal: F_n, along the normal of the flanks.
+
+    From the balance of forces on a gear, see `tooth_forces`.
     """
 
     reference: Found

@@ -42,6 +42,8 @@ class Constants(eqx.Module):
         surface: a, b, n, and the factor of smooth roots.
         root_size: a, b, least.
         flank_size: level, and slope [1/mm], least.
+
+    Source: ISO 6336-2:2019 and ISO 6336-3:2019, see `Treatment`.
     """
 
     flank: Float[Array, "3 2"]
@@ -103,6 +105,8 @@ def endurance_share(*, cycles: Each, few: Each, many: Each) -> Found:
     Args:
         cycles: load cycles N_L, shape (...) [1].
         few, many: load cycles where static strength ends and endurance begins, few < many, shape (...) [1].
+
+    From straight lines in logarithms, as the life factors of ISO 6336-2:2019 and ISO 6336-3:2019 are.
 
     Example:
         >>> round(float(endurance_share(cycles=1e6, few=1e5, many=1e7)), 3)

@@ -82,6 +82,8 @@ class Factors(eqx.Module):
         helix_slopes: f_Hbeta of both gears; not numbers without a shaft [m].
         soft: 1 for through-hardened and normalised gears, which run in further.
         mesh_load: K_gamma.
+
+    Source: ISO 6336-1:2006, factors on the load.
     """
 
     application: One
@@ -174,6 +176,8 @@ def rated(
         mesh: of which there is a `rated_pair`, `bare`.
         path_ends: of the pair as it runs, see `RatedPair`; not a number where those of the bare mesh are it.
         duty, factors, strengths, finish: as `rate` takes them.
+
+    Source: ISO 6336-2:2019 and ISO 6336-3:2019, see `rate`.
     """
     pair = rated_pair(mesh)
     pair = dataclasses.replace(pair, path_ends=_or(path_ends, pair.path_ends))

@@ -36,6 +36,8 @@ __all__ = [
 Each = Float[Numbers, "*#b"]
 Found = Float[Array, "..."]
 
+# A fixed number, so that it has derivatives and runs in batches: racks of 10 to 1000 teeth with profile
+# shifts of -0.6 to 1 take four steps at most to the last digit (216 tried).
 _STEPS = 12
 
 THINNEST_RIM, THINNEST_RING = 0.5, 1.75
@@ -49,6 +51,9 @@ class RootSection(eqx.Module):
         chord: s_Fn between both fillets [m].
         distance: of the section from the axis of the virtual gear, along the middle of the tooth [m].
         fillet_radius: rho_F there [m].
+
+    Source: ISO 6336-3:2019, section where tangents make 30 degrees with the middle of the tooth, 60 in a
+    ring.
     """
 
     chord: Found
@@ -62,6 +67,8 @@ class LoadPoint(eqx.Module):
     Attributes:
         angle: alpha_Fen between the force and the perpendicular to the middle [rad].
         distance: from the axis of the virtual gear, negative for a ring [m].
+
+    Source: ISO 6336-3:2019, load direction angle.
     """
 
     angle: Found
@@ -281,12 +288,18 @@ def form_factor(
 
 
 def bending_arm(section: RootSection, load: LoadPoint) -> Found:
-    """Bending moment arm h_Fe, from the section to where the force crosses the middle of the tooth [m]."""
+    """Bending moment arm h_Fe, from the section to where the force crosses the middle of the tooth [m].
+
+    Source: ISO 6336-3:2019, bending moment arm.
+    """
     return jnp.abs(jnp.abs(load.distance) - section.distance)
 
 
 def notch_parameter(section: RootSection) -> Found:
-    """Notch parameter q_s = s_Fn/(2 rho_F) [1]."""
+    """Notch parameter q_s = s_Fn/(2 rho_F) [1].
+
+    Source: ISO 6336-3:2019, notch parameter.
+    """
     return section.chord / (2.0 * section.fillet_radius)
 
 

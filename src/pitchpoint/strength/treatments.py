@@ -17,6 +17,8 @@ class Life:
     Attributes:
         level: of the factor up to `few` cycles.
         few, many: numbers of load cycles.
+
+    Source: ISO 6336-2:2019 for Z_NT, ISO 6336-3:2019 for Y_NT.
     """
 
     level: float
@@ -38,6 +40,8 @@ class Treatment:
         smooth: that factor below Rz = 1 um.
         root_size: a, b, least of the size factor a - b m_n above m_n = 5 mm.
         flank_size: a, b, least of the size factor of the flank a - b m_n, at most 1.
+
+    Source: ISO 6336-2:2019 and ISO 6336-3:2019.
     """
 
     name: str

@@ -27,6 +27,8 @@ class Sensitivity(NamedTuple):
         rate: of the largest depth that a turn wears off flanks as new.
         depth: of the largest depth at the end of the march, after as many turns.
         life: of the turns to that depth.
+
+    From the derivative of one logarithm with respect to the other.
     """
 
     rate: float

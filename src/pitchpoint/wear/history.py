@@ -431,6 +431,8 @@ def travelled(
         operation: one operating point.
         models: any.
         known: contacts of a period and what they carry.
+
+    From the speeds of both surfaces over the contact, and the time that it takes.
     """
     smooth = models.holding(jnp.zeros((1, 1, 1)))
     at = state(design, operation, known.phase, smooth, engaged=known).conditions
@@ -529,6 +531,8 @@ def one_turn(
         cells: on both flanks.
         start: of the design.
         depth: worn off so far [m].
+
+    Source: Archard (1953): depth is the specific rate times pressure times way.
     """
     if not design.mesh.body.couples and wear.films is None:
         return _turn_alone(design, operation, models, wear, cells, start, depth)
@@ -638,6 +642,8 @@ def wear_of(
         wear: how material goes.
         cells: on both flanks.
         known: contacts of a period and what they carry.
+
+    Source: Archard (1953): depth is the specific rate times pressure times way.
     """
     period = design.period
     at, ways = travelled(design, operation, models, known)

@@ -34,6 +34,7 @@ __all__ = [
 
 _THIN_TIP = 0.2  # modules
 _SMALL_CLEARANCE = 0.1  # modules
+# Usual practice asks for 1.1 to 1.2: deviations and deflections take a part of it.
 _FAIR_RATIO = 1.1
 _GIVEN = ("module", "profile_shift", "addendum", "dedendum", "fillet_radius")
 # Profile shifts and distances are printed with three decimals: a smaller overlap is no fault [modules].

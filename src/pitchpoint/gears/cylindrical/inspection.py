@@ -172,6 +172,8 @@ class Backlash:
         circumferential: on the pitch circles in operation j_wt [m].
         normal: along the normal of the flanks j_bn [m].
         angular: turn of each gear while the other one is held [rad].
+
+    Source: ISO 21771:2007, circumferential, normal and angular backlash.
     """
 
     circumferential: float
@@ -223,6 +225,8 @@ def backlash_limits(
         centre_distance: nominal, positive [m].
         upper, lower: allowances of the normal tooth thickness of both gears A_sne, A_sni [m].
         deviation: by which the centre distance may be larger or smaller [m].
+
+    Source: allowances of DIN 3967:1978, each with both ends of the centre distance, see `backlash`.
     """
     middle = ((upper[0] + lower[0]) / 2.0, (upper[1] + lower[1]) / 2.0)
 
@@ -319,12 +323,18 @@ def profile_shift_sum(
 
 
 def involute(angle: float) -> float:
-    """Involute function inv(alpha) = tan(alpha) - alpha [rad]."""
+    """Involute function inv(alpha) = tan(alpha) - alpha [rad].
+
+    Source: ISO 21771:2007, involute function.
+    """
     return tan(angle) - angle
 
 
 def inverse_involute(value: float) -> float:
-    """Angle whose involute function has a value [rad]; NaN where there is none below 86 degrees."""
+    """Angle whose involute function has a value [rad]; NaN where there is none below 86 degrees.
+
+    Source: ISO 21771:2007, involute function, inverted by Newton's method.
+    """
     largest_angle = 1.5
     if not 0.0 < value <= involute(largest_angle):
         return 0.0 if value == 0.0 else nan

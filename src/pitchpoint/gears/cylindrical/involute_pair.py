@@ -77,6 +77,8 @@ class LineOfAction(PathOfContact):
 
     Args:
         pair: whose dimensions count.
+
+    Source: ISO 21771:2007, line of action with the points A to E on it.
     """
 
     def __init__(self, pair: "InvolutePair") -> None:

@@ -28,6 +28,8 @@ class FlankTolerances:
         profile_slope, profile_form: f_HαT, f_fαT, along the line of action [m].
         helix_slope, helix_form: f_HβT, f_fβT, along the line of action [m].
         profile_total, helix_total: F_αT, F_βT, of slope and form together [m].
+
+    Source: ISO 1328-1:2013, tolerances of deviations of the flanks.
     """
 
     single_pitch: float
@@ -47,6 +49,8 @@ class ToothErrors:
     Attributes:
         pitch: cumulative pitch deviation along the reference circle, of mean zero [m].
         profile_slope, profile_form, helix_slope, helix_form: of each flank, with sign [m].
+
+    Source: ISO 1328-1:2013, deviations of pitch, profile and helix.
     """
 
     pitch: Teeth
@@ -135,6 +139,8 @@ def gear_at_its_limits(
         tolerances: of its class.
         teeth: z.
         seed: of the drive and of the gear; the same seed gives the same gear.
+
+    Source: ISO 1328-1:2013 for the limits; how deviations are drawn within them is a choice.
     """
     draw = np.random.default_rng(seed)
     around = 2.0 * np.pi * np.arange(teeth) / teeth + draw.uniform(0.0, 2.0 * np.pi)

@@ -45,5 +45,8 @@ def standard_tolerance(*, grade: int, size: float) -> float:
 
 
 def symmetrical_deviation(field: str, size: float) -> float:
-    """Deviation to either side by a field such as js7, half of its standard tolerance [m]."""
+    """Deviation to either side by a field such as js7, half of its standard tolerance [m].
+
+    Source: ISO 286-1:2010, fields js.
+    """
     return standard_tolerance(grade=int(field.removeprefix("js")), size=size) / 2.0

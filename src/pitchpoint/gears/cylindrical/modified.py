@@ -39,6 +39,8 @@ class Modifications:
         end_relief: C_βI = C_βII at the ends of the face [m].
         end_relief_length: of each along the face [m]. None: a module, at most a tenth of the face.
         misalignment: f_Σβ over the face; positive where flanks part at its end z > 0 [m].
+
+    Source: ISO 21771:2007, relief of tip, root and ends, and crowning.
     """
 
     tip_relief: Two | None = None

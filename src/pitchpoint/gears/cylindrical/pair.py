@@ -29,6 +29,8 @@ class CylindricalPair(InvolutePair):
 
     A contact line enters the plane of action at one end face and leaves at the other; a spur pair has
     one slice, a line over the whole face, unless its surfaces change across the face.
+
+    Source: ISO 21771:2007, contact lines in the plane of action.
     """
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:

@@ -35,6 +35,8 @@ class RackLineOfAction(PathOfContact):
 
     Args:
         mesh: whose dimensions count.
+
+    Source: the line of action of ISO 21771:2007 as one of the gears becomes endlessly large.
     """
 
     def __init__(self, mesh: "RackAndPinion") -> None:

@@ -72,6 +72,8 @@ class ThinRaceBearing(eqx.Module):
         stiffness: of a ball between both races [N/m1.5].
         play: see `Balls` [m].
         bending, stretching: of the outer race, E/(1 - nu^2) I and E A [N m2, N].
+
+    Source: Palmgren (1959) for the balls, see `palmgren_1959`; the race bends like a wide strip.
     """
 
     angle: Float[Array, " ball"]
@@ -193,6 +195,8 @@ def on_balls(
     The balls stand where they would hold the ring in its wave if they and the play did not give way;
     where the ring would have to be pulled, they let it go. The gaps of the teeth are counted from the ring
     on balls without play: what those with play bear less lets the ring, and so the teeth, sit back.
+
+    From the compliance of a free ring, see `ring_modes`, and the law of the balls, see `ball_force`.
     """
     modes = _modes(bearing, ring, solid, loads)
     balls, free = modes.balls @ modes.balls.T, modes.lanes.shape[2:]

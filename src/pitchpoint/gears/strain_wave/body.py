@@ -144,7 +144,10 @@ class StrainWaveBody(GearBody):
 
 
 def left_behind(teeth: Float[Arrays, "2"]) -> Float[Array, "3"]:
-    """Teeth that are left behind in a turn of each member: factors of the rates, whose sum is zero."""
+    """Teeth that are left behind in a turn of each member: factors of the rates, whose sum is zero.
+
+    From Willis' relation of both splines, seen from the wave generator.
+    """
     z1, z2 = teeth
     return jnp.stack([z2 - z1, z1, -z2])
 

@@ -42,6 +42,7 @@ TOUCHING = 1e-3
 _STEPS = 64
 _BINS = 32
 _SPREAD_WEIGHT = 10.0
+# Above what the objective of any tooth can be: its spread is less than the depth of a few modules.
 _BARRED = 100.0
 
 Four = tuple[Array, Array, Array, Array]

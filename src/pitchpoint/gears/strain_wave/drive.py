@@ -470,6 +470,7 @@ def survey(
     upright = jnp.abs(jnp.imag(unit(-touching.at.direction) * touching.at.whole))
     part = upright / jnp.abs(touching.at.whole)
     reaches = overlaps & (part > 0.0)
+    # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
     play = jnp.min(jnp.where(reaches, touching.clearance / jnp.where(reaches, part, 1.0), jnp.inf))
     left = jnp.where(reaches, touching.clearance - part * play, jnp.inf)
     return Survey(

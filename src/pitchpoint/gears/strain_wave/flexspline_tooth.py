@@ -331,6 +331,8 @@ class InvoluteFlank(FlexsplineFlank):
         tip_rounding: radius of the rounded edge of the tip [m].
         tip_relief: by which an arc lies below the involute where the rounding begins [m].
         relief_length: of that arc [m].
+
+    Source: ISO 21771:2007, involute of a basic rack with profile shift.
     """
 
     teeth: Float[Array, ""]

@@ -70,6 +70,8 @@ def shaft_in_torsion(diameter: float, length: float) -> float:
     Args:
         diameter, length: [m].
 
+    Source: Timoshenko and Goodier (1970), torsion of circular shafts.
+
     Example:
         >>> round(shaft_in_torsion(0.01, 0.02))
         3893
@@ -86,6 +88,8 @@ class InSeries(eqx.Module):
             material, in the order of `parts` [rad/(N m)]; zero of rigid ones.
         parts: their names; static.
         ring: of the circular spline, which the teeth bend and stretch; None where it is rigid.
+
+    From springs in a row, whose compliances add up.
     """
 
     bottom: Float[Array, ""]

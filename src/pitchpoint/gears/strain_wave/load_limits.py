@@ -59,6 +59,8 @@ def face_stress(*, young: float, thickness: Values, curvature: Values) -> Values
         thickness: of the ring [m].
         curvature: change of it [1/m].
 
+    From Hooke's law half a thickness from the neutral line.
+
     Example:
         >>> face_stress(young=200e9, thickness=0.5e-3, curvature=1.0)
         50000000.0
@@ -74,7 +76,7 @@ def tube_shear(*, torque: Values, radius: float, thickness: Values) -> Values:
         radius: of its middle line [m].
         thickness: of its wall [m].
 
-    Source: Bredt.
+    Source: Bredt (1896).
 
     Example:
         >>> round(tube_shear(torque=100.0, radius=0.03, thickness=0.5e-3) / 1e6, 3)
@@ -85,6 +87,8 @@ def tube_shear(*, torque: Values, radius: float, thickness: Values) -> Values:
 
 def von_mises(*, normal: Values, shear: Values) -> Values:
     """Equivalent stress of one normal and one shear stress, sqrt(sigma^2 + 3 tau^2) [Pa].
+
+    Source: von Mises (1913).
 
     Example:
         >>> round(float(von_mises(normal=0.0, shear=15.0)), 2)
@@ -102,6 +106,8 @@ def goodman_safety(
         alternating, mean: equivalent stresses [Pa].
         endurance_limit: of the finished part under fully reversed bending S_e [Pa].
         tensile_strength: S_u [Pa].
+
+    Source: Goodman (1899), in the modified form that ends at S_e and S_u.
 
     Example:
         >>> strengths = {"endurance_limit": 40.0, "tensile_strength": 80.0}
@@ -127,6 +133,8 @@ def torque_by_goodman(
         shear_per_torque: shear stress for a torque of 1 N m [Pa/(N m)].
         endurance_limit, tensile_strength: [Pa].
         reversing: True if the torque changes its sense, and shear alternates; steady by default.
+
+    From `goodman_safety` and `von_mises`, solved for the shear stress.
 
     Example:
         >>> round(
@@ -179,6 +187,8 @@ def of_other_size(torque: float, *, size: float, known: float) -> float:
     Args:
         torque: of the known drive [N m].
         size, known: pitch diameters of this drive and of that one [m].
+
+    From stresses that stay as they are: forces go with the square of the size, their arms with the size.
 
     Example:
         >>> round(of_other_size(500.0, size=32.0, known=25.0))

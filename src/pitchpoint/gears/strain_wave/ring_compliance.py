@@ -65,6 +65,8 @@ def ring_compliance(
 
     Validity: thin ring, small displacements added to those by which the wave generator shaped it;
     the support is taken to hold in both directions; no warping of the cup and no bending along it.
+
+    From the least of that energy, one number of waves after the other.
     """
     support = ring.support_stiffness
     modes = _modes(ring, loads, _stiffness(ring, solid, waves, support, _cup(ring, solid)))

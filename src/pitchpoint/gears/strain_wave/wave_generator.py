@@ -23,6 +23,8 @@ class NeutralLine(eqx.Module):
         deflection: radial displacement on the long axis of the wave generator w0 [m].
         weights: amplitudes of cos 2p, cos 4p, ... of the radial displacement over w0, p being the
             angle from the long axis; they sum to one.
+
+    From the strain of the line, (v' + w)/r, which is zero to first order.
     """
 
     radius: Float[Array, ""]
@@ -64,7 +66,10 @@ def cosine(force_angle: float, relative: float) -> np.ndarray:
 
 
 def elliptical(force_angle: float, relative: float) -> np.ndarray:
-    """Ellipse with half axes r (1 + e) and r (1 - e); its constant part is left to the second order."""
+    """Ellipse with half axes r (1 + e) and r (1 - e); its constant part is left to the second order.
+
+    From the polar equation of the ellipse, in a Fourier series.
+    """
     angle = np.linspace(0.0, 2.0 * np.pi, 512, endpoint=False)
     long, short = 1.0 + relative, 1.0 - relative
     radius = long * short / np.hypot(long * np.sin(angle), short * np.cos(angle))
@@ -73,7 +78,11 @@ def elliptical(force_angle: float, relative: float) -> np.ndarray:
 
 
 def four_forces(force_angle: float, relative: float) -> np.ndarray:
-    """Ring under two pairs of equal outward forces at plus and minus an angle from the long axis."""
+    """Ring under two pairs of equal outward forces at plus and minus an angle from the long axis.
+
+    From the energy of bending of a ring that keeps its length: a force makes n waves of cos(n p)/(n^2 -
+    1)^2.
+    """
     orders = 2.0 * np.arange(1, TERMS + 1)
     amplitudes = np.cos(orders * force_angle) / (orders**2 - 1.0) ** 2
     # Outward forces far from the long axis pull it in; the sign tells.
@@ -81,5 +90,8 @@ def four_forces(force_angle: float, relative: float) -> np.ndarray:
 
 
 def two_rollers(force_angle: float, relative: float) -> np.ndarray:
-    """Ring under two opposite outward forces."""
+    """Ring under two opposite outward forces.
+
+    From `four_forces` whose pairs lie on the long axis.
+    """
     return four_forces(0.0, relative)

@@ -22,7 +22,7 @@ class TorusFace(eqx.Module):
         radius: of the arc; positive where the gear is convex, negative where it is concave [m].
         pressure_angle: of the basic rack [rad].
 
-    Source: Liu and Xiong, Dynamic characteristics of torus involute gear drive, section 2: profile shift
+    Source: Liu and Xiong (`liu_xiong_2017`), section 2: profile shift
     of the second order across the face.
     """
 

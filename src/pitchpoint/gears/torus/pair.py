@@ -34,7 +34,7 @@ class TorusPair(InvolutePair):
             forces take both axes as that of gear 1: the axial load of gear 2 is along it, and along its own
             axis differs by the inclination times the normal force.
 
-    Source: Liu and Xiong, Dynamic characteristics of torus involute gear drive, section 2.
+    Source: Liu and Xiong (`liu_xiong_2017`), section 2.
     """
 
     shape: ClassVar[Shape] = "ellipse"

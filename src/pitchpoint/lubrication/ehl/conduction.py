@@ -28,6 +28,8 @@ class Conduction(eqx.Module):
         a: body of member 0.
         b: body of member 1.
         oil_conductivity: k of the oil, shape (...) [W/m/K].
+
+    Source: Jaeger (1942) for surfaces that pass, see `moving_strip`; across the film Fourier's law.
     """
 
     a: Conductor

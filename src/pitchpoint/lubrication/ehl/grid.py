@@ -135,7 +135,10 @@ def line_kernel(x: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[n
 
 
 def lowest(x: Arrays, values: Array, node: Array) -> tuple[Array, Array]:
-    """Place and value of the lowest point of the parabola through a lowest node and its neighbours."""
+    """Place and value of the lowest point of the parabola through a lowest node and its neighbours.
+
+    From Newton's divided differences.
+    """
     near = jnp.clip(node, 1, x.shape[0] - 2) + jnp.arange(-1, 2)
     (x0, x1, x2), (h0, h1, h2) = jnp.asarray(x)[near], values[near]
     slope, next_slope = (h1 - h0) / (x1 - x0), (h2 - h1) / (x2 - x1)
@@ -147,14 +150,20 @@ def lowest(x: Arrays, values: Array, node: Array) -> tuple[Array, Array]:
 
 
 def restricted(values: Float[Array, " node"]) -> Array:
-    """Means over the cells of the next coarser grid, each of which is one cell and half of both beside it."""
+    """Means over the cells of the next coarser grid, each of which is one cell and half of both beside it.
+
+    From the trapezoidal rule over three nodes.
+    """
     padded = jnp.pad(values, 1, mode="edge")
     return (0.25 * (padded[:-2] + padded[2:]) + 0.5 * values)[::2]
 
 
 @lru_cache(maxsize=16)
 def prolongation(coarse: int, fine: int) -> NDArray[np.float64]:
-    """Matrix from values at the nodes of a coarse grid to those of a finer one, shape (fine, coarse)."""
+    """Matrix from values at the nodes of a coarse grid to those of a finer one, shape (fine, coarse).
+
+    From Lagrange's cubics through the four nodes around.
+    """
     at = np.linspace(0.0, coarse - 1.0, fine)
     start = np.clip(np.floor(at).astype(int) - 1, 0, coarse - 4)
     matrix = np.zeros((fine, coarse))

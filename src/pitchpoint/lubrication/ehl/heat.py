@@ -170,6 +170,8 @@ def settled(
         problem: the same in units of its own, as warm as its inlet.
         warm: at which the turns ended.
         at: the grid.
+
+    From the implicit function theorem at the solution.
     """
     nodes = at.x.shape[0]
 

@@ -249,6 +249,8 @@ def guess(contact: LineContact) -> Array:
 
     An approach counts as the speed that would give rigid bodies with an oil that pressure does not thicken
     the same film, (3 pi sqrt(2) eta V R^(3/2)/w)^(2/3) for the one and 6 eta u R/w for the other.
+
+    Source: Moes (1992), see `moes_1992`.
     """
     load, oil, radius = contact.line_load, contact.fluid.viscosity, contact.radius
     closes = contact.approach > 0.0

@@ -74,6 +74,9 @@ def residual(problem: LineProblem, pressure: Array, level: Array, at: LineGrid) 
 
     A cell is full of oil, and balanced, or its oil is without pressure: the smaller of the oil pressure and
     of the defect of its balance is zero, the defect measured by the pressure that mends it.
+
+    Source: Reynolds (1886); where the film ends pressure and its slope are zero, Swift (1932) and Stieber
+    (1933).
     """
     gap = problem.gap(pressure, level, at)
     oil = pressure - problem.flow.asperity_pressure(gap)
@@ -239,6 +242,8 @@ def polished(
 
     Returns:
         Pressure, level, and what pressures and level answer to what is pushed, shape (node - 1, any).
+
+    From the implicit function theorem at the solution.
     """
     frozen, pressure, level = jax.lax.stop_gradient((problem, state.pressure, state.level))
     _, matrix = step(frozen, pressure, level, at)

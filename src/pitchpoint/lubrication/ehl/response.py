@@ -67,7 +67,10 @@ def pushed_rest(
 def answer(
     problem: LineProblem, push: LineProblem, pressure: Array, level: Array, at: LineGrid
 ) -> Float[Array, "rest 2"]:
-    """Changes of pressures and level of a solution, by the implicit function theorem, see `pushed_rest`."""
+    """Changes of pressures and level of a solution, by the implicit function theorem, see `pushed_rest`.
+
+    From the implicit function theorem at the solution.
+    """
     _, matrix = step(problem, pressure, level, at)
     changes: Array = jnp.linalg.solve(matrix, -pushed_rest(problem, push, pressure, level, at))
     return changes
@@ -95,6 +98,8 @@ def stiffness_and_damping(
 
     Returns:
         -dw/dh [N/m2] and dw/dV [N s/m2]; the latter is not a number where surfaces stand still on each other.
+
+    From the derivatives of the mean film to load and approach.
     """
     film = lambda tree, *state: tree.mean_film(*state, at) * tree.flow.height  # noqa: E731
     moved = jnp.pad(answers[:-1], ((1, 1), (0, 0)))

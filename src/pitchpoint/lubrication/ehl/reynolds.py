@@ -32,6 +32,8 @@ class Flow(eqx.Module):
         entrainment: mean speed of the surfaces over the unit of speed, 0 or 1 for the usual one.
         approach: of the surfaces to each other over unit of speed times L/R.
         temperature_rise: of the film above the inlet, of one number or shape (node,) [K].
+
+    Source: Reynolds (1886), with the mass that pressure and surfaces move through a gap.
     """
 
     fluid: Fluid
@@ -110,12 +112,18 @@ def upwind(values: Float[Arrays, "node *row"]) -> Array:
 
 
 def third_order(before: Places, here: Places, behind: Places) -> Places:
-    """Value at the face behind a node, of the parabola through its mean and those beside it."""
+    """Value at the face behind a node, of the parabola through its mean and those beside it.
+
+    From the parabola that has the means of three cells.
+    """
     return (2.0 * behind + 5.0 * here - before) / 6.0
 
 
 class NodeBalance(NamedTuple):
-    """Balance of the inner cells with its derivatives, for REACH nodes from two before to one behind."""
+    """Balance of the inner cells with its derivatives, for REACH nodes from two before to one behind.
+
+    Source: Reynolds (1886), see `Flow`.
+    """
 
     gain: Float[Array, " inner"]
     own: Float[Array, " inner"]
@@ -127,6 +135,8 @@ def banded(flow: Flow, film_pressure: Nodes, gap: Nodes, at: LineGrid) -> NodeBa
     """Balance of every cell, and its derivatives to pressure and gap at the nodes that it knows.
 
     Nodes that no cell knows together are moved together: four directions find a whole band matrix.
+
+    Source: Reynolds (1886), see `Flow`; derivatives by automatic differentiation.
     """
     gain, by, diagonal = jax.linearize(
         lambda pressure, height: flow.balance(pressure, height, at),

@@ -72,6 +72,8 @@ class Spread(NamedTuple):
         strip_a: rise of surface a by heat per area into it, shape (node, node) [K m2/W].
         strip_b: of surface b.
         across: heat from surface b to a by their difference k/h, shape (node,) [W/m2/K].
+
+    From Fourier's law across the film, with even heat over its thickness.
     """
 
     strip_a: Float[Array, "node node"]
@@ -114,6 +116,8 @@ class PassingSurfaces(NamedTuple):
     Attributes:
         along: towards larger x, shape (node, node), root of the unit of length.
         against: towards smaller x.
+
+    Source: Jaeger (1942), see `moving_strip`.
     """
 
     along: Float[Array, "node node"]
@@ -266,6 +270,8 @@ class Past(NamedTuple):
         moved: by how much that differed from what it began with, shape (node,) [K].
         all_found: differences between turns, shape (REMEMBERED, node) [K].
         all_moved: of the same turns.
+
+    Source: Anderson (1965), see `accelerated`.
     """
 
     found: Float[Array, " node"]

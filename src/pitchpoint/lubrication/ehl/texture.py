@@ -99,7 +99,10 @@ class Smooth(Texture):
 def fitted_pressure(
     *, gap: Each, roughness_rq: Each, modulus: Each, eta_beta_sigma: Each, sigma_over_beta: Each
 ) -> Array:
-    """Greenwood and Tripp's pressure with the usual fit of its integral [Pa]."""
+    """Greenwood and Tripp's pressure with the usual fit of its integral [Pa].
+
+    Source: Greenwood and Tripp (1970); fit of Hu et al. (1994).
+    """
     stiff = greenwood_tripp_stiffness(modulus, eta_beta_sigma, sigma_over_beta)
     pressure: Array = stiff * hu_1994(ratio=gap / roughness_rq)
     return pressure
@@ -108,7 +111,10 @@ def fitted_pressure(
 def one_rough_side(
     *, gap: Each, roughness_rq: Each, modulus: Each, eta_beta_sigma: Each, sigma_over_beta: Each
 ) -> Array:
-    """Greenwood and Williamson's pressure with summits as high as the composite roughness [Pa]."""
+    """Greenwood and Williamson's pressure with summits as high as the composite roughness [Pa].
+
+    Source: Greenwood and Williamson (1966).
+    """
     summit = roughness_rq / sigma_over_beta
     pressure: Array = greenwood_williamson_1966(
         gap=gap,

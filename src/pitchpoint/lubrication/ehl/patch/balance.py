@@ -71,6 +71,8 @@ def balance(problem: PatchProblem, oil: Field, gap: Field, rate: Array) -> tuple
 
     Returns:
         Both of the inner cells of each row, shape (y, x - 2).
+
+    Source: Reynolds (1886), over cells of finite volume.
     """
     flows = through(problem, oil, gap)
     width, spacing = _widths(problem)
@@ -97,6 +99,8 @@ class Through(NamedTuple):
         drawn: flow along by the surfaces.
         sides: as `conducts`, across, with the free ends, shape (y + 1, x).
         carried: as `drawn`, across.
+
+    Source: Reynolds (1886), flow by pressure and flow by the surfaces.
     """
 
     mass: Array
@@ -243,6 +247,8 @@ def stencil(
     """Balance with its derivatives to the pressure of the oil and to gaps.
 
     Cells that no balance knows together are moved together: sixteen directions find all.
+
+    Source: Reynolds (1886), see `balance`; derivatives by automatic differentiation.
     """
     gain, by, diagonal = jax.linearize(
         lambda pressure, height: balance(problem, pressure, height, rate), oil, gap, has_aux=True

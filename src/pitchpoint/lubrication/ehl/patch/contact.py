@@ -53,6 +53,8 @@ class PatchContact(eqx.Module):
         heights: maps of what stands out of the surfaces, or of both together.
         conduction: of heat, for the temperature of film and surfaces; None for isothermal films.
         ends: of the bodies in `contact.half_space.ENDS`; static.
+
+    From the parabolas that touch both bodies where they meet.
     """
 
     load: Float[Arrays, ""]

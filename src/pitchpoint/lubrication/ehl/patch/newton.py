@@ -292,7 +292,10 @@ def _bands(inner: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.i
 
 
 def by_rows(alone: Rows, share: Array, rest: Array) -> Array:
-    """Change that would mend what is left, if rows felt each other by the load alone."""
+    """Change that would mend what is left, if rows felt each other by the load alone.
+
+    From the rows solved one by one and one equation for the load that they carry together.
+    """
     by_row = rest[:-1].reshape(share.size, -1)
     count = len(alone.inverse)
     if count == share.size:
@@ -314,6 +317,8 @@ def mended(at: Linear, alone: Rows, rest: Array) -> Array:
         at: balances.
         alone: rows inverted, there or nearby.
         rest: of all inner cells, the load at last.
+
+    Source: Eisenstat, Elman and Schultz (1983), generalised conjugate residuals.
     """
     size = rest.shape[0]
     directions = jnp.zeros((DIRECTIONS, size))
@@ -459,6 +464,8 @@ def iterated(
         manner: in which steps are taken.
         most: steps after which an attempt is given up.
         enough: residual at which the iteration ends.
+
+    Source: Kelley and Keyes (1998), pseudo-transient continuation; how its time grows is by trial.
     """
     state = PatchIterate(pressure, level, np.inf, np.inf, 0)
     rate, alone, age = 1.0 / time, None, 0

@@ -39,6 +39,8 @@ def polished(problem: PatchProblem, pressure: Array, level: Array) -> tuple[Arra
         problem: the contact.
         pressure: solution, shape (y, x).
         level: of the surfaces.
+
+    From the implicit function theorem at the solution.
     """
     frozen, pressure, level = jax.lax.stop_gradient((problem, pressure, level))
     at = linear(frozen, pressure, level, jnp.zeros(()))
@@ -59,6 +61,8 @@ def polished_warm(
         problem: the contact, as warm as in the solution.
         pressure: solution, shape (y, x).
         level: of the surfaces.
+
+    From the implicit function theorem at the solution.
     """
     rise = problem.flow.temperature_rise
     frozen, still, pressure, level, rise = jax.lax.stop_gradient(

@@ -162,6 +162,8 @@ def march_patches(
         InputError: what `solve_patch` refuses, contacts of several kinds, times that do not rise, an approach
             of later contacts, which the march finds, entrainment that turns round, a tolerance that is not
             positive, a moment after which nothing comes.
+
+    From the parabola through three times, whose slope at the last one is d(rho h)/dt.
     """
     if steps not in STEPS:
         raise InputError(f'there are no steps "{steps}"', key="steps", allowed=STEPS)
