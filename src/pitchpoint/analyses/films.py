@@ -127,24 +127,6 @@ def _squeeze_pieces(built: Built) -> Iterable[Piece]:
     return pieces(built)
 
 
-def _squeeze(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
-    from pitchpoint.analyses.film_squeeze import squeeze_part
-
-    return squeeze_part(built, piece, progress)
-
-
-def _further(built: Built, last: xr.Dataset, progress: PieceProgress) -> xr.Dataset | None:
-    from pitchpoint.analyses.film_squeeze import further
-
-    return further(built, last, progress)
-
-
-def _whole(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    from pitchpoint.analyses.film_squeeze import joined
-
-    return joined(built, parts)
-
-
 def _squeeze_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("film_squeeze")
     if data is None:
@@ -230,10 +212,10 @@ FILM_SQUEEZE = Analysis(
     of="mesh",
     under_load=True,
     lacks=_steady,
-    compute=_squeeze,
+    compute="pitchpoint.analyses.film_squeeze:squeeze_part",
     pieces=_squeeze_pieces,
-    joined=_whole,
-    onward=_further,
+    joined="pitchpoint.analyses.film_squeeze:joined",
+    onward="pitchpoint.analyses.film_squeeze:further",
     main=_SQUEEZE_MAIN,
     figures=_squeeze_figures,
 )

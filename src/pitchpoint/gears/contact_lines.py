@@ -14,6 +14,7 @@ from pitchpoint.contact.surface import Offset, other_side
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.gear_body import GearBody
+from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import ACTION, way
 
@@ -47,7 +48,23 @@ class PathOfContact(abc.ABC):
 
     One program asks for the same lengths in many places; this record answers one question of it
     and is then thrown away, so that no traced value outlives its trace. Source: ISO 21771:2007.
+
+    Args:
+        mesh: whose dimensions count.
     """
+
+    def __init__(self, mesh: Any) -> None:
+        self.mesh = mesh
+
+    @property
+    @abc.abstractmethod
+    def pinion(self) -> InvoluteGear:
+        """The gear from whose base circle positions are counted."""
+
+    @property
+    @abc.abstractmethod
+    def base_radius(self) -> Float[Array, ""]:
+        """Base radius of the pinion [m]."""
 
     @property
     @abc.abstractmethod
@@ -56,18 +73,19 @@ class PathOfContact(abc.ABC):
 
     @property
     @abc.abstractmethod
-    def base_pitch(self) -> Float[Array, ""]:
-        """Transverse base pitch p_bt, the pitch on the line of action [m]."""
-
-    @property
-    @abc.abstractmethod
     def pitch_position(self) -> Float[Array, ""]:
         """Position of the pitch point C from N1 [m]."""
 
-    @property
-    @abc.abstractmethod
+    @cached_property
+    def base_pitch(self) -> Float[Array, ""]:
+        """Transverse base pitch p_bt, the pitch on the line of action [m]."""
+        return 2.0 * jnp.pi * self.base_radius / self.pinion.teeth
+
+    @cached_property
     def overlap_ratio(self) -> Float[Array, ""]:
         """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
+        pinion, width = self.pinion, self.mesh.face_width
+        return jnp.asarray(width * jnp.sin(pinion.helix_angle) / (jnp.pi * pinion.module))
 
     @cached_property
     def pitch_path(self) -> Float[Array, ""]:

@@ -45,6 +45,7 @@ __all__ = [
     "line",
     "line_heights",
     "merged",
+    "order_bars",
     "pair_key",
     "plain",
     "rounded",
@@ -308,6 +309,19 @@ def hovered(values: Any) -> str:
 def plain(key: Key, x: Any, y: Any, unit: str, **more: Any) -> Trace:
     """Line of an entry of a legend, as `line` is that of a curve."""
     return line(Curve("", "", "", key.label, key.colour, key.dash), x, y, unit, **more)
+
+
+def order_bars(key: Key, orders: np.ndarray, amplitudes: Any, unit: str) -> Trace:
+    """Bars of the amplitudes of orders, shapes (order,)."""
+    return {
+        "type": "bar",
+        "name": text(key.label),
+        "meta": "",
+        "x": orders.tolist(),
+        "y": rounded(amplitudes),
+        "marker": {"color": key.colour},
+        "hovertemplate": f"%{{y:.4~r}} {unit}<br>order %{{x}}",
+    }
 
 
 def continued(x: np.ndarray, y: np.ndarray, most: int = 600) -> tuple[np.ndarray, np.ndarray]:

@@ -75,45 +75,51 @@ def zero_backlash_centre_distance(
 class LineOfAction(PathOfContact):
     """Lengths on the line of action of a pair, and what they follow from.
 
-    Args:
-        pair: whose dimensions count.
-
     Source: ISO 21771:2007, line of action with the points A to E on it.
     """
 
-    def __init__(self, pair: "InvolutePair") -> None:
-        self.pair = pair
+    mesh: "InvolutePair"
 
     @cached_property
     def gears(self) -> tuple[InvoluteGear, InvoluteGear]:
         """Both gears for themselves."""
-        return self.pair.gears
+        return self.mesh.gears
+
+    @property
+    def pinion(self) -> InvoluteGear:
+        """Gear 1."""
+        return self.gears[0]
+
+    @property
+    def base_radius(self) -> Float[Array, ""]:
+        """That of gear 1 [m]."""
+        return self.base_radii[0]
 
     @cached_property
     def transverse_pressure_angle(self) -> Float[Array, ""]:
         """Pressure angle in the transverse section alpha_t [rad]."""
-        return transverse_angle(self.pair.pressure_angle, self.pair.helix_angle)
+        return transverse_angle(self.mesh.pressure_angle, self.mesh.helix_angle)
 
     @cached_property
     def slope(self) -> Float[Array, ""]:
         """Cosine of the helix angle on the base cylinders."""
-        return jnp.cos(self.pair.base_helix_angle)
+        return jnp.cos(self.mesh.base_helix_angle)
 
     @cached_property
     def base_radii(self) -> Float[Array, "2"]:
         """Base radii r_b1, r_b2 [m]."""
-        reference = self.pair.teeth * self.pair.module / (2.0 * jnp.cos(self.pair.helix_angle))
+        reference = self.mesh.teeth * self.mesh.module / (2.0 * jnp.cos(self.mesh.helix_angle))
         return reference * jnp.cos(self.transverse_pressure_angle)
 
     @cached_property
     def distance(self) -> Float[Array, ""]:
         """Centre distance with the sign that the sum of the radii has [m]."""
-        return -self.pair.centre_distance if self.pair.internal else self.pair.centre_distance
+        return -self.mesh.centre_distance if self.mesh.internal else self.mesh.centre_distance
 
     @cached_property
     def working_radii(self) -> Float[Array, "2"]:
         """Radii of the pitch circles in operation r_w1, r_w2 [m]."""
-        return self.distance * self.pair.teeth / jnp.sum(self.pair.teeth)
+        return self.distance * self.mesh.teeth / jnp.sum(self.mesh.teeth)
 
     @cached_property
     def cosine(self) -> Float[Array, ""]:
@@ -124,11 +130,6 @@ class LineOfAction(PathOfContact):
     def sine(self) -> Float[Array, ""]:
         """Sine of the working pressure angle."""
         return jnp.sin(jnp.arccos(self.cosine))
-
-    @cached_property
-    def base_pitch(self) -> Float[Array, ""]:
-        """Transverse base pitch p_bt, the pitch on the line of action [m]."""
-        return 2.0 * jnp.pi * self.base_radii[0] / self.pair.teeth[0]
 
     @cached_property
     def tangent_length(self) -> Float[Array, ""]:
@@ -151,12 +152,6 @@ class LineOfAction(PathOfContact):
     def pitch_position(self) -> Float[Array, ""]:
         """Position of the pitch point C from N1 [m]."""
         return self.working_radii[0] * self.sine
-
-    @cached_property
-    def overlap_ratio(self) -> Float[Array, ""]:
-        """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
-        pair = self.pair
-        return pair.face_width * jnp.sin(pair.helix_angle) / (jnp.pi * pair.module)
 
 
 class InvolutePair(InvoluteMesh):

@@ -33,39 +33,35 @@ __all__ = ["RackAndPinion"]
 class RackLineOfAction(PathOfContact):
     """Lengths on the line of action of rack and pinion.
 
-    Args:
-        mesh: whose dimensions count.
-
     Source: the line of action of ISO 21771:2007 as one of the gears becomes endlessly large.
     """
 
-    def __init__(self, mesh: "RackAndPinion") -> None:
-        self.mesh = mesh
+    mesh: "RackAndPinion"
+
+    @property
+    def pinion(self) -> InvoluteGear:
+        """That of the mesh."""
+        return self.mesh.pinion
 
     @cached_property
     def angle(self) -> Float[Array, ""]:
         """Transverse pressure angle of rack and pinion [rad]: it is that in operation, at any distance."""
-        return self.mesh.pinion.transverse_pressure_angle
+        return self.pinion.transverse_pressure_angle
 
     @cached_property
     def base_radius(self) -> Float[Array, ""]:
         """Base radius of the pinion [m]."""
-        return self.mesh.pinion.base_radius
-
-    @cached_property
-    def base_pitch(self) -> Float[Array, ""]:
-        """Transverse base pitch p_bt, the pitch on the line of action [m]."""
-        return 2.0 * jnp.pi * self.base_radius / self.mesh.pinion.teeth
+        return self.pinion.base_radius
 
     @cached_property
     def slope(self) -> Float[Array, ""]:
         """Cosine of the helix angle on the base cylinder."""
-        return jnp.cos(self.mesh.pinion.base_helix_angle)
+        return jnp.cos(self.pinion.base_helix_angle)
 
     @cached_property
     def limits(self) -> Float[Array, "2"]:
         """Positions of A and E from N1 [m]: A where the rack or an undercut ends, E on the pinion's tip."""
-        pinion, mesh = self.mesh.pinion, self.mesh
+        pinion, mesh = self.pinion, self.mesh
         start = self.at_depth(mesh.distance - mesh.rack.tip)
         if pinion.undercut:
             start = jnp.maximum(start, pinion.form_roll_length)
@@ -79,12 +75,6 @@ class RackLineOfAction(PathOfContact):
     def pitch_position(self) -> Float[Array, ""]:
         """Position of the pitch point C from N1 [m]."""
         return self.base_radius * jnp.tan(self.angle)
-
-    @cached_property
-    def overlap_ratio(self) -> Float[Array, ""]:
-        """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
-        pinion = self.mesh.pinion
-        return self.mesh.face_width * jnp.sin(pinion.helix_angle) / (jnp.pi * pinion.module)
 
 
 class RackAndPinion(InvoluteMesh):

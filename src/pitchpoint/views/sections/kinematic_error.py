@@ -15,14 +15,12 @@ from pitchpoint.views.figures import (
     Figure,
     Key,
     Panel,
-    Trace,
     continued,
     display,
     layout,
+    order_bars,
     plain,
-    rounded,
     short_axis,
-    text,
 )
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
@@ -133,7 +131,7 @@ def _spectrum(name: str, data: xr.Dataset, position: int, member: str) -> Figure
     return Figure(
         name,
         f"Orders by {show.the(member)}",
-        [_bars(key, lines[k], orders, unit) for k, key in enumerate(_KEYS.values())],
+        [order_bars(key, orders, lines[k][orders], unit) for k, key in enumerate(_KEYS.values())],
         layout(
             f"order, per {data.attrs['own_turn'].format(member)}",
             short_axis("kinematic_error_spectrum", data),
@@ -154,18 +152,6 @@ def _orders(lines: np.ndarray) -> np.ndarray:
     half = lines[:, : lines.shape[1] // 2 + 2]
     seen = np.flatnonzero(np.nanmax(half[:, 1:], axis=0) > _LEAST * np.nanmax(half[:, 1:])) + 1
     return np.arange(1, max(int(seen[-1]) if seen.size else 0, _FEWEST) + 1)
-
-
-def _bars(key: Key, amplitudes: np.ndarray, orders: np.ndarray, unit: str) -> Trace:
-    return {
-        "type": "bar",
-        "name": text(key.label),
-        "meta": "",
-        "x": orders.tolist(),
-        "y": rounded(amplitudes[orders]),
-        "marker": {"color": key.colour},
-        "hovertemplate": f"%{{y:.4~r}} {unit}<br>order %{{x}}",
-    }
 
 
 def error_rows(outcome: Outcome) -> list[dict[str, str]]:

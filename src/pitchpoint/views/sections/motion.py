@@ -24,11 +24,11 @@ from pitchpoint.views.figures import (
     law_title,
     laws,
     layout,
+    order_bars,
     pair_key,
     plain,
     rounded,
     short_axis,
-    text,
 )
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
@@ -219,15 +219,8 @@ def _orders(data: xr.Dataset, variable: str, values: np.ndarray, key: Key) -> Tr
     """Amplitudes of the orders of the mesh frequency; that of order zero is the mean."""
     orders = data["order"].values
     shown = (orders > 0.0) & (orders <= 20.0)
-    return {
-        "type": "bar",
-        "name": text(key.label),
-        "meta": "",
-        "x": orders[shown].tolist(),
-        "y": rounded(display(variable, values[shown])),
-        "marker": {"color": key.colour},
-        "hovertemplate": f"%{{y:.4~r}} {show.unit_of(variable)}<br>order %{{x}}",
-    }
+    amplitudes = display(variable, values[shown])
+    return order_bars(key, orders[shown], amplitudes, show.unit_of(variable))
 
 
 def _of_orders(name: str, title: str, variable: str, bars: list[Trace]) -> Figure:

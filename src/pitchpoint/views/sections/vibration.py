@@ -22,11 +22,10 @@ from pitchpoint.views.figures import (
     continued,
     display,
     layout,
+    order_bars,
     pair_key,
     plain,
-    rounded,
     short_axis,
-    text,
     verticals,
 )
 from pitchpoint.views.inputs import words
@@ -231,15 +230,12 @@ def _spectrum(name: str, data: xr.Dataset) -> Figure:
         values for values, ok in zip(data["spectrum"].values, _found(data), strict=True) if ok
     ]
     traces = [
-        {
-            "type": "bar",
-            "name": text(key.label),
-            "meta": "",
-            "x": data["order"].values[wanted].tolist(),
-            "y": rounded(display("spectrum", values[wanted])),
-            "marker": {"color": key.colour},
-            "hovertemplate": f"%{{y:.4~r}} {show.unit_of('spectrum')}<br>order %{{x}}",
-        }
+        order_bars(
+            key,
+            data["order"].values[wanted],
+            display("spectrum", values[wanted]),
+            show.unit_of("spectrum"),
+        )
         for key, values in zip(keys, spectra, strict=True)
     ]
     return Figure(
