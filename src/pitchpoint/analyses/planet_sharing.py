@@ -13,8 +13,7 @@ from pitchpoint.analyses.torsion import mesh_slopes
 from pitchpoint.cases.built_drive import BuiltTrain
 from pitchpoint.cases.schema import TrainTable
 from pitchpoint.doubts import GUESSED, Doubt
-from pitchpoint.drive.kinematics import HOUSING, Ends
-from pitchpoint.drive.torques import train_torques
+from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.loading.planets import PinEquivalents, path_stiffness, planet_forces
 from pitchpoint.results.store import dataset
 
@@ -65,11 +64,7 @@ def shared(built: BuiltTrain) -> Sharing:
     assert table is not None
     count = round(table.planets)
     meshes = [k for k, mesh in enumerate(train.meshes) if mesh.carrier != HOUSING]
-    radius = float(built.meshes[meshes[0]].dimensions["centre_distance"])
-    links = [mesh.link for mesh in train.meshes]
-    ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
-    ideal = train_torques(links, ends, load, [1.0] * len(links))
-    total = abs(sum(ideal.shares[k][table.carrier] for k in meshes)) / radius
+    total = built.pin_step * load
     pin = total / count
     torques = built.steps / np.array(built.copies) * load
     slopes = mesh_slopes(built)

@@ -1,6 +1,6 @@
 """Wind-up of a drive under load, as a dataset of a case."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -64,7 +64,8 @@ def _of_drive(built: Ready, torques: np.ndarray) -> xr.Dataset:
     """Wind-up and stiffness at the output: stages are springs one behind the other.
 
     Each adds its rotation times the ratio between it and the output, and carries the load times the
-    same ratio. Of the phases the worst meeting counts.
+    same ratio. Pins of planets that yield are springs behind the teeth of their set. Of the phases the worst
+    meeting counts.
     """
     steps, copies = built.steps, np.array(built.copies)
     torsions, numbers = _of_meshes(built, torques), np.array(built.mesh_numbers)
@@ -77,24 +78,29 @@ def _of_drive(built: Ready, torques: np.ndarray) -> xr.Dataset:
 
     slopes = np.stack([torsion["tangent_torsional_stiffness"] for torsion in torsions], -1)
     slopes *= copies / steps**2
-    slope, turned = 1.0 / np.sum(1.0 / slopes, axis=-1), at_output("wind_up")
-    slopes = np.stack(
-        [1.0 / np.sum(1.0 / slopes[:, of_stage], axis=-1) for of_stage in together], -1
-    )
-    turned = np.stack([np.sum(turned[:, of_stage], axis=-1) for of_stage in together], -1)
-    told_parts = (mesh.design.mesh.body.yielding for mesh in built.meshes)
-    yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
-    parts = _parts_of_meshes(built, steps, torsions)
+    turned, pins = at_output("wind_up"), built.pin_compliances
+    of_stages = np.array([pins.get(number, 0.0) for number in built.numbers])
+    yielded = _summed(1.0 / slopes, together) + of_stages
+    stage_turned = _summed(turned, together) + of_stages * torques[:, None]
+    # Those of a set in a file of its own are of none of its meshes alone.
+    slope = 1.0 / (yielded.sum(axis=-1) + pins.get(0, 0.0))
+    turned = stage_turned.sum(axis=-1) + pins.get(0, 0.0) * torques
+    yields, rigid = _yielding(built)
+    parts = _parts_of_meshes(built, steps, torsions) | {
+        f"stage {number}: {PINS}" if number else PINS: compliance * torques
+        for number, compliance in pins.items()
+        if compliance
+    }
     assumed = proportions_words(built.meshes)
     data = dataset(
         {
-            "wind_up": (("torque",), turned.sum(axis=-1)),
-            "stage_wind_up": (("torque", "stage"), turned),
-            "torsional_stiffness": (("torque",), _secant(torques, turned.sum(axis=-1), slope)),
+            "wind_up": (("torque",), turned),
+            "stage_wind_up": (("torque", "stage"), stage_turned),
+            "torsional_stiffness": (("torque",), _secant(torques, turned, slope)),
             "tangent_torsional_stiffness": (("torque",), slope),
             "stage_torsional_stiffness": (
                 ("torque", "stage"),
-                _secant(torques[:, None], turned, slopes),
+                _secant(torques[:, None], stage_turned, 1.0 / yielded),
             ),
             "angular_transmission_error_range": (
                 ("torque",),
@@ -113,13 +119,13 @@ def _of_drive(built: Ready, torques: np.ndarray) -> xr.Dataset:
         title="torsion",
         travels=built.travels,
         warnings=[
-            *_lost(built, turned.sum(axis=-1), torques),
+            *_lost(built, turned, torques),
             *_on_edges_of_meshes(built, torques, torsions),
         ],
         note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
         brief=f"{'; '.join(rigid)} are not in it{proportions_counted(built.meshes)}",
-        left_out=_SLOPELESS if parts else "",
-        solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
+        left_out=_left_out(built, any(torsion["parts"] for torsion in torsions)),
+        solve=told(locked_or_lost(False, np.isnan(turned))),
     )
     data["torsional_stiffness"].attrs.update(_covered("; ".join(yields), assumed))
     return data
@@ -129,6 +135,18 @@ _SLOPELESS = (
     "Slopes K1 to K3, lost motion and hysteresis loss as in catalogues are those of one mesh: the strain "
     "wave gear in a file of its own has them."
 )
+
+_IDLE_PINS = (
+    "pin_stiffness does not count: the carrier is free, and the meshes of a planet hold each other in "
+    "balance along the circle of its pin."
+)
+
+
+def _left_out(built: Ready, slopeless: bool) -> str:
+    """Sentences on what catalogues have and a drive has not, and on pins that bear nothing."""
+    tables = [(train.case.train, train.pin_step) for train in built.trains.values()]
+    idle = any(table and table.pin_stiffness and not step for table, step in tables)
+    return " ".join([*[_SLOPELESS] * slopeless, *[_IDLE_PINS] * idle])
 
 
 def _of_meshes(built: Ready, torques: np.ndarray) -> list[dict[str, Any]]:
@@ -150,15 +168,49 @@ def mesh_slopes(built: Ready) -> np.ndarray:
 def _parts_of_meshes(
     built: Ready, steps: np.ndarray, each: list[dict[str, Any]]
 ) -> dict[str, np.ndarray]:
-    """Parts of the wind-up at the output by stage and name [rad]; nothing where no body couples teeth."""
-    if not any(torsion["parts"] for torsion in each):
+    """Parts of the wind-up at the output by stage and name [rad].
+
+    Nothing where no body couples teeth and no pins of planets yield.
+    """
+    if not (any(torsion["parts"] for torsion in each) or any(built.pin_compliances.values())):
         return {}
     parts: dict[str, np.ndarray] = {}
-    for number, step, torsion in zip(built.mesh_numbers, steps, each, strict=True):
+    for label, step, torsion in zip(_part_labels(built), steps, each, strict=True):
         for name, values in (torsion["parts"] or {"teeth": torsion["wind_up"]}).items():
-            part = f"stage {number}: {name}"
+            part = f"{label}: {name}"
             parts[part] = parts.get(part, 0.0) + step * values
     return parts
+
+
+def _part_labels(built: Ready) -> list[str]:
+    """What each mesh is called among parts of the wind-up: its stage, in a set by itself its bodies."""
+    if 0 in built.trains:
+        return [*built.stage_bodies]
+    return [f"stage {number}" for number in built.mesh_numbers]
+
+
+def _summed(values: np.ndarray, together: Sequence[np.ndarray]) -> np.ndarray:
+    """Sums over the meshes of each stage [torque stage]."""
+    return np.stack([values[:, of_stage].sum(axis=-1) for of_stage in together], -1)
+
+
+PINS = "pins of the planets"
+
+
+def _yielding(built: Ready) -> tuple[dict[str, None], dict[str, None]]:
+    """What yields in meshes and sets, and what is left out, in words."""
+    told_parts = (mesh.design.mesh.body.yielding for mesh in built.meshes)
+    yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
+    # Those of a free carrier bear nothing along their circle.
+    bearing = {number: train for number, train in built.trains.items() if train.pin_step}
+    for number, train in reversed(bearing.items()):
+        pins = f"pins of stage {number}" if number else PINS
+        if train.pin_compliance:
+            yields[pins] = None
+        else:
+            behind, *others = rigid
+            rigid = dict.fromkeys((f"{pins}, {behind}", *others))
+    return yields, rigid
 
 
 def _on_edges_of_meshes(built: Ready, torques: np.ndarray, each: list[dict[str, Any]]) -> list[str]:

@@ -218,6 +218,7 @@ class Built:
     documents: ClassVar[tuple[()]] = ()
     stage_bodies: ClassVar[tuple[()]] = ()
     trains: ClassVar[Mapping[int, Any]] = {}
+    pin_compliances: ClassVar[Mapping[int, float]] = {}
     planets: ClassVar[int] = 0
     on_strength: ClassVar[tuple[()]] = ()
     on_load_factors: ClassVar[tuple[()]] = ()

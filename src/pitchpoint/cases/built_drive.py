@@ -23,6 +23,8 @@ from pitchpoint.cases.build import (
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.schema import DriveCase, StageTable
 from pitchpoint.doubts import in_stage
+from pitchpoint.drive.kinematics import HOUSING, Ends
+from pitchpoint.drive.torques import TrainTorques, train_torques
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Drive
 from pitchpoint.efficiency.drive_summary import drive_figures
@@ -236,6 +238,18 @@ class BuiltDrive:
         return {number: train for number, stage in numbered for train in stage.trains.values()}
 
     @property
+    def pin_compliances(self) -> Mapping[int, float]:
+        """Turn of the output for a unit on it by which pins of each set yield, by stage [rad/(N m)].
+
+        A unit at the output is a torque on each stage, and what turns there turns the output as much less.
+        """
+        onward = dict(zip(self.numbers, self.onward, strict=True))
+        return {
+            number: float(onward[number] ** 2 * train.pin_compliance)
+            for number, train in self.trains.items()
+        }
+
+    @property
     def planets(self) -> int:
         """How many planets share the load of the drive: none of stages in a row, whose sets have theirs."""
         return 0
@@ -386,10 +400,14 @@ class BuiltDrive:
 
         Without losses; the output turns as much for a unit turn of that member alone.
         """
-        onward = np.abs(self.motion[-1] / np.array(self.motion[1:]))
         return np.hstack(
-            [step * stage.steps for step, stage in zip(onward, self.stages, strict=True)]
+            [step * stage.steps for step, stage in zip(self.onward, self.stages, strict=True)]
         )
+
+    @property
+    def onward(self) -> np.ndarray:
+        """Torque at the output of each stage for a unit at that of the drive, without losses."""
+        return np.abs(self.motion[-1] / np.array(self.motion[1:]))
 
     @cached_property
     def _carried(self) -> list[float]:
@@ -588,6 +606,46 @@ class BuiltTrain(BuiltDrive):
     def copies(self) -> tuple[int, ...]:
         """How many there are of each mesh."""
         return tuple(mesh.copies for mesh in self.design.meshes)
+
+    @cached_property
+    def ideal_torques(self) -> TrainTorques:
+        """Torques of the bodies for a unit at the output, without losses."""
+        train = self.design
+        links = [mesh.link for mesh in train.meshes]
+        ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
+        return train_torques(links, ends, 1.0, [1.0] * len(links))
+
+    @cached_property
+    def pin_step(self) -> float:
+        """Force on all pins of the planets along their circle for a unit at the output [1/m].
+
+        Zero where the carrier is free: the meshes of a planet then hold each other in balance.
+        """
+        table, places = self.case.train, self.design.meshes
+        assert table is not None
+        shares = self.ideal_torques.shares
+        on_planets = [k for k, place in enumerate(places) if place.carrier != HOUSING]
+        if table.carrier in self.design.free or not on_planets:
+            return 0.0
+        radius = float(self.meshes[on_planets[0]].dimensions["centre_distance"])
+        return abs(sum(shares[k][table.carrier] for k in on_planets)) / radius
+
+    @property
+    def pin_compliances(self) -> Mapping[int, float]:
+        """That of its own pins, under 0: it is no stage."""
+        return {0: self.pin_compliance}
+
+    @property
+    def pin_compliance(self) -> float:
+        """Turn of the output for a unit on it by which pins of the planets yield [rad/(N m)].
+
+        From virtual work: pins are springs side by side, each with its part of the load.
+        """
+        table = self.case.train
+        assert table is not None
+        if table.pin_stiffness is None:
+            return 0.0
+        return float(self.pin_step**2 / (self.planets * table.pin_stiffness))
 
     @property
     def steps(self) -> np.ndarray:

@@ -352,7 +352,7 @@ class TrainTable(Table):
     central_runout: Annotated[float, DEVIATION] | None = None
     """Runout F_r of sun and ring, each about the axis of the carrier."""
     pin_stiffness: Annotated[float, STIFFNESS] | None = None
-    """Stiffness of a pin and its bearing along the circle; rigid unless given."""
+    """Stiffness of a pin and its bearing along the circle, for sharing and torsion; rigid unless given."""
 
     @property
     def by_tolerance(self) -> bool:
@@ -548,14 +548,12 @@ def _check_pins(train: TrainTable, meshes: Sequence[tuple[str, ...]], wrong: Com
         if places not in (0, count):
             message = f"{places} were given for {count} planets; give the {what} of each"
             wrong.add(InputError(message, key=f"train.{key}"))
-    if not (train.pin_errors or train.by_tolerance):
-        for key in ("floating", "pin_stiffness"):
-            if getattr(train, key):
-                message = (
-                    "counts where pins are out of place; give pin_errors, pin_tolerance or the like, or "
-                    "leave it out"
-                )
-                wrong.add(InputError(message, key=f"train.{key}"))
+    if train.floating and not (train.pin_errors or train.by_tolerance):
+        message = (
+            "counts where pins are out of place; give pin_errors, pin_tolerance or the like, or leave it "
+            "out"
+        )
+        wrong.add(InputError(message, key="train.floating"))
 
 
 def _check_bearings(losses: Mapping[str, Loss], train: TrainTable, wrong: Complaints) -> None:

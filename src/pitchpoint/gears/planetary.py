@@ -371,7 +371,7 @@ class PlanetaryGears(Table):
     central_runout: Annotated[float, DEVIATION] | None = None
     """Runout F_r of sun and ring, each about the axis of the carrier."""
     pin_stiffness: Annotated[float, STIFFNESS] | None = None
-    """Stiffness of a pin and its bearing along the circle; rigid unless given."""
+    """Stiffness of a pin and its bearing along the circle, for sharing and torsion; rigid unless given."""
 
     @model_validator(mode="before")
     @classmethod

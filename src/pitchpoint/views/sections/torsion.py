@@ -470,7 +470,8 @@ def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     slopes = _slopes(data)
     rigid = _rigid(data)
     detail = figure.detail.replace(f"; {rigid} are not in it", "")
-    clauses = (slopes, _assumed(data), f"without {rigid}" if rigid else "", detail)
+    without = _pins(data) or (f"without {rigid}" if rigid else "")
+    clauses = (slopes, _assumed(data), without, detail)
     yield replace(figure, detail="; ".join(filter(None, clauses)), asked_by=("gears.yielding",))
     if "catalogue_lost_motion" in data:
         values = data["catalogue_lost_motion"].values
@@ -478,6 +479,15 @@ def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         detail = "at ±4 % of torque, tooth friction alone"
         asked_by = "gears.yielding", "gears.backlash", "gears.wave_generator.bearing.play"
         yield KeyFigure(71.0, "Lost motion", " and ".join(shown), detail, asked_by=asked_by)
+
+
+def _pins(data: xr.Dataset) -> str:
+    """What of a set is in a stiffness, in few words; empty where no planets bear on pins."""
+    counted = "pins" in data["torsional_stiffness"].attrs.get("covers", "")
+    left_out = "pins" in _rigid(data)
+    if counted:
+        return f"of teeth and {'some ' * left_out}pins"
+    return "of teeth alone" if left_out else ""
 
 
 def _rigid(data: xr.Dataset) -> str:
