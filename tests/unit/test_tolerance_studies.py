@@ -1,9 +1,13 @@
-"""Gears drawn within their tolerances: percentiles of the backlash against sampling of its closed form."""
+"""Gears drawn within their tolerances: backlash, kinematic error and safety against direct sampling."""
+
+import json
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import pitchpoint as pp
+from pitchpoint._jax import double_precision
 from pitchpoint.cases.schema import validate
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.din_3967 import thickness_allowances
@@ -89,7 +93,131 @@ def test_a_class_draws_the_misalignment_of_both_helix_slopes() -> None:
     limit = ranges["gears.misalignment"]
     assert (limit["start"], limit["stop"]) == pytest.approx((-np.hypot(*slopes), np.hypot(*slopes)))
     layout = layout_of(base, ranges, "sobol", 16, 0)
-    assert [*layout.axes] == [*KEYS, "gears.misalignment"]
+    drawn = ["misalignment", "share_of_tolerance.1", "share_of_tolerance.2", "seed"]
+    drawn = [f"gears.{'' if key == 'misalignment' else 'deviations.'}{key}" for key in drawn]
+    assert [*layout.axes] == [*KEYS, *drawn]
+    assert layout.axes[drawn[-1]].distribution == "uniform"
+    assert base.settings["gears.deviations.iso_class"] == [6, 7]
+
+
+SHAFT = {
+    "strength.bearing_span": "100 mm",
+    "strength.pinion_offset": "10 mm",
+    "strength.pinion_shaft_diameter": "30 mm",
+    "materials.gear_1": "case-hardened-mq",
+    "materials.gear_2": "case-hardened-mq",
+}
+GRADED = PAIR.set({"gears.inspection.iso_class": 6, **SHAFT})
+
+
+@pytest.fixture(scope="module")
+def graded() -> xr.Dataset:
+    """A study of a pair whose deviations, misalignment, thickness and distance are drawn."""
+    return pp.study(GRADED, tolerances="uniform", n=256, seed=3)
+
+
+def _range_of_error(changes: dict[str, object], curve: str) -> float:
+    from pitchpoint.analyses.kinematic_error import own_error
+
+    with double_precision():
+        built = GRADED.set(changes).held[0].built({}).meshes[0]
+        ranges = own_error(built, lambda _: None)["kinematic_error_range"]
+    return float(ranges.sel(curve=curve, cause="both"))
+
+
+@pytest.mark.whole
+def test_percentiles_of_the_kinematic_error_are_those_of_direct_sampling(
+    graded: xr.Dataset,
+) -> None:
+    base, ranges = with_tolerances(GRADED.held[0], "uniform")
+    rng = np.random.default_rng(8)
+    direct = [
+        _range_of_error(
+            {
+                **base.settings,
+                **{key: rng.uniform(one["start"], one["stop"]) for key, one in ranges.items()},
+                "gears.deviations.seed": int(rng.integers(1_000_000)),
+            },
+            "under load",
+        )
+        for _ in range(256)
+    ]
+    computed, spread = graded["kinematic_error_range"].values[0], np.std(direct)
+    assert np.mean(computed) == pytest.approx(np.mean(direct), abs=0.2 * spread)
+    np.testing.assert_allclose(
+        np.percentile(computed, (10, 50, 90)),
+        np.percentile(direct, (10, 50, 90)),
+        atol=0.3 * spread,
+    )
+
+
+@pytest.mark.whole
+def test_a_design_of_a_study_is_the_run_of_the_case_with_what_was_drawn(graded: xr.Dataset) -> None:
+    base, _ = with_tolerances(GRADED.held[0], "uniform")
+    for number in (3, 70):
+        design = graded.isel(design=number)
+        drawn = {key: float(design[key]) for key in json.loads(graded.attrs["layout"])["keys"]}
+        drawn["gears.deviations.seed"] = int(drawn["gears.deviations.seed"])
+        alone = pp.run(GRADED.set({**base.settings, **drawn}), analyses=["strength"])
+        safety = alone.dataset("strength")["flank_safety"].values.min()
+        assert float(design["least_flank_safety"][0]) == pytest.approx(safety, rel=1e-9)
+        error = _range_of_error({**base.settings, **drawn}, "under load")
+        assert float(design["kinematic_error_range"][0]) == pytest.approx(error, rel=1e-9)
+
+
+@pytest.mark.whole
+def test_errors_of_rigid_teeth_are_proportional_to_the_share_of_their_tolerance() -> None:
+    deviations = {"gears.deviations.iso_class": 6, "gears.deviations.seed": 4}
+    whole = _range_of_error(deviations, "geometry")
+    for share in (0.0, 0.5, 1.0):
+        part = {**deviations, "gears.deviations.share_of_tolerance": share}
+        # Apart from rounding: clearances of nominal flanks in contact are zero.
+        assert _range_of_error(part, "geometry") == pytest.approx(share * whole, abs=1e-9 * whole)
+
+
+@pytest.mark.whole
+def test_a_misalignment_stands_for_that_of_the_class_in_the_face_load_factor() -> None:
+    limit = with_tolerances(GRADED.held[0], "uniform")[1]["gears.misalignment"]["stop"]
+
+    def factor(misalignment: float | None) -> float:
+        changes: dict[str, object] = {"operation.torque": "400 N m"}
+        if misalignment is not None:
+            changes["gears.misalignment"] = misalignment
+        found = pp.run(GRADED.set(changes), analyses=["strength"]).dataset("strength")
+        return float(found["face_load_factor"])
+
+    of_class = factor(None)
+    assert factor(limit) == pytest.approx(of_class, rel=1e-12)
+    assert factor(-limit) == pytest.approx(of_class, rel=1e-12)
+    # At this torque the whole face carries: K_Hbeta - 1 is linear in F_betax, running in taking 15 %.
+    small, middle = factor(0.4 * limit), factor(0.7 * limit)
+    assert of_class < 2.0 and small < middle
+    assert of_class - middle == pytest.approx(middle - small, rel=1e-9)
+
+
+@pytest.mark.whole
+def test_stages_in_a_row_are_drawn_each_by_its_own_table() -> None:
+    stage = {key: PAIR.tables["gears"][key] for key in ("teeth", "module", "face_width")}
+    tables = {key: table for key, table in PAIR.tables.items() if key != "gears"}
+    inspected = {"inspection": {"thickness_field": "cd25", "iso_class": 7}}
+    stages = {"1": {"gears": stage}, "2": {"gears": {**stage, **inspected}}}
+    row = pp.Case({**tables, "stages": stages})
+    found = pp.study(row, tolerances="uniform", n=128)
+    keys = json.loads(found.attrs["layout"])["keys"]
+    assert keys[0] == "stages.2.gears.thickness_allowance.1" and len(keys) == 6
+    allowances = [found[key].values for key in keys[:2]]
+    gear = Toothing(20, 2e-3, np.pi / 9.0, 0.0, 0.0), Toothing(40, 2e-3, np.pi / 9.0, 0.0, 0.0)
+    plays = [
+        backlash(gear[0].thinned(first), gear[1].thinned(second), 0.06).angular[1]
+        for first, second in zip(*allowances, strict=True)
+    ]
+    # The first stage has no backlash: the output turns by that of the second.
+    np.testing.assert_allclose(found["output_backlash"].values[0], plays, atol=1e-12)
+    assert np.isfinite(found["kinematic_error_range"].values).all()
+    (told,) = json.loads(found.attrs["remarks"])
+    assert told.startswith(
+        "Stresses and safeties do not follow stages.2.gears.misalignment: K_Hβ is 1"
+    )
 
 
 def test_shifts_from_the_centre_distance_stay_those_of_the_nominal_one() -> None:
@@ -119,6 +247,10 @@ def test_an_allowance_of_the_drawing_does_not_count_twice() -> None:
         (
             {"gears.thickness_allowance": "-50 um", "gears.backlash": "100 um"},
             "gears.thickness_allowance: was given beside backlash",
+        ),
+        (
+            {"gears.deviations.share_of_tolerance": 0.5},
+            "gears.deviations.share_of_tolerance: was given without iso_class, of whose limits",
         ),
         (
             {"gears.thickness_allowance": "-1.5 mm"},

@@ -1,6 +1,6 @@
 """Many designs of a case computed together; one that cannot be computed says why, and stops no other."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -59,7 +59,7 @@ class CaseDesigns:
                 reasons[number] = _told(design)
             else:
                 points[number] = design
-        return _figures(points, reasons) if points else []
+        return _figures(points, [*self.changes[0]], reasons) if points else []
 
     def _joined(self, found: Sequence[xr.Dataset], reasons: Mapping[int, str]) -> xr.Dataset:
         if not found:
@@ -77,23 +77,27 @@ class CaseDesigns:
         return every.drop_vars("point")
 
 
-def _figures(points: Mapping[int, Ready], reasons: dict[int, str]) -> list[xr.Dataset]:
+def _figures(
+    points: Mapping[int, Ready], keys: Collection[str], reasons: dict[int, str]
+) -> list[xr.Dataset]:
     """Figures of designs, together; each alone where one of them spoils that, which then has a reason."""
     try:
-        return [_together(points)]
+        return [_together(points, keys)]
     except PitchpointError as error:
         if len(points) == 1:
             reasons[next(iter(points))] = _told(error)
             return []
     return [
-        part for number, design in points.items() for part in _figures({number: design}, reasons)
+        part
+        for number, design in points.items()
+        for part in _figures({number: design}, keys, reasons)
     ]
 
 
-def _together(points: Mapping[int, Ready]) -> xr.Dataset:
+def _together(points: Mapping[int, Ready], keys: Collection[str]) -> xr.Dataset:
     every = [*points.values()]
     under = every[0].models
-    extra = more_of(every, len(under))
+    extra = more_of(every, len(under), keys)
     data = summaries(every, under, extra, title="designs", may_lock=True, several=True)
     return data.assign_coords(point=[*points])
 

@@ -68,6 +68,10 @@ _SHAFT = (
     "K_Hβ by method C takes a pinion between two bearings on a steel shaft without modifications of its "
     "helix and deviations at the limits of the class."
 )
+_MISALIGNED = (
+    "K_Hβ by method C takes a pinion between two bearings on a steel shaft without modifications of its "
+    "helix, and for f_ma the misalignment of [gears], on the side to which the shaft bends."
+)
 _THINNED = (
     "Roots are those of the thinnest teeth that [gears.inspection] allows; all else is nominal."
 )
@@ -304,7 +308,7 @@ def _remarks(built: Built) -> Iterator[str]:
     if built.rated.table.dynamic_method == "B":
         yield _METHOD_B
     if built.rated.table.shaft is not None:
-        yield _SHAFT
+        yield _SHAFT if getattr(built.case.gears, "misalignment", None) is None else _MISALIGNED
 
 
 def _failing(built: Built, found: Numbers) -> list[str]:

@@ -1,6 +1,6 @@
 """Studies of a case: points with changed values, and sweeps."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -10,6 +10,7 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Several, Subject, Unasked
 from pitchpoint.analyses.figures import by_law, json_figures
+from pitchpoint.analyses.made_gears import made_figures
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import alone, beside, joined, summaries
 from pitchpoint.cases.build import Built
@@ -107,7 +108,7 @@ class _Planned:
         changes = self.changes[piece["first"] : piece["stop"]]
         points = self.points(changes)
         under = points[0].models
-        extra = {**self._axis(changes), **more_of(points, len(under))}
+        extra = {**self._axis(changes), **more_of(points, len(under), changes[0])}
         data = summaries(points, under, extra, progress, title=self.title, several=True)
         if "out_of_range" in data:  # a warning says why
             data["extrapolated"] = data["out_of_range"] != ""
@@ -138,9 +139,16 @@ class _Planned:
         self.points([*self.changes[:1], *self.changes[1:][-1:]])
 
 
-def more_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
-    """Figures of points beside those of their cycle, their strength and those of their source."""
-    return {**beside(points), **ratings_of(points, laws), **readings_of(points, laws)}
+def more_of(points: Sequence[Ready], laws: int, keys: Collection[str]) -> dict[str, Any]:
+    """Figures of points beside those of their cycle: their strength, of gears as made, of their source.
+
+    Args:
+        points: designs of one case.
+        laws: of friction.
+        keys: of the case that the points change.
+    """
+    made = made_figures(points, laws, keys)
+    return {**beside(points), **ratings_of(points, laws), **made, **readings_of(points, laws)}
 
 
 def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:

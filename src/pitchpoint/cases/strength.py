@@ -183,8 +183,7 @@ def _helical(case: CaseFile) -> bool:
 
 def _class(table: StrengthTable, case: CaseFile) -> tuple[int, str]:
     """Class of the gears by ISO 1328-1, as K_v takes it, and what is to be said of it."""
-    deviations = getattr(case.gears, "deviations", None)
-    drawn = getattr(deviations, "iso_class", None)
+    drawn = _class_of_gears(case.gears)
     if table.accuracy_class is not None:
         return int(table.accuracy_class), ""
     if drawn is None:
@@ -200,6 +199,15 @@ def _class(table: StrengthTable, case: CaseFile) -> tuple[int, str]:
     )
 
 
+def _class_of_gears(gears: Any) -> tuple[float, float] | None:
+    """Classes of both gears by ISO 1328-1: those that are drawn, else those of the drawing; None without."""
+    for table in (getattr(gears, "deviations", None), getattr(gears, "inspection", None)):
+        iso_class: tuple[float, float] | None = getattr(table, "iso_class", None)
+        if iso_class is not None:
+            return iso_class
+    return None
+
+
 @dataclass(frozen=True)
 class _Toothing:
     """What load factors ask of gears beside the rated pair.
@@ -210,6 +218,7 @@ class _Toothing:
         diameters: of both reference circles [m].
         module, face_width, tip_relief: [m]; the smaller relief, NaN without one.
         pressure_angle: in the transverse section [rad].
+        misalignment: of the flanks over the face; NaN where helix slopes make it [m].
     """
 
     grade: int
@@ -219,6 +228,7 @@ class _Toothing:
     face_width: float
     tip_relief: float
     pressure_angle: float
+    misalignment: float
 
     @classmethod
     def of(cls, case: CaseFile, table: StrengthTable, grade: int) -> Self:
@@ -233,7 +243,7 @@ class _Toothing:
         cosine = cos(gears.helix_angle)
         diameter_1, diameter_2 = (abs(teeth) * gears.module / cosine for teeth in gears.teeth)
         relief = None if gears.modifications is None else gears.modifications.tip_relief
-        drawn = None if gears.deviations is None else gears.deviations.iso_class
+        drawn = _class_of_gears(gears)
         return cls(
             grade,
             drawn if drawn is not None and table.accuracy_class is None else (grade, grade),
@@ -242,6 +252,7 @@ class _Toothing:
             gears.face_width,
             nan if relief is None else min(relief),
             atan(tan(gears.pressure_angle) / cosine),
+            nan if gears.misalignment is None else gears.misalignment,
         )
 
     @property
@@ -294,7 +305,11 @@ def _of_shaft(table: StrengthTable, toothing: _Toothing) -> dict[str, Array]:
     if table.shaft is None:
         return {}
     slopes = [tolerance.helix_slope for tolerance in toothing.tolerances]
-    return {"shaft": array(table.shaft), "helix_slopes": array(slopes)}
+    return {
+        "shaft": array(table.shaft),
+        "helix_slopes": array(slopes),
+        "misalignment": array(toothing.misalignment),
+    }
 
 
 @remembering

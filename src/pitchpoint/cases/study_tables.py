@@ -115,8 +115,9 @@ class StudyTable(Table):
 
     `over` has the values of each key: a list, or { start = ..., stop = ..., count = ... } in equal steps;
     where designs are drawn two ends, or { start = ..., stop = ..., distribution = "normal" }, whose ends are
-    three standard deviations from its middle. `tolerances` draws what [gears.inspection] allows: both tooth
-    thicknesses, the centre distance, by a class of ISO 1328-1 the misalignment by helix slopes.
+    three standard deviations from its middle. `tolerances` draws what the inspection tables of a pair or of
+    stages in a row allow: tooth thicknesses, the centre distance, by a class of ISO 1328-1 the misalignment
+    by helix slopes, and what part of their limits pitch and profiles of each gear reach.
     """
 
     over: dict[str, Any] = Field(

@@ -16,6 +16,7 @@ from pitchpoint._jax import double_precision
 from pitchpoint.analyses.analysis import PieceProgress as AnalysisProgress
 from pitchpoint.analyses.analysis import silent
 from pitchpoint.analyses.designs import CaseDesigns
+from pitchpoint.analyses.made_gears import unfollowed
 from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.variant import Variant
 from pitchpoint.programs import bound_programs, surroundings
@@ -94,6 +95,11 @@ class StudyDescription:
         drawn = {"scipy": version("scipy")} if self.how in DRAWN else {}
         return {**surroundings(), **drawn}
 
+    @cached_property
+    def _remarks(self) -> list[str]:
+        """Sentences on figures that do not follow what changes."""
+        return unfollowed(self.variant.built({}), self.layout.axes)
+
     def computed(self, first: int, stop: int, progress: AnalysisProgress = silent) -> xr.Dataset:
         """Figures [law, design] of a range of designs, with their values as coordinates.
 
@@ -105,6 +111,7 @@ class StudyDescription:
         columns = self.layout.columns(first, stop)
         data = CaseDesigns(self.variant, self.layout.changes(first, stop)).compute(progress)
         labels = {"case": self.variant.label, "variant": self.variant.variant}
+        labels["remarks"] = json.dumps(self._remarks)
         keys: dict[str, Any] = {
             key: (ALONG, *self.layout.axes[key].stored(values)) for key, values in columns.items()
         }

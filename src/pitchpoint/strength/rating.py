@@ -80,6 +80,7 @@ class Factors(eqx.Module):
         relief: C_a for method B; not a number for classes from 6 on [m].
         shaft: l, s and d_sh of the pinion, see `pinion_misalignment`; not numbers without it [m].
         helix_slopes: f_Hbeta of both gears; not numbers without a shaft [m].
+        misalignment: f_ma of the flanks; not a number where it is that of helix slopes [m].
         soft: 1 for through-hardened and normalised gears, which run in further.
         mesh_load: K_gamma.
 
@@ -102,6 +103,7 @@ class Factors(eqx.Module):
     relief: One = eqx.field(default_factory=lambda: np.array(nan))
     shaft: Float[Arrays, "3"] = eqx.field(default_factory=lambda: np.full(3, nan))
     helix_slopes: Both = eqx.field(default_factory=lambda: np.full(2, nan))
+    misalignment: One = eqx.field(default_factory=lambda: np.array(nan))
     soft: Both = eqx.field(default_factory=lambda: np.zeros(2))
     mesh_load: One = eqx.field(default_factory=lambda: np.ones(()))
 
@@ -376,7 +378,8 @@ def _across_the_face(
         offset=offset,
         shaft_diameter=diameter,
     )
-    made = jnp.sqrt(jnp.sum(slopes**2))  # f_ma
+    of_classes = jnp.sqrt(jnp.sum(slopes**2))
+    made = jnp.abs(_or(factors.misalignment, of_classes))  # f_ma, on the side of the bending
     least = jnp.maximum(5e-12 * line_load, 0.5 * jnp.max(slopes))
     whole = jnp.maximum(1.33 * bent + made, least)
     left = whole - jnp.minimum(2.0 * _running_in(whole, speed, factors, strengths), whole)

@@ -41,10 +41,11 @@ class StrengthTable(Table):
     `face_load_factor` K_Hbeta, `transverse_load_factor` K_Halpha, and those of the root. Without a K_v it
     follows for gears of `accuracy_class` of ISO 1328-1, by method C or by the `dynamic_method` that is named;
     K_Hbeta follows by method C where `bearing_span`, `pinion_offset` and `pinion_shaft_diameter` are given,
-    for a pinion between two bearings without modifications of its helix. `sigma_hlim` and `sigma_flim` take
-    the place of those of the materials, for plastics at the temperature and life of the case; steels then say
-    their `treatment`. Without a `life` the teeth are to endure. `mean_stress_factor` is below 1 for teeth
-    that are loaded both ways, 0.7 for the same load. Roughness is Rz.
+    for a pinion between two bearings without modifications of its helix, with a misalignment of the gears as
+    f_ma, without one that of their class. `sigma_hlim` and `sigma_flim` take the place of those of the
+    materials, for plastics at the temperature and life of the case; steels then say their `treatment`.
+    Without a `life` the teeth are to endure. `mean_stress_factor` is below 1 for teeth that are loaded both
+    ways, 0.7 for the same load. Roughness is Rz.
     """
 
     edition: Annotated[Literal["2006", "2019"], BeforeValidator(_year)] = "2019"
@@ -72,7 +73,7 @@ class StrengthTable(Table):
     root_transverse_load_factor: Annotated[float, LOAD_FACTOR] | None = None
     """Transverse load factor of the root K_Fα; K_Hα unless given."""
     accuracy_class: Annotated[float, ACCURACY] | None = None
-    """Class of ISO 1328-1 for K_v; that of gears.deviations, without it 7, unless given."""
+    """Class of ISO 1328-1 for K_v; that of deviations or inspection, without one 7, unless given."""
     profile_correction: Annotated[float, LOAD_FACTOR] | None = None
     """Factor f_ZCa for the profile modification of helical gears; 1.2, none, unless given."""
     life: Annotated[float, LIFE] | None = None

@@ -13,11 +13,12 @@ from pitchpoint.runs.sensitivity import FIGURES, indices_of_study
 
 __all__ = ["as_plain", "figures_of_many", "indices_of_many", "write_rows"]
 
-_OF_TOLERANCES = ("circumferential_backlash", "transmission_error_range")
+_OF_TOLERANCES = ("circumferential_backlash", "output_backlash", "transmission_error_range")
 """Figures that are shown first where tolerances are drawn."""
 
 SHOWN = (
     *_OF_TOLERANCES,
+    "kinematic_error_range",
     "mean_efficiency",
     "mean_loss",
     "torque_ripple",
@@ -70,7 +71,12 @@ def figures_of_many(found: xr.Dataset, folder: Path) -> tuple[list[str], list[di
     told += [f"  {count}: {why}" for why, count in [*reasons.items()][:_REASONS]]
     if len(reasons) > _REASONS:
         told.append(f"  and {len(reasons) - _REASONS} more reasons, in `reason` of the files")
-    return [*told, f"every design: {folder}"], rows
+    return [*told, *_remarks(found), f"every design: {folder}"], rows
+
+
+def _remarks(found: xr.Dataset) -> list[str]:
+    """Sentences on figures that do not follow what changes."""
+    return [str(remark) for remark in json.loads(found.attrs.get("remarks", "[]"))]
 
 
 def _ends(found: xr.Dataset) -> dict[str, float]:
@@ -165,7 +171,7 @@ def as_plain(found: xr.Dataset, folder: Path) -> dict[str, Any]:
         entry["by_law"][law] = dict(zip(_ends(found), span, strict=True))
     designs, reasons = _counts(found)
     plain: dict[str, Any] = {"folder": str(folder), "designs": designs, "reasons": reasons}
-    plain["figures"] = figures
+    plain |= {"figures": figures, "remarks": _remarks(found)}
     if json.loads(found.attrs["layout"])["how"] == "saltelli":
         indices = indices_of_study(found, FIGURES)
         plain["sobol_indices"] = {

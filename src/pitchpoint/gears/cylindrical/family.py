@@ -202,7 +202,15 @@ def _gear_deviations(gears: CylindricalGears, pair: CylindricalPair) -> Surfaces
     pinion_waves, wheel_waves = waves(deviations.gear_1), waves(deviations.gear_2)
     if deviations.iso_class is None:
         return pinion_waves, wheel_waves
-    drawn = class_deviations(pair, deviations.iso_class, int(deviations.seed))
+    shares = deviations.share_of_tolerance
+    drawn = class_deviations(
+        pair,
+        deviations.iso_class,
+        int(deviations.seed),
+        shares=shares or (1.0, 1.0),
+        # Shares are of gears drawn with the misalignment that their helix slopes make: not twice.
+        helix=shares is None or gears.misalignment is None,
+    )
     return (*pinion_waves, *drawn[0]), (*wheel_waves, *drawn[1])
 
 

@@ -180,7 +180,14 @@ def _usual_lengths(pair: CylindricalPair) -> tuple[Float[Array, ""], Float[Array
     return (ratio - jnp.floor(ratio)) * pair.base_pitch, end
 
 
-def class_deviations(pair: CylindricalPair, classes: Two, seed: int) -> Surfaces:
+def class_deviations(
+    pair: CylindricalPair,
+    classes: Two,
+    seed: int,
+    *,
+    shares: Two = (1.0, 1.0),
+    helix: bool = True,
+) -> Surfaces:
     """Flanks of two gears at the limits of their classes, drawn at random.
 
     Deviations of the standard lie along the reference circle and along the transverse line of action;
@@ -190,6 +197,8 @@ def class_deviations(pair: CylindricalPair, classes: Two, seed: int) -> Surfaces
         pair: of which the flanks are.
         classes: of ISO 1328-1, of each gear.
         seed: the same one gives the same gears.
+        shares: of these limits that each gear reaches.
+        helix: False for teeth without helix slopes of their own.
     """
     flanks = np.asarray(_active_flanks(pair))
     normal = float(jnp.cos(pair.base_helix_angle))
@@ -199,12 +208,14 @@ def class_deviations(pair: CylindricalPair, classes: Two, seed: int) -> Surfaces
         limits = flank_tolerances(tolerance_class=int(classes[member]), **size)
         errors = gear_at_its_limits(limits, teeth, (seed, member))
         root, tip = flanks[member] ** 2 / (2.0 * abs(float(pair.base_radii[member])))
+        share = shares[member]
+        across, along = upright * share, normal * share
         deviations = ToothDeviations(
-            pitch=array(upright * errors.pitch),
-            profile_slope=array(normal * errors.profile_slope),
-            lead_slope=array(normal * errors.helix_slope),
-            profile_form=array(normal * errors.profile_form),
-            lead_form=array(normal * errors.helix_form),
+            pitch=array(across * errors.pitch),
+            profile_slope=array(along * errors.profile_slope),
+            lead_slope=array(along * helix * errors.helix_slope),
+            profile_form=array(along * errors.profile_form),
+            lead_form=array(along * errors.helix_form),
             root=array(root),
             tip=array(tip),
             width=pair.face_width,

@@ -51,6 +51,7 @@ RELIEF_LENGTH = Quantity("length", 0.0, 1.0, "mm", open_low=True)
 MISALIGNMENT = Quantity("length", -1e-2, 1e-2, "um")
 TOLERANCE_CLASS = Quantity("dimensionless", 1, 11, whole=True)
 SEED = Quantity("dimensionless", 0, 1_000_000, whole=True)
+SHARE = Quantity("dimensionless", 0.0, 1.0)
 ALLOWANCE = Quantity("length", -1e-2, 1e-2, "um")
 SPAN = Quantity("dimensionless", 1, 1_000, whole=True)
 
@@ -164,6 +165,8 @@ class GearDeviations(PairDeviations):
     """Flank tolerance class of ISO 1328-1 at whose limits gears are drawn; none unless given."""
     seed: Annotated[float, SEED] = 1.0
     """Number from which gears at the limits of the class are drawn; the same one gives the same gears."""
+    share_of_tolerance: Annotated[tuple[float, float], Pair(SHARE)] | None = None
+    """Part of these limits that each gear reaches, helix slopes left to misalignment; 1 unless given."""
 
 
 Limits = tuple[float, float]
@@ -381,6 +384,7 @@ class CylindricalGears(GearsTable):
         """Lowest and highest value that the tolerances of `inspection` allow, by key of this table [SI].
 
         The misalignment is that of both helix slopes within their class, which are independent of each other.
+        All other deviations of the class reach a share of their limits, of teeth that a seed draws.
 
         Raises:
             InputError: a gear or a centre distance that is larger than its field covers.
@@ -406,6 +410,10 @@ class CylindricalGears(GearsTable):
             )
             middle, slope = self.misalignment or 0.0, hypot(*slopes)
             limits["misalignment"] = middle - slope, middle + slope
+            shares = dict.fromkeys(
+                (f"deviations.share_of_tolerance.{k}" for k in (1, 2)), (SHARE.low, SHARE.high)
+            )
+            limits |= {**shares, "deviations.seed": (SEED.low, SEED.high)}
         return limits
 
     @property
@@ -452,6 +460,11 @@ class CylindricalGears(GearsTable):
                 )
         if self.deviations is not None:
             self.deviations.check(self.tooth_numbers, self.module)
+            if self.deviations.share_of_tolerance is not None and self.deviations.iso_class is None:
+                raise InputError(
+                    "was given without iso_class, of whose limits it is a part",
+                    key="deviations.share_of_tolerance",
+                )
         return self
 
     def shifts_from_distance(self, shifts: tuple[float, float]) -> tuple[float, float]:
