@@ -70,7 +70,7 @@ def figures_of_many(found: xr.Dataset, folder: Path) -> tuple[list[str], list[di
     told += [f"  {count}: {why}" for why, count in [*reasons.items()][:_REASONS]]
     if len(reasons) > _REASONS:
         told.append(f"  and {len(reasons) - _REASONS} more reasons, in `reason` of the files")
-    return [*told, f"every design: {folder}"], rows
+    return [*told, f"every design: {folder}", f"report: {folder / 'report.html'}"], rows
 
 
 def _ends(found: xr.Dataset) -> dict[str, float]:
