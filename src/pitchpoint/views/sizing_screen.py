@@ -103,7 +103,7 @@ _COLUMNS = ("", "design", "ratio", "mass kg", "loss %", "⌀ mm", "backlash '", 
 
 
 def gear_words(design: SizedDrive) -> dict[str, str]:
-    """Teeth, modules, face widths and planets of a design, stages from the input parted by semicolons.
+    """Teeth, modules [mm], face widths [mm] and planets of a design, its stages parted by semicolons.
 
     A second mesh of the same planets stands behind a plus.
     """
@@ -120,14 +120,11 @@ def gear_words(design: SizedDrive) -> dict[str, str]:
 
 
 def _of_stages(stages: Sequence[Mapping[str, Any]], key: str) -> str:
-    """Values of a key by stage, a unit that all of them have once; empty where none has it."""
+    """Values of a key by stage, lengths in mm; empty where none has it."""
     texts = [str(gears.get(key, "–")) for gears in stages]
     if {*texts} == {"–"}:
         return ""
-    unit = f" {texts[0].partition(' ')[2]}".rstrip()
-    if unit and all(text.endswith(unit) for text in texts):
-        return "; ".join(text.removesuffix(unit) for text in texts) + unit
-    return "; ".join(texts)
+    return "; ".join(text.removesuffix(" mm") for text in texts)
 
 
 def _rows(sizing: Sizing) -> list[dict[str, str]]:
