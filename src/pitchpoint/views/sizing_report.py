@@ -1,6 +1,7 @@
 """The page of a sizing: its front, all designs that were worked out, to be brushed, and their gears."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -49,7 +50,13 @@ _AXES = (
 
 _ON_FRONT = "on_front"
 
-_GEARS = {"teeth": "teeth", "module": "module", "face_width": "face width", "planets": "planets"}
+_GEARS = {
+    "teeth": ("teeth", ""),
+    "module": ("module", "mm"),
+    "face_width": ("face width", "mm"),
+    "planets": ("planets", ""),
+}
+"""Words and unit by what `gear_words` says."""
 
 
 def render_sizing(sizing: Sizing, *, folder: Path | None = None) -> str:
@@ -102,10 +109,11 @@ def _columns(sizing: Sizing, designs: Sequence[SizedDrive]) -> Iterator[DesignCo
         is_axis=True,
     )
     gears = [gear_words(design) for design in designs]
-    for name, words in _GEARS.items():
+    for name, (words, unit) in _GEARS.items():
         texts = [entry[name] for entry in gears]
         if any(texts):
-            yield _named(name, words, texts, sorted({*texts}))
+            column = _named(name, words, texts, sorted({*texts}))
+            yield replace(column, unit=unit)
     on = ["yes" if design.name in sizing.front else "no" for design in designs]
     yield _named(_ON_FRONT, "on the front of all that counts", on, ["no", "yes"], is_axis=True)
     for name, (words, unit, _, _, better) in _FIGURES.items():
@@ -137,7 +145,7 @@ def _two_aims(sizing: Sizing) -> tuple[str, str]:
 def _answer(sizing: Sizing) -> Iterator[Block]:
     best = [[BEST_WORDS[aim], name, sizing.designs[name]] for aim, name in sizing.best.items()]
     for heads, cells, words, names in (
-        ([*_GEARS.values()], _gear_cells, "The best designs of the front", 6),
+        (_gear_heads(), _gear_cells, "The best designs of the front", 6),
         (_figure_heads(), _figure_cells, "Their figures", 2),
     ):
         rows = [[by, name, *cells(design)] for by, name, design in best]
@@ -150,6 +158,10 @@ def _answer(sizing: Sizing) -> Iterator[Block]:
         yield SectionTable(
             ["families", "why not"], rows, caption="Families without a design", names=2
         )
+
+
+def _gear_heads() -> list[str]:
+    return [f"{words} [{unit}]" if unit else words for words, unit in _GEARS.values()]
 
 
 def _figure_heads() -> list[str]:
@@ -170,9 +182,8 @@ def _front_table(sizing: Sizing, first: str, second: str) -> SectionTable:
     designs = sorted((sizing.designs[name] for name in sizing.front), key=lambda it: it.mass)
     rows = [[it.name, *_gear_cells(it), *_figure_cells(it)] for it in designs]
     caption = f"Designs that none beats in {enumerated(sizing.task.aims)}"
-    return SectionTable(
-        ["design", *_GEARS.values(), *_figure_heads()], rows, caption=caption, wide=True, names=5
-    )
+    head = ["design", *_gear_heads(), *_figure_heads()]
+    return SectionTable(head, rows, caption=caption, wide=True, names=5)
 
 
 def _opening(sizing: Sizing, folder: Path | None, at: int) -> dict[str, Any]:
