@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
 from pathlib import Path
@@ -211,6 +211,7 @@ class _Summed:
 
     designs: _Designs
     case_file: Path | None
+    _by_law: dict[str, int] = field(default_factory=dict)
 
     @cached_property
     def spans(self) -> dict[tuple[str, int], dict[str, Any]]:
@@ -230,7 +231,21 @@ class _Summed:
                     yield (name, law), {"quantiles": quantiles, "ends": ends}
 
     def _laws_of(self, name: str) -> int:
-        return len(self.designs.laws) if "law" in self.designs.study[name].dims else 1
+        """How many laws have a value of their own; one where all have the same."""
+        if name not in self._by_law:
+            self._by_law[name] = len(self.designs.laws) if self._differs(name) else 1
+        return self._by_law[name]
+
+    def _differs(self, name: str) -> bool:
+        """True for a figure that is another one under another law."""
+        if "law" not in self.designs.study[name].dims:
+            return False
+        return any(
+            not np.allclose(self.designs.read(name, law, block), first, 1e-9, 0.0, equal_nan=True)
+            for block in self.designs.blocks()
+            for first in [self.designs.read(name, 0, block)]
+            for law in range(1, len(self.designs.laws))
+        )
 
     @cached_property
     def varied(self) -> list[str]:
@@ -315,7 +330,7 @@ class _Summed:
         axes = [*self.keys[: _AXES - 2], *self.main, *self.varied]
         axes = [*dict.fromkeys(name for name in axes if name in by_name)][:_AXES]
         tolerances = bool(self.designs.study.attrs.get("tolerances"))
-        effects, bars, words = self._influence(by_name)
+        effects, bars, words = self._influence()
         return DesignsPage(
             title=f"{self.designs.count} designs of {self.designs.study.attrs.get('case', 'a case')}",
             summary=self._summary(),
@@ -355,8 +370,6 @@ class _Summed:
             )
         for name in self.varied:
             rows = [self.designs.read(name, law, self.drawn) for law in range(self._laws_of(name))]
-            if all(np.array_equal(row, rows[0], equal_nan=True) for row in rows):
-                rows = rows[:1]
             yield DesignColumn(
                 name=name,
                 words=self.designs.words(name),
@@ -394,7 +407,11 @@ class _Summed:
             head = ["figure", *(["friction law"] if several else [])]
             ends = ["least", *(f"{100.0 * share:g} %" for share in _PERCENTILES), "largest"]
             rows = [
-                [self.designs.title(name), *([self.designs.laws[law]] if several else []), *cells]
+                [
+                    self.designs.title(name),
+                    *([self._law_words(name, law)] if several else []),
+                    *cells,
+                ]
                 for (name, law), span in self.spans.items()
                 if name in self.main
                 for cells in [[show.number(float(value), 5) for value in span["quantiles"]]]
@@ -406,11 +423,15 @@ class _Summed:
         yield SectionTable(["key", "from", "to"], [*self._ranges()], True, "Keys that were varied")
         yield from self._without()
 
+    def _law_words(self, name: str, law: int) -> str:
+        return self.designs.laws[law] if self._laws_of(name) > 1 else "all"
+
     def _best_table(self, *, several: bool) -> Iterator[Block]:
         rows = [
             [
-                f"{_BEST[_BETTER[name]]} {self.designs.title(name)}",
-                *([self.designs.laws[law]] if several else []),
+                self.designs.title(name),
+                *([self._law_words(name, law)] if several else []),
+                _BEST[_BETTER[name]],
                 value,
                 str(number),
                 *(self._cell(key, number) for key in self.keys),
@@ -419,7 +440,7 @@ class _Summed:
             if name in self.main
             for value, _, number in [self._best(name, law)]
         ]
-        head = ["", *(["friction law"] if several else []), "value", "design"]
+        head = ["figure", *(["friction law"] if several else []), "best is", "value", "design"]
         keys = map(self.designs.title, self.keys)
         if rows:
             caption = "The best design by each figure, with its inputs"
@@ -507,9 +528,7 @@ class _Summed:
             )
         return "Every design is the case of the study with its inputs set, which `pitchpoint.run` computes."
 
-    def _influence(
-        self, columns: Mapping[str, DesignColumn]
-    ) -> tuple[list[dict[str, Any]], list[Influences], list[Block]]:
+    def _influence(self) -> tuple[list[dict[str, Any]], list[Influences], list[Block]]:
         """Main effects for the script, bars, and what they are."""
         how = self.designs.layout["how"]
         if how == "saltelli" and self.main:
@@ -518,7 +537,7 @@ class _Summed:
             words = "Values of the keys go together in this study: no figure can be put down to one of them."
             return [], [], [Paragraph(words)]
         else:
-            bars, words = self._ranked(columns)
+            bars, words = self._ranked()
         return self._effects(), bars, [Paragraph(words)]
 
     def _sobol(self) -> tuple[list[Influences], str]:
@@ -539,7 +558,7 @@ class _Summed:
                 0.0,
             )
             for figure in figures
-            for law in self.designs.laws
+            for law in self.designs.laws[: self._laws_of(figure)]
         ]
         used, asked = indices.attrs["designs"], indices.attrs["asked"]
         return bars, (
@@ -555,9 +574,9 @@ class _Summed:
 
     def _figure_title(self, figure: str, law: str) -> str:
         words = self.designs.words(figure)
-        return words if len(self.designs.laws) < 2 else f"{words}, {law}"
+        return words if self._laws_of(figure) < 2 else f"{words}, {law}"
 
-    def _ranked(self, columns: Mapping[str, DesignColumn]) -> tuple[list[Influences], str]:
+    def _ranked(self) -> tuple[list[Influences], str]:
         if len(self.even) < FEWEST_RANKED or not self.numeric_keys or not self.main:
             return (
                 [],
@@ -566,7 +585,7 @@ class _Summed:
         inputs = np.stack([self.designs.read(key, 0, self.even) for key in self.numeric_keys])
         bars = []
         for name in self.main:
-            for law in range(min(self._laws_of(name), len(columns[name].values))):
+            for law in range(self._laws_of(name)):
                 results = self.designs.read(name, law, self.even)[None]
                 ranked = rank_correlations(np.asarray(inputs, float), results)[0]
                 rows = [
@@ -574,13 +593,7 @@ class _Summed:
                     for key, r in zip(self.numeric_keys, ranked, strict=True)
                 ]
                 title = self._figure_title(name, self.designs.laws[law])
-                bars.append(
-                    Influences(
-                        title if len(columns[name].values) > 1 else self.designs.words(name),
-                        rows,
-                        -1.0,
-                    )
-                )
+                bars.append(Influences(title, rows, -1.0))
         chance = 1.96 / np.sqrt(len(self.even) - 1.0)
         return bars, (
             "Spearman's rank correlation: 1 where a figure rises with a key throughout, −1 where it falls, "
@@ -615,7 +628,7 @@ class _Summed:
         return np.searchsorted(levels, values.astype(str)).astype(float)
 
 
-_BEST = {"less": "least", "more": "largest"}
+_BEST = {"less": "lowest", "more": "highest"}
 
 
 def _rows_of(values: np.ndarray, result: np.ndarray) -> list[list[float]]:
