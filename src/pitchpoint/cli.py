@@ -8,6 +8,7 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from functools import partial
 from glob import escape as glob_escape
 from glob import glob
 from pathlib import Path
@@ -508,6 +509,7 @@ def study(
         indices_of_many,
         write_rows,
     )
+    from pitchpoint.views.study_report import write_study_folder
 
     settings = _settings(set_ or [])
     chosen = (Case(case) if variant is None else Case(case, variant=variant)).set(settings)
@@ -520,20 +522,22 @@ def study(
     usual = default_folder(case, Path("results"), settings) / "study"
     folder = output or folder_of_table(of_table, chosen) or usual
     with _progress(folder, "pieces") as progress:
-        found = compute(
+        in_units = partial(
+            compute,
             chosen,
             _values_over(over, chosen) if over else None,
             how,  # type: ignore[arg-type]
             n=n,
             seed=seed,
             tolerances=tolerances,
-            units=_units(units) if units else "si" if json_ else "shown",
             folder=folder,
             piece=piece,
             workers=workers,
             scheduler=scheduler,
-            progress=progress,
         )
+        shown = in_units(units=_units(units) if units else "shown", progress=progress)
+        found = in_units(units="si") if json_ and not units else shown
+    write_study_folder(shown, chosen, folder)
     if csv is not None:
         write_rows(found, csv)
     if json_:
@@ -1200,8 +1204,10 @@ def size(
     that no other one beats, each a case file that runs. Torque, ratio, speed
     and life are needed, as options or in a file: pitchpoint new size.
     """
+    from pitchpoint.results.store import write_text
     from pitchpoint.sizing.sizing import sized_for
     from pitchpoint.sizing.table import Task, read_task
+    from pitchpoint.views.sizing_report import render_sizing
     from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
 
     options: dict[str, Any] = {
@@ -1227,6 +1233,7 @@ def size(
     found = sized_for(Task.read(**options) if task is None else read_task(task, **options))
     if output is not None:
         found.write(output)
+        write_text(output / "report.html", render_sizing(found, folder=output))
     if json_:
         _emit(sizing_as_json(found))
         return

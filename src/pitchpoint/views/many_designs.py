@@ -71,7 +71,8 @@ def figures_of_many(found: xr.Dataset, folder: Path) -> tuple[list[str], list[di
     told += [f"  {count}: {why}" for why, count in [*reasons.items()][:_REASONS]]
     if len(reasons) > _REASONS:
         told.append(f"  and {len(reasons) - _REASONS} more reasons, in `reason` of the files")
-    return [*told, *_remarks(found), f"every design: {folder}"], rows
+    files = [f"every design: {folder}", f"report: {folder / 'report.html'}"]
+    return [*told, *_remarks(found), *files], rows
 
 
 def _remarks(found: xr.Dataset) -> list[str]:

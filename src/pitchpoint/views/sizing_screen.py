@@ -1,6 +1,6 @@
 """The first screen of a sizing: the task, how many designs do it, the best of the front, what is doubtful."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from math import isnan
 from pathlib import Path
 from typing import Any
@@ -13,15 +13,24 @@ from pitchpoint.sizing.table import Task
 from pitchpoint.views.columns import lines_of
 from pitchpoint.views.first_screen import Line, wrapped
 
-__all__ = ["sizing_as_json", "sizing_screen"]
+__all__ = [
+    "BEST_WORDS",
+    "counted_words",
+    "doubts_of_sizing",
+    "gear_words",
+    "sizing_as_json",
+    "sizing_screen",
+    "task_words",
+]
 
-_WORDS = {
+BEST_WORDS = {
     "mass": "least mass",
     "loss": "least loss",
     "diameter": "least diameter",
     "backlash": "least backlash",
     "balanced": "balanced",
 }
+"""What a design is the best by, in words."""
 
 _LEFT_OUT = "Shafts, bearings, seals, churned oil, housings and carriers are in no figure"
 _OF_TEETH = (
@@ -42,10 +51,12 @@ def sizing_screen(sizing: Sizing, width: int, written: Path | None = None) -> li
         width: of the screen [characters].
         written: folder with the case files of the front; None where none were written.
     """
-    head = [Line(text, "title") for text in wrapped(_task(sizing.task), width)]
-    counted = [Line(text, "figure") for text in wrapped(_counted(sizing), width)]
+    head = [Line(text, "title") for text in wrapped(task_words(sizing.task), width)]
+    counted = [Line(text, "figure") for text in wrapped(counted_words(sizing), width)]
     table = [Line(text, "figure") for text in lines_of(_rows(sizing), _COLUMNS, width)]
-    doubts = [Line(text, "doubt") for one in _doubts(sizing) for text in wrapped(one, width)]
+    doubts = [
+        Line(text, "doubt") for one in doubts_of_sizing(sizing) for text in wrapped(one, width)
+    ]
     foot = [Line(text, "note") for one in _foot(sizing, written) for text in wrapped(one, width)]
     return [*head, *counted, *table, *doubts, *foot]
 
@@ -71,13 +82,15 @@ def sizing_as_json(sizing: Sizing) -> dict[str, Any]:
     }
 
 
-def _task(task: Task) -> str:
+def task_words(task: Task) -> str:
+    """What is asked, in a line."""
     speed, life = units.convert(task.speed, "rpm", "rotational speed"), task.life / 3600.0
     within = f"ratio {task.ratio:.6g} within {100.0 * task.ratio_tolerance:.3g} %"
     return f"Drives for {task.torque:.6g} N m at {speed:.6g} rpm for {life:.6g} h, {within}"
 
 
-def _counted(sizing: Sizing) -> str:
+def counted_words(sizing: Sizing) -> str:
+    """How many designs of which families do it."""
     families = {design.family for design in sizing.designs.values()}
     told = enumerated(name for name in sizing.task.families if name in families)
     return (
@@ -89,8 +102,33 @@ def _counted(sizing: Sizing) -> str:
 _COLUMNS = ("", "design", "ratio", "mass kg", "loss %", "⌀ mm", "backlash '", "S_H", "S_F")
 
 
+def gear_words(design: SizedDrive) -> dict[str, str]:
+    """Teeth, modules [mm], face widths [mm] and planets of a design, its stages parted by semicolons.
+
+    A second mesh of the same planets stands behind a plus.
+    """
+    stages = [stage["gears"] for stage in design.tree.get("stages", [design.tree])]
+    rows = [[gears, *([gears["second"]] if "second" in gears else [])] for gears in stages]
+    return {
+        "teeth": "; ".join(
+            " + ".join("/".join(map(str, row["teeth"])) for row in meshes) for meshes in rows
+        ),
+        "module": _of_stages(stages, "module"),
+        "face_width": _of_stages(stages, "face_width"),
+        "planets": _of_stages(stages, "planets"),
+    }
+
+
+def _of_stages(stages: Sequence[Mapping[str, Any]], key: str) -> str:
+    """Values of a key by stage, lengths in mm; empty where none has it."""
+    texts = [str(gears.get(key, "–")) for gears in stages]
+    if {*texts} == {"–"}:
+        return ""
+    return "; ".join(text.removesuffix(" mm") for text in texts)
+
+
 def _rows(sizing: Sizing) -> list[dict[str, str]]:
-    return [_row(_WORDS[aim], sizing.designs[name]) for aim, name in sizing.best.items()]
+    return [_row(BEST_WORDS[aim], sizing.designs[name]) for aim, name in sizing.best.items()]
 
 
 def _row(first: str, design: SizedDrive) -> dict[str, str]:
@@ -108,7 +146,8 @@ def _row(first: str, design: SizedDrive) -> dict[str, str]:
     return dict(zip(_COLUMNS, values, strict=True))
 
 
-def _doubts(sizing: Sizing) -> Iterator[str]:
+def doubts_of_sizing(sizing: Sizing) -> Iterator[str]:
+    """What the figures do not hold, and what is doubtful of them."""
     families = {design.family for design in sizing.designs.values()}
     task = sizing.task
     on_factors = f"K_A is {task.application_factor:.6g} and K_Hβ {task.face_load_factor:.6g}."
