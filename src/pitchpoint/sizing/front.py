@@ -25,6 +25,10 @@ def non_dominated(costs: Float[np.ndarray, "design aim"]) -> Bool[np.ndarray, " 
     kept = np.ones(len(costs), bool)
     order = np.lexsort(costs.T[::-1])  # none is beaten by one behind it
     ranked = costs[order]
+    if costs.shape[1] == 2:
+        least = np.minimum.accumulate(ranked[:, 1])
+        kept[order[1:]] = ranked[1:, 1] < least[:-1]
+        return kept
     front = np.zeros((0, costs.shape[1]))
     for start in range(0, len(ranked), CHUNK):
         some = ranked[start : start + CHUNK]

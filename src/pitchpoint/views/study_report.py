@@ -215,16 +215,15 @@ class _Summed:
 
     @cached_property
     def spans(self) -> dict[tuple[str, int], dict[str, Any]]:
-        """By figure and law what all designs reach; none of what does not vary."""
+        """By main figure and law what all designs reach; none of what does not vary."""
         return dict(self._spans())
 
     def _spans(self) -> Iterator[tuple[tuple[str, int], dict[str, Any]]]:
-        for name in self.designs.figures:
+        for name in filter(_BETTER.get, self.designs.figures):
             for law in range(self._laws_of(name)):
                 values = self.designs.column(name, law)
                 there = np.flatnonzero(np.isfinite(values))
-                size = np.abs(values[there]).max(initial=0.0)
-                if there.size and np.ptp(values[there]) > max(ROUNDING * size, show.NOISE):
+                if _varies(values[there]):
                     finite = values[there]
                     ends = {"less": there[finite.argmin()], "more": there[finite.argmax()]}
                     quantiles = np.quantile(finite, [0.0, *_PERCENTILES, 1.0])
@@ -238,7 +237,7 @@ class _Summed:
 
     def _differs(self, name: str) -> bool:
         """True for a figure that is another one under another law."""
-        if "law" not in self.designs.study[name].dims:
+        if "law" not in self.designs.study[name].dims or len(self.designs.laws) < 2:
             return False
         return any(
             not np.allclose(self.designs.read(name, law, block), first, 1e-9, 0.0, equal_nan=True)
@@ -248,13 +247,9 @@ class _Summed:
         )
 
     @cached_property
-    def varied(self) -> list[str]:
-        """Names of the figures that vary under some law."""
-        return [*dict.fromkeys(name for name, _ in self.spans)]
-
-    @cached_property
     def main(self) -> list[str]:
-        return [name for name in self.varied if name in _BETTER]
+        """Names of the figures that are told first and vary under some law."""
+        return [*dict.fromkeys(name for name, _ in self.spans)]
 
     @cached_property
     def keys(self) -> list[str]:
@@ -263,7 +258,7 @@ class _Summed:
     @cached_property
     def with_figures(self) -> Bool[np.ndarray, " design"]:
         """True for designs that have figures under some law."""
-        name = next(iter(self.main), next(iter(self.varied), None))
+        name = next(iter(self.main), next(iter(self.designs.figures), None))
         if name is None:
             return np.ones(self.designs.count, bool)
         there = np.zeros(self.designs.count, bool)
@@ -276,7 +271,7 @@ class _Summed:
         """Numbers of the designs that stand for all that have figures."""
         numbers = np.flatnonzero(self.with_figures)
         laws = len(self.designs.laws)
-        columns = len(self.keys) * 3 + len(self.varied) * laws
+        columns = len(self.keys) * 3 + len(self.designs.figures) * laws
         most = min(MOST_DRAWN, MOST_NUMBERS // columns)
         return np.asarray(numbers[spread_evenly(len(numbers), most)])
 
@@ -316,7 +311,7 @@ class _Summed:
         }
         if of_first_law:
             return max(of_first_law, key=lambda pair: of_first_law[pair])
-        numbers = [*self.main, *self.varied, *self.numeric_keys, *self.keys]
+        numbers = [*self.columns][len(self.keys) :] or self.keys
         return numbers[0], numbers[min(1, len(numbers) - 1)]
 
     @cached_property
@@ -325,17 +320,14 @@ class _Summed:
 
     @cached_property
     def page(self) -> DesignsPage:
-        columns = [*self._columns()]
-        by_name = {column.name: column for column in columns}
-        axes = [*self.keys[: _AXES - 2], *self.main, *self.varied]
-        axes = [*dict.fromkeys(name for name in axes if name in by_name)][:_AXES]
+        axes = [*dict.fromkeys([*self.keys[: _AXES - 2], *self.columns])][:_AXES]
         tolerances = bool(self.designs.study.attrs.get("tolerances"))
         effects, bars, words = self._influence()
         return DesignsPage(
             title=f"{self.designs.count} designs of {self.designs.study.attrs.get('case', 'a case')}",
             summary=self._summary(),
             answer=[*self._answer(tolerances=tolerances)],
-            columns=columns,
+            columns=[*self.columns.values()],
             labels=self.drawn.tolist(),
             drawn=self._drawn_words(),
             axes=axes,
@@ -350,6 +342,11 @@ class _Summed:
             influence_words=words,
             effects=effects,
         )
+
+    @cached_property
+    def columns(self) -> dict[str, DesignColumn]:
+        """Quantities of the designs that are drawn, by name: inputs, then figures that vary."""
+        return {column.name: column for column in self._columns()}
 
     def _columns(self) -> Iterator[DesignColumn]:
         for key in self.keys:
@@ -368,15 +365,16 @@ class _Summed:
                 is_input=True,
                 unit_written=str(attributes.get("units", "")),
             )
-        for name in self.varied:
+        for name in self.designs.figures:
             rows = [self.designs.read(name, law, self.drawn) for law in range(self._laws_of(name))]
-            yield DesignColumn(
-                name=name,
-                words=self.designs.words(name),
-                unit=self.designs.unit(name),
-                values=np.stack(rows),
-                better=_BETTER.get(name, ""),
-            )
+            if any(map(_varies, rows)):
+                yield DesignColumn(
+                    name=name,
+                    words=self.designs.words(name),
+                    unit=self.designs.unit(name),
+                    values=np.stack(rows),
+                    better=_BETTER.get(name, ""),
+                )
 
     def _summary(self) -> str:
         reasons: dict[str, int] = json.loads(self.designs.study.attrs["reasons"])
@@ -582,12 +580,11 @@ class _Summed:
                 [],
                 f"Fewer than {FEWEST_RANKED} designs with figures tell nothing of single inputs.",
             )
-        inputs = np.stack([self.designs.read(key, 0, self.even) for key in self.numeric_keys])
+        inputs = np.stack([self._of_even(key) for key in self.numeric_keys])
         bars = []
         for name in self.main:
             for law in range(self._laws_of(name)):
-                results = self.designs.read(name, law, self.even)[None]
-                ranked = rank_correlations(np.asarray(inputs, float), results)[0]
+                ranked = rank_correlations(inputs, self._of_even(name, law)[None])[0]
                 rows = [
                     InfluenceBar(key, 0.0 if np.isnan(r) else float(r), _signed(float(r)))
                     for key, r in zip(self.numeric_keys, ranked, strict=True)
@@ -602,30 +599,31 @@ class _Summed:
             'the variance, Sobol\' indices, need `how = "saltelli"`.'
         )
 
+    def _of_even(self, name: str, law: int = 0) -> Float[np.ndarray, " design"]:
+        """Values of the designs that stand for all, of names their places among the levels."""
+        rows = self.columns[name].values
+        return np.asarray(rows[min(law, len(rows) - 1)][np.searchsorted(self.drawn, self.even)])
+
     def _effects(self) -> list[dict[str, Any]]:
-        keys = {key: self._places(key) for key in self.keys}
         return [
             {
                 name: {
-                    key: _rows_of(values, result)
-                    for key, values in keys.items()
+                    key: _rows_of(self._of_even(key), result)
+                    for key in self.keys
                     if np.isfinite(result).any()
                 }
                 for name in self.main
-                for result in [
-                    self.designs.read(name, law if self._laws_of(name) > 1 else 0, self.even)
-                ]
+                for result in [self._of_even(name, law)]
             }
             for law in range(len(self.designs.laws))
         ]
 
-    def _places(self, key: str) -> Float[np.ndarray, " design"]:
-        """Values of an input, of names their places among the levels of its column."""
-        values = self.designs.read(key, 0, self.even)
-        if key in self.numeric_keys:
-            return np.asarray(values, float)
-        levels = np.unique(self.designs.read(key, 0, self.drawn).astype(str))
-        return np.searchsorted(levels, values.astype(str)).astype(float)
+
+def _varies(values: np.ndarray) -> bool:
+    """True for values that differ by more than rounding."""
+    finite = values[np.isfinite(values)]
+    size = float(np.abs(finite).max(initial=0.0))
+    return finite.size > 0 and float(np.ptp(finite)) > max(ROUNDING * size, show.NOISE)
 
 
 _BEST = {"less": "lowest", "more": "highest"}
