@@ -494,10 +494,11 @@ def study(
     units: UnitsByKind = None,
     json_: AsJson = False,
 ) -> None:
-    """Compute many designs of a case, from a few to millions, into a folder of files.
+    r"""Compute many designs of a case, from a few to millions, into files.
 
-    Which ones stands in the table [study] of the case, or in options. What is killed goes on from the pieces
-    that are kept, when the same command is given again.
+    Which ones stands in the table \[study] of the case, or in options. What is
+    killed goes on from the pieces that are kept, when the same command is
+    given again.
     """
     from pitchpoint.cases.record import default_folder
     from pitchpoint.runs.case import Case
@@ -1171,6 +1172,9 @@ def size(
         str | None,
         typer.Option(help='Which are tried, "two stages, planetary, 3K"; all unless given.'),
     ] = None,
+    planets: Annotated[
+        str | None, typer.Option(help='How many a set may have, "3, 4"; 3 to 5 unless given.')
+    ] = None,
     material: Annotated[str | None, typer.Option(help="Of gears; case-hardened-mq.")] = None,
     flank_safety: Annotated[str | None, typer.Option(help="Least one; 1.2 unless given.")] = None,
     root_safety: Annotated[str | None, typer.Option(help="Least one; 1.5 unless given.")] = None,
@@ -1220,6 +1224,7 @@ def size(
         "length": length,
         "centre_distances": centre_distances,
         "families": families,
+        "planets": planets,
         "material": material,
         "flank_safety": flank_safety,
         "root_safety": root_safety,

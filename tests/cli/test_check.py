@@ -262,3 +262,18 @@ def test_what_belongs_to_a_result_is_no_case(told: Run, case: str, sentence: str
     with pytest.raises(InputError) as caught:
         check(case)
     assert sentence in str(caught.value)
+
+
+def test_a_study_none_of_whose_designs_can_be_built_is_not_ok(told: Run) -> None:
+    drawn = '[study]\nhow = "sobol"\nn = 64\nover = { "gears.misalignment" = ["5 um", "9 um"] }\n'
+    status, _, lines = told(f'{PAIR}[models]\nload_sharing = "equal"\n{drawn}')
+    assert status == 2 and len(lines) == 1
+    assert lines[0].startswith(
+        "error: bad.toml: study: none of 16 designs that were tried can be computed; the first one: "
+        "models.load_sharing: 'equal' holds where"
+    )
+    assert told(f"{PAIR}{drawn}")[0] == 0
+
+
+def test_the_help_of_a_study_names_its_table(told: Run) -> None:
+    assert "in the table [study] of the case" in told("", "--help", command="study")[1]

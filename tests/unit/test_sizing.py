@@ -14,7 +14,7 @@ from pitchpoint import cli
 from pitchpoint.cases.json_schema import table_schema
 from pitchpoint.errors import InputError
 from pitchpoint.results import store
-from pitchpoint.sizing.arrangements import reach_words
+from pitchpoint.sizing.arrangements import arrangements, reach_words
 from pitchpoint.sizing.front import CHUNK, non_dominated, representatives
 from pitchpoint.sizing.sizing import SizedDrive, Sizing, size
 from pitchpoint.sizing.stage_forms import tooth_loss
@@ -72,6 +72,7 @@ EVERY = {
     "length": "90 mm",
     "centre_distances": ["40 mm", "60 mm"],
     "families": ["3K", "two stages"],
+    "planets": [3, 5],
     "material": "case-hardened-mq",
     "flank_safety": 1.1,
     "root_safety": 1.4,
@@ -162,7 +163,8 @@ def test_a_new_task_reads_with_all_its_remarks_and_editors_take_it(tmp_path):
         (tmp_path / "new.toml").write_text(lines, "utf-8")
         assert [*validator.iter_errors(tomllib.loads(lines))] == []
     assert {*tomllib.loads(every)[TASK_TABLE]} == {*Task.model_fields}
-    small = Task.read(**TASK, diameter="3 mm", length="3 mm", centre_distances="3 mm")
+    sizes = dict.fromkeys(("diameter", "length", "centre_distances"), "3 mm")
+    small = Task.read(**TASK, **sizes, planets=3)
     assert read_task(tmp_path / "new.toml") == small  # what has no usual value has an example
     for wrong in ({**TASK, "families": ["cycloid"]}, {**TASK, "ratio": 1}, {"torque": "60 N m"}):
         assert [*validator.iter_errors({"size": wrong})]
@@ -321,3 +323,13 @@ def test_why_a_family_does_not_reach_a_ratio_is_told_with_how_far_it_goes():
         "no drive does this: one stage: reaches ratios of 1.25 to 8, 60 is asked; planetary: reaches ratios "
         "of 2.8 to 11, 60 is asked"
     )
+
+
+def test_sets_have_as_many_planets_as_are_asked_for():
+    task = Task.read(**TASK | {"ratio": 6.0}, families="planetary", planets="6, 4")
+    assert task.planets == (4.0, 6.0)
+    (arranged,) = arrangements(task, "planetary")
+    assert {form.gears["planets"] for form in arranged.stages[0]} == {4}  # six have no room
+    told = "no teeth that can be made come within 3 % of that ratio with 7 planets"
+    crowded = Task.read(**TASK | {"ratio": 9.3}, families="planetary", planets=7)
+    assert reach_words(crowded, "planetary") == told

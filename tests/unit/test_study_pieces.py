@@ -39,6 +39,28 @@ RANGES = {TORQUE: [5.0, 45.0], WIDTH: ["10 mm", "30 mm"]}
 LISTS = {TORQUE: [5.0, 6.0, 7.0, 8.0], WIDTH: ["10 mm", "20 mm", "25 mm", "30 mm"]}
 
 
+def test_a_number_is_the_same_however_it_is_written() -> None:
+    """Marks of studies hang on SI numbers, those of the case and those of the designs."""
+
+    def mark(torque: str, low: str) -> str:
+        variant = PAIR.set({TORQUE: torque}).held[0].computed
+        over = {WIDTH: {"start": low, "stop": "30 mm", "distribution": "normal"}}
+        return StudyDescription(variant, over, "sobol", 16, 3, 16).mark
+
+    assert mark("60 N m", "10 mm") == mark("60.0 N m", "0.01 m") == mark("60000 N mm", "10.0 mm")
+    assert len({mark("60 N m", "10 mm"), mark("61 N m", "10 mm"), mark("60 N m", "11 mm")}) == 3
+
+
+def test_the_table_of_a_study_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    from pitchpoint.runs import study as runs
+
+    case = PAIR.set({"study": {"over": {TORQUE: ["5 N m", "6 N m"]}}})
+    read: list[Any] = []
+    validated = runs.validate
+    monkeypatch.setattr(runs, "validate", lambda case: read.append(case) or validated(case))
+    assert runs.table_of_study(case) is runs.table_of_study(case.set({})) and len(read) == 1
+
+
 @pytest.mark.parametrize(
     ("over", "how", "n"),
     [

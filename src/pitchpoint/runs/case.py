@@ -39,7 +39,7 @@ from pitchpoint.registry import nearest
 from pitchpoint.runs.python_values import demand_arguments, plain_value
 from pitchpoint.runs.reading import variants_of
 
-__all__ = ["Case", "CaseLike", "as_case", "held", "written"]
+__all__ = ["Case", "CaseLike", "as_case", "held", "in_si", "written"]
 
 _SHOWN = 4
 _LISTED = 6
@@ -267,6 +267,28 @@ def _unit(key: str) -> str:
     except InputError:
         return ""  # told by the schema, with its file
     return "" if quantity is None or quantity.whole else units.si_unit(quantity.kind)
+
+
+def in_si(value: Any, key: str = "") -> Any:
+    """Plain values with the SI number in the place of each quantity: "5 N m" and "5.0 N m" are one.
+
+    Args:
+        value: of a case file at the key.
+        key: dotted; empty for the whole file.
+    """
+    if isinstance(value, dict):
+        # Ends of a range are values of its key; a name that is none leaves what it has as it is.
+        return {
+            name: in_si(item, key if name in ("start", "stop") else f"{key}.{name}".lstrip("."))
+            for name, item in value.items()
+        }
+    if isinstance(value, list | tuple):
+        return [in_si(item, key) for item in value]
+    try:
+        quantity = quantity_at(key)
+        return value if quantity is None else quantity.si(value)
+    except InputError:
+        return value
 
 
 def _demand(quantity: Quantity, value: Any, key: str) -> None:

@@ -23,6 +23,7 @@ from pitchpoint.programs import bound_programs, surroundings
 from pitchpoint.results.netcdf import encode
 from pitchpoint.results.pieces import ALONG
 from pitchpoint.results.store import fingerprint
+from pitchpoint.runs.case import in_si
 from pitchpoint.runs.layouts import DRAWN, StudyLayout, layout_of
 from pitchpoint.runs.run import mark_of
 
@@ -86,8 +87,9 @@ class StudyDescription:
     def mark(self) -> str:
         """Digest of the description, of the code and of what it runs on: equal ones give equal bits."""
         tree = self.variant.document().tree
-        case = {key: table for key, table in tree.items() if key != OUTPUT}
-        return fingerprint(mark_of(self.variant, _PART), case, self._layout, self.decisive)
+        case = in_si({key: table for key, table in tree.items() if key != OUTPUT})
+        layout = {**self._layout, "over": {key: in_si(one, key) for key, one in self.over.items()}}
+        return fingerprint(mark_of(self.variant, _PART), case, layout, self.decisive)
 
     @property
     def decisive(self) -> dict[str, str]:

@@ -16,6 +16,7 @@ from pitchpoint.analyses.designs import TOGETHER
 from pitchpoint.analyses.studies import demand_films, demand_one
 from pitchpoint.analyses.summaries import balance_codes, few
 from pitchpoint.cases.record import OUTPUT
+from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import validate, with_meshes
 from pitchpoint.cases.study_tables import StudyTable, Sweep
 from pitchpoint.cases.variant import Variant
@@ -175,7 +176,13 @@ def table_of_study(case: Case) -> StudyTable | None:
     Raises:
         InputError: the case cannot be read.
     """
-    document = case.held[0].document()
+    return _table_of_variant(case.held[0])
+
+
+@remembering
+def _table_of_variant(variant: Variant) -> StudyTable | None:
+    """The same of a variant; a command asks for it, and then the study that it computes."""
+    document = variant.document()
     return validate(with_meshes(document)).study if "study" in document.tree else None
 
 
@@ -183,7 +190,22 @@ def demand_study(case: Case) -> None:
     """InputError for what is wrong with the table `[study]` of the first variant of a case, if it has one."""
     if "study" in case.held[0].document().tree:
         plan = StudyPlan(**_completed({}, case))
-        _laid_out(case, case.held[0], plan)
+        _demand_some(*_laid_out(case, case.held[0], plan))
+
+
+TRIED = 16
+"""Designs that are built to see whether a study has any."""
+
+
+def _demand_some(base: Variant, layout: StudyLayout) -> None:
+    """InputError where none of some designs from the first to the last one can be built."""
+    numbers = np.unique(np.linspace(0, layout.count - 1, TRIED).round().astype(int)).tolist()
+    changes = [layout.changes(number, number + 1)[0] for number in numbers]
+    refusals = [one for one in base.computed.built_each(changes) if isinstance(one, InputError)]
+    if len(refusals) == len(numbers):
+        told = f"none of {len(numbers)} designs that were tried can be computed; the first one"
+        key = f"{refusals[0].key}: " if refusals[0].key else ""
+        raise InputError(f"{told}: {key}{refusals[0].message}", file=base.name, key="study")
 
 
 def _laid_out(case: Case, base: Variant, plan: StudyPlan) -> tuple[Variant, StudyLayout]:

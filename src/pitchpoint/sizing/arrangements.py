@@ -1,6 +1,6 @@
 """Arrangements that reach a ratio: how it is shared among stages, and which gears each of them may have."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -93,8 +93,10 @@ def reach_words(task: Task, family: str) -> str:
         )
     if family == "3K" and task.ratio < LEAST_THREE_K:
         return f"reaches ratios from {LEAST_THREE_K:g} on, {task.ratio:.6g} is asked"
+    counted = "" if family in of_pairs or not task.planets else f" with {_listed(task)} planets"
     return (
         f"no teeth that can be made come within {100.0 * task.ratio_tolerance:.3g} % of that ratio"
+        f"{counted}"
     )
 
 
@@ -138,11 +140,21 @@ LEAST_WHEEL = 30
 """Teeth from which a shift below zero leaves no undercut that counts."""
 
 
+def _planets(task: Task, usual: Sequence[int]) -> list[int]:
+    """Numbers of planets that are tried."""
+    return [int(number) for number in task.planets or usual]
+
+
+def _listed(task: Task) -> str:
+    """Numbers of planets that are asked for, in words."""
+    return " or ".join(f"{number:g}" for number in task.planets)
+
+
 @lru_cache(maxsize=256)
 def _sets(task: Task, ratio: float) -> tuple[Form, ...]:
     """Planetary sets near a ratio from sun to carrier, of a few suns for each number of planets."""
     tables = []
-    for planets in PLANETS:
+    for planets in _planets(task, PLANETS):
         near = [
             teeth
             for teeth in planetary_teeth(ratio - 1.0, planets)
@@ -167,7 +179,7 @@ def _sets(task: Task, ratio: float) -> tuple[Form, ...]:
 def _stepped(task: Task) -> tuple[Form, ...]:
     """Sets of stepped planets of the ratio."""
     tables = []
-    for planets in PLANETS[:2]:
+    for planets in _planets(task, PLANETS[:2]):
         near, suns = [], set()
         for gears, met in stepped_gears(task.ratio, planets):
             if abs(met / task.ratio - 1.0) > task.ratio_tolerance:
@@ -186,7 +198,7 @@ def _stepped(task: Task) -> tuple[Form, ...]:
 def _three_k(task: Task) -> tuple[Form, ...]:
     """3K sets of the ratio that lose least."""
     tables = []
-    for planets in PLANETS[:2] if task.ratio >= LEAST_THREE_K else ():
+    for planets in _planets(task, PLANETS[:2]) if task.ratio >= LEAST_THREE_K else ():
         try:
             sets = three_k_sets(task.reaches, planets=planets, count=THREE_K)
         except InputError:

@@ -207,6 +207,8 @@ def size(
         diameter, length: largest ones of the gears.
         centre_distances: largest ones of pairs, one, or one for each stage from the input.
         families: those that are tried, all of `SIZED_FAMILIES` unless given.
+        planets: numbers of them that sets may have, "3, 4"; 3 to 5, of stepped and 3K sets 3 and 4, unless
+            given.
         material: of all gears, "case-hardened-mq" unless given.
         flank_safety, root_safety: least ones, 1.2 and 1.5 unless given.
         application_factor, face_load_factor: K_A and K_Hbeta by which teeth are rated, 1 unless given.

@@ -43,6 +43,7 @@ TASK_TABLE = "size"
 RATIO = Quantity("dimensionless", 1.2, 2000.0)
 TOLERANCE = Quantity("dimensionless", 0.0, 0.2, open_low=True)
 SAFETY = Quantity("dimensionless", 0.5, 10.0)
+PLANETS = Quantity("dimensionless", 3, 7, whole=True)
 SLENDER = Quantity("dimensionless", 0.2, 2.5)
 MOST_STAGES = 3
 
@@ -62,6 +63,15 @@ def _distances(value: Any) -> list[Any]:
             f"{MOST_STAGES} from the input"
         )
     return values
+
+
+def _numbers(value: Any) -> list[Any]:
+    """Whole numbers of a list or of a text with commas, each once and rising."""
+    values = [
+        float(part) if isinstance(part, str) and part.isdecimal() else part
+        for part in _listed(value)
+    ]
+    return sorted({*values}) if all(isinstance(part, float | int) for part in values) else values
 
 
 def _names(known: Sequence[str], what: str) -> Callable[[Any], tuple[str, ...]]:
@@ -134,6 +144,11 @@ class Task(Table):
         ),
     ] = SIZED_FAMILIES
     """Families and arrangements that are tried; all if left out."""
+    planets: Annotated[
+        tuple[Annotated[float, PLANETS], ...],
+        BeforeValidator(_numbers, json_schema_input_type=str | float | tuple[float, ...]),
+    ] = ()
+    """Numbers of planets that sets may have; 3 to 5, of stepped and 3K sets 3 and 4, if left out."""
     material: Annotated[str, BeforeValidator(_steel)] = "case-hardened-mq"
     """Material of all gears but those of strain wave gears, one with limits of strength."""
     flank_safety: Annotated[float, SAFETY] = 1.2
