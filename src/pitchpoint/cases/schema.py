@@ -26,6 +26,7 @@ from pitchpoint import units
 from pitchpoint.cases.document import STAGES, Document, check_name
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import expanded, named_set
+from pitchpoint.cases.optimise_table import OptimiseTable
 from pitchpoint.contact.registry import (
     ELLIPTIC_CONTACT,
     END_PROFILES,
@@ -1703,6 +1704,8 @@ class CaseFile(Table):
     """Further computations with changed inputs, by names of one's own."""
     study: StudyTable | None = None
     """Many designs of the case, for the command `study`; none unless given."""
+    optimise: OptimiseTable | None = None
+    """Keys to vary until one result is best, for the command `optimise`; none unless given."""
     loss_map: LossMap | None = None
     """Axes of the loss map; up to 1.5 times the operating point unless given."""
     duty: DutyTable | None = None
@@ -1924,6 +1927,8 @@ class DriveCase(Table):
     """Further computations with changed inputs, by names of one's own."""
     study: StudyTable | None = None
     """Many designs of the case, for the command `study`; none unless given."""
+    optimise: OptimiseTable | None = None
+    """Keys to vary until one result is best, for the command `optimise`; none unless given."""
     loss_map: LossMap | None = None
     """Axes of the loss map; up to 1.5 times the operating point unless given."""
     duty: DutyTable | None = None
