@@ -33,6 +33,7 @@ _LAZY: dict[str, str] = {
     "ThermalNetwork": "pitchpoint.duty_cycle.heat",
     "Heating": "pitchpoint.duty_cycle.cycle",
     "gradients": "pitchpoint.notebook.gradients",
+    "optimise": "pitchpoint.runs.optimise",
     "models": "pitchpoint.notebook.tables",
     "cite": "pitchpoint.notebook.tables",
     "load_case": "pitchpoint.runs.run",

@@ -216,6 +216,8 @@ _OPTIONS = {
     "--over": '--over operation.torque="20 N m:90 N m:8"',
     "--sweep": '--sweep operation.speed="500 rpm:3000 rpm:11"',
     "--units": "--units angle=arcmin",
+    "--vary": '--vary gears.face_width="10 mm:30 mm"',
+    "--subject": '--subject "root_safety >= 1.5"',
 }
 """Options whose values have a form, with one."""
 
@@ -552,6 +554,108 @@ def study(
         _table(indices, tuple(indices[0]))
     for line in told:
         _console().print(_plain_line(line), soft_wrap=True)
+
+
+@app.command()
+def optimise(
+    case: CaseName,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--vary",
+            metavar="KEY=VALUES",
+            help='Between two ends, "gears.face_width=10 mm:30 mm", or each of "gears.teeth.1=[20, 21]".',
+            autocompletion=_keys_from,
+        ),
+    ] = None,
+    minimise: Annotated[
+        str | None, typer.Option(metavar="RESULT", help="As mean_loss, disc_mass.1.")
+    ] = None,
+    maximise: Annotated[str | None, typer.Option(metavar="RESULT", help="In its place.")] = None,
+    subject: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--subject", metavar="LIMIT", help='"root_safety >= 1.5", "centre_distance = 84 mm".'
+        ),
+    ] = None,
+    law: Annotated[
+        str | None, typer.Option("--law", metavar="NAME", help="Of friction; the first one.")
+    ] = None,
+    starts: Annotated[
+        int | None,
+        typer.Option("--starts", metavar="N", help="Designs to begin with; 16 for each key."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Default: results/CASE/optimum."),
+    ] = None,
+    variant: OneVariant = None,
+    set_: Settings = None,
+    units: UnitsByKind = None,
+    overwrite: Overwrite = False,
+    json_: AsJson = False,
+) -> None:
+    """Vary numbers of a case until one result is least or largest, and others are within limits.
+
+    What varies, the aim and the limits stand in options, or in the table [optimise] of the case. The best
+    design is written as a case file, and every design that was computed as a line of a table.
+    """
+    from pitchpoint.cases.record import default_folder
+    from pitchpoint.results.chosen_units import shown_in
+    from pitchpoint.runs.case import Case
+    from pitchpoint.runs.optimise import folder_of_optimum, table_of_optimiser
+    from pitchpoint.runs.optimise import optimise as search
+    from pitchpoint.views.optimum_screen import optimum_as_json, optimum_screen
+
+    settings = _settings(set_ or [])
+    chosen = (Case(case) if variant is None else Case(case, variant=variant)).set(settings)
+    of_table = None if vary else table_of_optimiser(chosen)
+    if of_table is None and not vary:
+        raise InputError(
+            "an optimiser needs a key to vary, in a table [optimise] of the case or by option: "
+            f"{_OPTIONS['--vary']}"
+        )
+    usual = default_folder(case, Path("results"), settings) / "optimum"
+    folder = output or folder_of_optimum(of_table, chosen) or usual
+    with _progress(folder, "designs") as progress:
+        found = search(
+            chosen,
+            _varied(vary) if vary else None,
+            minimise=minimise,
+            maximise=maximise,
+            subject_to=subject,
+            law=law,
+            starts=starts,
+            folder=folder,
+            overwrite=overwrite,
+            progress=progress,
+        )
+    if json_:
+        _emit(optimum_as_json(found))
+    else:
+        console = _console()
+        with shown_in(_units(units) if units else {}):
+            for line in optimum_screen(found, console.width):
+                console.print(_plain_line(line.text), style=_STYLES[line.style], soft_wrap=True)
+    if found.interrupted:
+        raise SystemExit(_INTERRUPTED)
+
+
+def _varied(texts: list[str]) -> dict[str, Any]:
+    """What varies by key: two ends, or each value of a list."""
+    from pitchpoint.input.quantities import shown
+
+    varied: dict[str, Any] = {}
+    for text in texts:
+        key, equals, given = (part.strip() for part in text.partition("="))
+        if not (key and equals and given):
+            told = f"{shown(text)} is not KEY=VALUES, such as {_OPTIONS['--vary']}"
+            raise InputError(told, key="--vary")
+        if key in varied:
+            raise InputError(f"{shown(key)} was given twice", key="--vary")
+        value = _value(given) if given.startswith("[") else given
+        varied[key] = {"values": value} if isinstance(value, list) else given
+    return varied
 
 
 @app.command()

@@ -24,6 +24,7 @@ from pitchpoint import units
 from pitchpoint.cases.document import STAGES, Document, at_most, too_many
 from pitchpoint.cases.laws import Choices, FrictionChoice
 from pitchpoint.cases.loss_sets import expanded, named_set
+from pitchpoint.cases.optimise_table import OptimiseTable
 from pitchpoint.cases.study_tables import Issues, Studies, Study, StudyTable, Sweep, Target, Targets
 from pitchpoint.duty_cycle.table import DutyTable
 from pitchpoint.dynamics.vibration_tables import Dynamics
@@ -190,6 +191,8 @@ class CaseFile(Table):
     """Further computations with changed inputs, by names of one's own."""
     study: StudyTable | None = None
     """Many designs of the case, for the command `study`; none unless given."""
+    optimise: OptimiseTable | None = None
+    """Keys to vary until one result is best, for the command `optimise`; none unless given."""
     loss_map: LossMap | None = None
     """Axes of the loss map; up to 1.5 times the operating point unless given."""
     duty: DutyTable | None = None
@@ -407,6 +410,8 @@ class DriveCase(Table):
     """Further computations with changed inputs, by names of one's own."""
     study: StudyTable | None = None
     """Many designs of the case, for the command `study`; none unless given."""
+    optimise: OptimiseTable | None = None
+    """Keys to vary until one result is best, for the command `optimise`; none unless given."""
     loss_map: LossMap | None = None
     """Axes of the loss map; up to 1.5 times the operating point unless given."""
     duty: DutyTable | None = None

@@ -29,7 +29,7 @@ __all__ = [
 P = ParamSpec("P")
 T = TypeVar("T")
 
-_TOLD = ("targets", "issues", "studies", "study")
+_TOLD = ("targets", "issues", "studies", "study", "optimise")
 
 
 @dataclass(frozen=True)
