@@ -6,33 +6,25 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import sound
 
 from pitchpoint.cases.variant import Variant
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, run_piece, run_variant
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[1] / "examples"
 SPEED, TORQUE = 1500.0 * np.pi / 30.0, 50.0
-PAIR = """
-[gears]
-teeth = [23, 61]
-module = "2 mm"
-face_width = "20 mm"
-helix_angle = "15 deg"
+HELICAL = sound.PAIR.replace("[lubricant]", 'helix_angle = "15 deg"\n[lubricant]')
+PAIR = (
+    HELICAL.replace("75W90-A", "pao-vg-150")
+    + """
 [materials]
 gear_1 = "case-hardened-mq"
 gear_2 = "case-hardened-mq"
-[lubricant]
-name = "pao-vg-150"
-[roughness]
-ra = "0.4 um"
-[operation]
-torque = "50 N m"
-speed = "1500 rpm"
-temperature = "60 degC"
 [models]
 friction = "frictionless"
 """
+)
 RATED = """
 [strength]
 application_factor = 1.25

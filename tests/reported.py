@@ -9,6 +9,7 @@ import bank
 import numpy as np
 import pytest
 from records import entries
+from sound import SMOOTH
 
 from pitchpoint.gears.bodies import drawing
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
@@ -24,24 +25,11 @@ from pitchpoint.views.report import render
 
 Outcomes = dict[str, Outcome]
 TITLE = "<script>alert('title')</script>"
+NOTED = '{ value = "15 mm", status = "assumed", note = "</script><b>" }\naddendum = 1.4'
+GEARS = SMOOTH.replace('"15 mm"', NOTED)
 PUBLISHED = f"""
 title = "{TITLE}"
-[gears]
-teeth = [23, 61]
-module = "2 mm"
-face_width = {{ value = "15 mm", status = "assumed", note = "</script><b>" }}
-profile_shift = [0.4, -0.2]
-addendum = 1.4
-[lubricant]
-base = "mineral"
-viscosity_40 = "220 mm2/s"
-viscosity_100 = "19 mm2/s"
-[roughness]
-rq = "0.1 um"
-[operation]
-torque = "60 N m"
-speed = "900 rpm"
-temperature = "60 degC"
+{GEARS}
 [loss_map]
 count = 3
 [variants.as_published.models]

@@ -345,7 +345,7 @@ solver = "elliptic"
 file = "HEIGHTS"
 step_along = "50 um"
 step_across = "50 um"
-""".replace("HEIGHTS", str(Path(__file__).with_name("heights.csv")))
+""".replace("HEIGHTS", str(Path(__file__).parent / "cli" / "heights.csv"))
 )
 
 GANTRY = {key: BASE[key] for key in ("lubricant", "roughness")} | tomllib.loads("""

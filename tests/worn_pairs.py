@@ -21,7 +21,7 @@ K = 1e-16
 OWN = {"coefficient": array(K * 2e9), "hardness": array(2e9)}
 WEAR = WearModel(archard_1953, (OWN, OWN))
 CELLS, PARTS = 32, 16
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[1] / "examples"
 
 
 @cache
