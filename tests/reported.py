@@ -7,7 +7,6 @@ from typing import Any
 
 import bank
 import numpy as np
-import pytest
 from records import entries
 from sound import SMOOTH
 
@@ -21,7 +20,6 @@ from pitchpoint.gears.pairs import way
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views.report import render
 
 Outcomes = dict[str, Outcome]
 TITLE = "<script>alert('title')</script>"
@@ -102,24 +100,9 @@ count = 2
 """
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("report")
-
-
 def computed(folder: Path, name: str, text: str) -> Outcomes:
     (folder / f"{name}.toml").write_text(text, encoding="utf-8")
     return bank.outcomes(folder / f"{name}.toml")
-
-
-@pytest.fixture(scope="module")
-def published(folder: Path) -> Outcomes:
-    return computed(folder, "published", PUBLISHED)
-
-
-@pytest.fixture(scope="module")
-def page(published: Outcomes) -> str:
-    return render(published)
 
 
 class Words(HTMLParser):

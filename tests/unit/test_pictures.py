@@ -8,7 +8,7 @@ from pathlib import Path
 import bank
 import numpy as np
 import pytest
-from reported import IDLE, OUTSIDE, WHEEL, Outcomes, computed, drawn_teeth, shown
+from reported import IDLE, OUTSIDE, PUBLISHED, WHEEL, Outcomes, computed, drawn_teeth, shown
 
 from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
@@ -17,6 +17,16 @@ from pitchpoint.views.explorer import Reader
 from pitchpoint.views.picture import Picture, PictureBody, picture_of
 from pitchpoint.views.point import period_of
 from pitchpoint.views.report import render
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("report")
+
+
+@pytest.fixture(scope="module")
+def published(folder: Path) -> Outcomes:
+    return computed(folder, "published", PUBLISHED)
 
 
 @pytest.fixture(scope="module")

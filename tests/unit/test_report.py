@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 from pages import decoded, payload
 from plotly.offline import get_plotlyjs
-from reported import IDLE, TITLE, WHEEL, Outcomes, Words, computed
+from reported import IDLE, PUBLISHED, TITLE, WHEEL, Outcomes, Words, computed
 from sound import quick_first
 
 from pitchpoint.doubts import stored
@@ -26,6 +26,21 @@ from pitchpoint.views.section import Paragraph, naming
 from pitchpoint.views.sections.cycle import _mean_friction
 from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.studies import study_panels
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("report")
+
+
+@pytest.fixture(scope="module")
+def published(folder: Path) -> Outcomes:
+    return computed(folder, "published", PUBLISHED)
+
+
+@pytest.fixture(scope="module")
+def page(published: Outcomes) -> str:
+    return render(published)
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from pages import payload
-from reported import IDLE, OUTSIDE, WHEEL, Outcomes, Words, computed, shown
+from reported import IDLE, OUTSIDE, PUBLISHED, WHEEL, Outcomes, Words, computed, shown
 
 from pitchpoint.cases.build import ALONE
 from pitchpoint.doubts import as_doubt, stored
@@ -30,6 +30,21 @@ from pitchpoint.views.sections.sliding import specific_sliding
 from pitchpoint.views.sections.spread import spread_sentence
 from pitchpoint.views.sections.studies import _warnings as study_warnings
 from pitchpoint.views.sections.teeth import dimensions
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("report")
+
+
+@pytest.fixture(scope="module")
+def published(folder: Path) -> Outcomes:
+    return computed(folder, "published", PUBLISHED)
+
+
+@pytest.fixture(scope="module")
+def page(published: Outcomes) -> str:
+    return render(published)
 
 
 @pytest.fixture(scope="module")
