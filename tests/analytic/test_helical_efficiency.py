@@ -6,11 +6,11 @@ import equinox as eqx
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from sound import pair
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.efficiency.summary import loss_factor
-from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
@@ -25,17 +25,6 @@ SPEED = 188.5
 LAW = {law.name: law for law in LAWS}
 FRICTION = ("constant", "xu_2007")
 FAINT = 1e-7
-
-
-def pair(teeth, degrees=0.0, module=3e-3, width=20e-3, **options):
-    return build_cylindrical_pair(
-        teeth=teeth,
-        module=module,
-        pressure_angle=np.deg2rad(20.0),
-        helix_angle=np.deg2rad(degrees),
-        face_width=width,
-        **options,
-    )
 
 
 def few(teeth, module, shift):

@@ -8,15 +8,14 @@ import pytest
 from bare_contacts import line_contacts
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from standard_pairs import ALPHA, PAIRS, number, standard_stiffness
 
-from pitchpoint import units
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.flattening import line_compression, yang_sun_1985
 from pitchpoint.contact.hertz import line_half_width
 from pitchpoint.errors import InputError
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.tooth_section import FLANK_NODES, ToothSection, chebyshev_nodes
-from pitchpoint.loading import iso_6336_stiffness as iso
 from pitchpoint.loading.foundation import (
     HALF_ANGLE_RANGE,
     foundation_compliance,
@@ -36,7 +35,6 @@ from pitchpoint.materials.solids import Solid
 
 STEEL = Solid(young=207e9, poisson=0.3, density=7850.0)
 PA66 = Solid(young=3.54e9, poisson=0.35, density=1140.0)
-ALPHA = np.deg2rad(20.0)
 RIM_RATIO = 1.0 / 0.3
 LOAD = 10e3
 MODELS = {
@@ -46,10 +44,6 @@ MODELS = {
     "S": "beam_foundation_hertz",
     "R": "beam_foundation_weber",
 }
-
-
-def number(value):
-    return jnp.asarray(value, dtype=float)
 
 
 def gear(teeth, module, beta=0.0, shift=0.0, tip_alteration=0.0, internal=False):
@@ -146,14 +140,6 @@ class Pair:
         scale = self.width * np.cos(self.base_helix) / self.overlap_ratio
         course = scale * np.sum(swept[0] - swept[1], axis=0)
         return course.mean(), np.ptp(course) / course.mean()
-
-
-PAIRS = {
-    "GP1": (4, 51, 1.5e-3, 0.74, 0.05, 10.6387e-3, 84.3891e-3),
-    "GP2": (4, 51, 1.5e-3, 0.85, -0.06, 10.7850e-3, 84.0591e-3),
-    "GP3": (6, 77, 1.0e-3, 0.60, 0.29, 9.2849e-3, 84.4212e-3),
-    "GP4": (6, 77, 1.0e-3, 0.85, 0.04, 9.5227e-3, 83.9212e-3),
-}
 
 
 def with_tip(teeth, module, shift, diameter):
@@ -513,91 +499,6 @@ def test_registry_offers_the_nearest_names():
     assert set(MODELS.values()) == set(TOOTH_COMPLIANCE)
     with pytest.raises(InputError, match="beam_weber"):
         TOOTH_COMPLIANCE["beam_webber"]
-
-
-# ------------------------------------------------------------------ the standard's estimate
-
-
-def virtual(teeth, beta):
-    helix = np.deg2rad(beta)
-    base = np.arcsin(np.sin(helix) * np.cos(ALPHA))
-    return np.array(teeth) / (np.cos(base) ** 2 * np.cos(helix))
-
-
-def standard_stiffness(teeth, beta, shift, young, ratio=1.0, dedendum=1.25, blank=1.0, load=1e6):
-    """c', c_gamma_alpha and c_gamma_beta [N/(mm um)]."""
-    single = iso.single_stiffness(
-        virtual_teeth=jnp.asarray(virtual(teeth, beta)),
-        profile_shift=jnp.asarray(shift),
-        helix_angle=number(np.deg2rad(beta)),
-        young=jnp.asarray(young),
-        rack=iso.rack_factor(dedendum=number(dedendum), pressure_angle=number(ALPHA)),
-        blank=number(blank),
-        specific_load=number(load),
-    )
-    alpha = iso.mesh_stiffness_alpha(single=single, contact_ratio=number(ratio))
-    return [1e-9 * float(value) for value in (single, alpha, iso.mesh_stiffness_beta(alpha=alpha))]
-
-
-def test_standard_of_a_wind_turbine_stage():
-    """24/95 teeth as a commercial program prints them for ISO 6336:2006 B."""
-    blank = iso.blank_factor(web_ratio=number(0.25), rim_thickness_ratio=number(5.0))
-    assert float(blank) == pytest.approx(0.898, abs=5e-4)
-    found = standard_stiffness((24, 95), 10.0, (0.48, 0.6691), (206e9, 206e9), 1.463, blank=0.898)
-    assert found == pytest.approx([13.832, 18.632, 15.837], rel=5e-4)
-    assert virtual((24, 95), 10.0) == pytest.approx([25.037, 99.104], abs=1e-3)
-
-
-def test_standard_of_the_worked_example():
-    """ISO/TR 6336-30:2017, example 1: 17/103 teeth, dedendum of 1.4 modules."""
-    found = standard_stiffness((17, 103), 15.8, (0.145, 0.0), (206e9, 206e9), dedendum=1.4)
-    assert found[0] == pytest.approx(12.3705, abs=1e-4)
-    theory = 1e-9 / iso.pair_compliance(
-        virtual_teeth=jnp.asarray(virtual((17, 103), 15.8)), profile_shift=jnp.asarray([0.145, 0.0])
-    )
-    assert float(theory) == pytest.approx(17.8558, abs=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("name", "ratio", "single", "mesh", "low"),
-    [
-        ("GP1", 0.8880, 0.387, 5.67, 3.04),
-        ("GP2", 0.8253, 0.398, 5.54, 2.97),
-        ("GP3", 1.0786, 0.420, 7.11, 3.81),
-        ("GP4", 0.9366, 0.441, 6.71, 3.60),
-    ],
-)
-def test_standard_of_the_steel_and_plastic_pairs(name, ratio, single, mesh, low):
-    z1, z2, _, x1, x2, *_ = PAIRS[name]
-    young = (207e9, 3.54e9)
-    full, alpha, _ = standard_stiffness((z1, z2), 20.0, (x1, x2), young, ratio)
-    assert full == pytest.approx(single, abs=6e-4)
-    assert 16.0 * alpha == pytest.approx(mesh, abs=6e-3)
-    little = standard_stiffness((z1, z2), 20.0, (x1, x2), young, ratio, load=8.2e3)[1]
-    assert 16.0 * little == pytest.approx(low, abs=1e-2)
-
-
-def test_standard_says_where_it_does_not_hold():
-    inside = {
-        "virtual_teeth": (25.0, 99.0),
-        "profile_shift": (0.5, 0.4),
-        "helix_angle": np.deg2rad(10.0),
-        "contact_ratio": 1.46,
-    }
-    assert iso.range_warnings(**inside) == ()
-    assert iso.range_warnings(**{**inside, "helix_angle": units.parse("30 deg", "angle")}) == ()
-    outside = {
-        "virtual_teeth": ((4.75, 60.5), "4.75 virtual teeth"),
-        "profile_shift": ((0.4, 0.5), "x1 >= x2"),
-        "helix_angle": (np.deg2rad(35.0), "helix angle of 35 deg"),
-        "contact_ratio": (0.888, "contact ratio of 0.888"),
-        "internal": (True, "external gears only"),
-    }
-    for key, (value, words) in outside.items():
-        (sentence,) = iso.range_warnings(**{**inside, key: value})
-        assert words in sentence
-    (sentence,) = iso.range_warnings(**{**inside, "profile_shift": (1.5, 0.9)})
-    assert "sum of profile shifts of 2.4" in sentence
 
 
 def test_half_width_of_the_contact_uses_the_curvature_across_the_lines(pairs):

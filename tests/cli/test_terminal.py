@@ -10,26 +10,17 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from sound import PAIR
 
 import pitchpoint
 from pitchpoint import cli
 
 EVIL = "\x1b]0;owned\x07\x1b[2J\x1b]52;c;aGk=\x07\x9b31m :smile: Zahnräder"
+NOTED = f'{{ value = "2 mm", where = {json.dumps(EVIL)}, note = "first\\nsecond {json.dumps(EVIL)[1:]} }}'
+GEARS = PAIR.replace('"2 mm"', f"{NOTED}\nprofile_shift = [1.0, -0.4]")
 CASE = f"""
 title = {json.dumps(EVIL)}
-[gears]
-teeth = [23, 61]
-module = {{ value = "2 mm", where = {json.dumps(EVIL)}, note = "first\\nsecond {json.dumps(EVIL)[1:]} }}
-face_width = "20 mm"
-profile_shift = [1.0, -0.4]
-[lubricant]
-name = "75W90-A"
-[roughness]
-ra = "0.4 um"
-[operation]
-torque = "50 N m"
-speed = "1500 rpm"
-temperature = "60 degC"
+{GEARS}
 [[issues]]
 where = {json.dumps(EVIL)}
 issue = {json.dumps(EVIL)}

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from analytic.test_cylindrical_geometry import overlap
 from analytic.test_polygons_of_pairs import numbers
+from drawn_teeth import overlap
 from polygons import deepest as overlap_of_polygons
 from sound import PAIR
 

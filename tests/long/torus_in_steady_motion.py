@@ -1,7 +1,7 @@
 """All rows of the torus case in steady motion, at six conditions: minutes without optimised programs."""
 
 import numpy as np
-from literature.test_liu_xiong_torus import read
+from torus_in_print import read
 
 from pitchpoint.cases.library import find
 from pitchpoint.dynamics.grid import PeriodGrid

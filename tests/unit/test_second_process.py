@@ -7,33 +7,19 @@ import sys
 from pathlib import Path
 
 import pytest
+from sound import PAIR
 
 import pitchpoint
 
-CASE = """
-[gears]
-teeth = [18, 36]
-module = "3 mm"
-face_width = "20 mm"
-
+MATERIALS = """
 [materials]
 gear_1 = "steel"
 gear_2 = "steel"
-
-[lubricant]
-name = "pao-vg-220"
-
-[roughness]
-ra = "0.4 um"
-
-[operation]
-torque = "50 N m"
-speed = "1500 rpm"
-temperature = "60 degC"
-
 [models]
 friction = "constant"
 """
+GEARS = PAIR.replace("[23, 61]", "[18, 36]").replace("2 mm", "3 mm")
+CASE = GEARS.replace("75W90-A", "pao-vg-220") + MATERIALS
 
 # Runs a case, and tells how often a program was asked for, found and compiled.
 SCRIPT = """
