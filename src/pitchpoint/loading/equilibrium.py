@@ -411,8 +411,8 @@ def _loaded(
     problem: _Problem, first: Bool[Array, "pair slice *b"] | None
 ) -> tuple[Bool[Array, "*b lane"], Int[Array, ""]]:
     """Lanes that carry, and the number of sets that were tried."""
-    # Active sets and no general solver of quadratic programs: most sets are those of contacts that stand alone,
-    # give or take a few; what is found is exact, and so are derivatives with the set as it is.
+    # Active sets and no general solver of quadratic programs: most sets are those of contacts that stand
+    # alone, give or take a few; what is found is exact, and so are derivatives with the set as it is.
     start = _as_if_alone(problem)
     if first is not None:
         flat = jnp.moveaxis(first.reshape(-1, *first.shape[2:]), 0, -1)

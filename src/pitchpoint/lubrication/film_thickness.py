@@ -66,13 +66,7 @@ def dowson_1968(
 ) -> Each:
     """Minimum film of a line contact [m]: h/R = 2.65 G^0.54 U^0.7 W^-0.13.
 
-    Args:
-        line_load: w [N/m].
-        entrainment: mean surface speed u [m/s].
-        viscosity: eta0 [Pa s].
-        pressure_viscosity: alpha [1/Pa].
-        radius: R [m].
-        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+    Arguments are those of `dowson_higginson_1959`.
 
     W = w/(E' R), U = eta0 u/(E' R), G = alpha E'. Source: Dowson (1968).
 
@@ -99,13 +93,7 @@ def dowson_toyoda_1979(
 ) -> Each:
     """Central film of a line contact [m]: h/R = 3.06 G^0.56 U^0.69 W^-0.10.
 
-    Args:
-        line_load: w [N/m].
-        entrainment: mean surface speed u [m/s].
-        viscosity: eta0 [Pa s].
-        pressure_viscosity: alpha [1/Pa].
-        radius: R [m].
-        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+    Arguments are those of `dowson_higginson_1959`.
 
     W = w/(E' R), U = eta0 u/(E' R), G = alpha E'. Source: Dowson and Toyoda (1979).
 
@@ -132,13 +120,7 @@ def pan_hamrock_1989(
 ) -> Each:
     """Minimum film of a line contact [m]: h/R = 1.714 G^0.568 U^0.694 W^-0.128.
 
-    Args:
-        line_load: w [N/m].
-        entrainment: mean surface speed u [m/s].
-        viscosity: eta0 [Pa s].
-        pressure_viscosity: alpha [1/Pa].
-        radius: R [m].
-        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+    Arguments are those of `dowson_higginson_1959`.
 
     W = w/(E' R), U = eta0 u/(E' R), G = alpha E'. Source: Pan and Hamrock (1989), in Hamrock's
     Fundamentals of fluid film lubrication equation 18.72.
@@ -166,13 +148,7 @@ def pan_hamrock_1989_central(
 ) -> Each:
     """Central film of a line contact [m]: h/R = 2.922 G^0.470 U^0.692 W^-0.166.
 
-    Args:
-        line_load: w [N/m].
-        entrainment: mean surface speed u [m/s].
-        viscosity: eta0 [Pa s].
-        pressure_viscosity: alpha [1/Pa].
-        radius: R [m].
-        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+    Arguments are those of `dowson_higginson_1959`.
 
     W = w/(E' R), U = eta0 u/(E' R), G = alpha E'. Source: Pan and Hamrock (1989), in Hamrock's
     Fundamentals of fluid film lubrication equation 18.74.
@@ -200,13 +176,7 @@ def moes_1992(
 ) -> Each:
     """Central film of a line contact [m] in every regime, rigid to elastic and isoviscous to piezoviscous.
 
-    Args:
-        line_load: w [N/m].
-        entrainment: mean surface speed u [m/s].
-        viscosity: eta0 [Pa s].
-        pressure_viscosity: alpha [1/Pa].
-        radius: R [m].
-        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+    Arguments are those of `dowson_higginson_1959`.
 
     With us = 2 u, U2 = eta0 us/(E' R), M = w/(E' R) U2^-1/2 and L = alpha E' U2^1/4, the film h/R U2^-1/2
     blends four limits: rigid-isoviscous 3/M, elastic-isoviscous 2.621 M^-1/5, rigid-piezoviscous
@@ -280,14 +250,7 @@ def hamrock_dowson_1977_central(
 ) -> Each:
     """Central film of an elliptic contact [m]: h/R = 2.69 U^0.67 G^0.53 W^-0.067 (1 - 0.61 exp(-0.73 k)).
 
-    Args:
-        load: normal load F [N].
-        entrainment: mean surface speed u along R_x [m/s].
-        viscosity: eta0 [Pa s].
-        pressure_viscosity: alpha [1/Pa].
-        radius: R_x [m].
-        transverse_radius: R_y [m].
-        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+    Arguments are those of `hamrock_dowson_1977`.
 
     W = F/(E' R_x^2), k = (R_y/R_x)^(2/pi), fitted from 1 (a ball) to 8. Source: Hamrock and Dowson (1977).
 

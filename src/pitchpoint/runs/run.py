@@ -181,30 +181,10 @@ def run(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> dict[str, Outcome]:
-    """Compute all parts of a case.
-
-    Args:
-        case: name of a shipped case, a file, or the folder or the manifest of a result, which repeat that
-            result; a `Case`, or tables as a case file has them.
-        folder: where parts and manifests go; nothing is written without one.
-        only: variants to run; all by default.
-        analyses: names of the parts to compute, all that the case has by default.
-        settings: values by dotted key that replace those of the file.
-        studies: further studies, as `--sweep` makes them.
-        friction: a law of one's own in place of those of the case: a function of JAX arrays whose
-            keyword arguments are conditions at a contact, see `pitchpoint.lubrication.conditions`; or
-            several laws in a list, of one's own and by name.
-        overwrite: True to replace the results of another case in the folder.
-        progress: told about parts and points.
+    """Compute all parts of a case; arguments, and what is raised, are those of `pitchpoint.run`.
 
     Returns:
-        Outcomes by variant.
-
-    Raises:
-        InputError: anything wrong with the input; the folder holds another case, or another run is
-            writing there.
-        ConvergenceError: a balance that was not found; what was finished is on disk.
-        OSError: the disk is full, say; what was finished is on disk.
+        Outcomes by variant, without tables and figures.
     """
     demand_arguments(
         folder=folder, analyses=analyses, studies=studies, friction=friction, overwrite=overwrite
