@@ -223,8 +223,8 @@ def hamrock_dowson_1977(
         transverse_radius: R_y [m].
         modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
 
-    W = F/(E' R_x^2), fitted for k from 1 (a ball) to 8. Source: Hamrock and Dowson (1977), but for k, which is
-    the (R_y/R_x)^(2/pi) of Hamrock and Brewe (1983): their 1.03 (R_y/R_x)^0.64 gives a ball 2 % more film.
+    W = F/(E' R_x^2), fitted for k from 1 (a ball) to 8. Source: Hamrock and Dowson (1977), but for k, the
+    (R_y/R_x)^(2/pi) of Hamrock and Brewe (1983): their own 1.03 (R_y/R_x)^0.64 gives a ball 2 % more film.
 
     Example:
         >>> film = hamrock_dowson_1977(
