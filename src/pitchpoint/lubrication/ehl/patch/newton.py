@@ -72,6 +72,7 @@ STUCK: Final = 3
 FALLING: Final = 0.5
 """Factor by which it has to."""
 
+# Of no account for `solve`, whose starts have times of their own.
 FIRST_TIME: Final = 1.0
 """Time over which the first step lets oil flow, in which surfaces pass a half-width."""
 
