@@ -177,12 +177,7 @@ def greenwood_williamson_1966_exponential(
 
     F(u) = Gamma(5/2) exp(-u): the highest quarter of Gaussian heights falls off like that.
 
-    Args:
-        gap: d, from the mean of the summits to the smooth plane; may be negative [m].
-        deviation: s, standard deviation of the summits, positive [m].
-        radius: beta, of the summits [m].
-        density: eta, summits per area [1/m2].
-        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E; E* is half of it.
+    Arguments are those of `greenwood_williamson_1966`.
 
     Source: Greenwood and Williamson (1966).
 

@@ -22,6 +22,7 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
+# Turns a minute of one radian a second.
 _RPM = 30.0 / np.pi
 
 

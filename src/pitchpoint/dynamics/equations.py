@@ -72,6 +72,7 @@ def equations(system: System, course: ExcitationCourse) -> Equations:
     arm = jnp.einsum("ab,bpen->apen", root, course.arm)
     load = root @ system.load
     stiffness = jnp.einsum("apen,pen,apen->en", arm, course.stiffness, arm)
+    # Units are free, so they are constants: results in SI have the same derivatives without theirs.
     square = _positive(jax.lax.stop_gradient(course.mean(stiffness)))
     from_error = jnp.einsum("apen,pen->aen", arm, course.stiffness * course.error)
     largest = jnp.sum(load**2) + jnp.max(jnp.sum(from_error**2, axis=0))

@@ -45,6 +45,7 @@ CREEP = 1e-3
 TURN = 2.0 * np.pi
 """Rotation of the driver in which an error repeats [rad]."""
 
+# Work put in, lost to damping, and lost to friction: they stand behind the motion in the state.
 _WORKS = 3
 
 One = Float[Arrays, ""]

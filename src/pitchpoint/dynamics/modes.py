@@ -10,6 +10,7 @@ from pitchpoint.gears.period import nodes
 
 __all__ = ["Modes", "along_action", "mean_stiffness", "modes"]
 
+# As of `passage`: of the mean stiffness of a pair six nodes leave an error of 4e-9, twelve rounding.
 NODES = 14
 
 RIGID = 1e-6

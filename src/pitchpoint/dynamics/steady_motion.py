@@ -285,6 +285,7 @@ def periodic_motion(
 
     Arguments as in `steady_motion`.
     """
+    # The search sees constants: the step of `_polished` has the derivatives, without those of every period.
     fixed, at = jax.lax.stop_gradient((_arrays(moving), speed))
     search_in = _Turning(eqx.combine(fixed, moving), at, cycles, tolerance)
     guess = search_in.first

@@ -105,12 +105,7 @@ def slice_stiffness(
     """Stiffness of every slice per length of contact line [N/m2]; the contact's at the mean line load.
 
     Args:
-        mesh: a family whose members have teeth.
-        loaded: one for the coordinate that carries the load, zero elsewhere.
-        contacts: of the mesh.
-        solids: material of each member.
-        terms: of the model of tooth compliance.
-        load: that the loaded coordinate carries [N m or N].
+        mesh, loaded, contacts, solids, terms, load: as in `compliance`.
         teeth: where the contacts lie on them, where that is known already.
     """
     if teeth is None:

@@ -162,6 +162,7 @@ def equilibrium(
     if isinstance(body, OnBalls):
         return _on_balls(teeth, body, gap, arm, active, load)
     problem, scale = _normalised(teeth, body, gap, arm, active, load)
+    # Which lanes carry stays as it is under small changes of inputs: only what they carry has derivatives.
     loaded, iterations = _loaded(jax.lax.stop_gradient(problem), start)
     found = _solve(problem, loaded)
     residual = jax.lax.stop_gradient(_residual(problem, loaded, found))
@@ -264,6 +265,7 @@ def _on_balls(
     none = jnp.zeros((*gap.shape[:2], *batch), bool)
     begin = _Settling(start, none, jnp.ones(batch, bool), jnp.asarray(0), jnp.asarray(0))
     settled = jax.lax.while_loop(lambda at: (at.steps < PASSES) & jnp.any(at.open), again, begin)
+    # One more step from what was found has all derivatives; through the loop each step would be kept.
     frozen = jax.lax.stop_gradient(settled.approach)
     found, approach = on_springs(body, frozen, settled.loaded, *given)
     done = ~settled.open & jnp.all(jnp.isfinite(frozen), axis=-1)

@@ -30,8 +30,10 @@ __all__ = [
 STEEL_MODULUS = 206e9
 """Young's modulus of the steel gears from which the estimate was derived [Pa]."""
 
+# ISO 6336-1: C_M of method B, and the specific load [N/m] below which stiffness falls with its fourth root.
 _CORRECTION = 0.8
 _FULL_LOAD = 1e5
+# The slope of that root has no bound at zero.
 _LEAST_LOAD = 1.0
 _FEWEST_TEETH = 18.9
 _RANGES = (

@@ -28,6 +28,7 @@ __all__ = [
 
 Share = Float[Array, "pair slice *b"]
 
+# Half angles of the zone in which pairs carry, as both papers have them.
 _XU_END = jnp.pi / 8.0
 _ZHAO_END = jnp.pi / 5.0
 

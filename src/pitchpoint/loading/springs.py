@@ -58,12 +58,7 @@ def springs(
     -e C f that leaves closing and force under the load as they are.
 
     Args:
-        mesh: a family whose members have teeth.
-        loaded: one for the coordinate that carries the load, zero elsewhere.
-        contacts: of the mesh.
-        solids: material of each member.
-        terms: of the model of tooth compliance.
-        load: that the loaded coordinate carries [N m or N].
+        mesh, loaded, contacts, solids, terms, load: as in `compliance.compliance`.
 
     From the derivative of the equilibrium with respect to the load, see `equilibrium`.
     """

@@ -82,15 +82,7 @@ def masjedi_khonsari_2012_regression(
 ) -> Each:
     """What the regression behind `masjedi_khonsari_2012` gives [1]; above 1 it is outside its range.
 
-    Args:
-        line_load: w [N/m].
-        entrainment: mean surface speed u [m/s].
-        viscosity: eta0 [Pa s].
-        pressure_viscosity: alpha [1/Pa].
-        radius: R [m].
-        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
-        roughness_rq: sigma, composite Rq [m].
-        hardness: Vickers hardness of the softer flank [Pa].
+    Arguments are those of `masjedi_khonsari_2012`.
 
     Source: Masjedi and Khonsari (2012), as Zhao et al. (2022) print it in equation 9.
     """

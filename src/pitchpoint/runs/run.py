@@ -189,7 +189,7 @@ def run(
         case: may be the folder of a result too, which repeats that result.
 
     Returns:
-        Outcomes by variant.
+        Outcomes by variant, without tables and figures.
     """
     demand_arguments(
         folder=folder, analyses=analyses, studies=studies, friction=friction, overwrite=overwrite

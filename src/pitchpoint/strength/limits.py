@@ -25,6 +25,7 @@ __all__ = [
 Each = Float[Numbers, "*#b"]
 Found = Float[Array, "..."]
 
+# ISO 6336-2 and -3: life factors fall to 0.85 at 1e10 cycles; the notch of the test gears has q_s = 2.5.
 _LONG, _LEAST = 1e10, 0.85
 _REFERENCE_NOTCH = 2.5
 

@@ -14,6 +14,7 @@ from pitchpoint.programs import program
 
 __all__ = ["check_rack_and_pinion"]
 
+# In modules, as of pairs, see `cylindrical.checks`.
 _THIN_TIP = 0.2
 _SMALL_CLEARANCE = 0.1
 # The usual fillet radius 0.38 is rounded up from 0.25/(1 - sin 20 deg) [modules].

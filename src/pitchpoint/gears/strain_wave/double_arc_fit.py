@@ -39,8 +39,11 @@ DEFLECTIONS = (0.9, 1.15)
 TOUCHING = 1e-3
 """Clearance up to which a pair counts as touching, in modules."""
 
+# Angles of the zone, and parts of the flank that a touching angle marks as used: by these two the shares are
+# counted, in steps of 1/64 and 1/32. The search is for a tooth, not for more digits of its merit.
 _STEPS = 64
 _BINS = 32
+# A tenth of a module of clearance counts as much as a whole share: both are of order one for teeth that run.
 _SPREAD_WEIGHT = 10.0
 # Above what the objective of any tooth can be: its spread is less than the depth of a few modules.
 _BARRED = 100.0

@@ -71,6 +71,7 @@ _DEEP = np.deg2rad(4.5)
 _FLATTEST = (
     2000.0  # modules: with a larger radius a contact under load is wider than the flank high
 )
+# What is at an end but for rounding is at it.
 _SLACK = 1e-9
 _AROUND = np.deg2rad(6.0)
 _BEYOND = np.linspace(WINDOW[1], np.pi / 2.0, 161)

@@ -27,6 +27,7 @@ _PHASES = np.deg2rad(
 _STATIONS = (120, 40)
 _CURVATURES = (-1e6, 1e6)  # 1/m: sharper than any edge that is made
 _FLATTEST = 1e-2  # 1/m
+# Peaks nearer to each other are two phases of the grid around one peak.
 _APART = np.deg2rad(1.0)
 _JUMP = 0.1  # relative change of the curvature between neighbours
 _KINK = 3e-3  # rad between neighbours that no smooth flank turns

@@ -26,6 +26,7 @@ from pitchpoint.programs import program
 
 __all__ = ["FAMILY", "middle_pair", "torus_pair"]
 
+# What rounding leaves of no backlash [m].
 _ROUNDED_BACKLASH = 1e-9
 
 

@@ -29,6 +29,7 @@ OFFSET = Quantity("length", -100.0, 100.0, "mm")
 SLIDE = Quantity("length", -0.1, 0.1, "mm")
 INCLINATION = Quantity("angle", -0.1, 0.1, "mrad")
 
+# Shift and torus offset say the same twice where both are given: what rounding parts is no contradiction.
 _ROUNDED_SHIFT = 1e-6
 
 

@@ -32,15 +32,19 @@ TOLERANCE: Final = 1e-10
 ENOUGH: Final = 1e-8
 """Residual of a solution that rounding keeps from coming closer."""
 
+# By trial, on 128 contacts of `tests/long/many_line_films.py`: 89 steps at most, 227 with 2.0, 94 with 0.1.
+# The median, 17, hardly changes; but contacts that are solved together wait for the slowest.
 LONGEST_STEP: Final = 0.3
 """Largest change of a pressure in a step, in units of Hertz's pressure."""
 
 MOST: Final = 40
 """Steps after which an attempt on a grid is given up."""
 
+# By trial, on the same contacts: 1 takes 148 steps at most, 6 takes 77 and two more in the median.
 THICK: Final = 2.5
 """First guess of the film over the one that a regression gives."""
 
+# By trial, on the same contacts: these take 89 steps at most, a second attempt at the same speed 125.
 FASTER: Final = (1.0, 8.0, 4.0, 2.0, 1.0)
 """Speeds, over the given one, at which films are found one after the other where the first attempt fails:
 from a thick film, which every guess leads to, down to the thin one."""

@@ -181,6 +181,7 @@ def _followed(
     """A contact as warm as it is, its pressure and level with derivatives, and whether they were found."""
     at = grids[-1]
     problem = problem_of(contact, at)
+    # The iteration sees constants: a last step from its end has the derivatives, without those of every step.
     frozen, still = jax.lax.stop_gradient((problem, contact))
     state = from_coarse(frozen, grids)
     if contact.conduction is None:

@@ -45,9 +45,12 @@ SHORTEST: Final = 0.5**8
 MENDED: Final = 0.1
 """Part of the balances that a step has to mend, over its own part."""
 
+# By trial, on the contacts of `INEXACT`: with a tenth of it 1 % fewer steps, so it is no matter of digits.
 SHRINKING: Final = 0.2
 """Least room for oil after a step in the other manner, over that before."""
 
+# A mark more than a number: after such a step the time neither grows, as after a whole one, nor shrinks, as
+# after one that was cut, half of it at most.
 NEARLY: Final = 0.99
 """Part that counts for a step in which a pressure changed by the longest step."""
 
@@ -69,9 +72,11 @@ STUCK: Final = 3
 FALLING: Final = 0.5
 """Factor by which it has to."""
 
+# Of no account for `solve`, whose starts have times of their own.
 FIRST_TIME: Final = 1.0
 """Time over which the first step lets oil flow, in which surfaces pass a half-width."""
 
+# By trial, on the contacts of `INEXACT`: with 5 as many steps, without `MUCH_LONGER` 4 % more.
 LONGER: Final = 2.5
 """Factor by which that time grows with each full step."""
 
@@ -81,9 +86,12 @@ SURE: Final = 0.1
 MUCH_LONGER: Final = 5.0
 """Factor by which it grows then."""
 
+# By trial, on the contacts of `INEXACT`: 1e-2 takes 7 % fewer steps and finds them all.
 STEADY: Final = 1e-4
 """Residual from which on oil has all the time that it needs, and one over the time below which it has."""
 
+# By trial, on 12 contacts of `tests/long/many_patch_films.py` with 65 x 64 nodes, 563 steps in all: 0.1 takes
+# 12 % more steps; 1e-4 takes 6 % more, with more directions in each, and loses one contact.
 INEXACT: Final = 1e-2
 """What a linear solve leaves of its right-hand side."""
 
@@ -93,6 +101,8 @@ EVEN: Final = 1e-9
 DIRECTIONS: Final = 60
 """Directions of a linear solve after which its result is taken as it is."""
 
+# By trial, on the contacts of `INEXACT`: 374 inversions; inverting in every step takes 531 and saves no step,
+# an age of 8 takes 334 and 66 steps more.
 AGE: Final = 3
 """Steps for which rows that were inverted once do, near a solution."""
 
