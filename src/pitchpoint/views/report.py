@@ -9,9 +9,10 @@ from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+import xarray as xr
 
 from pitchpoint._jax import double_precision
 from pitchpoint.kept import base_folder, prepared, read, write
@@ -42,12 +43,14 @@ if TYPE_CHECKING:
     import jinja2
     import markupsafe
 
+    from pitchpoint.sizing.sizing import Sizing
+
 __all__ = ["environment", "packed", "packed_plotly", "render", "write_report"]
 
 
 @double_precision()
 def write_report(
-    outcomes: Mapping[str, Outcome],
+    outcomes: "Mapping[str, Outcome] | xr.Dataset | Sizing",
     path: str | Path,
     *,
     designs: bool = False,
@@ -56,16 +59,26 @@ def write_report(
     """Write the report; a reader never sees half of it.
 
     Args:
-        outcomes: by variant, as `run` and `open_result` give them.
+        outcomes: by variant, as `run` and `open_result` give them; or a study, as `study` gives it, best with
+            units = "shown"; or a sizing, as `size` gives it.
         path: of the HTML file.
         designs: True if the outcomes are those of several cases, by design, which are compared.
         units: by kind of quantity, {"angle": "arcmin"} or "angle=arcmin"; those of the first case by
-            default.
+            default. A study and a sizing have theirs.
 
     Raises:
         InputError: units that there are not.
     """
-    write_text(Path(path), render(outcomes, designs=designs, units=units))
+    if isinstance(outcomes, xr.Dataset):
+        from pitchpoint.views.study_report import render_study
+
+        return write_text(Path(path), render_study(outcomes))
+    if not isinstance(outcomes, Mapping):
+        from pitchpoint.views.sizing_report import render_sizing
+
+        return write_text(Path(path), render_sizing(outcomes))
+    of_case = cast("Mapping[str, Outcome]", outcomes)
+    return write_text(Path(path), render(of_case, designs=designs, units=units))
 
 
 _OF_ALL = ("answer", "formulas", "compared", "models", "sources")
