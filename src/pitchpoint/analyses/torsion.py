@@ -469,7 +469,7 @@ def wound_ups(
         if at_torques and isinstance(
             body, OnBalls
         ):  # balls stand near where they stood for the torque before
-            body = replace(body, start=at_torques[-1].balls)
+            body = replace(body, start=array(at_torques[-1].balls))
         at = wound_up(*inputs, torque, known.contacts, body)
         at_torques.append(jax.device_get(at))
     return at_torques, body

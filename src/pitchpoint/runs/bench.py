@@ -57,6 +57,9 @@ PARTS = (
 )
 """Parts of a result that the table reads."""
 
+NO_PLAY = 1e-9
+"""Backlash that is rounding [rad]."""
+
 YIELDING = {"models.load_sharing": "from_stiffness"}
 """What asks how teeth yield, where a case does not: its stiffness is that of the same case with this key."""
 
@@ -455,14 +458,24 @@ def _loaded(built: Any) -> int:
 
 def _remarks(parts: Mapping[str, xr.Dataset], figures: Mapping[str, float]) -> Iterator[str]:
     """What is to be known of figures that are there."""
-    known = [parts[name] for name in ("reflected", "inspection") if name in parts]
-    if "backlash" in figures and any(data.sizes.get("case") == 1 for data in known):
-        yield "its backlash is nominal: no allowance is given"
+    if "backlash" in figures and not _by_tolerances(parts):
+        none = abs(figures["backlash"]) < NO_PLAY
+        yield "its backlash is nominal" + ": no allowance is given" * none
     running = parts.get("running")
     if running is not None and any(
         "starting_torque" in doubt.about for doubt in doubts_of(running.attrs)
     ):
         yield "its torques from rest are lower bounds: no breakaway is given"
+
+
+def _by_tolerances(parts: Mapping[str, xr.Dataset]) -> bool:
+    """True where a tolerance makes the backlash differ, or it is the play of a strain wave gear."""
+    plays = [
+        parts[part][name]
+        for part, name in (("reflected", "output_backlash"), ("inspection", "backlash_angle"))
+        if part in parts and name in parts[part]
+    ]
+    return not plays or bool((plays[0].max("case") > plays[0].min("case")).any())
 
 
 def _scope(parts: Mapping[str, xr.Dataset]) -> str:

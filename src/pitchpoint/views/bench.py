@@ -60,10 +60,19 @@ _FIRST = (
     "backlash",
     "input_inertia",
 )
-"""Columns of the first screen where there are many drives."""
+"""Columns of the first screen."""
+
+_SECOND = (
+    "no_load_torque",
+    "starting_torque",
+    "back_driving_torque",
+    "lost_motion",
+    "torque_ripple",
+)
+"""Columns beside these of few drives."""
 
 _FEW = 8
-"""Most drives of which all columns stand on the first screen."""
+"""Most drives that are few."""
 
 
 def bench_screen(bench: Bench, width: int, page: str, *, full: bool = False) -> list[Line]:
@@ -75,12 +84,15 @@ def bench_screen(bench: Bench, width: int, page: str, *, full: bool = False) -> 
         page: where the page lies.
         full: True for all columns, however many drives there are.
     """
-    whole = full or len(bench.drives) <= _FEW
-    names = [name for name in HEADS if (whole or name in _FIRST) and _there(bench, name)]
+    few = _SECOND if len(bench.drives) <= _FEW else ()
+    chosen = (*HEADS,) if full else (*_FIRST, *few)
+    names = [name for name in chosen if _there(bench, name)]
     heads, rows = _cells(bench, names)
     title = f"{len(bench.drives)} drives at their operating points"
-    foot = [*_basis(bench), *_remarks(bench), *_reasons(bench, names, full=full)]
-    behind = [] if whole else ["All columns, and why figures are not there: --full."]
+    foot = [*_basis(bench), *_remarks(bench), *_reasons(bench, chosen)]
+    behind = (
+        [] if full else ["Length, efficiencies at part load backwards, errors of motion: --full."]
+    )
     return [
         Line(title, "title"),
         *(Line(words, "figure") for words in lines_of(rows, heads, width)),
@@ -166,13 +178,13 @@ def _all_or_some(names: Sequence[str], bench: Bench) -> str:
     return "Each drive" if len(names) == len(bench.drives) > 1 else _some(names)
 
 
-def _reasons(bench: Bench, names: Sequence[str], *, full: bool) -> Iterator[str]:
+def _reasons(bench: Bench, chosen: Sequence[str]) -> Iterator[str]:
     """Why figures are not there: by reason, with the figures and drives."""
     groups: dict[tuple[str, tuple[str, ...]], list[str]] = {}
     for drive in bench.drives:
         by_reason: dict[str, list[str]] = {}
         for name, why in drive.lacks.items():
-            if full or name in names or not _there(bench, name):
+            if name in chosen:
                 by_reason.setdefault(why, []).append(HEADS[name])
         for why, figures in by_reason.items():
             groups.setdefault((why, tuple(figures)), []).append(drive.name)
@@ -226,7 +238,7 @@ def bench_page(bench: Bench) -> str:
     """
     sections: list[dict[str, Any]] = [
         {"name": "table", "title": "Drives", "blocks": [*_tables(bench)]},
-        {"name": "figures", "title": "On the same axes", "blocks": [_panel(bench)]},
+        {"name": "axes", "title": "On the same axes", "blocks": [_panel(bench)]},
         {"name": "lacking", "title": "What is not there", "blocks": [*_lacking(bench)]},
     ]
     title = f"{len(bench.drives)} drives on one bench"
