@@ -23,7 +23,7 @@ _WORDS = {
     "balanced": "balanced",
 }
 
-_LEFT_OUT = "Shafts, bearings, seals, churned oil, housings and carriers are in no figure"
+_LEFT_OUT = "Shafts, bearings, seals, churned oil, housings, carriers and pins are in no figure"
 _OF_TEETH = (
     f"Losses are those of teeth by ISO/TR 14179-2; laws differ by {in_percent(GUESSED)} or so, and films "
     "thinner than the roughness may more than double them."
@@ -86,7 +86,18 @@ def _counted(sizing: Sizing) -> str:
     )
 
 
-_COLUMNS = ("", "design", "ratio", "mass kg", "loss %", "⌀ mm", "backlash '", "S_H", "S_F")
+_COLUMNS = (
+    "",
+    "design",
+    "ratio",
+    "mass kg",
+    "loss %",
+    "⌀ mm",
+    "backlash '",
+    "N·m/'",
+    "S_H",
+    "S_F",
+)
 
 
 def _rows(sizing: Sizing) -> list[dict[str, str]]:
@@ -103,6 +114,7 @@ def _row(first: str, design: SizedDrive) -> dict[str, str]:
         f"{100.0 * design.loss:.3g}",
         f"{1e3 * design.diameter:.4g}",
         f"{minutes:.3g}",
+        f"{units.convert(design.stiffness, 'N m/arcmin', 'torsional stiffness'):.3g}",
         *("-" if isnan(one) else f"{one:.3g}" for one in (design.flank_safety, design.root_safety)),
     )
     return dict(zip(_COLUMNS, values, strict=True))
