@@ -25,6 +25,7 @@ _LAZY: dict[str, str] = {
     "MapRange": "pitchpoint.efficiency.friction_fit",
     "fit_friction": "pitchpoint.efficiency.friction_fit",
     "size": "pitchpoint.sizing.sizing",
+    "bench": "pitchpoint.runs.bench",
     "three_k_sets": "pitchpoint.sizing.three_k",
     "three_k_tables": "pitchpoint.sizing.three_k",
     "duty": "pitchpoint.notebook.duty_cycle",

@@ -659,6 +659,43 @@ def _varied(texts: list[str]) -> dict[str, Any]:
 
 
 @app.command()
+def bench(
+    designs: Designs,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Default: results/bench."),
+    ] = None,
+    units: UnitsByKind = None,
+    full: Annotated[
+        bool, typer.Option("--full", help="All columns, and why figures are not there.")
+    ] = False,
+    json_: AsJson = False,
+) -> None:
+    """Put drives of any families on one bench: a row for each, and their curves on the same axes.
+
+    Mass, room, efficiency forwards and backwards over load and speed, torques without load and from rest,
+    stiffness, backlash, lost motion, inertia and ripple, each as `run` has it. The folder holds bench.html,
+    bench.csv and bench.json.
+    """
+    from pitchpoint.results.chosen_units import shown_in
+    from pitchpoint.runs.bench import bench as benched
+    from pitchpoint.views.bench import bench_screen, write_bench
+
+    _demand_names(designs)
+    folder = output or Path("results") / "bench"
+    with _progress(None) as progress:
+        drives = benched(designs, progress=progress)
+    with shown_in(_units(units) if units else {}):
+        page = write_bench(drives, folder)
+        if json_:
+            _emit(drives.as_json())
+            return
+        console = _console()
+        for line in bench_screen(drives, console.width, str(page), full=full):
+            console.print(_plain_line(line.text), style=_STYLES[line.style], soft_wrap=True)
+
+
+@app.command()
 def compare(
     designs: Designs,
     variant: Annotated[

@@ -18,7 +18,7 @@ from pitchpoint import cli
 from pitchpoint._jax import double_precision
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case, run
-from pitchpoint.sizing.sizing import Sizing, size
+from pitchpoint.sizing.sizing import SizedDrive, Sizing, size
 from pitchpoint.views.sizing_report import render_sizing
 from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
 
@@ -82,6 +82,22 @@ def test_a_case_that_runs_says_the_same(sizing: Sizing, family: str) -> None:
     assert float(play) == pytest.approx(design.backlash, rel=1e-9)
     loss = 1.0 - float(parts["operation"]["mean_efficiency"].values.ravel()[0])
     assert design.loss == pytest.approx(loss, rel=LOSS)
+    assert stiffness_of(design) == pytest.approx(design.stiffness, rel=1e-9)
+
+
+def stiffness_of(design: SizedDrive) -> float:
+    """What the run of its case says, asked how its teeth yield."""
+    keys = {"models.load_sharing": "from_stiffness"}
+    case = tomllib.loads(design.case)
+    torsion = run(case, analyses=("torsion",), settings=keys)["default"].parts["torsion"]
+    return float(torsion["torsional_stiffness"].sel(torque=60.0))
+
+
+def test_a_strain_wave_gear_has_the_stiffness_of_its_case(sizing: Sizing) -> None:
+    design = next(one for one in sizing.designs.values() if one.family == "strain wave")
+    parts = run(tomllib.loads(design.case), analyses=("torsion",))["default"].parts
+    there = float(parts["torsion"]["torsional_stiffness"].sel(torque=60.0))
+    assert there == pytest.approx(design.stiffness, rel=1e-6)
 
 
 def test_a_planetary_set_before_a_strain_wave_gear_says_what_its_case_says() -> None:

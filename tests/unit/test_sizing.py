@@ -204,7 +204,7 @@ def test_each_stage_has_the_centre_distance_that_is_given_for_it():
 
 
 def test_the_best_of_a_front_are_those_with_the_least_and_the_one_that_lacks_little_of_both():
-    rest = dict.fromkeys(("ratio", "diameter", "length", "backlash", "inertia"), 1.0)
+    rest = dict.fromkeys(("ratio", "diameter", "length", "backlash", "stiffness", "inertia"), 1.0)
     rest |= {"flank_safety": 2.0, "root_safety": 2.0}
     costs = {"light": (1.0, 0.09), "middle": (2.0, 0.02), "lossless": (9.0, 0.01)}
     designs = {
@@ -285,7 +285,7 @@ def test_an_oil_outside_of_its_range_is_told_as_such():
 
 def test_cases_of_a_front_are_written_all_or_none(tmp_path, monkeypatch):
     numbers = dict.fromkeys(
-        ("ratio", "mass", "loss", "diameter", "length", "backlash", "inertia"), 1.0
+        ("ratio", "mass", "loss", "diameter", "length", "backlash", "stiffness", "inertia"), 1.0
     )
     numbers |= {"flank_safety": 2.0, "root_safety": 2.0}
     designs = {name: SizedDrive(name=name, family="3K", tree={}, **numbers) for name in ("a", "b")}

@@ -33,6 +33,7 @@ __all__ = [
     "engaged_at",
     "kinematic_play",
     "mean_friction",
+    "stiffness_at_load",
     "torsion_figures",
     "torsion_of",
     "torsion_part",
@@ -156,6 +157,23 @@ def _of_meshes(built: Ready, torques: np.ndarray) -> list[dict[str, Any]]:
     return [
         _torsion(mesh, torques * step / count, unloaded) for mesh, step, count in stepped_meshes
     ]
+
+
+def stiffness_at_load(built: Ready) -> float:
+    """Torque at the output over its turn with the input held, at the load of the operating point [N m/rad].
+
+    As `torsion_part` has it there; not a number where there is no load or no equilibrium.
+
+    Args:
+        built: the case, whether or not it asks how its teeth yield.
+    """
+    load = built.case.operation.load
+    torsions = _of_meshes(built, np.array([load]))
+    turned = sum(
+        step * torsion["wind_up"][0] for step, torsion in zip(built.steps, torsions, strict=True)
+    )
+    turned += sum(built.pin_compliances.values()) * load
+    return float(load / turned) if turned > 0.0 else float("nan")
 
 
 def mesh_slopes(built: Ready) -> np.ndarray:
@@ -469,7 +487,7 @@ def wound_ups(
         if at_torques and isinstance(
             body, OnBalls
         ):  # balls stand near where they stood for the torque before
-            body = replace(body, start=at_torques[-1].balls)
+            body = replace(body, start=array(at_torques[-1].balls))
         at = wound_up(*inputs, torque, known.contacts, body)
         at_torques.append(jax.device_get(at))
     return at_torques, body

@@ -78,6 +78,8 @@ class Family:
         coordinates: labels along those dimensions.
         bodies: mass and moment of inertia of each member, from the table, the mesh and the densities of both
             materials, and a sentence on how they are made up; None where they stand elsewhere, or nowhere.
+        envelope: diameter around the gears and their length, from the table and the mesh [m]; None where they
+            follow from the teeth.
         of_materials: what is to be said of a mesh whose members are of these materials.
         together: as `build` for many tables at once, with the error in the place of gears that cannot run;
             None where they are built one by one.
@@ -90,6 +92,7 @@ class Family:
     drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, Any] = field(default_factory=dict)
     bodies: Callable[[Any, Any, Sequence[float]], tuple[list[MassInertia], str]] | None = None
+    envelope: Callable[[Any, Any], tuple[float, float]] | None = None
     of_materials: Callable[[Any, Solids, Records], tuple[str, ...]] = lambda *_: ()
     together: Callable[[Sequence[Any], int], list[Made | InputError]] | None = None
 

@@ -27,6 +27,7 @@ __all__ = [
     "MainFigure",
     "Wanted",
     "as_json",
+    "design_names",
     "designs",
     "differing_inputs",
     "folder_of",
@@ -103,7 +104,7 @@ def designs(
     for design in every:
         if every.count(design) > 1:
             raise InputError(f"{shown(_told(design))} was named twice; name each design once")
-    titles = _titles(list(dict.fromkeys(design.case for design in every)))
+    titles = design_names(list(dict.fromkeys(design.case for design in every)))
     outcomes = {
         case: _results(
             case,
@@ -128,7 +129,7 @@ def designs(
 def folder_of(references: Sequence[str], root: Path) -> Path:
     """Folder of a comparison under that of all results, named after its designs."""
     every = [wanted(reference) for reference in references]
-    titles = _titles(list(dict.fromkeys(design.case for design in every)))
+    titles = design_names(list(dict.fromkeys(design.case for design in every)))
     labels = [
         titles[design.case] + (f"@{design.variant}" if design.variant else "") for design in every
     ]
@@ -173,8 +174,12 @@ def _results(
     return run(case, folder=folder, only=chosen, overwrite=overwrite, progress=progress)
 
 
-def _titles(cases: Sequence[str]) -> dict[str, str]:
-    """Names by case, each as short as it tells it from the others."""
+def design_names(cases: Sequence[str]) -> dict[str, str]:
+    """Names by case, each as short as it tells it from the others.
+
+    Args:
+        cases: references, each once.
+    """
     ways = {case: Wanted(case).parts for case in cases}
     for count in range(1, max(map(len, ways.values()), default=0) + 1):
         titles = {case: shorten(as_text("/".join(path[-count:]))) for case, path in ways.items()}

@@ -12,6 +12,7 @@ import xarray as xr
 
 from pitchpoint import units
 from pitchpoint._jax import double_precision
+from pitchpoint.analyses.envelope import set_diameter
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.template import sample_tree, template
 from pitchpoint.cases.trains import USUAL_BEARING
@@ -19,7 +20,6 @@ from pitchpoint.drive.assembly import clear_neighbours, fit_at_equal_angles
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.planetary import PLANETARY, PLANETS
-from pitchpoint.gears.rated_pair import rated_pair
 from pitchpoint.gears.table import DISTANCE
 from pitchpoint.input.kinds import LIFE, SPEED
 from pitchpoint.input.quantities import Quantity
@@ -188,7 +188,10 @@ def case_for_ratio(
     ]
     sized = [_with_rest(named, make, torque, _of_task(met, life, limits)) for make, met in found]
     if "diameter" in limits:
-        fitting = _within(limits["diameter"], [_diameter(named, tree) for tree, _ in sized])
+        fitting = _within(
+            limits["diameter"],
+            [set_diameter(load_case(sample_tree(named, tree))) for tree, _ in sized],
+        )
         found, sized = ([found[k] for k in fitting[:count]], [sized[k] for k in fitting[:count]])
     each = [
         f"{_met(met, ratio)}. {borne}" for (_, met), (_, borne) in zip(found, sized, strict=True)
@@ -233,21 +236,6 @@ def _within(most: float, diameters: Sequence[float]) -> list[int]:
             key="diameter",
         )
     return fitting
-
-
-def _diameter(family: str, tables: Tree) -> float:
-    """Diameter around the gears of a set [m]: its rings with their usual rims, or its planets."""
-    built, reached = load_case(sample_tree(family, tables)), 0.0
-    for mesh in built.meshes:
-        pair = rated_pair(mesh.design.mesh)
-        roots, rims = np.abs(pair.root_radii), np.asarray(pair.rim_thickness)
-        ring = float(pair.teeth[1]) < 0.0
-        apart, tip = (
-            float(mesh.dimensions["centre_distance"]),
-            float(pair.tip_radii[0 if ring else 1]),
-        )
-        reached = max(reached, apart + tip, float(roots[1] + rims[1]) if ring else 0.0)
-    return 2.0 * reached
 
 
 def _with_rest(named: str, make: Making, torque: str | None, of_task: Tree) -> tuple[Tree, str]:

@@ -17,6 +17,7 @@ from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.registry import REFLECTED
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import summaries
+from pitchpoint.analyses.torsion import stiffness_at_load
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import GUESSED
 from pitchpoint.errors import InputError
@@ -58,6 +59,8 @@ class SizedDrive:
         loss: part of the power that is lost, of strain wave gears with their bearing and grease.
         diameter, length: of the gears [m].
         backlash: mean one at the output, by the fields of thickness and centre distance [rad].
+        stiffness: at the output under the torque of the task, the input held, of teeth and, of strain wave
+            gears, of what is behind them [N m/rad].
         inertia: at the input [kg m2].
         flank_safety, root_safety: least ones; not numbers of strain wave gears.
     """
@@ -71,6 +74,7 @@ class SizedDrive:
     diameter: float
     length: float
     backlash: float
+    stiffness: float
     inertia: float
     flank_safety: float
     root_safety: float
@@ -132,6 +136,7 @@ class Sizing:
             "diameter": "m",
             "length": "m",
             "backlash": "rad",
+            "stiffness": "N m/rad",
             "inertia": "kg m2",
             "flank_safety": "1",
             "root_safety": "1",
@@ -385,6 +390,7 @@ def _designed(
         diameter=float(drives.diameter[number]),
         length=float(drives.length[number]),
         backlash=backlash,
+        stiffness=stiffness_at_load(built),
         inertia=inertia,
         flank_safety=float(rated["least_flank_safety"][1][0, 0]),
         root_safety=float(rated["least_root_safety"][1][0, 0]),
@@ -430,6 +436,7 @@ def _waves_designed(task: Task, family: str, sizes: Sequence[StrainWaveSize]) ->
                 diameter=gear.outside,
                 length=gear.length,
                 backlash=0.0,
+                stiffness=stiffness_at_load(one),
                 inertia=float(bodies["reflected_inertia"].sel(end="input")),
                 flank_safety=nan,
                 root_safety=nan,
@@ -576,6 +583,7 @@ def _designed_with_set(
         diameter=diameter,
         length=both.length,
         backlash=gears_as_discs(built_set)[2] / both.gear.ratio,
+        stiffness=stiffness_at_load(built),
         inertia=float(bodies["reflected_inertia"].sel(end="input")),
         flank_safety=float(rated["least_flank_safety"][1][0, 0]),
         root_safety=float(rated["least_root_safety"][1][0, 0]),

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from pitchpoint.sizing.sizing import Sizing
 
-__all__ = ["environment", "packed", "packed_plotly", "render", "write_report"]
+__all__ = ["environment", "packed", "packed_plotly", "page_of", "render", "write_report"]
 
 
 @double_precision()
@@ -127,6 +127,20 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
             plotly=packed_plotly(),
         )
     )
+
+
+def page_of(template: str, sections: Sequence[Mapping[str, Any]], **words: str) -> str:
+    """A page of blocks that is no report of a case, as text.
+
+    Args:
+        template: name of its template.
+        sections: each with `name`, `title` and `blocks`.
+        words: what else the template shows.
+    """
+    shown = list(panels(block for section in sections for block in section["blocks"]))
+    values = {"data": packed(_shared(_payload(shown))), "plotly": packed_plotly()}
+    page = environment().get_template(template).render(sections=sections, **values, **words)
+    return _as_printed(page)
 
 
 def _made(section: Section, page: Page) -> dict[str, Any]:

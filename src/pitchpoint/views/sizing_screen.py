@@ -32,7 +32,7 @@ BEST_WORDS = {
 }
 """What a design is the best by, in words."""
 
-_LEFT_OUT = "Shafts, bearings, seals, churned oil, housings and carriers are in no figure"
+_LEFT_OUT = "Shafts, bearings, seals, churned oil, housings, carriers and pins are in no figure"
 _OF_TEETH = (
     f"Losses are those of teeth by ISO/TR 14179-2; laws differ by {in_percent(GUESSED)} or so, and films "
     "thinner than the roughness may more than double them."
@@ -105,7 +105,18 @@ def counted_words(sizing: Sizing) -> str:
     )
 
 
-_COLUMNS = ("", "design", "ratio", "mass kg", "loss %", "⌀ mm", "backlash '", "S_H", "S_F")
+_COLUMNS = (
+    "",
+    "design",
+    "ratio",
+    "mass kg",
+    "loss %",
+    "⌀ mm",
+    "backlash '",
+    "N·m/'",
+    "S_H",
+    "S_F",
+)
 
 
 def gear_words(design: SizedDrive) -> dict[str, str]:
@@ -154,6 +165,7 @@ def _row(first: str, design: SizedDrive) -> dict[str, str]:
         f"{100.0 * design.loss:.3g}",
         f"{1e3 * design.diameter:.4g}",
         f"{minutes:.3g}",
+        f"{units.convert(design.stiffness, 'N m/arcmin', 'torsional stiffness'):.3g}",
         *("-" if isnan(one) else f"{one:.3g}" for one in (design.flank_safety, design.root_safety)),
     )
     return dict(zip(_COLUMNS, values, strict=True))

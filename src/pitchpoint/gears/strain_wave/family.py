@@ -193,9 +193,7 @@ def _bodies(
         (_IN_PARTS if gears.flexspline.rim_thickness else f"{_IN_PARTS} {_USUAL}"),
     )
     radius, thickness = float(rim.radius), float(rim.thickness)
-    sizes = PROPORTIONS.behind(pitch) | {"bottom_thickness": thickness}
-    if gears.yielding is not None:
-        sizes |= dimensions(_behind(gears.yielding), pitch, thickness)
+    sizes = _sizes(gears, thickness)
     flexspline_density, spline_density = densities
     wall, length = float(rim.wall_thickness), float(rim.cup_length)
     within = radius - thickness / 2.0
@@ -208,6 +206,21 @@ def _bodies(
     spline = disc(density=spline_density, width=width, outer=outer, inner=inner)
     wave = _wave_generator(gears, within, sizes["shaft_diameter"] / 2.0, flexspline_density)
     return [wave, as_one(flexspline), spline], assumption
+
+
+def _sizes(gears: StrainWaveGears, thickness: float) -> dict[str, float]:
+    """Dimensions behind the teeth, by name [m], of a rim of that thickness."""
+    pitch = gears.module * gears.teeth[0]
+    sizes = PROPORTIONS.behind(pitch) | {"bottom_thickness": thickness}
+    if gears.yielding is not None:
+        sizes |= dimensions(_behind(gears.yielding), pitch, thickness)
+    return sizes
+
+
+def _envelope(gears: StrainWaveGears, drive: StrainWave) -> tuple[float, float]:
+    """Outer diameter of the circular spline, and the length of the cup [m]."""
+    sizes = _sizes(gears, float(drive.rim.thickness))
+    return sizes["outside_diameter"], float(drive.rim.cup_length)
 
 
 def _wave_generator(
@@ -261,6 +274,7 @@ FAMILY = Family(
         "spline alone, shown by order, stay as they are.",
     ),
     bodies=_bodies,
+    envelope=_envelope,
     of_materials=_of_cup,
     drawing={
         "tooth": ("corner", "xy"),

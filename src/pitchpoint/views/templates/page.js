@@ -297,7 +297,8 @@
     for (const one of hidden) one.hidden = false;
     restore = folded.map((one) => () => (one.open = false));
     restore.push(...hidden.map((one) => () => (one.hidden = true)), ...(dark.matches ? whitened() : []));
-    fit(document.querySelector("#one-page > div"));
+    const sheet = document.querySelector("#one-page > div");
+    if (sheet) fit(sheet);
     for (const place of places) {
       const summed = place.closest("#one-page");
       if (summed || !(alone || place.closest(".beside:not([open])"))) draw(place).then(() => print(place, !summed));
@@ -307,7 +308,7 @@
     for (const undo of restore) undo();
     delete seen.alone;
   });
-  document.getElementById("print-one-page").addEventListener("click", () => {
+  document.getElementById("print-one-page")?.addEventListener("click", () => {
     seen.alone = "";
     window.print();
   });
