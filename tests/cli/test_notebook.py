@@ -16,6 +16,7 @@ from xarray.plot.utils import label_from_attrs
 
 import pitchpoint as pp
 from pitchpoint._jax import jax, jnp
+from pitchpoint.notebook.differences import OTHER_FORM, STILL, derivative_of
 from pitchpoint.results.labelled import in_units
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Progress, own_law
@@ -486,7 +487,8 @@ def test_units_and_value_stand_beside_the_gradients(result: pp.Result) -> None:
     assert [*table.index] == [TORQUE, SHIFT]
     assert [*table.unit] == ["N m", "1"]
     loss = result.summary().iso_tr_14179_2["mean_loss"]
-    assert table.attrs == {"of": "mean_loss", "unit": "W", "value": pytest.approx(loss)}
+    value = pytest.approx(loss)
+    assert table.attrs == {"of": "mean_loss", "unit": "W", "value": value, "without": {}}
     both = result.gradients(by="profile_shift")
     assert [*both.index] == [SHIFT, SHIFT.replace(".1", ".2")]
     assert both.loc[SHIFT].equals(table.loc[SHIFT])
@@ -505,6 +507,54 @@ def test_what_is_not_known_of_a_material_spoils_no_derivative(result: pp.Result)
     assert [*table.index] == [TORQUE, "materials.gear_2.young"]
     before = result.gradients(by=["torque"])
     np.testing.assert_allclose(table.derivative[TORQUE], before.derivative[TORQUE], rtol=1e-3)
+
+
+RATED = {"materials.gear_1": "case-hardened-mq", "materials.gear_2": "case-hardened-mq"}
+
+
+@pytest.mark.whole
+def test_safeties_have_derivatives_by_differences_of_designs() -> None:
+    """By powers of the load: S_F falls as 1/K_A, S_H as its root; a stress does not follow the oil."""
+    rated = PAIR.set(RATED | {"strength.application_factor": 2.0, "strength.dynamic_factor": 1.1})
+    keys = ["strength.application_factor", TORQUE]
+    for of, power in (("least_root_safety", 1.0), ("least_flank_safety", 0.5)):
+        table = pp.gradients(rated, of, keys)
+        slopes = table.derivative * table.value / table.attrs["value"]
+        np.testing.assert_allclose(slopes, -power, rtol=1e-6)
+    assert {*pp.gradients(rated, "largest_root_stress", [WARM]).attrs["without"]} == {WARM}
+
+
+@pytest.mark.whole
+def test_drives_of_several_meshes_have_derivatives_by_what_their_file_states() -> None:
+    """The loss of stages in a row is about proportional to the torque; the helix has no number there."""
+    gears = {key: PAIR.tables["gears"][key] for key in ("teeth", "module", "face_width")}
+    tables = {key: table for key, table in PAIR.tables.items() if key not in ("gears", "targets")}
+    row = pp.Case({**tables, "stages": {"1": {"gears": gears}, "2": {"gears": gears}}})
+    table = pp.gradients(row, "mean_input_torque", "torque")
+    by_torque = table.derivative[TORQUE] * table.value[TORQUE] / table.attrs["value"]
+    assert by_torque == pytest.approx(1.0, abs=0.01)
+    with pytest.raises(pp.InputError, match="is no number of the case that varies"):
+        pp.gradients(row, by=["stages.1.gears.helix_angle"])
+
+
+@pytest.mark.parametrize(
+    ("row", "told"),
+    [
+        ([0.9, 0.95, 1.05, 1.1], 1.0),
+        ([1.0, 1.0, 1.05, 1.1], "has no derivative here: 1 above it and 0 below"),
+        ([np.nan, np.nan, 1.05, 1.1], 1.0),
+        ([0.9, 0.95, np.nan, np.nan], 1.0),
+        ([np.nan] * 4, OTHER_FORM),
+        ([np.nan, np.nan, 1.07, 1.1], "has no derivative here: differences over two steps give 1"),
+        ([1.0, 1.0, 1.0, 1.0 + 1e-12], STILL),
+    ],
+)
+def test_a_derivative_is_only_where_differences_agree(row: list[float], told: float | str) -> None:
+    found = derivative_of(np.array(row), 1.0, 0.1)
+    if isinstance(told, str):
+        assert str(found).startswith(told)
+    else:
+        assert found == pytest.approx(told, rel=1e-9)
 
 
 @pytest.mark.whole

@@ -1,6 +1,6 @@
 """Derivatives of the main figures by the keys of a case file."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -11,16 +11,27 @@ from pydantic import BaseModel
 from pitchpoint import units
 from pitchpoint._jax import double_precision, jax
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.schema import quantity_at
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.gradients import Inputs, figure_gradient
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.errors import InputError
-from pitchpoint.input.quantities import Quantity, shown
+from pitchpoint.input.quantities import shown
+from pitchpoint.notebook.differences import (
+    MADE,
+    OTHER_FORM,
+    STILL,
+    CaseNumber,
+    Differences,
+    by_differences,
+    continuous,
+    numbers_of_file,
+    setting_of,
+)
 from pitchpoint.registry import nearest
 from pitchpoint.results.variables import VARIABLES
-from pitchpoint.runs.case import Case, CaseLike, as_case, written
+from pitchpoint.runs.case import Case, CaseLike, as_case
 from pitchpoint.runs.run import FrictionChoice, own_law
 
 if TYPE_CHECKING:
@@ -40,6 +51,7 @@ STEP = 1e-4
 """Step of differences of the design against a value; relative, absolute for values below a thousandth."""
 
 _TABLES = ("gears", "materials", "lubricant", "roughness", "operation", "losses")
+_BESIDE = ("strength", "dynamics")
 _LEAST = 1e-3
 
 Leaves = list[np.ndarray]
@@ -55,11 +67,11 @@ def gradients(
     variant: str | None = None,
     friction: FrictionChoice | None = None,
 ) -> "pd.DataFrame":
-    """Derivatives of a main figure by every number of a case file on which it depends.
+    """Derivatives of a figure by every number of a case file on which it depends.
 
     Args:
-        case: a `Case`, or what makes one, of one mesh.
-        of: "mean_loss", "mean_efficiency", "mean_input_torque" or "torque_ripple".
+        case: a `Case`, or what makes one.
+        of: "mean_loss", or any figure of a `study`: "least_flank_safety", "largest_root_stress".
         by: key or keys by which to differentiate, all by default; one of both gears alone is
             "gears.profile_shift.1", and "gears.profile_shift" has a row for each of them.
         law: friction law of the case that acts, the first one by default.
@@ -68,49 +80,68 @@ def gradients(
 
     Returns:
         By key `value` and its SI `unit`, and `derivative` by it in SI; `attrs` has `of`, its `value` and
-        its `unit`. What follows from a number, such as a dedendum from an addendum or the modulus of
-        plastic from the temperature, is taken along.
+        its `unit`, and in `without` why other keys have no row. What follows from a number, such as a
+        dedendum from an addendum or the modulus of plastic from the temperature, is taken along.
 
     Raises:
-        InputError: no such figure or law, a drive of several meshes, or no derivative by a key of `by`.
+        InputError: no such figure or law, or no derivative by a key of `by`.
         ConvergenceError: friction locks the mesh.
 
-    By automatic differentiation of the mesh cycle in reverse; what a key does to the design, which is
-    closed forms and built on the host, by central differences. A key has no row where any change makes
-    gears of another form, such as the helix angle of a spur pair.
+    Of losses, efficiency, input torque and ripple of one mesh by automatic differentiation of the cycle in
+    reverse; what a key does to the design, which is closed forms and built on the host, by central
+    differences. Of other figures, and of drives of several meshes by the numbers that their file states, by
+    differences of designs with two steps, which agree. A key has no row where any change makes gears of
+    another form, such as the helix angle of a spur pair, and where a figure has a kink.
     """
     chosen = as_case(case) if variant is None else Case(case, variant=variant)
     base = chosen.held[0] if friction is None else own_law(chosen.held[0], friction)
-    built = _one_mesh(base)
-    models = _under(built, law)
-    if of not in FIGURES:
-        raise InputError(f"{shown(of)} has no derivatives here{nearest(of, FIGURES)}")
-    names = [by] if isinstance(by, str) else by
-    numbers = _asked(built, [chosen.key(name) for name in names])
-    value, slopes = figure_gradient(built.design, built.operation, models, FIGURES[of])
+    built = base.built({})
+    names = [chosen.key(name) for name in ([by] if isinstance(by, str) else by)]
+    if built.numbers or of not in FIGURES:
+        return _by_designs(base, built, of, names, law)
+    (mesh,) = built.meshes
+    models = _under(mesh, law)
+    numbers = _asked([*_numbers(mesh, _TABLES)], names)
+    value, slopes = figure_gradient(mesh.design, mesh.operation, models, FIGURES[of])
     flat = [np.asarray(leaf) for leaf in jax.tree.leaves(slopes)]
-    rows = {
-        key: {"value": number, "unit": units.si_unit(kind) or "1", "derivative": derivative}
-        for key, number, kind, derivative in _rows(base, built, numbers, flat, bool(by))
-    }
-    return _frame(rows, {"of": of, "value": value, "unit": VARIABLES[of].unit})
+    without: dict[str, str] = {}
+    derivatives = dict(_rows(base, mesh, numbers, flat, without))
+    return _frame(numbers, Differences(value, VARIABLES[of].unit, derivatives, without), of, names)
 
 
-def _frame(rows: Mapping[str, Mapping[str, Any]], told: Mapping[str, Any]) -> "pd.DataFrame":
+def _by_designs(
+    base: Variant, built: Ready, of: str, names: Sequence[str], law: str | None
+) -> "pd.DataFrame":
+    """The same of figures that have no derivatives of their own."""
+    every = numbers_of_file(base)
+    if not built.numbers:
+        tables = [name for name in _BESIDE if getattr(built.case, name) is not None]
+        every = _numbers(built.meshes[0], (*_TABLES, *tables))
+    numbers = _asked([one for one in every if not any(part in one.key for part in MADE)], names)
+    return _frame(numbers, by_differences(base, of, numbers, law), of, names)
+
+
+def _frame(
+    numbers: Sequence[CaseNumber], derived: Differences, of: str, names: Sequence[str]
+) -> "pd.DataFrame":
+    """The table; InputError where a key that is asked for has no derivative."""
     import pandas as pd
 
-    made = pd.DataFrame.from_dict(dict(rows), orient="index").rename_axis("key")
-    made.attrs.update(told)
+    for key, why in derived.without.items() if names else ():
+        if why != STILL:
+            raise InputError(why, key=key)
+    rows = {
+        one.key: {
+            "value": one.value,
+            "unit": units.si_unit(one.kind) or "1",
+            "derivative": derived.by_key[one.key],
+        }
+        for one in numbers
+        if one.key in derived.by_key
+    }
+    made = pd.DataFrame.from_dict(rows, orient="index").rename_axis("key")
+    made.attrs.update(of=of, value=derived.value, unit=derived.unit, without={**derived.without})
     return made
-
-
-def _one_mesh(base: Variant) -> Built:
-    built = base.built({})
-    if built.numbers:
-        told = "derivatives are those of one mesh; a stage in a file of its own has them"
-        raise InputError(told, file=base.name)
-    (mesh,) = built.meshes
-    return mesh
 
 
 def _under(built: Built, law: str | None) -> Models:
@@ -120,9 +151,9 @@ def _under(built: Built, law: str | None) -> Models:
     return named[law] if law is not None else built.models[0]
 
 
-def _asked(built: Built, keys: Sequence[str]) -> "list[Number]":
+def _asked(numbers: Sequence[CaseNumber], keys: Sequence[str]) -> list[CaseNumber]:
     """Numbers of a case, those of some keys; InputError for a key without one."""
-    every = {one[0]: one for one in _numbers(built)}
+    every = {one.key: one for one in numbers}
     members = {key: [one for one in every if one in (key, f"{key}.1", f"{key}.2")] for key in keys}
     missing = [key for key, there in members.items() if not there]
     if missing:
@@ -132,27 +163,31 @@ def _asked(built: Built, keys: Sequence[str]) -> "list[Number]":
 
 
 def _rows(
-    base: Variant, built: Built, numbers: "Sequence[Number]", slopes: Leaves, asked: bool
-) -> Iterator[tuple[str, float, str, float]]:
-    """Key, value, kind and derivative of every number that moves the design; InputError if one cannot."""
+    base: Variant,
+    built: Built,
+    numbers: Sequence[CaseNumber],
+    slopes: Leaves,
+    without: dict[str, str],
+) -> Iterator[tuple[str, float]]:
+    """Key and derivative of every number that moves the design; sentences on the others."""
     here = _numbers_of(built)
-    for key, value, kind, setting in numbers:
-        moved = _moved(base, here, setting, value)
-        if moved is None and asked:
-            told = "has no derivative here: any change of it makes gears of another form, or none"
-            raise InputError(told, key=key)
-        if moved is not None and any(np.any(one) for one in moved):
+    for one in numbers:
+        moved = _moved(base, here, one.setting, one.value)
+        if moved is None:
+            without[one.key] = OTHER_FORM
+        elif not any(np.any(part) for part in moved):
+            without[one.key] = STILL
+        else:
             pairs = zip(slopes, moved, strict=True)
-            yield key, value, kind, float(sum(np.sum(slope * step) for slope, step in pairs))
+            yield one.key, float(sum(np.sum(slope * step) for slope, step in pairs))
 
 
 Setting = Callable[[float], tuple[str, Any]]
-Number = tuple[str, float, str, Setting]
 
 
-def _numbers(built: Built) -> Iterator[Number]:
-    """Key, value, kind and what sets it, of the numbers of a case, those of two gears apart."""
-    for table in _TABLES:
+def _numbers(built: Built, tables: Sequence[str]) -> Iterator[CaseNumber]:
+    """Numbers of some tables of a case, usual ones too, those of two gears apart."""
+    for table in tables:
         held = getattr(built.case, table)
         plain = (
             held.model_dump()
@@ -160,32 +195,13 @@ def _numbers(built: Built) -> Iterator[Number]:
             else {name: one.model_dump() for name, one in held.items()}
         )
         for key, value in leaves({table: plain}):
-            quantity = _continuous(key)
+            quantity = continuous(key)
             if quantity is not None and isinstance(value, float):
-                yield key, value, quantity.kind, _alone(key)
+                yield CaseNumber(key, value, quantity.kind, setting_of(key))
             elif quantity is not None and isinstance(value, tuple):
                 for k, one in enumerate(value):
-                    yield f"{key}.{k + 1}", one, quantity.kind, _in_list(key, value, k)
-
-
-def _continuous(key: str) -> Quantity | None:
-    """What the number at a key is; None for counts and where there is none."""
-    try:
-        quantity = quantity_at(key)
-    except InputError:
-        return None
-    return None if quantity is None or quantity.whole else quantity
-
-
-def _alone(key: str) -> Setting:
-    return lambda value: (key, written(key, value))
-
-
-def _in_list(key: str, values: tuple[float, ...], position: int) -> Setting:
-    def setting(value: float) -> tuple[str, Any]:
-        return key, written(key, [*values[:position], value, *values[position + 1 :]])
-
-    return setting
+                    setting = setting_of(key, value, k)
+                    yield CaseNumber(f"{key}.{k + 1}", one, quantity.kind, setting)
 
 
 def _moved(base: Variant, here: Inputs, setting: Setting, value: float) -> Leaves | None:
