@@ -26,8 +26,10 @@ from sound import PAIR, quick_first
 
 from pitchpoint import cli, units
 from pitchpoint.cases.document import resolve
+from pitchpoint.cases.drive_schema import DriveCase, StageTable, TrainTable
 from pitchpoint.cases.laws import FRICTION, FrictionChoice
-from pitchpoint.cases.schema import CaseFile, DriveCase, StageTable, TrainTable, validate, validated
+from pitchpoint.cases.schema import CaseFile
+from pitchpoint.cases.validation import validate, validated
 from pitchpoint.cases.variant import Variant
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.duty_cycle import table as duty_table

@@ -49,9 +49,9 @@ from pitchpoint.runs.jobs import chosen_jobs, jobs
 from pitchpoint.runs.run import Outcome, describe, keep, load_case, open_result
 from pitchpoint.views import show
 from pitchpoint.views.registry import DUTY as DUTY_SECTION
+from pitchpoint.views.registry import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 from pitchpoint.views.sections.beside import BESIDE
 from pitchpoint.views.sections.duty import actuator_points, operating_points
-from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SIZING = Path(__file__).parents[2] / "docs" / "guide" / "sizing.md"

@@ -8,7 +8,7 @@ from types import ModuleType
 import pytest
 
 from pitchpoint.cases import build
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.gears.cylindrical import checks
 from pitchpoint.gears.cylindrical import design as cylindrical_design
 from pitchpoint.gears.cylindrical import family as cylindrical

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pitchpoint as pp
-from pitchpoint.cases.schema import validate
+from pitchpoint.cases.validation import validate
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.din_3967 import thickness_allowances
 from pitchpoint.gears.cylindrical.inspection import Toothing, backlash

@@ -15,7 +15,7 @@ from pitchpoint.analyses.summaries import alone, beside, joined, summaries
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.study_tables import Study, Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import Complaints, InputError, shorten

@@ -12,10 +12,11 @@ from pydantic import TypeAdapter, ValidationError
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.brief import brief
 from pitchpoint.cases.document import STAGES, Document
+from pitchpoint.cases.drive_schema import StageTable
 from pitchpoint.cases.laws import FRICTION, Choices
 from pitchpoint.cases.loss_sets import loss_sets, named_set
 from pitchpoint.cases.remembered import remembering
-from pitchpoint.cases.schema import CaseFile, StageTable
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.solids import (
     SolidInUse,
     datum,

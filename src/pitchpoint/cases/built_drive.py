@@ -21,7 +21,7 @@ from pitchpoint.cases.build import (
     operation_at,
 )
 from pitchpoint.cases.document import STAGES, Document
-from pitchpoint.cases.schema import DriveCase, StageTable
+from pitchpoint.cases.drive_schema import DriveCase, StageTable
 from pitchpoint.doubts import in_stage
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Drive

@@ -22,15 +22,10 @@ from pitchpoint.cases.build import (
 )
 from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree, setting
+from pitchpoint.cases.drive_schema import DriveCase, is_planetary
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import (
-    CaseFile,
-    DriveCase,
-    is_planetary,
-    planetary_of,
-    validate,
-    with_meshes,
-)
+from pitchpoint.cases.schema import CaseFile
+from pitchpoint.cases.validation import planetary_of, validate, with_meshes
 from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
 from pitchpoint.efficiency.drive import Drive, chained, owner
 from pitchpoint.efficiency.operation_tables import Operating

@@ -10,7 +10,8 @@ import numpy as np
 from pitchpoint._jax import jax
 from pitchpoint.cases.build import Built, drags
 from pitchpoint.cases.document import STAGES
-from pitchpoint.cases.schema import CaseFile, DriveCase, TrainTable
+from pitchpoint.cases.drive_schema import DriveCase, TrainTable
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.solids import BY_VALUE
 from pitchpoint.cases.strength import MESH_LOAD, of_planets
 from pitchpoint.doubts import GUESSED, REMARKED, Doubt

@@ -12,7 +12,7 @@ from pitchpoint import units
 from pitchpoint._jax import double_precision, jax
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.gradients import Inputs, figure_gradient
 from pitchpoint.efficiency.quasi_static import Models

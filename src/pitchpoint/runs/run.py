@@ -29,8 +29,8 @@ from pitchpoint.cases.handed_over import FILES, hand_over
 from pitchpoint.cases.library import names
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import CASE, MANIFEST, OUTPUT, RUN, Manifest, Record, is_record
-from pitchpoint.cases.schema import validate
 from pitchpoint.cases.study_tables import Study
+from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
 from pitchpoint.doubts import apart, as_doubt, concerns, doubts_of

@@ -16,8 +16,8 @@ from pitchpoint.analyses.designs import TOGETHER
 from pitchpoint.analyses.studies import demand_films, demand_one
 from pitchpoint.analyses.summaries import balance_codes, few
 from pitchpoint.cases.record import OUTPUT
-from pitchpoint.cases.schema import validate, with_meshes
 from pitchpoint.cases.study_tables import StudyTable, Sweep
+from pitchpoint.cases.validation import validate, with_meshes
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import stored
 from pitchpoint.errors import InputError

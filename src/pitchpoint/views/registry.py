@@ -1,5 +1,6 @@
 """All sections of the report and the screen; those of parts that few results have are loaded for them."""
 
+from pitchpoint.analyses.figures import HOLDING
 from pitchpoint.registry import Registry
 from pitchpoint.views.section import Section, of_part, of_trains, without_trains
 from pitchpoint.views.sections.answer import ANSWER
@@ -10,7 +11,6 @@ from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.designs import DESIGNS
 from pitchpoint.views.sections.drive import DRIVE
 from pitchpoint.views.sections.formulas import FORMULAS
-from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS
 from pitchpoint.views.sections.inputs import INPUTS
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.issues import ISSUES
@@ -180,6 +180,16 @@ MOTION = Section(
     blocks="pitchpoint.views.sections.motion:motion_blocks",
     answer=of_part("motion", "pitchpoint.views.sections.motion:motion_facts"),
     screen=of_part("motion", "pitchpoint.views.sections.motion:motion_printed"),
+)
+FOUR_QUADRANTS = Section(
+    name="quadrants",
+    title="Loss map of the output",
+    short="Four quadrants",
+    order=710.0,
+    parts=(f"four_quadrants.{HOLDING[0]}",),
+    blocks="pitchpoint.views.sections.four_quadrants:quadrants_blocks",
+    answer=of_part("four_quadrants", "pitchpoint.views.sections.four_quadrants:quadrants_facts"),
+    screen=of_part("four_quadrants", "pitchpoint.views.sections.four_quadrants:quadrants_printed"),
 )
 DUTY = Section(
     name="duty",

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.studies import PREFIX, is_study
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.published.publication import Beside, Curves, Maps
 from pitchpoint.published.registry import publication_of
 from pitchpoint.runs.run import Outcome
