@@ -12,7 +12,7 @@ from vdi_2736_wear import mean_wear_depth
 from worn_together import worn_together
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import total
 from pitchpoint.contact.surface import Spot, missing
 from pitchpoint.contact.worn import WIDEST, Worn, WornAt, averaged

@@ -19,7 +19,7 @@ from plotly.offline import get_plotlyjs
 from records import entries
 from sound import quick_first
 
-from pitchpoint.cases.build import ALONE
+from pitchpoint.cases.built import ALONE
 from pitchpoint.doubts import as_doubt, stored
 from pitchpoint.gears.bodies import drawing
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair

@@ -12,7 +12,7 @@ from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Several
 from pitchpoint.analyses.figures import by_law, json_figures
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import alone, beside, joined, summaries
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.keys import quantity_at

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from pitchpoint._jax import array
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
 from pitchpoint.cases.drive_schema import DriveCase

@@ -22,7 +22,7 @@ from pitchpoint.analyses.registry import ANALYSES, DUTY
 from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.handed_over import FILES, hand_over
