@@ -23,7 +23,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from pitchpoint._jax import jnp
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.library import find
 from pitchpoint.cases.loss_sets import loss_sets
 from pitchpoint.cases.variant import Variant

@@ -33,7 +33,7 @@ import xarray as xr
 
 from pitchpoint._jax import jnp
 from pitchpoint.analyses.loss_map import at_torque, map_axes, pieces
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.efficiency.quasi_static import (
     Engagement,
     Operation,

@@ -12,8 +12,9 @@ from pydantic.fields import FieldInfo
 import pitchpoint
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import MARKS, STATUSES
+from pitchpoint.cases.drive_schema import DriveCase, StageTable, TrainTable
 from pitchpoint.cases.loss_sets import SET, SET_TOLD
-from pitchpoint.cases.schema import CaseFile, DriveCase, StageTable, TrainTable
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.gears.planetary import PlanetaryGears
 from pitchpoint.input.tables import alternatives, quantity_of, sentences, usual_words
 from pitchpoint.materials.material_tables import DriveMaterials

@@ -29,8 +29,8 @@ import numpy as np
 
 from pitchpoint import Case, cli, study
 from pitchpoint.cases.document import read
+from pitchpoint.cases.keys import keys
 from pitchpoint.cases.library import names, path_of
-from pitchpoint.cases.schema import keys
 from pitchpoint.cases.wishes import WISHES
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import without_nan

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 
 
 def entries(values: Mapping[str, Any]) -> list[dict[str, Any]]:

@@ -13,7 +13,7 @@ from pydantic import BaseModel, BeforeValidator
 from whole_cases import BASES, WALKS
 
 from pitchpoint import units
-from pitchpoint.cases.schema import DriveCase, StageTable
+from pitchpoint.cases.drive_schema import DriveCase, StageTable
 from pitchpoint.gears import planetary
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import tag

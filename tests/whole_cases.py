@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from pitchpoint.cases.document import resolve
-from pitchpoint.cases.schema import CaseFile, TrainTable, validated
+from pitchpoint.cases.drive_schema import TrainTable
+from pitchpoint.cases.schema import CaseFile
+from pitchpoint.cases.validation import validated
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.duty_cycle import table as duty_table
 from pitchpoint.gears import planetary

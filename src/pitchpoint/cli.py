@@ -61,7 +61,7 @@ def _variants_from(context: typer.Context, incomplete: str) -> list[str]:
 
 def _keys_from(incomplete: str) -> list[str]:
     """Keys of case files that begin so."""
-    from pitchpoint.cases.schema import keys
+    from pitchpoint.cases.keys import keys
 
     return [f"{key}=" for key in keys() if key.startswith(incomplete)]
 

@@ -26,7 +26,7 @@ from worn_pairs import (
 from worn_together import worn_together
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import total
 from pitchpoint.efficiency.quasi_static import cycle
 from pitchpoint.lubrication.conditions import Conditions

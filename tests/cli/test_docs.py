@@ -20,9 +20,12 @@ from pitchpoint.analyses.comparison import compare
 from pitchpoint.analyses.engagement import check_heights
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import Document
+from pitchpoint.cases.drive_schema import DriveCase
 from pitchpoint.cases.height_maps import height_maps
-from pitchpoint.cases.schema import CaseFile, DriveCase, keys, validate
+from pitchpoint.cases.keys import keys
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.study_tables import Target
+from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.conditions import UNITS as CONDITIONS

@@ -14,9 +14,10 @@ from sound import SMOOTH, quick_first
 
 from pitchpoint import cli
 from pitchpoint.cases.document import Document
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.library import find
-from pitchpoint.cases.schema import quantity_at, validate
 from pitchpoint.cases.study_tables import Sweep
+from pitchpoint.cases.validation import validate
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.gears.table import GearsTable
 from pitchpoint.runs import explore as exploring

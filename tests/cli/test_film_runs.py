@@ -19,7 +19,7 @@ from pitchpoint.analyses.film_contacts import states as states_of
 from pitchpoint.analyses.film_cycle import _of_pieces, _of_summits
 from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.films import film_model
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import Doubt, stored

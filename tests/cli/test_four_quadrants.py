@@ -23,7 +23,6 @@ from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.views import show
 from pitchpoint.views.sections.beside import BESIDE
-from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -8,8 +8,8 @@ from pitchpoint.cases.document import Document, read, resolve, variants
 from pitchpoint.cases.handed_over import FILES, as_toml, hand_over
 from pitchpoint.cases.library import find, names
 from pitchpoint.cases.record import CASE, RUN, Record, default_folder
-from pitchpoint.cases.schema import validate
 from pitchpoint.cases.study_tables import Study, Sweep
+from pitchpoint.cases.validation import validate
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CASES = [*names(), *map(str, sorted(EXAMPLES.glob("*.toml")))]

@@ -13,8 +13,11 @@ from pitchpoint import cli
 from pitchpoint.analyses.four_quadrants import speed_ratio
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.document import read, resolve
-from pitchpoint.cases.schema import CaseFile, DriveCase, keys, quantity_at, validate
+from pitchpoint.cases.drive_schema import DriveCase
+from pitchpoint.cases.keys import keys, quantity_at
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.template import FAMILIES, sample_tree, template
+from pitchpoint.cases.validation import validate
 from pitchpoint.drive.assembly import ROOM_BETWEEN_PLANETS
 from pitchpoint.duty_cycle.table import DutyTable, HeatTable
 from pitchpoint.errors import InputError

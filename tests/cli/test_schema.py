@@ -14,10 +14,11 @@ from sound import PAIR
 
 from pitchpoint import cli
 from pitchpoint.cases.document import resolve
+from pitchpoint.cases.drive_schema import DriveCase
 from pitchpoint.cases.handed_over import as_toml
 from pitchpoint.cases.json_schema import case_schema
 from pitchpoint.cases.library import find, names, path_of
-from pitchpoint.cases.schema import CaseFile, DriveCase
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.input.tables import alternatives, quantity_of, sentences

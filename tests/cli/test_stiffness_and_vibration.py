@@ -14,7 +14,7 @@ from sound import quick_first
 from pitchpoint import cli
 from pitchpoint.analyses.summaries import summaries
 from pitchpoint.analyses.vibration import _excited, stiffness_part, vibrating_of, vibration_part
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import BRIEF, as_doubt

@@ -14,7 +14,7 @@ from sound import PAIR, WAVE
 import pitchpoint as pp
 from pitchpoint import programs
 from pitchpoint.analyses.running import BANDS
-from pitchpoint.cases.build import ALONE, BEARING_FREE, LACKING, TEETH_ALONE
+from pitchpoint.cases.built import ALONE, BEARING_FREE, LACKING, TEETH_ALONE
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.runs import run as running

@@ -28,8 +28,8 @@ from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.run import Outcome, compare_case
 from pitchpoint.status import Code
+from pitchpoint.views.registry import FORMULAS
 from pitchpoint.views.section import Page
-from pitchpoint.views.sections.formulas import FORMULAS
 
 FORMULAS_BESIDE = PUBLICATIONS[TREE["source"]].beside[0]
 VARIANTS = ("as_published", "physical", "hertz", "standard")

@@ -18,7 +18,7 @@ from polygons import deepest as overlap_of_polygons
 from sound import PAIR
 
 from pitchpoint.cases.document import resolve
-from pitchpoint.cases.schema import validate
+from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.checks import _measure

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from sound import PAIR
 
 from pitchpoint.analyses.operation import OPERATION
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import ConvergenceError, InputError

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from pitchpoint.cases.library import names
-from pitchpoint.cases.schema import validate
+from pitchpoint.cases.validation import validate
 from pitchpoint.errors import InputError
 from pitchpoint.runs.case import Case, held
 

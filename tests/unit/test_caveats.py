@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from pitchpoint.analyses import caveats, four_quadrants
-from pitchpoint.cases.build import _roughness
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.solids import SolidInUse, failures
 from pitchpoint.doubts import apart, fails, moves
@@ -18,6 +17,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.lubrication.applicability import limits_words
 from pitchpoint.materials import solids
 from pitchpoint.materials.material_tables import RoughnessTable
+from pitchpoint.materials.surfaces import roughness_of
 from pitchpoint.runs.catalogue import entries
 
 XU, ISO = FRICTION["xu_2007"], FRICTION["iso_tr_14179_2"]
@@ -180,7 +180,9 @@ def test_what_cannot_be_is_told_apart_and_once() -> None:
 
 
 def test_ra_and_rq_together_reach_the_laws_that_ask_for_them() -> None:
-    both = _roughness(RoughnessTable.model_validate({"ra": "0.4 um", "rq": ["0.55 um", "0.6 um"]}))
+    both = roughness_of(
+        RoughnessTable.model_validate({"ra": "0.4 um", "rq": ["0.55 um", "0.6 um"]})
+    )
     assert float(both.mean_ra) == pytest.approx(0.4e-6)
     assert float(both.composite_rq) == pytest.approx(np.hypot(0.55e-6, 0.6e-6))
 

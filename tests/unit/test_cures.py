@@ -10,7 +10,7 @@ import pytest
 from sound import PAIR
 
 from pitchpoint.cases.document import resolve
-from pitchpoint.cases.schema import validate
+from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import CollectedInputError, Complaints, InputError
 from pitchpoint.gears.cylindrical.checks import _measure

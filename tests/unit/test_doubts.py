@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from pitchpoint.cases.build import TEETH_ALONE
+from pitchpoint.cases.built import TEETH_ALONE
 from pitchpoint.doubts import (
     FELT,
     LEFT_OUT,

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from screens import REPORT, faults_of_the_screen, screen
 
-from pitchpoint.cases.build import ALONE, LACKING
+from pitchpoint.cases.built import ALONE, LACKING
 from pitchpoint.doubts import Doubt
 from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.runs import run

@@ -15,7 +15,9 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
-from pitchpoint.cases.schema import CaseFile, quantity_at, validate
+from pitchpoint.cases.keys import quantity_at
+from pitchpoint.cases.schema import CaseFile
+from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.surface import Waves
 from pitchpoint.efficiency.quasi_static import Design

@@ -7,8 +7,8 @@ from types import ModuleType
 
 import pytest
 
-from pitchpoint.cases import build
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases import oils
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.gears.cylindrical import checks
 from pitchpoint.gears.cylindrical import design as cylindrical_design
 from pitchpoint.gears.cylindrical import family as cylindrical
@@ -69,6 +69,6 @@ def test_every_key_is_one_of_the_schema(module: str, key: str) -> None:
         quantity_at(f"gears.{strain_wave._KEYS.get(key, key)}")
 
 
-@pytest.mark.parametrize("key", sorted(set(build._OIL_KEYS.values())))
+@pytest.mark.parametrize("key", sorted(set(oils._OIL_KEYS.values())))
 def test_every_key_of_an_oil_is_one_of_the_schema(key: str) -> None:
     assert quantity_at(f"lubricant.{key}") is not None

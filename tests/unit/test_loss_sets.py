@@ -8,7 +8,7 @@ import pytest
 from pitchpoint.analyses.running import _of_set, running_axes
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.loss_sets import loss_sets, marks_of
-from pitchpoint.cases.schema import validate
+from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_circle

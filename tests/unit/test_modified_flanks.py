@@ -23,7 +23,7 @@ from pitchpoint.analyses.vibration import (
     stiffness_part,
     vibrating_of,
 )
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.deviations import ToothDeviations

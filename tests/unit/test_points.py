@@ -4,9 +4,9 @@ import jax
 import numpy as np
 import pytest
 
-from pitchpoint.cases.remembered import remembering
 from pitchpoint.errors import InputError
 from pitchpoint.gears import families
+from pitchpoint.input.remembered import remembering
 from pitchpoint.runs.case import as_case
 
 SHIFTS = np.linspace(-0.6, 0.5, families.MANY + 4)

@@ -4,7 +4,7 @@ import equinox as eqx
 import numpy as np
 import pytest
 
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency import profile as profiles
 from pitchpoint.efficiency import rows, summary

@@ -9,8 +9,8 @@ from sound import PAIR
 from pitchpoint.analyses.comparison import _Axis, compare, demand_parts
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.library import find, names
-from pitchpoint.cases.schema import validate
 from pitchpoint.cases.study_tables import Target
+from pitchpoint.cases.validation import validate
 from pitchpoint.errors import InputError
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.store import dataset

@@ -8,7 +8,7 @@ import xarray as xr
 
 import pitchpoint as pp
 from pitchpoint._jax import double_precision
-from pitchpoint.cases.schema import validate
+from pitchpoint.cases.validation import validate
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.din_3967 import thickness_allowances
 from pitchpoint.gears.cylindrical.inspection import Toothing, backlash

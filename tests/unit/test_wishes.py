@@ -12,7 +12,7 @@ import pytest
 from pitchpoint import Case
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.schema import CaseFile as Schema
-from pitchpoint.cases.schema import validate
+from pitchpoint.cases.validation import validate
 from pitchpoint.cases.wishes import WISHES
 from pitchpoint.efficiency.drag_tables import Loss
 from pitchpoint.errors import InputError

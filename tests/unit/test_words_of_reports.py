@@ -11,7 +11,7 @@ import xarray as xr
 from pages import payload
 from reported import IDLE, OUTSIDE, PUBLISHED, WHEEL, Outcomes, Words, computed, shown
 
-from pitchpoint.cases.build import ALONE
+from pitchpoint.cases.built import ALONE
 from pitchpoint.doubts import as_doubt, stored
 from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.runs.run import Outcome, open_result, run

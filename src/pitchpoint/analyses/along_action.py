@@ -15,7 +15,7 @@ from pitchpoint.analyses.figures import (
     numbers,
 )
 from pitchpoint.analyses.lacking import rigid
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
 

@@ -7,7 +7,7 @@ from typing import Any, Literal, Protocol
 
 import xarray as xr
 
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, Ready
 from pitchpoint.cases.study_tables import Study
 from pitchpoint.cases.variant import Variant

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, PieceProgress
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.results.store import dataset
 
 __all__ = ["bodies_of"]

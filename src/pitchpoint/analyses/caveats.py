@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.doubts import GUESSED, WITHHELD, Checks, Doubt, fails, in_percent, reworded

@@ -15,7 +15,7 @@ from pitchpoint.analyses.caveats import (
 )
 from pitchpoint.analyses.plausibility import implausible
 from pitchpoint.analyses.summaries import profiles
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code, locked_or_lost

@@ -8,7 +8,7 @@ import numpy as np
 
 from pitchpoint.analyses.film_contacts import asked, patch_grid_of
 from pitchpoint.analyses.whole_contacts import SPAN, Wholes, one_contact, wholes
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.films import course_grid, course_moments
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact

@@ -10,9 +10,10 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.film_contacts import LEAST, Done, alike, asked, film_model_of, states
 from pitchpoint.analyses.film_cycle import whole
-from pitchpoint.cases.build import Built, tooth_size
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.errors import InputError
+from pitchpoint.gears.nominal_motion import tooth_size
 from pitchpoint.lubrication.ehl.doubts import UNSOLVED
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.film_tables import FilmTable

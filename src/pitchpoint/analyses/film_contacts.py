@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.films import PATCH_NODES, patch_grid
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.efficiency.in_turns import balance_under

@@ -9,7 +9,7 @@ import xarray as xr
 from pitchpoint.analyses.caveats import cold_warning, conformal_warning
 from pitchpoint.analyses.film_contacts import asked, film_laws, film_model_of
 from pitchpoint.analyses.film_series import series_figures
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.films import SUMMIT_CONSTANTS
 from pitchpoint.contact.registry import SUMMITS
 from pitchpoint.doubts import REMARKED, Doubt, doubts_of, in_percent, reworded

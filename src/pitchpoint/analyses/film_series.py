@@ -8,7 +8,7 @@ from pitchpoint.analyses.analysis import Unasked
 from pitchpoint.analyses.film_contacts import known
 from pitchpoint.analyses.lacking import rigid
 from pitchpoint.analyses.torsion import wound_ups
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.errors import InputError
 from pitchpoint.status import Code
 

@@ -13,7 +13,7 @@ from pitchpoint.analyses.engagement import KEY, course_of
 from pitchpoint.analyses.film_contacts import asked
 from pitchpoint.analyses.finite_film import FIELDS
 from pitchpoint.analyses.whole_contacts import wholes
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.films import course_grid
 from pitchpoint.doubts import WITHHELD, Doubt, doubts_of, reworded, worst_of_kinds
 from pitchpoint.errors import InputError

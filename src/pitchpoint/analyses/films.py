@@ -8,7 +8,7 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
 from pitchpoint.analyses.figures import numbers
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import TOUCH
 
 __all__ = ["FILM", "FILM_SQUEEZE", "FINITE_FILM", "OVERLAP", "film_notes"]

@@ -20,9 +20,10 @@ from pitchpoint.analyses.film import (
 from pitchpoint.analyses.film_contacts import alike, asked, film_model_of, patch_grid_of, states
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
-from pitchpoint.cases.build import Built, tooth_size
+from pitchpoint.cases.built import Built
 from pitchpoint.doubts import WITHHELD, Doubt, in_percent
 from pitchpoint.errors import InputError
+from pitchpoint.gears.nominal_motion import tooth_size
 from pitchpoint.lubrication.ehl.doubts import GRID, UNKNOWN_GRID
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.model import FilmModel

@@ -9,7 +9,7 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.teeth import drawing_of
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.doubts import Doubt
 from pitchpoint.gears.bodies import disc
 from pitchpoint.gears.cylindrical.inspection import (

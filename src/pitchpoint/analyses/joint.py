@@ -15,7 +15,7 @@ from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.analyses.kinematic_error import own_error
 from pitchpoint.analyses.torsion import engaged_at, kinematic_play, mean_friction, wound_ups
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import along
 from pitchpoint.doubts import Doubt
 from pitchpoint.dynamics.joint import Joint, Sliding, respond

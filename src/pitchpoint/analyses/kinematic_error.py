@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.figures import error_ranges, numbers
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.doubts import Doubt

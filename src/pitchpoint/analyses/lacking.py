@@ -1,7 +1,7 @@
 """Why a part of a result does not exist for a case; asked of every case, so that nothing is computed here."""
 
 from pitchpoint.analyses.analysis import Unasked, has_key
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.gears.contact_lines import line_of_action

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, PieceProgress
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.doubts import fails
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.load_limits import (

@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress
 from pitchpoint.analyses.lacking import untransmitted, without_films
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import Doubt, doubts_of, in_percent
 from pitchpoint.efficiency.film_map import FilmMap, film_map

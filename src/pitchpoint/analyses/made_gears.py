@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from pitchpoint.analyses.analysis import silent
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 

@@ -13,7 +13,7 @@ from pitchpoint import units
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.figures import CAMPBELL
 from pitchpoint.analyses.vibration import MOST_RATIO, ORDERS, status_sentences, vibrating_of
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import along
 from pitchpoint.doubts import Doubt
 from pitchpoint.dynamics.bodies import Body, Support, across, bearing_forces, motor

@@ -22,7 +22,7 @@ from pitchpoint.analyses.figures import (
 from pitchpoint.analyses.lacking import untransmitted
 from pitchpoint.analyses.plausibility import implausible
 from pitchpoint.analyses.summaries import beside, profiles, summaries
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import FELT, GUESSED, Doubt, doubts_of, in_percent, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models

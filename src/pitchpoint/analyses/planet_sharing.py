@@ -11,7 +11,7 @@ from jaxtyping import Float
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.torsion import mesh_slopes
 from pitchpoint.cases.built_drive import BuiltTrain
-from pitchpoint.cases.schema import TrainTable
+from pitchpoint.cases.drive_schema import TrainTable
 from pitchpoint.doubts import GUESSED, Doubt
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.loading.planets import PinEquivalents, path_stiffness, planet_forces

@@ -10,7 +10,7 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Piece, PieceProgress, has_key, silent
 from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.inspection import CASES, inspection_part
-from pitchpoint.cases.build import MemberMotion
+from pitchpoint.cases.built import MemberMotion
 from pitchpoint.cases.built_drive import BuiltDrive
 from pitchpoint.doubts import Doubt
 from pitchpoint.drive.kinematics import HOUSING

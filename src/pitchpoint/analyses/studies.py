@@ -13,10 +13,10 @@ from pitchpoint.analyses.figures import by_law, json_figures
 from pitchpoint.analyses.made_gears import made_figures
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import alone, beside, joined, summaries
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.study_tables import Study, Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import Complaints, InputError, shorten

@@ -16,7 +16,7 @@ from pitchpoint.analyses.caveats import (
     films_lost,
     why_not_at,
 )
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Acting, Ready
 from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, doubts_of, stored
 from pitchpoint.efficiency.profile import FINE, profile

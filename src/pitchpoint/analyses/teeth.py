@@ -5,7 +5,7 @@ import xarray as xr
 
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.gears.bodies import drawing
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset

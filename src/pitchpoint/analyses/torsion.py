@@ -13,7 +13,7 @@ from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.doubts import Doubt, in_percent, in_stage

@@ -11,7 +11,7 @@ import xarray as xr
 
 from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Piece, PieceProgress
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts

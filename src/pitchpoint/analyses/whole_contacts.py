@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.film_contacts import LEAST, asked, by_pairs, film_model_of, known, states
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.films import USUAL_ENDS, end_surfaces
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.contact.surface import Spot, Surface, Surfaces, missing

@@ -10,22 +10,21 @@ import numpy as np
 
 from pitchpoint._jax import array
 from pitchpoint.brief import brief
-from pitchpoint.cases.build import (
+from pitchpoint.cases.built import (
     BEARING_FREE,
     TEETH_ALONE,
     Built,
     MemberMotion,
     MeshPeriod,
     covered,
-    held_by,
     operation_at,
 )
 from pitchpoint.cases.document import STAGES, Document
-from pitchpoint.cases.schema import DriveCase, StageTable
+from pitchpoint.cases.drive_schema import DriveCase, StageTable
 from pitchpoint.doubts import in_stage
 from pitchpoint.drive.kinematics import HOUSING, Ends
 from pitchpoint.drive.torques import TrainTorques, train_torques
-from pitchpoint.efficiency.drag import Drag
+from pitchpoint.efficiency.drag import Drag, held_by
 from pitchpoint.efficiency.drive import Drive
 from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.quasi_static import Models, Operation

@@ -10,9 +10,9 @@ import tomlkit
 from tomlkit.items import AoT, InlineTable, Item, Table
 
 from pitchpoint.cases.document import STAGES, Document, Provenance, files_of
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.library import as_text
 from pitchpoint.cases.record import CASE
-from pitchpoint.cases.schema import quantity_at
 from pitchpoint.cases.study_tables import Study
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import SIValue

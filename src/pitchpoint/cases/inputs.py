@@ -8,14 +8,17 @@ import numpy as np
 from pydantic import BaseModel
 
 from pitchpoint._jax import array
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import BuiltDrive, Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
+from pitchpoint.cases.drive_schema import DriveCase
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.laws import FrictionChoice
 from pitchpoint.cases.loss_sets import SET, marks_of
 from pitchpoint.cases.record import OUTPUT
-from pitchpoint.cases.schema import CaseFile, DriveCase, quantity_at, with_meshes
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.study_tables import Study
+from pitchpoint.cases.validation import with_meshes
 from pitchpoint.duty_cycle.table import LARGEST
 from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action

@@ -10,8 +10,9 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from pitchpoint.cases.document import DIAMETRAL_PITCH, MARKS, STAGES, STATUSES
+from pitchpoint.cases.drive_schema import DriveCase
 from pitchpoint.cases.loss_sets import NOT_THERE, SET, SET_TOLD
-from pitchpoint.cases.schema import CaseFile, DriveCase
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.tables import alternatives, measure_of, sentences, usual_words
 

@@ -1,6 +1,6 @@
 """Friction laws that a case file may name: those of the library, and those of published cases."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, model_validator
 
@@ -41,6 +41,8 @@ class FrictionChoice(BaseModel):
 
     model_config = ConfigDict(extra="allow", frozen=True, defer_build=True)
 
+    further_keys: ClassVar[Quantity] = COEFFICIENT
+    """What parameters of a law are, see `quantity_in`."""
     name: Annotated[str, BeforeValidator(named(FRICTION.keys, "friction law"))]
     """Friction law; parameters of its own may stand beside it."""
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Int
 
-from pitchpoint.cases.schema import DriveCase, TrainTable
+from pitchpoint.cases.drive_schema import DriveCase, TrainTable
 from pitchpoint.drive.assembly import (
     clear_neighbours,
     equal_angles,

@@ -9,7 +9,6 @@ import numpy as np
 
 from pitchpoint._jax import array
 from pitchpoint.cases.document import Document
-from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.doubts import GUESSED, LEFT_OUT, REMARKED, Doubt, fails
 from pitchpoint.efficiency.quasi_static import Design
@@ -18,6 +17,7 @@ from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.efficiency.warm_teeth import ToothHeating
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import pitch_point
+from pitchpoint.input.remembered import remembering
 from pitchpoint.materials import solids
 from pitchpoint.materials.data import Datum, Status
 from pitchpoint.materials.material_tables import Materials, SolidValues

@@ -11,27 +11,16 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from pitchpoint.cases.build import (
-    Built,
-    build,
-    drags,
-    ends_of,
-    gears_of,
-    operation_at,
-    without_bearing,
-)
+from pitchpoint.cases.build import build, gears_of
+from pitchpoint.cases.built import Built, ends_of, operation_at, without_bearing
 from pitchpoint.cases.built_drive import BuiltDrive, BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree, setting
+from pitchpoint.cases.drive_schema import DriveCase, is_planetary
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import (
-    CaseFile,
-    DriveCase,
-    is_planetary,
-    planetary_of,
-    validate,
-    with_meshes,
-)
+from pitchpoint.cases.schema import CaseFile
+from pitchpoint.cases.validation import planetary_of, validate, with_meshes
 from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
+from pitchpoint.efficiency.drag import drags
 from pitchpoint.efficiency.drive import Drive, chained, owner
 from pitchpoint.efficiency.operation_tables import Operating
 from pitchpoint.errors import Complaints, InputError

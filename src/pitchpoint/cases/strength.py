@@ -9,12 +9,12 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array
-from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.iso_1328 import FlankTolerances, flank_tolerances
+from pitchpoint.input.remembered import remembering
 from pitchpoint.materials.lubricants import LubricantRecord
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.strength.flank import NO_MODIFICATION

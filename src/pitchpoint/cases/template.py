@@ -12,8 +12,9 @@ from pydantic import BaseModel, BeforeValidator
 from pydantic.fields import FieldInfo
 
 from pitchpoint.cases.document import STAGES, Tree
+from pitchpoint.cases.drive_schema import DriveCase
 from pitchpoint.cases.loss_sets import SET
-from pitchpoint.cases.schema import CaseFile, DriveCase
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.wishes import no_family
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import TABLES, sample_of

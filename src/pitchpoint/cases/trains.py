@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from pitchpoint._jax import jax
-from pitchpoint.cases.build import Built, drags
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.document import STAGES
-from pitchpoint.cases.schema import CaseFile, DriveCase, TrainTable
+from pitchpoint.cases.drive_schema import DriveCase, TrainTable
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.solids import BY_VALUE
 from pitchpoint.cases.strength import MESH_LOAD, of_planets
 from pitchpoint.doubts import GUESSED, REMARKED, Doubt
@@ -23,6 +24,7 @@ from pitchpoint.drive.assembly import (
 )
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link, body_rates
 from pitchpoint.drive.torques import train_torques
+from pitchpoint.efficiency.drag import drags
 from pitchpoint.efficiency.operation_tables import Operating
 from pitchpoint.efficiency.train import Train, gear_train, presses_other_flanks
 from pitchpoint.errors import RUNS_WITH, InputError

@@ -9,14 +9,11 @@ from typing import Any, ParamSpec, TypeVar
 from pitchpoint.cases.build import check_alone
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import Document, resolve
-from pitchpoint.cases.schema import (
-    CaseFile,
-    DriveCase,
-    usual_at,
-    validate,
-    with_meshes,
-)
+from pitchpoint.cases.drive_schema import DriveCase
+from pitchpoint.cases.keys import usual_at
+from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.stages import as_spelt, ready
+from pitchpoint.cases.validation import validate, with_meshes
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.families import build_together
 from pitchpoint.lubrication.registry import ChosenLaws

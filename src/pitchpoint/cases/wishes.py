@@ -14,6 +14,8 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from pitchpoint import units
+from pitchpoint.cases.document import STAGES
+from pitchpoint.cases.drive_schema import check_stage, form_of
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.inspection import Toothing
 from pitchpoint.gears.cylindrical.table import TIP, CylindricalGears
@@ -31,6 +33,7 @@ from pitchpoint.gears.table import (
     GearsTable,
 )
 from pitchpoint.input.quantities import Pair, Quantity
+from pitchpoint.input.tables import quantity_in
 from pitchpoint.materials.data import oil_names
 from pitchpoint.registry import letters, listed, nearest
 
@@ -212,11 +215,11 @@ def _line(wish: Wish, place: Sequence[str], value: Any, tree: Tree) -> str:
 
 def _taken(table: Sequence[str], line: str, tree: Tree) -> bool:
     """False for a line whose value its key would refuse, such as a number without its unit."""
-    from pitchpoint.cases.schema import quantity_at  # asks this module for wishes
-
     try:
         ((key, value),) = tomllib.loads(line).items()
-        quantity = quantity_at(".".join((*table, key)), tree)
+        dotted = ".".join((*table, key))
+        check_stage(dotted, tree.get(STAGES))
+        quantity = quantity_in(dotted, tree, [form_of(tree)])
     except (
         InputError,
         ValueError,

@@ -1,22 +1,25 @@
 """Losses beside the teeth: bearings, seals and lubricant that brake one body against another."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.efficiency.drag_tables import Loss, bearings_of
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, DragModel
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.input.remembered import remembering
 from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.materials._leaves import as_array
 
-__all__ = ["Drag", "at_rest", "bearing_loads", "resistance"]
+__all__ = ["Drag", "at_rest", "bearing_loads", "drags", "held_by", "resistance"]
 
 Lanes = Float[Arrays, "pair slice *#b"]
 Each = Float[Numbers, "*#b"]
@@ -204,3 +207,84 @@ def _on_bodies(
     torque = drag.torque(speed=jnp.abs(rate) * speed, load=load, kinematic_viscosity=viscosity)
     sense = jnp.where(turns, jnp.sign(rate), 0.0)
     return [factor * sense * torque for factor in drag.between]
+
+
+@remembering
+def drags(
+    losses: Mapping[str, Loss], bodies: Sequence[str], inner: Collection[frozenset[str]]
+) -> tuple[Drag, ...]:
+    """Places beside the teeth where power is lost.
+
+    Args:
+        losses: by name.
+        bodies: of each coordinate, by name.
+        inner: pairs of bodies with a bearing between them on which a wave of teeth presses.
+    """
+    return tuple(_drag(loss, losses, bodies, inner) for loss in losses.values())
+
+
+def held_by(drags: Sequence[Drag], losses: Mapping[str, Loss], way: float) -> tuple[Drag, ...]:
+    """Places with what holds bodies at rest at one end of its spread.
+
+    Args:
+        drags: the places.
+        losses: of which they are, in the same order.
+        way: 1 for the upper end, -1 for the lower one.
+    """
+    pairs = zip(drags, losses.values(), strict=True)
+    return tuple(drag.held_times(loss.breakaway_spread**way) for drag, loss in pairs)
+
+
+def _drag(
+    loss: Loss,
+    losses: Mapping[str, Loss],
+    bodies: Sequence[str],
+    inner: Collection[frozenset[str]],
+) -> Drag:
+    between = np.zeros(len(bodies))
+    for body, side in zip(loss.between, (1.0, -1.0), strict=True):
+        if body in bodies:
+            between[bodies.index(body)] = side
+    bearing = BEARING_LOSS[loss.bearing]
+    return Drag(
+        between=array(between),
+        bearing=bearing,
+        mean_diameter=array(loss.mean_diameter or 0.0),
+        factors={name: array(value) for name, value in loss.factors.items()},
+        preload=array(loss.preload),
+        seat=InnerBearing() if _inside(loss, inner) else _seat(loss, losses, bodies),
+        seal_torque=array(loss.seal_torque),
+        churning_torque=array(loss.churning_torque),
+        churning_speed=array(loss.churning_speed or 1.0),
+        churning_exponent=array(loss.churning_exponent),
+        breakaway_torque=array(loss.breakaway_torque),
+        breakaway=BREAKAWAY[loss.breakaway],
+        breakaway_factors={name: array(value) for name, value in loss.breakaway_factors.items()},
+    )
+
+
+def _inside(loss: Loss, inner: Collection[frozenset[str]]) -> bool:
+    """True for the bearing inside a drive on which a wave of teeth presses."""
+    return loss.bearing != "none" and frozenset(loss.between) in inner
+
+
+def _seat(loss: Loss, losses: Mapping[str, Loss], bodies: Sequence[str]) -> Bearing | None:
+    """Where a bearing sits; None for a place without one, or between bodies that nothing holds apart."""
+    if loss.bearing == "none" or "housing" not in loss.between:
+        return None
+    body = next(name for name in loss.between if name != "housing")
+    coordinate = bodies.index(body)
+    bearing, *others = bearings_of(losses, body).values()
+    if not others:
+        return Bearing(coordinate)
+    opposite = others[0] if loss is bearing else bearing
+    assert loss.position is not None and opposite.position is not None
+    thrust = _locates(loss, opposite, usual=loss is bearing)
+    return Bearing(coordinate, array(loss.position), array(opposite.position), thrust)
+
+
+def _locates(loss: Loss, other: Loss, *, usual: bool) -> bool:
+    """True if a bearing takes the thrust: as either of the two says, else the first one."""
+    if loss.locating is not None:
+        return loss.locating
+    return usual if other.locating is None else not other.locating

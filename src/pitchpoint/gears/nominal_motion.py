@@ -7,19 +7,24 @@ from typing import Any
 import numpy as np
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import array, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers
+from pitchpoint.gears.bodies import main_dimensions
+from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.coordinates import number_of
 from pitchpoint.gears.mesh import Mesh, coordinates_of, has
+from pitchpoint.programs import program
 
 __all__ = [
     "MOTORS",
     "mesh_ends",
+    "mesh_numbers",
     "nominal_motion",
     "nominal_period",
     "phase_sense",
     "ratio_dimension",
+    "tooth_size",
     "turned_rates",
     "usual_ends",
 ]
@@ -148,3 +153,28 @@ def mesh_ends(
         raise InputError(f"the {names[drives]} cannot drive and be loaded at once")
     unit_vectors = np.eye(len(names))
     return array(unit_vectors[drives]), array(unit_vectors[takes])
+
+
+def tooth_size(mesh: Mesh) -> float | None:
+    """Module of the teeth [m], which is about the height that their flanks have; None without teeth."""
+    module = jax.device_get(mesh_numbers(mesh, *mesh_ends(mesh))["dimensions"]).get("module")
+    return None if module is None else float(module)
+
+
+@program
+def mesh_numbers(mesh: Mesh, driver: jax.Array, loaded: jax.Array) -> dict[str, dict[str, Any]]:
+    """Dimensions and nominal motion, which every case asks for."""
+    motion = nominal_motion(mesh, driver, loaded)
+    nominal = {
+        "motion": motion,
+        "driver": driver,
+        "loaded": loaded,
+        "period": nominal_period(mesh, motion),
+        "onward": phase_sense(mesh, motion),
+        "events": mesh.events(),
+        "pitch_line_speed": pitch_point(mesh, driver).pitch_line_speed
+        if has(mesh, pitch_point)
+        else jnp.zeros(()),
+    }
+    dimensions = main_dimensions(mesh) | ratio_dimension(mesh, driver, loaded)
+    return {"dimensions": dimensions, "nominal": nominal}

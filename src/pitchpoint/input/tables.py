@@ -3,7 +3,7 @@
 import ast
 import inspect
 import sys
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import pairwise
 from typing import Any, get_args, get_origin
@@ -11,12 +11,14 @@ from typing import Any, get_args, get_origin
 from pydantic import BaseModel, ConfigDict, Discriminator
 from pydantic.fields import FieldInfo
 
-from pitchpoint.input.quantities import Pair, Quantity
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import Pair, Quantity, shown
 
 __all__ = [
     "DECIDING",
     "Numbered",
     "Table",
+    "UnknownKeyError",
     "alternatives",
     "by",
     "fields_at",
@@ -25,7 +27,9 @@ __all__ = [
     "is_stated",
     "marks",
     "measure_of",
+    "quantity_in",
     "quantity_of",
+    "quantity_of_any",
     "sentences",
     "tag",
     "usual_words",
@@ -188,3 +192,65 @@ def fields_at(location: tuple[Any, ...], model: type[BaseModel]) -> Mapping[str,
             tables = alternatives(fields[part].annotation)
             fields = next(iter(tables.values())).model_fields if tables else {}
     return fields
+
+
+class UnknownKeyError(InputError):
+    """A dotted key that no table has.
+
+    Attributes:
+        place: its parts up to the unknown one.
+        known_keys: of the tables that stand there.
+    """
+
+    def __init__(self, key: str, place: Sequence[str] = (), known_keys: Sequence[str] = ()) -> None:
+        super().__init__("there is no such key", key=key)
+        self.place, self.known_keys = place, known_keys
+
+
+@cache
+def quantity_of_any(key: str, models: tuple[type[BaseModel], ...]) -> Quantity | None:
+    """Kind and range of the value at a dotted key of one of some tables, in any of their forms.
+
+    See `quantity_in`.
+    """
+    return quantity_in(key, None, models)
+
+
+def quantity_in(key: str, tree: Any, models: Sequence[type[BaseModel]]) -> Quantity | None:
+    """Kind and range of the value at a dotted key of some tables, None where it is no quantity.
+
+    Args:
+        key: inside the tables; parts that are numbers count for nothing.
+        tree: plain values of the table, which decide what form an inner one has; None for every form.
+        models: tables that may be meant.
+
+    Raises:
+        UnknownKeyError: no table has it.
+        InputError: a part of it is a value.
+    """
+    parts = [part for part in key.split(".") if not part.isdigit()]
+    is_name = False
+    for position, part in enumerate(parts):
+        if is_name:  # of the user's own
+            is_name = False
+            continue
+        fields = [model.model_fields for model in models]
+        holding = [allowed[part] for allowed in fields if part in allowed]
+        further: list[Quantity] = [
+            model.further_keys for model in models if hasattr(model, "further_keys")
+        ]
+        if not holding and further:
+            return further[0]
+        if not holding:
+            every = dict.fromkeys(name for allowed in fields for name in allowed)
+            raise UnknownKeyError(key, parts[: position + 1], [*every])
+        if position == len(parts) - 1:
+            return quantity_of(holding[0])
+        tree = tree.get(part, {}) if isinstance(tree, Mapping) else None
+        if any(isinstance(mark, Numbered) for mark in holding[0].metadata):
+            tree = None
+        models = [model for info in holding for model in forms(info.annotation, tree)]
+        is_name = holds_named_tables(holding[0])
+        if not models:
+            raise InputError(f"{shown(part)} is a value, not a table", key=key)
+    return None

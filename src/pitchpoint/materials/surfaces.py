@@ -9,9 +9,11 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.input.remembered import remembering
 from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials.material_tables import RoughnessTable
 
-__all__ = ["RQ_PER_RA", "Roughness", "composite_rq", "mean_ra"]
+__all__ = ["RQ_PER_RA", "Roughness", "composite_rq", "mean_ra", "roughness_of"]
 
 RQ_PER_RA = math.sqrt(math.pi / 2.0)
 """Rq/Ra of Gaussian heights: the mean of |z| is sigma sqrt(2/pi). The textbook 1.25 rounds it."""
@@ -118,3 +120,17 @@ class Roughness(eqx.Module):
     def composite_rq(self) -> Float[Array, "..."]:
         """The composite Rq of the pair, shape (...) [m]."""
         return composite_rq(rq_1=self.rq_1, rq_2=self.rq_2)
+
+
+@remembering
+def roughness_of(surface: RoughnessTable) -> Roughness:
+    """Roughness of both flanks that a case has; what it leaves open follows for Gaussian heights."""
+    if surface.ra is not None and surface.rq is not None:
+        (ra_1, ra_2), (rq_1, rq_2) = surface.ra, surface.rq
+        return Roughness(ra_1=ra_1, ra_2=ra_2, rq_1=rq_1, rq_2=rq_2)
+    if surface.ra is not None:
+        return Roughness.from_ra(*surface.ra)
+    if surface.rq is not None:
+        return Roughness.from_rq(*surface.rq)
+    assert surface.composite_rq is not None
+    return Roughness.from_composite_rq(surface.composite_rq)

@@ -9,7 +9,7 @@ import xarray as xr
 
 from pitchpoint.analyses.designs import CaseDesigns
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown

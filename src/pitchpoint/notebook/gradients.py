@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from pitchpoint import units
 from pitchpoint._jax import double_precision, jax
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.variant import Variant

@@ -20,15 +20,10 @@ from pitchpoint.cases.document import (
     unknown_variant,
     variants,
 )
-from pitchpoint.cases.schema import (
-    CaseFile,
-    DriveCase,
-    StageTable,
-    in_form,
-    keys,
-    quantity_at,
-    validate,
-)
+from pitchpoint.cases.drive_schema import DriveCase, StageTable
+from pitchpoint.cases.keys import keys, quantity_at
+from pitchpoint.cases.schema import CaseFile
+from pitchpoint.cases.validation import in_form, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE

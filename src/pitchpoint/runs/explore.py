@@ -15,7 +15,7 @@ from pitchpoint.analyses.figures import main_figures
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import sweep_values
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.study_tables import Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError

@@ -13,7 +13,7 @@ from jaxtyping import Float
 
 from pitchpoint import units as units_of_numbers
 from pitchpoint.analyses.studies import SWEPT
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.study_tables import COUNT, one_value
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError

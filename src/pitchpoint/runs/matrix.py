@@ -9,10 +9,10 @@ from typing import Any
 
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.build import FILM_SOLVERS
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import Document
-from pitchpoint.cases.schema import with_meshes
+from pitchpoint.cases.models import FILM_SOLVERS
+from pitchpoint.cases.validation import with_meshes
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.pairs import flanks_in_turn

@@ -22,15 +22,15 @@ from pitchpoint.analyses.registry import ANALYSES, DUTY
 from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.handed_over import FILES, hand_over
 from pitchpoint.cases.library import names
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import CASE, MANIFEST, OUTPUT, RUN, Manifest, Record, is_record
-from pitchpoint.cases.schema import validate
 from pitchpoint.cases.study_tables import Study
+from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
 from pitchpoint.doubts import apart, as_doubt, concerns, doubts_of

@@ -16,12 +16,12 @@ from pitchpoint.analyses.designs import TOGETHER
 from pitchpoint.analyses.studies import demand_films, demand_one
 from pitchpoint.analyses.summaries import balance_codes, few
 from pitchpoint.cases.record import OUTPUT
-from pitchpoint.cases.remembered import remembering
-from pitchpoint.cases.schema import validate, with_meshes
 from pitchpoint.cases.study_tables import StudyTable, Sweep
+from pitchpoint.cases.validation import validate, with_meshes
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import stored
 from pitchpoint.errors import InputError
+from pitchpoint.input.remembered import remembering
 from pitchpoint.results.chosen_units import shown_in, unit_choice
 from pitchpoint.results.labelled import Units, demand_units, in_units, showing
 from pitchpoint.results.pieces import ALONG, StudyPieces, Summary, as_whole, summary_of

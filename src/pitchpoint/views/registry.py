@@ -1,16 +1,22 @@
 """All sections of the report and the screen; those of parts that few results have are loaded for them."""
 
+from pitchpoint.analyses.figures import HOLDING
 from pitchpoint.registry import Registry
-from pitchpoint.views.section import Section, of_part, of_trains, without_trains
+from pitchpoint.views.section import (
+    Section,
+    of_part,
+    of_published,
+    of_rows,
+    of_source,
+    of_trains,
+    without_rows,
+    without_trains,
+)
 from pitchpoint.views.sections.answer import ANSWER
 from pitchpoint.views.sections.arc import ARC
 from pitchpoint.views.sections.beside import BESIDE
-from pitchpoint.views.sections.compared import COMPARED
 from pitchpoint.views.sections.cycle import CYCLE
-from pitchpoint.views.sections.designs import DESIGNS
 from pitchpoint.views.sections.drive import DRIVE
-from pitchpoint.views.sections.formulas import FORMULAS
-from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS
 from pitchpoint.views.sections.inputs import INPUTS
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.issues import ISSUES
@@ -26,6 +32,32 @@ from pitchpoint.views.sections.vibration import VIBRATION
 
 __all__ = ["SECTIONS", "in_order", "register_section"]
 
+DESIGNS = Section(
+    name="designs",
+    title="Designs beside each other",
+    short="Designs",
+    order=-1.0,
+    lacks=lambda page: None if page.designs else "",
+    blocks="pitchpoint.views.sections.designs:designs_blocks",
+)
+FORMULAS = Section(
+    name="formulas",
+    title="Formulas of the publication",
+    short="Formulas",
+    order=90.0,
+    lacks=of_published("pitchpoint.views.sections.formulas:formulas_lack"),
+    blocks="pitchpoint.views.sections.formulas:formulas_blocks",
+    answer=of_source("pitchpoint.views.sections.formulas:formulas_answer"),
+)
+COMPARED = Section(
+    name="compared",
+    title="Printed against computed",
+    short="Printed and computed",
+    order=800.0,
+    lacks=without_rows,
+    blocks="pitchpoint.views.sections.compared:compared_blocks",
+    closing=of_rows("pitchpoint.views.sections.compared:compared_closing"),
+)
 FILM = Section(
     name="film",
     title="Films solved",
@@ -180,6 +212,16 @@ MOTION = Section(
     blocks="pitchpoint.views.sections.motion:motion_blocks",
     answer=of_part("motion", "pitchpoint.views.sections.motion:motion_facts"),
     screen=of_part("motion", "pitchpoint.views.sections.motion:motion_printed"),
+)
+FOUR_QUADRANTS = Section(
+    name="quadrants",
+    title="Loss map of the output",
+    short="Four quadrants",
+    order=710.0,
+    parts=(f"four_quadrants.{HOLDING[0]}",),
+    blocks="pitchpoint.views.sections.four_quadrants:quadrants_blocks",
+    answer=of_part("four_quadrants", "pitchpoint.views.sections.four_quadrants:quadrants_facts"),
+    screen=of_part("four_quadrants", "pitchpoint.views.sections.four_quadrants:quadrants_printed"),
 )
 DUTY = Section(
     name="duty",

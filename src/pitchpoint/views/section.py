@@ -43,6 +43,9 @@ __all__ = [
     "naming",
     "of_meshes",
     "of_part",
+    "of_published",
+    "of_rows",
+    "of_source",
     "of_trains",
     "panels",
     "reason",
@@ -51,6 +54,7 @@ __all__ = [
     "tabbed",
     "told_of_variants",
     "turned",
+    "without_rows",
     "without_trains",
 ]
 
@@ -783,6 +787,26 @@ def of_part(part: str, place: str) -> Callable[..., Any]:
 def of_trains(place: str) -> Callable[..., Any]:
     """What a section says of an outcome with sets whose meshes turn together, likewise; see `of_part`."""
     return _of_some(_has_trains, place)
+
+
+def of_source(place: str) -> Callable[..., Any]:
+    """What a section says of an outcome whose case is from a publication, likewise; see `of_part`."""
+    return _of_some(lambda outcome: bool(outcome.manifest.get("source")), place)
+
+
+def of_published(place: str) -> Callable[[Page], str | None]:
+    """What a page whose case is from a publication lacks; others lack it, and nothing is said of it."""
+    return lambda page: code_at(place)(page) if page.first.get("source") else ""
+
+
+def of_rows(place: str) -> Callable[[Page], Iterable[Block]]:
+    """Blocks of a page with printed numbers, loaded for such alone."""
+    return lambda page: () if without_rows(page) is not None else code_at(place)(page)
+
+
+def without_rows(page: Page) -> str | None:
+    """None where computed numbers stand beside printed ones; others lack them in silence."""
+    return None if any(outcome.rows for outcome in page.outcomes.values()) else ""
 
 
 def _of_some(there: Callable[[Outcome], bool], place: str) -> Callable[..., Any]:

@@ -8,9 +8,9 @@ from typing import Any
 from pitchpoint.results.target_rows import TargetRow, counts, in_words
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.section import Block, Drawn, Heading, Page, Section
+from pitchpoint.views.section import Block, Drawn, Heading, Page
 
-__all__ = ["COMPARED"]
+__all__ = ["compared_blocks", "compared_closing"]
 
 KINDS = {
     "predicted": "no constant, grid or reading was chosen with it",
@@ -24,17 +24,15 @@ KINDS = {
 _ORDER = {"miss": 0, "excluded": 1, "pass": 2}
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def compared_blocks(page: Page) -> Iterator[Block]:
+    """Tables of printed and computed numbers."""
     yield Drawn("compared.html.jinja", {"rows": _rows(page.outcomes), "kinds": KINDS})
 
 
-def _closing(page: Page) -> Iterator[Block]:
+def compared_closing(page: Page) -> Iterator[Block]:
+    """How many printed numbers are met, for the end of the answer."""
     yield Heading("Printed numbers")
     yield Drawn("met.html.jinja", {"rows": _rows(page.outcomes)})
-
-
-def _none(page: Page) -> str | None:
-    return None if any(outcome.rows for outcome in page.outcomes.values()) else ""
 
 
 def _rows(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
@@ -116,14 +114,3 @@ def _decimals(tolerance: float) -> int:
 def _most_decimals(value: float) -> int:
     """Decimals of seven significant digits, which no print has more of."""
     return max(6 - floor(log10(abs(value))), 0) if value else 6
-
-
-COMPARED = Section(
-    name="compared",
-    title="Printed against computed",
-    short="Printed and computed",
-    order=800.0,
-    lacks=_none,
-    blocks=_blocks,
-    closing=_closing,
-)

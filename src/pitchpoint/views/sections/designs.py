@@ -10,12 +10,13 @@ from pitchpoint.views.designs import (
     of_several,
     result_table,
 )
-from pitchpoint.views.section import Block, Folded, Heading, Page, Paragraph, Section, SectionTable
+from pitchpoint.views.section import Block, Folded, Heading, Page, Paragraph, SectionTable
 
-__all__ = ["DESIGNS"]
+__all__ = ["designs_blocks"]
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def designs_blocks(page: Page) -> Iterator[Block]:
+    """Inputs that differ, results, and what follows from the inputs, side by side."""
     differing_inputs, *following = (_inputs(*table) for table in differing(page.outcomes).items())
     yield from differing_inputs
     yield Heading("Results")
@@ -45,13 +46,3 @@ def _inputs(title: str, table: Compared) -> Iterator[Block]:
 
 _OPEN = 10
 """Inputs that differ which stand open: results follow below them on the first screen."""
-
-
-DESIGNS = Section(
-    name="designs",
-    title="Designs beside each other",
-    short="Designs",
-    order=-1.0,
-    lacks=lambda page: None if page.designs else "",
-    blocks=_blocks,
-)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.studies import PREFIX, is_study
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.published.publication import Beside, Curves, Maps
 from pitchpoint.published.registry import publication_of
 from pitchpoint.runs.run import Outcome
@@ -40,11 +40,10 @@ from pitchpoint.views.section import (
     KeyFigure,
     Page,
     Paragraph,
-    Section,
     SectionTable,
 )
 
-__all__ = ["FORMULAS"]
+__all__ = ["formulas_answer", "formulas_blocks", "formulas_lack"]
 
 _WIDE = 6
 """Columns of numbers that a table has room for."""
@@ -123,7 +122,8 @@ def _points(data: xr.Dataset, beside: Beside) -> list[_Told]:
     ]
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def formulas_blocks(page: Page) -> Iterator[Block]:
+    """Figures and numbers that the publication sets beside each other."""
     for number, (beside, studies) in enumerate(_besides(page)):
         yield Paragraph(beside.note, "note")
         if beside.calibrated:
@@ -409,7 +409,7 @@ def _places(data: xr.Dataset) -> list[str]:
     ]
 
 
-def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
+def formulas_answer(outcome: Outcome) -> Iterator[KeyFigure]:
     """What the publication is about, at the first point of the first study."""
     publication = publication_of(str(outcome.manifest.get("source", "")))
     for name in publication.answers if publication else ():
@@ -421,16 +421,6 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
             yield KeyFigure(5.0, show.described(name).long_name, words, f"({_point(at, 0)})")
 
 
-def _lacks(page: Page) -> str | None:
+def formulas_lack(page: Page) -> str | None:
+    """None where studies hold what the publication compares; nobody asks for it elsewhere."""
     return None if any(_besides(page)) else ""
-
-
-FORMULAS = Section(
-    name="formulas",
-    title="Formulas of the publication",
-    short="Formulas",
-    order=90.0,
-    lacks=_lacks,
-    blocks=_blocks,
-    answer=_answer,
-)

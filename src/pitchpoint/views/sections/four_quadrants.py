@@ -25,14 +25,13 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Section,
     SectionTable,
     by_variant,
 )
 from pitchpoint.views.sections.beside import starts_doubtfully
 from pitchpoint.views.sections.loss_map import Chart, map_blocks, map_panel
 
-__all__ = ["FOUR_QUADRANTS", "OF_OUTPUT"]
+__all__ = ["OF_OUTPUT", "quadrants_blocks", "quadrants_facts", "quadrants_printed"]
 
 OF_OUTPUT = Chart(
     "four_quadrants",
@@ -47,7 +46,8 @@ HELD = f"{OF_OUTPUT.part}.{HOLDING[0]}"
 """The map as it is now; results of before lack the torques that hold a load."""
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def quadrants_blocks(page: Page) -> Iterator[Block]:
+    """Paragraphs, tables and panels of the map."""
     there = page.having(HELD)
     data = next(iter(there.values())).parts[OF_OUTPUT.part]
     load, driving = (
@@ -140,12 +140,13 @@ def _held(outcome: Outcome) -> Iterator[Block]:
     yield SectionTable([*rows[0]], [[*row.values()] for row in rows], caption=caption)
 
 
-def _screen(outcome: Outcome) -> Iterator[Printed]:
+def quadrants_printed(outcome: Outcome) -> Iterator[Printed]:
+    """What holds the drive at rest, for the screen."""
     if HOLDING[0] in outcome.parts.get(OF_OUTPUT.part, ()):
         yield Printed(f"Held at rest at {_degree(outcome)}", _rows(outcome), _errors(outcome))
 
 
-def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
+def quadrants_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     """Torque that holds the load of operation at rest, under the first law."""
     if HOLDING[0] not in outcome.parts.get(OF_OUTPUT.part, ()):
         return
@@ -199,15 +200,3 @@ def _apart(held: dict[str, Any]) -> float:
     """How far the spread moves the torques that hold, over the larger of them."""
     moved = (abs(held[end] - held[name]) for name, ends in HOLDING_BANDS.items() for end in ends)
     return float(max(moved) / max(abs(held[name]) for name in HOLDING_BANDS))
-
-
-FOUR_QUADRANTS = Section(
-    name="quadrants",
-    title="Loss map of the output",
-    short="Four quadrants",
-    order=710.0,
-    parts=(HELD,),
-    blocks=_blocks,
-    answer=_key_figures,
-    screen=_screen,
-)

@@ -9,7 +9,7 @@ import xarray as xr
 from pitchpoint import units
 from pitchpoint.analyses.figures import CONTACT, MAIN, RATING, covered, of_contact
 from pitchpoint.analyses.studies import is_study
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.keys import quantity_at
 from pitchpoint.doubts import apart, doubts_of
 from pitchpoint.registry import enumerated
 from pitchpoint.results.chosen_units import unit_in_use
