@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.built import Built
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.registry import LOAD_SHARING

@@ -28,7 +28,7 @@ from collections import Counter
 
 from pitchpoint._jax import jax
 from pitchpoint.runs.run import run
-from pitchpoint.cases.schema import Study, Sweep
+from pitchpoint.cases.study_tables import Study, Sweep
 
 told = Counter()
 jax.monitoring.register_event_listener(lambda event, **_: told.update([event]))
