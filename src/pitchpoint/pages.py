@@ -58,9 +58,9 @@ def is_page(name: str) -> bool:
 
 def _chosen(name: str) -> str | None:
     """Whole name of a page; None for that of none, or of several."""
-    wanted, page_names = name.removesuffix(".md"), names()
-    ending = [page_name for page_name in page_names if page_name.rpartition("/")[2] == wanted]
-    return known_as(wanted, page_names) or (ending[0] if len(ending) == 1 else None)
+    wanted, every = name.removesuffix(".md"), names()
+    ending = [page_name for page_name in every if page_name.rpartition("/")[2] == wanted]
+    return known_as(wanted, every) or (ending[0] if len(ending) == 1 else None)
 
 
 def search_pages(words: str) -> list[dict[str, str]]:
