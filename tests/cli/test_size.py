@@ -153,7 +153,8 @@ def test_the_command_writes_cases_and_numbers(
     assert f"Cases: {folder}" in " ".join(shown.split("\n")) and "planetary_01" in shown
     assert called(monkeypatch, "--ratio", "4", "--families", "planetary", "--json") == 0
     told = json.loads(capsys.readouterr().out)
-    assert {path.stem for path in folder.iterdir()} == {*told["front"]}
+    assert {path.stem for path in folder.glob("*.toml")} == {*told["front"]}
+    assert (folder / "report.html").exists()
 
 
 def test_an_infeasible_task_says_what_stands_against_it_and_by_how_much(

@@ -270,7 +270,9 @@ class Interrupted(Progress):
 
 
 def _digests(folder: Path) -> dict[str, str]:
-    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir()}
+    return {
+        path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.glob("*.nc")
+    }
 
 
 def _study(folder: Path, **more: Any) -> xr.Dataset:
@@ -398,6 +400,7 @@ def test_the_command_computes_the_study_of_python(
     told = capsys.readouterr().out
     assert "16 designs\n" in told and f"every design: {tmp_path / 'out'}" in told
     assert len(_digests(tmp_path / "out")) == 4
+    assert {path.name for path in (tmp_path / "out").iterdir()} >= {"report.html", "case.toml"}
     assert _command(case, *DRAWN, "-o", str(tmp_path / "out"), "--json") == 0
     found = json.loads(capsys.readouterr().out)
     loss = np.sin(_study(tmp_path / "python")[TORQUE].values)

@@ -1,0 +1,164 @@
+"""The page of a study: what it says of all designs, those that it draws, fronts, and what stays out of it."""
+
+import html
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from many_designs import KEYS, RANGES, quick_study
+from pages import unpacked
+
+from pitchpoint.sizing.front import non_dominated
+from pitchpoint.views import study_report
+from pitchpoint.views.study_report import render_study, spread_evenly
+
+
+@pytest.fixture(scope="module")
+def study() -> xr.Dataset:
+    with pytest.MonkeyPatch.context() as patch:
+        return quick_study(patch, n=1024)
+
+
+@pytest.fixture(scope="module")
+def page(study: xr.Dataset) -> str:
+    return render_study(study, case_file=Path("many/case.toml"))
+
+
+def content_of(page: str) -> dict[str, Any]:
+    return dict(unpacked(page, "content"))
+
+
+def columns_of(page: str) -> dict[str, list[list[Any]]]:
+    return {column["name"]: column["values"] for column in content_of(page)["columns"]}
+
+
+def cells(page: str, caption: str) -> list[list[str]]:
+    """Rows of a table of a page, as text."""
+    table = re.search(rf"<caption[^>]*>{caption}.*?</table>", page, re.DOTALL)
+    assert table is not None, caption
+    rows = re.findall(r"<tr>(.*?)</tr>", table.group().partition("<tbody>")[2], re.DOTALL)
+    found = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, re.DOTALL) for row in rows]
+    return [
+        [html.unescape(re.sub("<[^>]+>", "", cell)).replace("\u00a0", " ") for cell in row]
+        for row in found
+    ]
+
+
+def test_designs_without_figures_are_counted_and_not_drawn(study: xr.Dataset, page: str) -> None:
+    there = np.isfinite(study["mean_loss"].values[0])
+    assert 0 < there.sum() < 1024
+    ((count, why),) = cells(page, f"{1024 - there.sum()} designs without figures")
+    assert (int(count), why) == (1024 - there.sum(), 'the <wide> gear & its "mate" meet')
+    content = content_of(page)
+    assert content["labels"] == np.flatnonzero(there).tolist()
+    assert f"1024 designs over 3 keys, {there.sum()} of them with figures" in page
+
+
+def test_values_are_those_of_the_study(study: xr.Dataset, page: str) -> None:
+    values, labels = columns_of(page), content_of(page)["labels"]
+    for name in KEYS:  # with all digits: a case is run with them
+        np.testing.assert_allclose(values[name][0], study[name].values[labels], rtol=1e-14)
+    for name in ("mean_loss", "largest_root_stress"):
+        for law, row in enumerate(values[name]):
+            np.testing.assert_allclose(row, study[name].values[law][labels], rtol=1e-5)
+    assert len(values["mean_loss"]) == 2
+    assert len(values["largest_root_stress"]) == 1  # the same under every law
+    assert "centre_distance" not in values  # it does not vary
+
+
+def test_the_best_are_those_of_all_designs(study: xr.Dataset, page: str) -> None:
+    rows = {(row[0], row[1]): row for row in cells(page, "The best design by each figure")}
+    for law, name in enumerate(study["law"].values):
+        losses = study["mean_loss"].values[law]
+        row = rows["mean power loss [W]", str(name)]
+        assert row[2] == "lowest" and int(row[4]) == np.nanargmin(losses)
+        assert float(row[3]) == pytest.approx(np.nanmin(losses), rel=1e-4)
+    film = rows["smallest film over composite Rq", "all"]
+    assert film[2] == "highest"
+    assert int(film[4]) == np.nanargmax(study["min_lambda_ratio"].values[0])
+
+
+def test_names_are_escaped(page: str) -> None:
+    assert "<b>pair</b>" not in page and "&lt;b&gt;pair&lt;/b&gt;" in page
+    assert "<wide>" not in page
+    assert "http" not in page.replace("http://www.w3.org/2000/svg", "")
+
+
+@pytest.mark.parametrize("how", ["sobol", "grid"])
+def test_of_many_designs_some_are_drawn_with_the_fronts_of_all(
+    how: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also read by blocks; fronts against every design with every other."""
+    monkeypatch.setattr(study_report, "MOST_DRAWN", 40)
+    monkeypatch.setattr(study_report, "TOGETHER_READ", 100)
+    given: dict[str, Any] = {"n": 256}
+    if how == "grid":
+        steps = {"start": "500 rpm", "stop": "3000 rpm", "count": 6}
+        over = {KEYS[0]: [20.0, 40.0, 60.0, 80.0], KEYS[1]: steps, KEYS[2]: [0.01, 0.02, 0.03]}
+        given = {"over": over}
+    study = quick_study(monkeypatch, how, **given)
+    page = render_study(study)
+    values, labels = columns_of(page), content_of(page)["labels"]
+    there = np.isfinite(study["mean_loss"].values[0]).ravel()
+    assert there[labels].all() and 40 <= len(labels) < min(there.sum(), 120)
+    assert f"{len(labels)} of {there.sum()} designs with figures are drawn" in page
+    costs = np.stack(
+        [study["mean_loss"].values[1].ravel(), -study["min_lambda_ratio"].values[1].ravel()]
+    )
+    beaten = (costs[:, :, None] >= costs[:, None]).all(axis=0) & (
+        costs[:, :, None] > costs[:, None]
+    ).any(axis=0)
+    front = np.flatnonzero(there & ~beaten.any(axis=1))
+    assert len(front) > 3 and {*front.tolist()} <= {*labels}
+    order = {number: place for place, number in enumerate(labels)}
+    for number in front.tolist():
+        assert values["mean_loss"][1][order[number]] == pytest.approx(costs[0][number], rel=1e-5)
+
+
+def test_a_choice_meets_every_value_of_a_grid() -> None:
+    """A grid of 100 by 100 by 100 in even steps of 200 would meet two values of its last key."""
+    taken = spread_evenly(1_000_000, 5000)
+    assert len(taken) == 5000
+    for place in np.unravel_index(taken, (100, 100, 100)):
+        counts = np.bincount(place, minlength=100)
+        assert counts.min() >= 25 and counts.max() <= 100
+
+
+def test_two_aims_have_the_front_of_the_sorting_of_several() -> None:
+    costs = np.random.default_rng(3).integers(0, 30, (2000, 2)).astype(float)
+    general = non_dominated(np.column_stack([costs, np.zeros(len(costs))]))
+    assert np.array_equal(non_dominated(costs), general)
+    assert non_dominated(np.zeros((0, 2))).tolist() == []
+
+
+def test_indices_stand_where_designs_are_those_of_saltelli(monkeypatch: pytest.MonkeyPatch) -> None:
+    over = {**RANGES, KEYS[2]: ("9 mm", "26 mm")}  # all have figures
+    study = quick_study(monkeypatch, "saltelli", over=over, n=64)
+    rows = {
+        row[0]: row[-1] for row in cells(render_study(study), "largest root stress of the teeth<")
+    }
+    indices = {key: float(words.split()[0].replace("−", "-")) for key, words in rows.items()}
+    assert indices[f"{KEYS[1]}, with others"] == 0.0
+    both = indices[f"{KEYS[0]}, alone"] + indices[f"{KEYS[2]}, alone"]
+    assert 0.7 < both < 1.2
+
+
+def test_ranks_stand_elsewhere_and_none_where_keys_go_together(
+    monkeypatch: pytest.MonkeyPatch, page: str
+) -> None:
+    rows = {row[0]: row[-1] for row in cells(page, "largest root stress of the teeth<")}
+    assert float(rows[KEYS[0]]) > 0.5 and float(rows[KEYS[2]].replace("−", "-")) < -0.4
+    over = {
+        key: np.linspace(*ends, 12).tolist()
+        for key, ends in zip(KEYS, ((20, 90), (50, 300), (0.01, 0.02)), strict=True)
+    }
+    assert "no figure can be put down to one of them" in render_study(
+        quick_study(monkeypatch, "zip", over=over)
+    )
+
+
+def test_a_page_of_python_says_what_to_set(study: xr.Dataset) -> None:
+    assert content_of(render_study(study))["opening"]["call"] == "case.set"
