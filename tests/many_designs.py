@@ -53,7 +53,7 @@ def _computed(self: CaseDesigns, progress: Any = None) -> xr.Dataset:
     data["locked"] = (("law", "point"), np.zeros(shape, bool))
     why = np.where(without, 'the <wide> gear & its "mate" meet', "")
     data["reason"] = (("law", "point"), np.broadcast_to(why, shape).copy())
-    attributes = {"solve": '{"residual": 0.0, "iterations": 1}', "case": "<b>pair</b>.toml"}
+    attributes = {"solve": '{"residual": 0.0, "iterations": 1}'}
     return xr.Dataset(data, {"law": [*laws]}, attributes)
 
 
