@@ -43,6 +43,10 @@ _OF_STRAIN_WAVES = (
 )
 
 
+MOST_LINES = 20
+"""Of a screen; the teeth, which page and case files have too, are left out where there would be more."""
+
+
 def sizing_screen(sizing: Sizing, width: int, written: Path | None = None) -> list[Line]:
     """Lines of the screen.
 
@@ -54,11 +58,13 @@ def sizing_screen(sizing: Sizing, width: int, written: Path | None = None) -> li
     head = [Line(text, "title") for text in wrapped(task_words(sizing.task), width)]
     counted = [Line(text, "figure") for text in wrapped(counted_words(sizing), width)]
     table = [Line(text, "figure") for text in lines_of(_rows(sizing), _COLUMNS, width)]
+    teeth = [Line(text, "figure") for text in wrapped(_teeth(sizing), width)]
     doubts = [
         Line(text, "doubt") for one in doubts_of_sizing(sizing) for text in wrapped(one, width)
     ]
     foot = [Line(text, "note") for one in _foot(sizing, written) for text in wrapped(one, width)]
-    return [*head, *counted, *table, *doubts, *foot]
+    every = [*head, *counted, *table, *teeth, *doubts, *foot]
+    return every if len(every) <= MOST_LINES else [line for line in every if line not in teeth]
 
 
 def sizing_as_json(sizing: Sizing) -> dict[str, Any]:
@@ -131,6 +137,13 @@ def _rows(sizing: Sizing) -> list[dict[str, str]]:
     return [_row(BEST_WORDS[aim], sizing.designs[name]) for aim, name in sizing.best.items()]
 
 
+def _teeth(sizing: Sizing) -> str:
+    """Teeth of the designs that are shown, each once."""
+    names = dict.fromkeys(sizing.best.values())
+    teeth = (f"{name} {gear_words(sizing.designs[name])['teeth']}" for name in names)
+    return f"Teeth: {', '.join(teeth)}."
+
+
 def _row(first: str, design: SizedDrive) -> dict[str, str]:
     minutes = units.convert(design.backlash, "arcmin", "angle")
     values = (
@@ -167,4 +180,7 @@ def _foot(sizing: Sizing, written: Path | None) -> Iterator[str]:
     if written is None:
         yield f"-o FOLDER writes the {len(sizing.front)} as case files; --json has all designs."
     else:
-        yield f"Cases: {written}, {len(sizing.front)} files; pitchpoint run {written / balanced}.toml"
+        yield (
+            f"Cases: {written}, {len(sizing.front)} files and report.html; pitchpoint run "
+            f"{written / balanced}.toml"
+        )
