@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
 from pitchpoint._jax import double_precision
 from pitchpoint.kept import base_folder, prepared, read, write
@@ -19,6 +20,7 @@ from pitchpoint.published.registry import publication_of
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.run import Outcome
+from pitchpoint.sizing.sizing import Sizing
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, curves
 from pitchpoint.views.inputs import recorded_units
@@ -47,7 +49,7 @@ __all__ = ["environment", "packed", "packed_plotly", "render", "write_report"]
 
 @double_precision()
 def write_report(
-    outcomes: Mapping[str, Outcome],
+    outcomes: Mapping[str, Outcome] | xr.Dataset | Sizing,
     path: str | Path,
     *,
     designs: bool = False,
@@ -56,16 +58,24 @@ def write_report(
     """Write the report; a reader never sees half of it.
 
     Args:
-        outcomes: by variant, as `run` and `open_result` give them.
+        outcomes: by variant, as `run` and `open_result` give them; or a study, as `study` gives it, best with
+            units = "shown"; or a sizing, as `size` gives it.
         path: of the HTML file.
         designs: True if the outcomes are those of several cases, by design, which are compared.
         units: by kind of quantity, {"angle": "arcmin"} or "angle=arcmin"; those of the first case by
-            default.
+            default. A study and a sizing have theirs.
 
     Raises:
         InputError: units that there are not.
     """
-    write_text(Path(path), render(outcomes, designs=designs, units=units))
+    from pitchpoint.views.sizing_report import render_sizing
+    from pitchpoint.views.study_report import render_study
+
+    if isinstance(outcomes, Sizing):
+        return write_text(Path(path), render_sizing(outcomes))
+    if isinstance(outcomes, xr.Dataset):
+        return write_text(Path(path), render_study(outcomes))
+    return write_text(Path(path), render(outcomes, designs=designs, units=units))
 
 
 _OF_ALL = ("answer", "formulas", "compared", "models", "sources")

@@ -143,20 +143,20 @@ def _two_aims(sizing: Sizing) -> tuple[str, str]:
 
 
 def _answer(sizing: Sizing) -> Iterator[Block]:
-    best = [[BEST_WORDS[aim], name, sizing.designs[name]] for aim, name in sizing.best.items()]
-    for heads, cells, words, names in (
-        (_gear_heads(), _gear_cells, "The best designs of the front", 6),
-        (_figure_heads(), _figure_cells, "Their figures", 2),
-    ):
-        rows = [[by, name, *cells(design)] for by, name, design in best]
-        yield SectionTable(["", "design", *heads], rows, caption=words, wide=True, names=names)
+    best = [(BEST_WORDS[aim], sizing.designs[name]) for aim, name in sizing.best.items()]
+    gears = [[by, design.name, *_gear_cells(design)] for by, design in best]
+    figures = [[by, design.name, *_figure_cells(design)] for by, design in best]
+    heads, caption = ["", "design", *_gear_heads()], "The best designs of the front"
+    yield SectionTable(heads, gears, caption=caption, wide=True, names=6)
+    heads = ["", "design", *_figure_heads()]
+    yield SectionTable(heads, figures, caption="Their figures", wide=True, names=2)
     for words in doubts_of_sizing(sizing):
         yield Paragraph(words, "note")
     without = families_by_reason(sizing.without)
     if without:
-        rows = [[families, words] for words, families in without.items()]
+        reasons = [[families, words] for words, families in without.items()]
         yield SectionTable(
-            ["families", "why not"], rows, caption="Families without a design", names=2
+            ["families", "why not"], reasons, caption="Families without a design", names=2
         )
 
 

@@ -321,10 +321,11 @@ class _Summed:
     @cached_property
     def page(self) -> DesignsPage:
         axes = [*dict.fromkeys([*self.keys[: _AXES - 2], *self.columns])][:_AXES]
-        tolerances = bool(self.designs.study.attrs.get("tolerances"))
+        attributes = self.designs.study.attrs
+        tolerances, case = bool(attributes.get("tolerances")), attributes.get("case", "a case")
         effects, bars, words = self._influence()
         return DesignsPage(
-            title=f"{self.designs.count} designs of {self.designs.study.attrs.get('case', 'a case')}",
+            title=f"{self.designs.count} designs of {case}{' within its tolerances' * tolerances}",
             summary=self._summary(),
             answer=[*self._answer(tolerances=tolerances)],
             columns=[*self.columns.values()],
@@ -379,15 +380,19 @@ class _Summed:
     def _summary(self) -> str:
         reasons: dict[str, int] = json.loads(self.designs.study.attrs["reasons"])
         without = sum(reasons.values())
-        over = f"{self.designs.count} designs over {len(self.keys)} keys"
+        over = f"{self.designs.count} designs over {len(self.keys)} key{'s' * (len(self.keys) > 1)}"
         computed = f"{over}, {self.designs.count - without} of them with figures"
-        if not self.main or self.designs.study.attrs.get("tolerances"):
+        if not self.main:
             return f"{computed}."
         name = self.main[0]
+        unit, words = self.designs.unit(name), self.designs.words(name)
+        if self.designs.study.attrs.get("tolerances"):
+            _, low, *_, high, _ = self.spans[name, 0]["quantiles"]
+            ends = f"{show.number(float(low), 5)} to {show.number(float(high), 5)} {unit}".rstrip()
+            return f"{computed}; {words}: {ends} of 98 in 100."
         value, _, place = self._best(name, 0)
-        words = f"{_BEST[_BETTER[name]]} {self.designs.words(name)} is {value}"
-        unit = self.designs.unit(name)
-        return f"{computed}; the {words}{f' {unit}' if unit else ''}, of design {place}."
+        with_unit = f"{value} {unit}".rstrip()
+        return f"{computed}; the {_BEST[_BETTER[name]]} {words} is {with_unit}, of design {place}."
 
     def _best(self, name: str, law: int) -> tuple[str, float, int]:
         """Best value of a figure in words and as a number, and the design that has it."""
@@ -457,7 +462,10 @@ class _Summed:
             if key in self.numeric_keys:
                 parts = [self.designs.read(key, 0, block) for block in self.designs.blocks()]
                 low, high = min(p.min() for p in parts), max(p.max() for p in parts)
-                yield [self.designs.title(key), show.number(float(low)), show.number(float(high))]
+                yield [
+                    self.designs.title(key),
+                    *(show.number(float(end), 5) for end in (low, high)),
+                ]
             else:
                 names = np.unique(self.designs.study[key].values.astype(str))
                 yield [self.designs.title(key), ", ".join(names.tolist()), ""]

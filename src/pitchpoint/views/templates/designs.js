@@ -30,6 +30,7 @@
   const brief = (value, digits = 5) => (value === null ? "–" : minus(Number(value.toPrecision(digits))));
   const written = (column, value, digits) => (column.levels.length && value !== null ? column.levels[value] : brief(value, digits));
   const titled = ({ words, unit }) => (unit ? `${words} [${unit}]` : words);
+  const breaking = (column) => titled(column).replace(/[._]/g, "$&\u200b");
   const colourOf = (name) => getComputedStyle(document.body).getPropertyValue(name).trim();
 
   function range(name) {
@@ -131,7 +132,7 @@
     parallel.style.width = `${width}px`;
     heads.replaceChildren(...names.map((name, k) => {
       const head = document.createElement("span");
-      head.textContent = titled(columns.get(name)).replace(/[._]/g, "$&\u200b");
+      head.textContent = breaking(columns.get(name));
       head.style.left = `${across[k] - room / 2 + 3}px`;
       head.style.width = `${room - 6}px`;
       return head;
@@ -244,7 +245,7 @@
       const column = columns.get(name);
       const row = document.createElement("div");
       const words = document.createElement("span");
-      words.textContent = titled(column);
+      words.textContent = breaking(column);
       row.append(words);
       if (column.levels.length) {
         const menu = document.createElement("select");
@@ -312,7 +313,7 @@
       const cell = document.createElement("th");
       cell.scope = "col";
       cell.className = name && !columns.get(name).levels.length ? "n" : "";
-      cell.textContent = name ? titled(columns.get(name)).replace(/[._]/g, "$&\u200b") : "design";
+      cell.textContent = name ? breaking(columns.get(name)) : "design";
       head.append(cell);
     }
     const rows = which.map((k) => {
@@ -514,7 +515,7 @@
       const row = document.createElement("tr");
       const [head, cell] = [document.createElement("th"), document.createElement("td")];
       head.scope = "row";
-      head.textContent = titled(column).replace(/[._]/g, "$&\u200b");
+      head.textContent = breaking(column);
       cell.className = column.levels.length ? "" : "n";
       cell.textContent = written(column, valuesOf(column.name)[k], column.input ? 6 : 5);
       row.append(head, cell);
