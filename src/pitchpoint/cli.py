@@ -869,7 +869,7 @@ def open_(
     result: Result,
     print_: Annotated[bool, typer.Option("--print", help="Only tell where it is.")] = False,
 ) -> None:
-    """Show the report of a result in the browser."""
+    """Show the report of a result, a study or a sizing in the browser."""
     import webbrowser
 
     report = Path(result) / "report.html"

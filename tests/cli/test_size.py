@@ -12,12 +12,14 @@ from typing import Any
 import numpy as np
 import pytest
 from documentation import block
+from pages import unpacked
 
 from pitchpoint import cli
 from pitchpoint._jax import double_precision
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case, run
 from pitchpoint.sizing.sizing import Sizing, size
+from pitchpoint.views.sizing_report import render_sizing
 from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
 
 pytestmark = pytest.mark.whole
@@ -126,6 +128,38 @@ def test_the_screen_answers_in_eighty_columns(sizing: Sizing) -> None:
     for first in ("least mass", "least loss", "least diameter", "least backlash", "balanced"):
         assert any(line.startswith(first) for line in lines)
     json.dumps(sizing_as_json(sizing), allow_nan=True)
+
+
+def test_the_page_has_the_gears_of_every_design_and_opens_those_of_the_front(
+    sizing: Sizing, tmp_path: Path
+) -> None:
+    page = render_sizing(sizing, folder=tmp_path / "front")
+    content = unpacked(page, "content")
+    columns = {column["name"]: column for column in content["columns"]}
+    assert content["labels"] == [*sizing.designs]
+    assert {*content["opening"]["files"]} == {*sizing.front}
+    for place, (name, design) in enumerate(sizing.designs.items()):
+        said = {
+            key: columns[key]["levels"][int(columns[key]["values"][0][place])]
+            for key in ("family", "teeth", "module", "face_width", "planets", "on_front")
+        }
+        assert said["family"] == design.family
+        assert (said["on_front"] == "yes") == (name in sizing.front)
+        gears = [stage["gears"] for stage in design.tree.get("stages", [design.tree])]
+        teeth = [
+            number
+            for table in gears
+            for part in (table, table.get("second", {}))
+            for number in part.get("teeth", ())
+        ]
+        assert [*map(int, re.findall(r"\d+", said["teeth"]))] == teeth
+        assert [f"{m} mm" for m in said["module"].split("; ")] == [t["module"] for t in gears]
+        widths = [f"{width} mm" for width in said["face_width"].split("; ")]
+        assert widths == [table["face_width"] for table in gears]
+        assert columns["mass"]["values"][0][place] == pytest.approx(design.mass, rel=1e-5)
+        assert columns["loss"]["values"][0][place] == pytest.approx(100 * design.loss, rel=1e-5)
+    for link in re.findall(r'"link": ?"([^"]+)"', json.dumps(content["opening"])):
+        assert link.removesuffix(".toml") in sizing.front
 
 
 def test_cases_are_written_once(sizing: Sizing, tmp_path: Path) -> None:
@@ -244,6 +278,7 @@ def test_the_block_of_the_guide(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
     exec(block("guide/sizing.md", "python", "pp.size"), names)  # as it is printed
+    assert (tmp_path / "front_of_two.html").exists()
     written = {path.stem for path in (tmp_path / "front_of_two").iterdir()}
     assert written == {*names["sizing"].front}
     assert float(names["sizing"].table["diameter"].max()) <= 0.16

@@ -1,5 +1,7 @@
 """Looks at reports of examples and published cases: `python tests/long/every_report.py FOLDER [NAME ...]`.
 
+Pages of many designs are among them: "a study", "tolerances" and "a sizing".
+
 Results are kept in FOLDER, one folder a case; what is there is not computed again, an interrupted run goes
 on. Each report is written anew, opened 1280 px wide, light and dark, and 500 px wide, and printed. What is
 cut, empty, overlapping, too high or too large is told; pictures and the PDF are left in FOLDER/NAME.seen.
@@ -18,10 +20,27 @@ from screens import faults_of_the_screen
 from seen import faults_on_paper, faults_on_screen, pages, whole
 
 from pitchpoint.cases.library import names
+from pitchpoint.results.store import write_text
+from pitchpoint.runs.case import Case
 from pitchpoint.runs.run import open_result, run
+from pitchpoint.runs.study import study
+from pitchpoint.sizing.sizing import size
 from pitchpoint.views.report import write_report
+from pitchpoint.views.sizing_report import render_sizing
+from pitchpoint.views.study_report import write_study_folder
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+STUDIES = {
+    "a study": {
+        "over": {
+            "operation.torque": ("20 N m", "90 N m"),
+            "gears.face_width": ("12 mm", "24 mm"),
+            "gears.profile_shift.1": (0.0, 1.9),
+        },
+        "how": "sobol",
+    },
+    "tolerances": {"tolerances": "normal"},
+}
 WINDOWS = ((1280, "light"), (1280, "dark"), (500, "light"))
 
 
@@ -38,6 +57,31 @@ def report(case: str, folder: Path) -> Path:
         kept = run(case, folder=folder)
     write_report(kept, folder / "report.html")
     return folder / "report.html"
+
+
+def page_of_designs(name: str, folder: Path) -> Path:
+    """The page of a study or of a sizing, in its folder."""
+    path = folder / "report.html"
+    if name == "a sizing":
+        sizing = size("60 N m", 60.0, "30 rpm", "5000 h")
+        if not folder.exists():
+            sizing.write(folder)
+        write_text(path, render_sizing(sizing, folder=folder))
+        return path
+    case, asked = Case(EXAMPLES / "pair_23_61.toml"), STUDIES[name]
+    if "tolerances" in asked:
+        case = case.set({"gears.inspection": {"thickness_field": "cd25", "iso_class": 6}})
+    write_study_folder(study(case, n=256, units="shown", folder=folder, **asked), case, folder)
+    return path
+
+
+def faults_of_designs(page: Browser, path: Path, pictures: Path) -> Iterator[str]:
+    """What is wrong with the page of many designs on screens; pictures of each."""
+    pictures.mkdir(exist_ok=True)
+    for width, scheme in ((1200, "light"), (1200, "dark"), (420, "light")):
+        for fault in faults_on_screen(page, path, width, scheme):
+            yield f"{width} px, {scheme}: {fault}"
+        page.picture(pictures / f"{width}_{scheme}.png", 0, whole(page))
 
 
 def faults(page: Browser, path: Path, pictures: Path) -> Iterator[str]:
@@ -61,8 +105,14 @@ def main(folder: Path, names: list[str]) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     count = 0
     with browser() as page:
-        for name in names or known:
+        for name in names or [*known, *STUDIES, "a sizing"]:
             print(name, flush=True)
+            if name in (*STUDIES, "a sizing"):
+                path = page_of_designs(name, folder / name.replace(" ", "_"))
+                for fault in faults_of_designs(page, path, folder / f"{path.parent.name}.seen"):
+                    count += 1
+                    print(f"  {fault}", flush=True)
+                continue
             path = report(known.get(name, name), folder / name)
             of_the_screen = faults_of_the_screen(open_result(folder / name))
             for fault in chain(of_the_screen, faults(page, path, folder / f"{name}.seen")):
