@@ -20,7 +20,6 @@ from pitchpoint.published.registry import publication_of
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.run import Outcome
-from pitchpoint.sizing.sizing import Sizing
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, curves
 from pitchpoint.views.inputs import recorded_units
@@ -44,12 +43,14 @@ if TYPE_CHECKING:
     import jinja2
     import markupsafe
 
+    from pitchpoint.sizing.sizing import Sizing
+
 __all__ = ["environment", "packed", "packed_plotly", "render", "write_report"]
 
 
 @double_precision()
 def write_report(
-    outcomes: Mapping[str, Outcome] | xr.Dataset | Sizing,
+    outcomes: "Mapping[str, Outcome] | xr.Dataset | Sizing",
     path: str | Path,
     *,
     designs: bool = False,
@@ -68,13 +69,14 @@ def write_report(
     Raises:
         InputError: units that there are not.
     """
-    from pitchpoint.views.sizing_report import render_sizing
-    from pitchpoint.views.study_report import render_study
-
-    if isinstance(outcomes, Sizing):
-        return write_text(Path(path), render_sizing(outcomes))
     if isinstance(outcomes, xr.Dataset):
+        from pitchpoint.views.study_report import render_study
+
         return write_text(Path(path), render_study(outcomes))
+    if not isinstance(outcomes, Mapping):
+        from pitchpoint.views.sizing_report import render_sizing
+
+        return write_text(Path(path), render_sizing(outcomes))
     return write_text(Path(path), render(outcomes, designs=designs, units=units))
 
 

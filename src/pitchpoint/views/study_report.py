@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Bool, Float, Int
 
+from pitchpoint._jax import double_precision
 from pitchpoint.cases.handed_over import hand_over
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.record import CASE
@@ -185,6 +186,7 @@ def render_study(study: xr.Dataset, *, case_file: Path | None = None) -> str:
     return render_designs(_Summed(_Designs(study), case_file).page)
 
 
+@double_precision()
 def write_study_folder(study: xr.Dataset, case: Case, folder: Path) -> None:
     """Write the page of a study into its folder, and the case that its designs are changes of.
 
