@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import xarray as xr
@@ -77,7 +77,8 @@ def write_report(
         from pitchpoint.views.sizing_report import render_sizing
 
         return write_text(Path(path), render_sizing(outcomes))
-    return write_text(Path(path), render(outcomes, designs=designs, units=units))
+    of_case = cast("Mapping[str, Outcome]", outcomes)
+    return write_text(Path(path), render(of_case, designs=designs, units=units))
 
 
 _OF_ALL = ("answer", "formulas", "compared", "models", "sources")
