@@ -402,6 +402,7 @@ def test_the_command_computes_the_study_of_python(
     assert "16 designs\n" in told and f"every design: {tmp_path / 'out'}" in told
     assert len(_digests(tmp_path / "out")) == 4
     assert {path.name for path in (tmp_path / "out").iterdir()} >= {"report.html", "case.toml"}
+    assert f"report: {tmp_path / 'out' / 'report.html'}" in told
     assert _command(case, *DRAWN, "-o", str(tmp_path / "out"), "--json") == 0
     found = json.loads(capsys.readouterr().out)
     loss = np.sin(_study(tmp_path / "python")[TORQUE].values)
