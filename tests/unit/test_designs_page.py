@@ -180,5 +180,10 @@ def test_a_design_or_two_have_a_page(count: int, monkeypatch: pytest.MonkeyPatch
     assert content_of(page)["effects"] == []
 
 
+def test_a_folder_with_a_space_is_quoted(study: xr.Dataset) -> None:
+    opening = content_of(render_study(study, case_file=Path("my drives/case.toml")))["opening"]
+    assert opening["command"] == "pitchpoint run 'my drives/case.toml'"
+
+
 def test_a_page_of_python_says_what_to_set(study: xr.Dataset) -> None:
     assert content_of(render_study(study))["opening"]["call"] == "case.set"

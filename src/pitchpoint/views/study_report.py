@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import numpy as np
@@ -522,7 +523,7 @@ class _Summed:
         if self.main:
             at = int(np.searchsorted(self.drawn, self._best(*next(iter(self.spans)))[2]))
         if self.case_file is not None:
-            return {"command": f"pitchpoint run {self.case_file}", "at": at}
+            return {"command": f"pitchpoint run {quote(str(self.case_file))}", "at": at}
         tolerances = self.designs.study.attrs.get("tolerances")
         return {"at": at} if tolerances else {"call": "case.set", "at": at}
 
