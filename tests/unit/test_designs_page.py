@@ -157,5 +157,33 @@ def test_ranks_stand_elsewhere_and_none_where_keys_go_together(
     assert "no figure can be put down to one of them" in together
 
 
+def test_a_law_under_which_a_figure_does_not_vary_is_no_answer(study: xr.Dataset) -> None:
+    """As of a drive without friction, whose efficiency is that of every design."""
+    level = study.copy(deep=True)
+    for name in ("mean_efficiency", "mean_loss"):
+        there = np.isfinite(level[name].values[0])
+        level[name].values[0] = np.where(there, 0.0, np.nan)
+    page = render_study(level)
+    best = int(np.nanargmax(study["mean_efficiency"].values[1]))
+    assert re.search(rf"highest mean efficiency by xu_2007 is [\d.]+ %, of design {best}\.", page)
+    rows = cells(page, "The best design by each figure")
+    assert [row[1] for row in rows if row[0].startswith("mean efficiency")] == ["xu_2007"]
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_design_or_two_have_a_page(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    over = {KEYS[0]: [50.0, 60.0][:count], KEYS[1]: [100.0], KEYS[2]: [0.02]}
+    page = render_study(quick_study(monkeypatch, "grid", over=over))
+    words = "1 design" if count == 1 else "2 designs"
+    assert f"{words} over 3 keys, {count} of them with figures" in page
+    assert content_of(page)["labels"] == [*range(count)]
+    assert content_of(page)["effects"] == []
+
+
+def test_a_folder_with_a_space_is_quoted(study: xr.Dataset) -> None:
+    opening = content_of(render_study(study, case_file=Path("my drives/case.toml")))["opening"]
+    assert opening["command"] == "pitchpoint run 'my drives/case.toml'"
+
+
 def test_a_page_of_python_says_what_to_set(study: xr.Dataset) -> None:
     assert content_of(render_study(study))["opening"]["call"] == "case.set"

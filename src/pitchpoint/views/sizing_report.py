@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import numpy as np
@@ -190,7 +191,10 @@ def _opening(sizing: Sizing, folder: Path | None, at: int) -> dict[str, Any]:
     if folder is None:
         return {"files": {}, "without": "", "at": at}
     files = {
-        name: {"link": f"{name}.toml", "command": f"pitchpoint run {folder / f'{name}.toml'}"}
+        name: {
+            "link": f"{name}.toml",
+            "command": f"pitchpoint run {quote(str(folder / f'{name}.toml'))}",
+        }
         for name in sizing.front
     }
     without = ": not on the front of all that counts, thus without a case file"

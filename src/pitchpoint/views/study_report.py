@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import numpy as np
@@ -326,8 +327,9 @@ class _Summed:
         attributes = self.designs.study.attrs
         tolerances, case = bool(attributes.get("tolerances")), attributes.get("case", "a case")
         effects, bars, words = self._influence()
+        counted = _several(self.designs.count, "design")
         return DesignsPage(
-            title=f"{self.designs.count} designs of {case}{' within its tolerances' * tolerances}",
+            title=f"{counted} of {case}{' within its tolerances' * tolerances}",
             summary=self._summary(),
             answer=[*self._answer(tolerances=tolerances)],
             columns=[*self.columns.values()],
@@ -382,17 +384,19 @@ class _Summed:
     def _summary(self) -> str:
         reasons: dict[str, int] = json.loads(self.designs.study.attrs["reasons"])
         without = sum(reasons.values())
-        over = f"{self.designs.count} designs over {len(self.keys)} key{'s' * (len(self.keys) > 1)}"
+        over = f"{_several(self.designs.count, 'design')} over {_several(len(self.keys), 'key')}"
         computed = f"{over}, {self.designs.count - without} of them with figures"
         if not self.main:
             return f"{computed}."
-        name = self.main[0]
+        name, law = next(iter(self.spans))
         unit, words = self.designs.unit(name), self.designs.words(name)
+        if self._laws_of(name) > 1:
+            words = f"{words} by {self.designs.laws[law]}"
         if self.designs.study.attrs.get("tolerances"):
-            _, low, *_, high, _ = self.spans[name, 0]["quantiles"]
+            _, low, *_, high, _ = self.spans[name, law]["quantiles"]
             ends = f"{show.number(float(low), 5)} to {show.number(float(high), 5)} {unit}".rstrip()
             return f"{computed}; {words}: {ends} of 98 in 100."
-        value, _, place = self._best(name, 0)
+        value, _, place = self._best(name, law)
         with_unit = f"{value} {unit}".rstrip()
         return f"{computed}; the {_BEST[_BETTER[name]]} {words} is {with_unit}, of design {place}."
 
@@ -517,9 +521,9 @@ class _Summed:
     def _opening(self) -> dict[str, Any]:
         at = 0
         if self.main:
-            at = int(np.searchsorted(self.drawn, self._best(self.main[0], 0)[2]))
+            at = int(np.searchsorted(self.drawn, self._best(*next(iter(self.spans)))[2]))
         if self.case_file is not None:
-            return {"command": f"pitchpoint run {self.case_file}", "at": at}
+            return {"command": f"pitchpoint run {quote(str(self.case_file))}", "at": at}
         tolerances = self.designs.study.attrs.get("tolerances")
         return {"at": at} if tolerances else {"call": "case.set", "at": at}
 
@@ -546,7 +550,8 @@ class _Summed:
             return [], [], [Paragraph(words)]
         else:
             bars, words = self._ranked()
-        return self._effects(), bars, [Paragraph(words)]
+        effects = self._effects() if len(self.even) >= FEWEST_RANKED else []
+        return effects, bars, [Paragraph(words)]
 
     def _sobol(self) -> tuple[list[Influences], str]:
         figures = [
@@ -634,6 +639,10 @@ def _varies(values: np.ndarray) -> bool:
     finite = values[np.isfinite(values)]
     size = float(np.abs(finite).max(initial=0.0))
     return finite.size > 0 and float(np.ptp(finite)) > max(ROUNDING * size, show.NOISE)
+
+
+def _several(count: int, words: str) -> str:
+    return f"{count} {words}{'s' * (count != 1)}"
 
 
 _BEST = {"less": "lowest", "more": "highest"}
