@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import CAMPBELL, headline
+from pitchpoint.analyses.figures import CAMPBELL, OF_COURSE, headline
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.campbell import campbell
@@ -64,12 +64,7 @@ _FIGURES = (
     "quasi_static_efficiency",
     "efficiency_difference",
     "mean_input_torque",
-    "mean_transmission_error",
-    "transmission_error_rms",
-    "transmission_error_range",
-    "largest_mesh_force",
-    "smallest_mesh_force",
-    "largest_bearing_force",
+    *OF_COURSE,
     "mesh_frequency",
     "mesh_damping",
 )
