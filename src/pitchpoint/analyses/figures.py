@@ -18,6 +18,7 @@ __all__ = [
     "HOLDING",
     "HOLDING_BANDS",
     "MAIN",
+    "OF_COURSE",
     "OF_CROSSING",
     "OF_LAWS",
     "OF_MOTION",
@@ -79,16 +80,21 @@ def json_figures(data: Any) -> tuple[str, ...]:
     return (*main_figures(data), *(name for name in (*OF_LAWS, *STAGES) if name in data))
 
 
-OF_MOTION = (
-    "mean_efficiency",
-    "quasi_static_efficiency",
-    "efficiency_difference",
+OF_COURSE = (
     "mean_transmission_error",
     "transmission_error_rms",
     "transmission_error_range",
     "largest_mesh_force",
     "smallest_mesh_force",
     "largest_bearing_force",
+)
+"""Figures of the course of a steady motion with friction."""
+
+OF_MOTION = (
+    "mean_efficiency",
+    "quasi_static_efficiency",
+    "efficiency_difference",
+    *OF_COURSE,
     "natural_frequency",
     "modal_damping_ratio",
     "mesh_frequency",

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint import units
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.figures import CAMPBELL
+from pitchpoint.analyses.figures import CAMPBELL, OF_COURSE
 from pitchpoint.analyses.vibration import MOST_RATIO, ORDERS, status_sentences, vibrating_of
 from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import along
@@ -451,12 +451,7 @@ def _course_of_speeds(built: Built) -> tuple[np.ndarray, np.ndarray]:
 
 KEPT = (
     "mean_efficiency",
-    "mean_transmission_error",
-    "transmission_error_rms",
-    "transmission_error_range",
-    "largest_mesh_force",
-    "smallest_mesh_force",
-    "largest_bearing_force",
+    *OF_COURSE,
     "largest_multiplier",
     "vibration_status",
     "spectrum",

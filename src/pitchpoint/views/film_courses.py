@@ -12,28 +12,11 @@ from pitchpoint.analyses.films import film_notes
 from pitchpoint.doubts import in_percent
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    GREY,
-    INK,
-    PALETTE,
-    Figure,
-    Key,
-    Panel,
-    Trace,
-    display,
-    law_title,
-    laws,
-    layout,
-    pair_key,
-    plain,
-    rounded,
-    short_axis,
-)
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.lines import REGRESSED, folded, gapped, regimes, titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, KeyFigure, Paragraph, Printed, SectionTable, key_figure
 
 __all__ = [
     "MOST",
@@ -131,9 +114,9 @@ def _spread(data: xr.Dataset) -> str:
     return f" ({', '.join(shares)})"
 
 
-def film_key_figure(name: str, words: str) -> KeyFigure:
+def film_key_figure(name: str, words: str) -> section.KeyFigure:
     """Thinnest film, and the words that go with it."""
-    return key_figure(32.0, name, words, " at least")
+    return section.key_figure(32.0, name, words, " at least")
 
 
 def _none(data: xr.Dataset) -> str:
@@ -214,10 +197,12 @@ def told(data: xr.Dataset, name: str) -> str:
     return show.quantity(name, float(data[name]), of=data)
 
 
-def courses(name: str, outcome: Outcome, data: xr.Dataset, more: Sequence[Figure] = ()) -> Panel:
+def courses(
+    name: str, outcome: Outcome, data: xr.Dataset, more: Sequence[plot.Figure] = ()
+) -> plot.Panel:
     """Films, film over roughness, asperities, friction and loss over the mesh cycle, and more figures."""
     axis = period_of(outcome).axis
-    return Panel(
+    return plot.Panel(
         "",
         [
             *more,
@@ -252,30 +237,38 @@ def _mean(data: xr.Dataset, values: np.ndarray) -> np.ndarray:
     return mean
 
 
-def course(data: xr.Dataset, name: str, key: Key, values: np.ndarray) -> Trace:
+def course(data: xr.Dataset, name: str, key: plot.Key, values: np.ndarray) -> plot.Trace:
     """Values [phase] of a variable over the mesh cycle."""
     x, y = gapped(*folded(data["phase"].values, values))
-    return plain(key, x, display(name, y, data), show.unit_of(name, data))
+    return plot.plain(key, x, plot.display(name, y, data), show.unit_of(name, data))
 
 
 def course_figure(
-    name: str, title: str, variable: str, lines: list[tuple[Key, Trace]], axis: str, note: str
-) -> Figure:
+    name: str,
+    title: str,
+    variable: str,
+    lines: list[tuple[plot.Key, plot.Trace]],
+    axis: str,
+    note: str,
+) -> plot.Figure:
     """Lines of one variable over the mesh cycle."""
-    look = layout(axis, short_axis(variable), yaxis={"rangemode": "tozero"})
+    look = plot.layout(axis, plot.short_axis(variable), yaxis={"rangemode": "tozero"})
     keys = tuple(key for key, _ in lines)
-    return Figure(name, title, [trace for _, trace in lines], look, note, keys, NONE)
+    return plot.Figure(name, title, [trace for _, trace in lines], look, note, keys, NONE)
 
 
 _OF_LINES_ALONE = {
-    "row_film": Key("solved, smallest of the middle row", INK, "dot"),
-    "line_minimum_film": Key("line without ends, smallest", GREY),
-    "line_central_film": Key("line without ends, in the middle", GREY, "dash"),
+    "row_film": plot.Key("solved, smallest of the middle row", plot.INK, "dot"),
+    "line_minimum_film": plot.Key("line without ends, smallest", plot.GREY),
+    "line_central_film": plot.Key("line without ends, in the middle", plot.GREY, "dash"),
 }
-_SOLVED = (Key("solved, smallest", INK), Key("solved, in the middle", INK, "dash"))
+_SOLVED = (
+    plot.Key("solved, smallest", plot.INK),
+    plot.Key("solved, in the middle", plot.INK, "dash"),
+)
 
 
-def _films(name: str, data: xr.Dataset, axis: str) -> Figure:
+def _films(name: str, data: xr.Dataset, axis: str) -> plot.Figure:
     """Films solved, with what the grid may change of them, beside those of every regression."""
     lines = [
         (key, course(data, film, key, of_most(data, data[film].values)) | _error_bars(data, film))
@@ -306,20 +299,22 @@ def _error_bars(data: xr.Dataset, film: str) -> dict[str, Any]:
         return {}
     error = of_most(data, np.abs(data[film].values) * data[f"{film}_error"].values)
     _, reach = gapped(*folded(data["phase"].values, error))
-    bars = {"array": rounded(display(film, reach, data)), "thickness": 1, "width": 2}
+    bars = {"array": plot.rounded(plot.display(film, reach, data)), "thickness": 1, "width": 2}
     return {"error_y": {"type": "data", **bars}}
 
 
-def _film_keys(data: xr.Dataset) -> list[Key]:
+def _film_keys(data: xr.Dataset) -> list[plot.Key]:
     """Film laws, in broken lines where they give the film in the middle."""
     titles, places = (json.loads(data.attrs[f"film_{what}"]) for what in ("titles", "places"))
     broken = cycle(_CENTRAL)
     dashes = [next(broken) if place == "central" else "solid" for place in places]
     numbered = enumerate(zip(titles, dashes, strict=True))
-    return [Key(title, PALETTE[k % len(PALETTE)], dash) for k, (title, dash) in numbered]
+    return [
+        plot.Key(title, plot.PALETTE[k % len(plot.PALETTE)], dash) for k, (title, dash) in numbered
+    ]
 
 
-def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
+def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[plot.Figure]:
     """Film over roughness with the lubrication regimes; none over smooth flanks."""
     ratio, film = data["minimum_lambda"].values, data["minimum_film"].values
     if not np.any(np.isfinite(ratio)):
@@ -327,10 +322,12 @@ def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
     rough = np.nanmedian(film / ratio)
     thinnest = np.min(np.where(np.isnan(ratio), np.inf, ratio), axis=(-2, -1))
     ratios = {
-        Key("solved, smallest", INK): of_most(data, ratio),
-        Key("solved, in the middle", INK, "dash"): of_most(data, data["central_film"].values)
+        plot.Key("solved, smallest", plot.INK): of_most(data, ratio),
+        plot.Key("solved, in the middle", plot.INK, "dash"): of_most(
+            data, data["central_film"].values
+        )
         / rough,
-        Key("solved, thinnest of all contacts", GREY, "dot"): np.where(
+        plot.Key("solved, thinnest of all contacts", plot.GREY, "dot"): np.where(
             np.isinf(thinnest), np.nan, thinnest
         ),
     }
@@ -350,13 +347,13 @@ _NO_SHARE = 1e-9
 """Part of a load that is none: what a film many times the roughness leaves of the law of asperities."""
 
 
-def _asperities(name: str, data: xr.Dataset, axis: str) -> Figure:
+def _asperities(name: str, data: xr.Dataset, axis: str) -> plot.Figure:
     """Part of the load that asperities carry."""
     shares = data["asperity_share"].values
     shares = np.where(shares < _NO_SHARE, 0.0, shares)
     key, most = (
-        Key("all contacts", PALETTE[0]),
-        Key("contact that carries most", PALETTE[1], "dash"),
+        plot.Key("all contacts", plot.PALETTE[0]),
+        plot.Key("contact that carries most", plot.PALETTE[1], "dash"),
     )
     lines = [
         (key, course(data, "asperity_share", key, _mean(data, shares))),
@@ -366,11 +363,11 @@ def _asperities(name: str, data: xr.Dataset, axis: str) -> Figure:
     return course_figure(name, title, "asperity_share", lines, axis, MEANS)
 
 
-def _frictions(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> Figure:
+def _frictions(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> plot.Figure:
     """Friction coefficient by the films, its part by asperities, and that of the laws of the case."""
     both = {
-        Key("by films", INK): "film_friction",
-        Key("of it by asperities", INK, "dot"): "boundary_part",
+        plot.Key("by films", plot.INK): "film_friction",
+        plot.Key("of it by asperities", plot.INK, "dot"): "boundary_part",
     }
     lines = [
         (key, course(data, figure, key, _mean(data, data[figure].values)))
@@ -381,14 +378,17 @@ def _frictions(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> Figu
     return course_figure(name, "Friction coefficient", "friction", lines, axis, MEANS)
 
 
-def _law_keys(outcome: Outcome, data: xr.Dataset) -> list[Key]:
-    names = enumerate(laws(data))
-    return [Key(law_title(outcome, law), PALETTE[k % len(PALETTE)]) for k, law in names]
+def _law_keys(outcome: Outcome, data: xr.Dataset) -> list[plot.Key]:
+    names = enumerate(plot.laws(data))
+    return [
+        plot.Key(plot.law_title(outcome, law), plot.PALETTE[k % len(plot.PALETTE)])
+        for k, law in names
+    ]
 
 
-def _losses(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> Figure:
+def _losses(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> plot.Figure:
     """Loss of the teeth by the films, and by the laws of the case."""
-    key = Key("by films", INK)
+    key = plot.Key("by films", plot.INK)
     lines = [(key, course(data, "film_loss", key, data["film_loss"].values))]
     for law, values in zip(_law_keys(outcome, data), data["law_loss"].values, strict=True):
         lines.append((law, course(data, "law_loss", law, values)))
@@ -396,11 +396,11 @@ def _losses(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> Figure:
     return course_figure(name, "Loss of the teeth", "film_loss", lines, axis, note)
 
 
-def gone(data: xr.Dataset) -> Iterator[Paragraph]:
+def gone(data: xr.Dataset) -> Iterator[section.Paragraph]:
     """That contacts have no film, where some have none."""
     missing = int(data["loaded_contacts"]) - int(data["solved_contacts"])
     if missing:
-        yield Paragraph(
+        yield section.Paragraph(
             f"{missing} loaded contacts have no film, and nothing is shown of them; loss, efficiency and "
             "mean friction by films are withheld.",
             "warning",
@@ -438,9 +438,9 @@ def _warmth(data: xr.Dataset) -> str:
     return f"With heat ({named}): films up to {film} above their inlet, surfaces up to {flash}."
 
 
-def figures_table(outcome: Outcome, data: xr.Dataset) -> SectionTable:
+def figures_table(outcome: Outcome, data: xr.Dataset) -> section.SectionTable:
     """Figures of the cycle, with those of lines without ends and of the friction laws beside them."""
-    law_names, lines = laws(data), [LINES] * ("mean_line_loss" in data)
+    law_names, lines = plot.laws(data), [LINES] * ("mean_line_loss" in data)
 
     def row(name: str, cells: Sequence[str]) -> tuple[str, ...]:
         beside = [told(data, _OF_LINES[name]) if name in _OF_LINES else "" for _ in lines]
@@ -456,8 +456,8 @@ def figures_table(outcome: Outcome, data: xr.Dataset) -> SectionTable:
             continue  # nothing is transmitted
         rows.append(row(figure, [show.quantity(by_law, float(value), of=data) for value in values]))
         rows += [row(part, empty) for part in _PARTS.get(figure, ())]
-    named = [law_title(outcome, law) for law in law_names]
-    return SectionTable(["", "by films", *lines, *named], rows, compact=True)
+    named = [plot.law_title(outcome, law) for law in law_names]
+    return section.SectionTable(["", "by films", *lines, *named], rows, compact=True)
 
 
 LINES = "lines without ends"
@@ -465,10 +465,10 @@ LINES = "lines without ends"
 _OF_LINES = {"mean_film_friction": "mean_line_friction", "mean_film_loss": "mean_line_loss"}
 
 
-def film_laws(data: xr.Dataset) -> Iterator[Block]:
+def film_laws(data: xr.Dataset) -> Iterator[section.Block]:
     """How far film laws are off, as a table and words."""
     yield _film_laws_table(data)
-    yield Paragraph(
+    yield section.Paragraph(
         "Film by regression less that solved at the same place, over that solved: mean of all contacts that "
         "carry, and where it is largest. Regressions know no roughness. A film here is the distance of the "
         "mean planes: asperities carry load and hinder the flow of oil. Nothing is compared where these "
@@ -477,27 +477,29 @@ def film_laws(data: xr.Dataset) -> Iterator[Block]:
     )
 
 
-def _film_laws_table(data: xr.Dataset) -> SectionTable:
+def _film_laws_table(data: xr.Dataset) -> section.SectionTable:
     titles, places = (json.loads(data.attrs[f"film_{what}"]) for what in ("titles", "places"))
     names = ("film_deviation", "largest_film_deviation")
     rows = [
         (title, place, *(_compared(name, float(data[name].values[k])) for name in names))
         for k, (title, place) in enumerate(zip(titles, places, strict=True))
     ]
-    return SectionTable(["Film law", "place", "mean", "largest"], rows, compact=True)
+    return section.SectionTable(["Film law", "place", "mean", "largest"], rows, compact=True)
 
 
 def _compared(name: str, value: float) -> str:
     return show.quantity(name, value) if np.isfinite(value) else "not compared"
 
 
-def beneath(data: xr.Dataset) -> Iterator[Paragraph]:
+def beneath(data: xr.Dataset) -> Iterator[section.Paragraph]:
     """Notes under the figures: what rests on assumptions, where the film is thinnest."""
     if rests := _assumed(data):
-        yield Paragraph(rests, "note")
-    yield from (Paragraph(data.attrs[name], "note") for name in _NOTES if data.attrs.get(name))
-    yield Paragraph(_thinnest(data), "note")
-    yield from (Paragraph(text, "note") for text in film_notes(data))
+        yield section.Paragraph(rests, "note")
+    yield from (
+        section.Paragraph(data.attrs[name], "note") for name in _NOTES if data.attrs.get(name)
+    )
+    yield section.Paragraph(_thinnest(data), "note")
+    yield from (section.Paragraph(text, "note") for text in film_notes(data))
 
 
 def place_of(data: xr.Dataset, phase: int, pair: int, part: int) -> str:
@@ -505,7 +507,7 @@ def place_of(data: xr.Dataset, phase: int, pair: int, part: int) -> str:
     _, pairs, part_count = data["minimum_film"].shape
     word = data["minimum_film"].dims[-1]
     parts = [
-        f"phase {float(data['phase'][phase]) % 1.0:.3f}, {pair_key(pair).label}"
+        f"phase {float(data['phase'][phase]) % 1.0:.3f}, {plot.pair_key(pair).label}"
         if pairs > 1
         else "",
         f"{word} {part + 1} of {part_count}, counted along the face" if part_count > 1 else "",
@@ -533,21 +535,21 @@ _CHOSEN = ("viscosity_law", "density_law", "shear_law", "asperities")
 _OVERLAP = "A smallest film below zero: the mean planes of the rough flanks overlap; asperities carry there."
 
 
-def printed(title: str, data: xr.Dataset) -> Iterator[Printed]:
+def printed(title: str, data: xr.Dataset) -> Iterator[section.Printed]:
     """What the screen shows of films: their figures, then friction and losses beside those of laws."""
     row = {head(name, data): shown(name, float(data[name]), data) for name in _first(data)}
     below = _OVERLAP if float(data["smallest_film"]) < 0.0 else ""
-    yield Printed(title, [row], " ".join(filter(None, (below, counted(data)))))
+    yield section.Printed(title, [row], " ".join(filter(None, (below, counted(data)))))
     rows = [{"friction by": "films", **_row(data, [*_BESIDE], ())}]
     if "mean_line_loss" in data:
         rows.append({"friction by": LINES, **_row(data, [*_OF_LINES.values()], (), [*_OF_LINES])})
     rows += [
         {"friction by": law, **_row(data, [*_BESIDE.values()], (k,), [*_BESIDE])}
-        for k, law in enumerate(laws(data))
+        for k, law in enumerate(plot.laws(data))
     ]
-    yield Printed("", rows, str(data.attrs["other_rolling"]))
+    yield section.Printed("", rows, str(data.attrs["other_rolling"]))
     if "stiffness_with_films" in data:
-        yield Printed(
+        yield section.Printed(
             "",
             [{head(name, data): shown(name, float(data[name]), data) for name in _SERIES}],
             IN_SERIES,

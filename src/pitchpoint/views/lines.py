@@ -6,19 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from pitchpoint.views import figures as plot
 from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    DASHES,
-    PALETTE,
-    Figure,
-    Key,
-    Trace,
-    continued,
-    display,
-    layout,
-    plain,
-    short_axis,
-)
 
 __all__ = [
     "REGIMES",
@@ -94,7 +83,7 @@ def values_of(data: xr.Dataset, name: str) -> np.ndarray:
 
 def overlaid(
     name: str, title: str, across: str, up: str, designs: Mapping[str, xr.Dataset]
-) -> Figure:
+) -> plot.Figure:
     """One variable of several designs over another, a line for each that has it in the units of the first.
 
     Args:
@@ -111,23 +100,28 @@ def overlaid(
         == [show.unit_of(variable, like) for variable in (across, up)]
     }
     keys = [
-        Key(design, PALETTE[k % len(PALETTE)], DASHES[k // len(PALETTE) % len(DASHES)])
+        plot.Key(
+            design,
+            plot.PALETTE[k % len(plot.PALETTE)],
+            plot.DASHES[k // len(plot.PALETTE) % len(plot.DASHES)],
+        )
         for k, design in enumerate(alike)
     ]
     traces = [
-        plain(
+        plot.plain(
             key,
-            *continued(
-                display(across, data[across].values, data), display(up, data[up].values, data)
+            *plot.continued(
+                plot.display(across, data[across].values, data),
+                plot.display(up, data[up].values, data),
             ),
             show.unit_of(up, data),
         )
         for key, data in zip(keys, alike.values(), strict=True)
     ]
-    axes = layout(
-        show.axis_title(across, like), short_axis(up, like), yaxis={"rangemode": "tozero"}
+    axes = plot.layout(
+        show.axis_title(across, like), plot.short_axis(up, like), yaxis={"rangemode": "tozero"}
     )
-    return Figure(name, title, traces, axes, keys=tuple(keys))
+    return plot.Figure(name, title, traces, axes, keys=tuple(keys))
 
 
 def titled(name: str, of: Any = None) -> str:
@@ -136,7 +130,7 @@ def titled(name: str, of: Any = None) -> str:
     return words[0].upper() + words[1:]
 
 
-def regimes(look: dict[str, Any], traces: list[Trace]) -> None:
+def regimes(look: dict[str, Any], traces: list[plot.Trace]) -> None:
     """Bands of the lubrication regimes behind the curves; sets the range of the axis of values.
 
     Args:
@@ -179,7 +173,7 @@ _BESIDE, _LAST = 0.16, 0.25
 """Height of the name of a band and what it may come close to, and its length, as parts of the axes."""
 
 
-def _free_side(traces: list[Trace], heights: tuple[float, float], bottom: float) -> str:
+def _free_side(traces: list[plot.Trace], heights: tuple[float, float], bottom: float) -> str:
     """Side on which fewer points of curves lie at the heights of a name; the right one at a tie."""
     x, y = (
         np.array([np.nan if v is None else v for t in traces for v in t[name]]) for name in "xy"

@@ -13,22 +13,12 @@ from pitchpoint.gears.strain_wave.design import LEAST_LAND, RIDGE, SWEPT_ACCURAC
 from pitchpoint.gears.strain_wave.drive import StrainWave, nearest_points
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
 from pitchpoint.gears.strain_wave.groove import Groove, SplineTips, swept, tip_with_land
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, DoubleArcForm
+from pitchpoint.gears.strain_wave.registry import ARCS, DOUBLE_ARCS, DoubleArcForm
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
 from pitchpoint.programs import program
 
 __all__ = ["DoubleArcFit", "Merit", "fit_double_arc", "merit_of"]
-
-SEARCHED = (
-    "convex_radius",
-    "convex_offset",
-    "convex_shift",
-    "concave_radius",
-    "concave_offset",
-    "concave_shift",
-)
-"""Dimensions of the tooth that are searched; the seventh is the deflection."""
 
 TANGENT_ANGLES = (radians(8.0), radians(18.0))
 """Flank angles of the common tangent that are allowed [rad]."""
@@ -155,7 +145,7 @@ def fit_double_arc(
     from scipy.optimize import differential_evolution
 
     seat = _Seat(teeth, rim, zone, clearance, tip_rounding)
-    middle = np.array([*(getattr(start, name) for name in SEARCHED), 1.0])
+    middle = np.array([*(getattr(start, name) for name in ARCS), 1.0])
     bounds = _bounds(middle, freedom)
     _check_given(seat, start)
     tried: list[float] = []
@@ -221,7 +211,7 @@ class _Seat:
 
     def merit(self, form: DoubleArcForm, deflection: float) -> Merit:
         """What a tooth is worth here."""
-        values = [*(getattr(form, name) for name in SEARCHED), deflection]
+        values = [*(getattr(form, name) for name in ARCS), deflection]
         fixed = [form.addendum, form.dedendum, self.rim, self.zone, self.clearance]
         figures = _objectives(
             jnp.asarray(values),
@@ -250,7 +240,7 @@ class _Seat:
 
 def _tooth(start: DoubleArcForm, values: np.ndarray) -> tuple[DoubleArcForm, float]:
     """Tooth and deflection with the values that are searched."""
-    dimensions = dict(zip(SEARCHED, map(float, values), strict=False))
+    dimensions = dict(zip(ARCS, map(float, values), strict=False))
     return replace(start, **dimensions), float(values[-1])
 
 
@@ -262,7 +252,7 @@ def _bounds(middle: np.ndarray, freedom: float) -> list[tuple[float, float]]:
             key="freedom",
         )
     if not middle.all():
-        name = SEARCHED[int(np.argmin(np.abs(middle)))]
+        name = ARCS[int(np.argmin(np.abs(middle)))]
         raise InputError(
             f"{name} of the start is zero, and bounds relative to it have no width; give a small value",
             key="start",
@@ -307,7 +297,7 @@ def _objectives(
 ) -> Four:
     """Shares, spread and objective of a tooth of module one, see `Merit`."""
     addendum, dedendum, rim, zone, clearance, rounding = fixed
-    form, deflection = dict(zip(SEARCHED, values[:-1], strict=True)), values[-1]
+    form, deflection = dict(zip(ARCS, values[:-1], strict=True)), values[-1]
     flank = DoubleArcFlank(
         pitch=jnp.asarray(jnp.pi),
         pitch_height=rim / 2.0 + dedendum,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass, fields
 from typing import TYPE_CHECKING
 
 from pitchpoint.registry import Deferred, Registry
@@ -11,7 +11,7 @@ from pitchpoint.registry import Deferred, Registry
 if TYPE_CHECKING:
     import numpy as np
 
-__all__ = ["DOUBLE_ARCS", "WAVE_SHAPES", "DoubleArcForm", "WaveShape"]
+__all__ = ["ARCS", "DOUBLE_ARCS", "WAVE_SHAPES", "DoubleArcForm", "WaveShape"]
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,9 @@ class DoubleArcForm:
     addendum: float = 0.55
     dedendum: float = 0.75
 
+
+ARCS = tuple(field.name for field in fields(DoubleArcForm) if field.default is MISSING)
+"""Dimensions of both arcs, which belong together."""
 
 DOUBLE_ARCS = {
     "liu": DoubleArcForm(1.370, 0.664, 0.310, 1.570, 0.660, 0.268),

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, Tag, model_validator
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.proportions import DIMENSIONS
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, WAVE_SHAPES
+from pitchpoint.gears.strain_wave.registry import ARCS, DOUBLE_ARCS, WAVE_SHAPES
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
@@ -53,16 +53,6 @@ TURNING = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
 LIFE = Quantity("time", 0.0, 1e12, "h", open_low=True)
 
 
-_ARCS = (
-    "convex_radius",
-    "convex_offset",
-    "convex_shift",
-    "concave_radius",
-    "concave_offset",
-    "concave_shift",
-)
-
-
 class DoubleArcTooth(Table):
     """A flexspline tooth of two arcs and their tangent: a named set, by value, or a set with own values.
 
@@ -92,8 +82,8 @@ class DoubleArcTooth(Table):
 
     @model_validator(mode="after")
     def _whole(self) -> "DoubleArcTooth":
-        missing = [name for name in _ARCS if getattr(self, name) is None]
-        if self.set is None and 0 < len(missing) < len(_ARCS):
+        missing = [name for name in ARCS if getattr(self, name) is None]
+        if self.set is None and 0 < len(missing) < len(ARCS):
             raise InputError(
                 f"a double-arc tooth by value needs {', '.join(missing)} too; or name the set that gives "
                 f"what is left out, one of {', '.join(DOUBLE_ARCS)}",

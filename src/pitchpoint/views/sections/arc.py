@@ -8,21 +8,8 @@ import xarray as xr
 
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views import figures as plot
 from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    Curve,
-    Curves,
-    Figure,
-    Panel,
-    Trace,
-    continued,
-    display,
-    laws,
-    layout,
-    line,
-    merged,
-    short_axis,
-)
 from pitchpoint.views.lines import REGIMES, regimes, titled, values_of
 from pitchpoint.views.point import period_of
 from pitchpoint.views.section import Block, Page, Paragraph, Section, naming
@@ -82,11 +69,11 @@ def _closing(page: Page) -> Iterator[Block]:
     return where_lost(page.by_mesh("teeth", "cycle"), _ways(page), words)
 
 
-def arc_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+def arc_panel(outcomes: Mapping[str, Outcome], known: plot.Curves) -> plot.Panel:
     """Quantities of one pair over its place on the way."""
     seen = list(_seen(outcomes, known))
     figures = [_arc_figure(name, seen) for name in _ARC] if seen else []
-    return Panel("", figures, [curve for curve, *_ in seen])
+    return plot.Panel("", figures, [curve for curve, *_ in seen])
 
 
 def wave_losses(outcome: Outcome, law: int) -> dict[str, float]:
@@ -129,12 +116,12 @@ def wave_sentence(lost: Mapping[str, float], origin: str) -> str:
 
 
 def _seen(
-    outcomes: Mapping[str, Outcome], known: Curves
-) -> Iterator[tuple[Curve, xr.Dataset, int]]:
+    outcomes: Mapping[str, Outcome], known: plot.Curves
+) -> Iterator[tuple[plot.Curve, xr.Dataset, int]]:
     for variant, outcome in outcomes.items():
         if "cycle" in outcome.parts:
             data = outcome.parts["cycle"]
-            for position, law in enumerate(laws(data)):
+            for position, law in enumerate(plot.laws(data)):
                 yield known[variant, law], data, position
 
 
@@ -165,16 +152,16 @@ def _along(
     if not near.any():
         return angle[:0], load[:0]
     values = np.where(load > 0.0, values, np.nan)
-    return continued(angle[order][near], values[near], most=400)
+    return plot.continued(angle[order][near], values[near], most=400)
 
 
-def _traces(seen: list[tuple[Curve, xr.Dataset, int]], name: str) -> Iterator[Trace]:
+def _traces(seen: list[tuple[plot.Curve, xr.Dataset, int]], name: str) -> Iterator[plot.Trace]:
     """A line for each contact of a pair, the later ones dashed; one for what they have in sum."""
     unit = show.unit(VARIABLES[name].display)
     for curve, data, law in seen:
         for place in [None] if name in _SUMS else range(data.sizes["slice"]):
             x, y = _along(data, name, law, place)
-            trace = line(curve, x, display(name, y), unit)
+            trace = plot.line(curve, x, plot.display(name, y), unit)
             if len(seen) == 1:  # dashes are those of the other contact of a pair
                 trace["line"] = trace["line"] | {"dash": "solid"}
             if place:
@@ -183,12 +170,12 @@ def _traces(seen: list[tuple[Curve, xr.Dataset, int]], name: str) -> Iterator[Tr
                 yield trace
 
 
-def _arc_figure(name: str, seen: list[tuple[Curve, xr.Dataset, int]]) -> Figure:
-    shown, remark = merged(list(_traces(seen, name)))
+def _arc_figure(name: str, seen: list[tuple[plot.Curve, xr.Dataset, int]]) -> plot.Figure:
+    shown, remark = plot.merged(list(_traces(seen, name)))
     title = "Loss of a pair" if name == "loss" else titled(name)
-    look = layout(
+    look = plot.layout(
         seen[0][1]["path"].attrs["axis"],
-        short_axis(name),
+        plot.short_axis(name),
         xaxis={"range": _range(seen)},
         shapes=[at_origin()] if seen[0][1]["path"].attrs["origin"] else [],
         annotations=[],
@@ -202,10 +189,10 @@ def _arc_figure(name: str, seen: list[tuple[Curve, xr.Dataset, int]]) -> Figure:
         regimes(look, shown)
     meaning = seen[0][1]["path"].attrs["sliding"] if name == "sliding_velocity" else _ARC[name]
     note = " ".join(filter(None, (meaning, cut, remark)))
-    return Figure(f"arc_{name}", title, shown, look, note, missing="No tooth carries.")
+    return plot.Figure(f"arc_{name}", title, shown, look, note, missing="No tooth carries.")
 
 
-def _range(seen: list[tuple[Curve, xr.Dataset, int]]) -> list[float]:
+def _range(seen: list[tuple[plot.Curve, xr.Dataset, int]]) -> list[float]:
     """Places of all pairs that carry, and a little beside them."""
     ends = [
         float(angle)
@@ -219,7 +206,7 @@ def _range(seen: list[tuple[Curve, xr.Dataset, int]]) -> list[float]:
     return [round(low - edge, 3), round(high + edge, 3)]
 
 
-def _scale(look: dict[str, Any], traces: list[Trace]) -> bool:
+def _scale(look: dict[str, Any], traces: list[plot.Trace]) -> bool:
     """Logarithmic axis for positive values that differ by much; True if it leaves out the outermost.
 
     Where flanks fit into each other for a moment, radius and film are out of all proportion.

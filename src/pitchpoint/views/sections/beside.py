@@ -10,7 +10,7 @@ import xarray as xr
 from pitchpoint.analyses.running import TORQUES
 from pitchpoint.doubts import doubts_of
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.figures import (
     DASHES,
     INK,
@@ -33,7 +33,6 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Section, reason
 
 __all__ = [
     "BESIDE",
@@ -275,22 +274,22 @@ def _chosen(axes: list[np.ndarray]) -> list[float]:
     return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]
 
 
-def _screen(outcome: Outcome) -> Iterator[Printed]:
+def _screen(outcome: Outcome) -> Iterator[section.Printed]:
     if rows := running_rows(outcome):
         remark = str(outcome.parts["running"].attrs.get("fitted", ""))
-        yield Printed("Without load: running, and from rest either way", rows, remark)
+        yield section.Printed("Without load: running, and from rest either way", rows, remark)
 
 
-def _lacks(page: Page) -> str | None:
+def _lacks(page: section.Page) -> str | None:
     there = drag_panel(page.outcomes, page.curves).figures
-    return None if there else reason(page, "running")
+    return None if there else section.reason(page, "running")
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def _blocks(page: section.Page) -> Iterator[section.Block]:
     yield drag_panel(page.outcomes, page.curves)
     attributes = (one.parts["running"].attrs for one in page.having("running").values())
     for told in dict.fromkeys(str(one.get("fitted", "")) for one in attributes):
-        yield from [Paragraph(show.pretty(told), "note")] if told else []
+        yield from [section.Paragraph(show.pretty(told), "note")] if told else []
 
 
 _AT_LEAST = "at least; without breakaway, none is in [losses]"
@@ -308,7 +307,7 @@ def starts_doubtfully(data: xr.Dataset) -> bool:
     return any("starting_torque" in doubt.about for doubt in doubts_of(data.attrs))
 
 
-def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
+def _key_figures(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Torque without load and torques from rest, under the first law."""
     data = outcome.parts.get("running")
     if data is not None:
@@ -320,10 +319,10 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
             detail = f"at {speed}" if speed else band or _AT_LEAST * doubted
             order = 76.0 if speed else from_rest + 0.1 * place
             asked_by = () if speed else ("breakaway",)
-            yield KeyFigure(order, brief.capitalize(), torque, detail, asked_by=asked_by)
+            yield section.KeyFigure(order, brief.capitalize(), torque, detail, asked_by=asked_by)
 
 
-BESIDE = Section(
+BESIDE = section.Section(
     name="beside",
     title="Losses beside the teeth",
     short="Beside the teeth",

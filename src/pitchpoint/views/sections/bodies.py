@@ -6,16 +6,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.section import (
-    Block,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    by_variant,
-)
+from pitchpoint.views import section, show
 
 __all__ = ["INERTIA", "bodies_blocks", "bodies_facts", "bodies_printed"]
 
@@ -25,18 +16,18 @@ INERTIA = "dynamics.inertia", "gears.bore_diameter"
 _TITLES = {"body_mass": "mass m", "body_inertia": "moment of inertia J"}
 
 
-def bodies_blocks(page: Page) -> Iterator[Block]:
+def bodies_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from by_variant(page, "bodies", _of_variant)
+    yield from section.by_variant(page, "bodies", _of_variant)
 
 
-def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(_: int, outcome: Outcome) -> Iterator[section.Block]:
     data = outcome.parts["bodies"]
-    yield SectionTable(_heads(), _rows(data), compact=True)
-    yield Paragraph(data.attrs["note"], "note")
+    yield section.SectionTable(_heads(), _rows(data), compact=True)
+    yield section.Paragraph(data.attrs["note"], "note")
 
 
-def bodies_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def bodies_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Inertia at the ends, which a joint is driven with, and of the members."""
     data = outcome.parts["bodies"]
     inertias = [
@@ -51,18 +42,18 @@ def bodies_facts(outcome: Outcome) -> Iterator[KeyFigure]:
             for value in data["reflected_inertia"].values
         )
         detail = "; ".join([f"{at_output} at the output", *members])
-        yield KeyFigure(75.0, "Inertia at the input", at_input, detail, asked_by=INERTIA)
+        yield section.KeyFigure(75.0, "Inertia at the input", at_input, detail, asked_by=INERTIA)
     elif inertias:
         (member, inertia), *_ = inertias
-        yield KeyFigure(
+        yield section.KeyFigure(
             75.0, "Inertia", inertia, "; ".join([member, *members[1:]]), asked_by=INERTIA
         )
 
 
-def bodies_printed(outcome: Outcome) -> Iterator[Printed]:
+def bodies_printed(outcome: Outcome) -> Iterator[section.Printed]:
     """What the screen shows."""
     data = outcome.parts["bodies"]
-    yield Printed(rows=[dict(zip(_heads(), row, strict=True)) for row in _rows(data)])
+    yield section.Printed(rows=[dict(zip(_heads(), row, strict=True)) for row in _rows(data)])
 
 
 def _heads() -> list[str]:

@@ -8,25 +8,12 @@ import xarray as xr
 
 from pitchpoint.analyses.figures import of_contact
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    Choice,
-    Curve,
-    Curves,
-    Figure,
-    Panel,
-    display,
-    laws,
-    layout,
-    line,
-    merged,
-    short_axis,
-)
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.inputs import words as input_words
 from pitchpoint.views.lines import Points, folded, gapped, titled
 from pitchpoint.views.path import path_of
 from pitchpoint.views.point import Period, period_of
-from pitchpoint.views.section import Block, KeyFigure, Page, Paragraph, Printed, Section
 
 __all__ = ["CYCLE", "cycle_panel"]
 
@@ -35,20 +22,20 @@ _FEW = 8
 
 _PARTS = ("teeth", "cycle")
 _COURSES = ("efficiency", "input_torque")
-Timed = list[tuple[Curve, xr.Dataset, int, Period]]
+Timed = list[tuple[plot.Curve, xr.Dataset, int, Period]]
 
 _PAIR_DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def _blocks(page: section.Page) -> Iterator[section.Block]:
     there = page.having(*_PARTS)
     period = period_of(next(iter(there.values())))
     opening = f"{_start(page)} one" if _start(page) else "One"
-    yield Paragraph(f"{opening} period is one {period.pitch}: {_cycle_words(there)}.")
+    yield section.Paragraph(f"{opening} period is one {period.pitch}: {_cycle_words(there)}.")
     yield cycle_panel(there, page.curves)
 
 
-def _start(page: Page) -> str:
+def _start(page: section.Page) -> str:
     """At which moment a period begins; empty where no point of the way stands out."""
     paths = [path_of(outcome) for outcome in page.having("teeth.points", "cycle").values()]
     if not paths:
@@ -58,18 +45,18 @@ def _start(page: Page) -> str:
     return f"Phase 0 is the moment at which a pair {entry};"
 
 
-def cycle_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+def cycle_panel(outcomes: Mapping[str, Outcome], known: plot.Curves) -> plot.Panel:
     """Efficiency and input torque over phase and time and against each other, friction of the pairs."""
     seen = list(_timed(outcomes, known))
     if not seen:
-        return Panel("Over the mesh cycle", [])
+        return plot.Panel("Over the mesh cycle", [])
     figures = [
         *(_over(name, "phase", seen) for name in _COURSES),
         _against(seen),
         (_pairs if seen[0][1].sizes["pair"] <= _FEW else _count)(seen),
     ]
     choices = [_choice(axis, figures, seen) for axis in ("phase", "time")]
-    return Panel(
+    return plot.Panel(
         "Over the mesh cycle",
         figures,
         [curve for curve, *_ in seen],
@@ -78,7 +65,7 @@ def cycle_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
     )
 
 
-def _choice(axis: str, figures: list[Figure], seen: Timed) -> Choice:
+def _choice(axis: str, figures: list[plot.Figure], seen: Timed) -> plot.Choice:
     """One period over the phase, or two over time."""
     others = [_over(name, axis, seen) for name in _COURSES]
     changes = {
@@ -86,10 +73,10 @@ def _choice(axis: str, figures: list[Figure], seen: Timed) -> Choice:
         for drawn, traces in zip(figures, others, strict=False)
         if drawn.drawn
     }
-    return Choice(_axis(axis, seen[0][3]), changes)
+    return plot.Choice(_axis(axis, seen[0][3]), changes)
 
 
-def _change(other: Figure) -> list[Any]:
+def _change(other: plot.Figure) -> list[Any]:
     x, y = ([trace[of] for trace in other.data] for of in "xy")
     return [{"x": x, "y": y}, {"xaxis.title.text": other.layout["xaxis"]["title"]["text"]}]
 
@@ -101,17 +88,17 @@ def _axis(axis: str, period: Period) -> str:
 
 
 def _timed(
-    outcomes: Mapping[str, Outcome], known: Curves
-) -> Iterator[tuple[Curve, xr.Dataset, int, Period]]:
+    outcomes: Mapping[str, Outcome], known: plot.Curves
+) -> Iterator[tuple[plot.Curve, xr.Dataset, int, Period]]:
     """Curve, cycle, position of the law and period for every law of every variant."""
     for variant, outcome in outcomes.items():
         if "cycle" in outcome.parts:
             data, period = outcome.parts["cycle"], period_of(outcome)
-            for position, law in enumerate(laws(data)):
+            for position, law in enumerate(plot.laws(data)):
                 yield known[variant, law], data, position, period
 
 
-def _over(name: str, axis: str, seen: Timed) -> Figure:
+def _over(name: str, axis: str, seen: Timed) -> plot.Figure:
     phase_axis = seen[0][3]
     abscissa = _phase if axis == "phase" else _time
     like = seen[0][1]
@@ -119,12 +106,12 @@ def _over(name: str, axis: str, seen: Timed) -> Figure:
     traces = []
     for curve, data, law, period in seen:
         x, y = abscissa(data, data[name].values[law], period)
-        traces.append(line(curve, x, display(name, y, data), unit))
-    return Figure(
+        traces.append(plot.line(curve, x, plot.display(name, y, data), unit))
+    return plot.Figure(
         f"cycle_{name}",
         f"{titled(name, like)} over the mesh cycle",
         traces,
-        layout(_axis(axis, phase_axis), short_axis(name, like)),
+        plot.layout(_axis(axis, phase_axis), plot.short_axis(name, like)),
     )
 
 
@@ -137,28 +124,28 @@ def _time(data: xr.Dataset, values: np.ndarray, period: Period) -> Points:
     if period.backwards:
         phase, values = 1.0 - phase[::-1], values[::-1]
     x, y = gapped(np.concatenate([phase, phase + 1.0]) - phase[0], np.tile(values, 2))
-    return display("time", x * period.time), y
+    return plot.display("time", x * period.time), y
 
 
-def _against(seen: Timed) -> Figure:
+def _against(seen: Timed) -> plot.Figure:
     """Efficiency against input torque; curves lie on each other, so the first ones are wider."""
     traces = []
     for position, (curve, data, law, _) in enumerate(seen):
         order = np.argsort(data["input_torque"].values[law], kind="stable")
-        trace = line(
+        trace = plot.line(
             curve,
-            display("input_torque", data["input_torque"].values[law][order], data),
-            display("efficiency", data["efficiency"].values[law][order]),
+            plot.display("input_torque", data["input_torque"].values[law][order], data),
+            plot.display("efficiency", data["efficiency"].values[law][order]),
             "%",
         )
         trace["line"] = {"color": curve.colour, "width": 2 + 3 * (len(seen) - 1 - position)}
         trace |= {"mode": "lines+markers", "marker": {"size": 3, "color": curve.colour}}
         traces.append(trace)
-    return Figure(
+    return plot.Figure(
         "cycle_against",
         "Instantaneous efficiency against input torque",
         traces,
-        layout(short_axis("input_torque", seen[0][1]), short_axis("efficiency")),
+        plot.layout(plot.short_axis("input_torque", seen[0][1]), plot.short_axis("efficiency")),
         "With the load held, all laws lie on one curve and cover different parts of it; "
         "the first laws are drawn wider."
         if len(seen) > 1
@@ -166,7 +153,7 @@ def _against(seen: Timed) -> Figure:
     )
 
 
-def _pairs(seen: Timed) -> Figure:
+def _pairs(seen: Timed) -> plot.Figure:
     """Friction of all pairs that are in contact at a phase."""
     traces = []
     for curve, data, law, _ in seen:
@@ -174,7 +161,7 @@ def _pairs(seen: Timed) -> Figure:
             active = data["active"].values[:, pair, 0]
             friction = np.where(active, _mean_friction(data, law)[:, pair], np.nan)
             x, y = gapped(data["phase"].values, friction)
-            trace = line(curve, x, y, f"(pair {pair + 1})")
+            trace = plot.line(curve, x, y, f"(pair {pair + 1})")
             trace["line"] = {
                 "color": curve.colour,
                 "width": 2,
@@ -185,30 +172,30 @@ def _pairs(seen: Timed) -> Figure:
         f"{dash} for the pair that entered {_ago(pair)}"
         for pair, dash in enumerate(_PAIR_DASHES[: seen[0][1].sizes["pair"]])
     )
-    return Figure(
+    return plot.Figure(
         "cycle_friction",
         "Friction coefficient of the pairs in contact",
         traces,
-        layout(seen[0][3].axis, "μ", yaxis={"rangemode": "tozero"}),
+        plot.layout(seen[0][3].axis, "μ", yaxis={"rangemode": "tozero"}),
         f"Line styles here: {names}.",
     )
 
 
-def _count(seen: Timed) -> Figure:
+def _count(seen: Timed) -> plot.Figure:
     """Number of pairs that carry; steps, since it is a whole number."""
     traces = []
     for curve, data, law, period in seen:
         carrying = (data["load"].values[law].max(axis=-1) > 0.0).sum(axis=-1)
         phase, count = _phase(data, carrying, period)
-        traces.append(line(curve, phase, np.rint(count), "pairs"))
-    shown, remark = merged(traces)
+        traces.append(plot.line(curve, phase, np.rint(count), "pairs"))
+    shown, remark = plot.merged(traces)
     for trace in shown:
         trace["line"]["shape"] = "hvh"
-    return Figure(
+    return plot.Figure(
         "cycle_pairs",
         "Number of pairs that carry",
         shown,
-        layout(seen[0][3].axis, "pairs", yaxis={"rangemode": "tozero"}),
+        plot.layout(seen[0][3].axis, "pairs", yaxis={"rangemode": "tozero"}),
         remark,
     )
 
@@ -234,7 +221,7 @@ def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
     seen: dict[str, list[str]] = {}
     for variant, outcome in outcomes.items():
         period = period_of(outcome)
-        time = show.number(float(display("time", period.time)))
+        time = show.number(float(plot.display("time", period.time)))
         seen.setdefault(f"{period.words}, {time} {show.unit_of('time')}", []).append(variant)
     if len(seen) < 2:
         return next(iter(seen), "")
@@ -244,10 +231,11 @@ def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
 def _turns(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     """How films and forces were found together, name and words; nothing of a formula."""
     data = outcome.parts.get("operation")
-    if data is None or "turns" not in data or law not in laws(data):
+    if data is None or "turns" not in data or law not in plot.laws(data):
         return []
     turns, change = (
-        float(data[name].values[laws(data).index(law), 0]) for name in ("turns", "turns_change")
+        float(data[name].values[plot.laws(data).index(law), 0])
+        for name in ("turns", "turns_change")
     )
     if not turns:
         return []
@@ -255,10 +243,10 @@ def _turns(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     return [("films and forces", agree)]
 
 
-def _screen(outcome: Outcome) -> Iterator[Printed]:
+def _screen(outcome: Outcome) -> Iterator[section.Printed]:
     for law in outcome.manifest["laws"]:
         for name, words in _turns(outcome, law["name"]):
-            yield Printed(line=f"{law['title']}: {name} {words}.")
+            yield section.Printed(line=f"{law['title']}: {name} {words}.")
 
 
 _NO_FILM = 1e-3
@@ -276,7 +264,7 @@ def _regime(ratio: float) -> str:
     return "mixed: rough peaks touch" if ratio >= _BOUNDARY else "boundary: rough peaks carry"
 
 
-def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
+def _key_figures(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """The thinnest film over roughness and what asperities carry at most, under the first law."""
     data = outcome.parts.get("cycle")
     of_rig = of_contact(outcome.parts.get("operation", ()))  # which has it among its main figures
@@ -289,16 +277,18 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
         law = show.pretty(input_words(outcome, "models", "film_thickness"))
         detail = f"{_regime(least)}; thinnest film by {law} over composite Rq"
         asked_by = "models.film_thickness", "models.asperity_load"
-        yield KeyFigure(76.5, "Film ratio", value, detail, rank=least, asked_by=asked_by)
+        yield section.KeyFigure(76.5, "Film ratio", value, detail, rank=least, asked_by=asked_by)
     if "asperity_load_ratio" in data:
         share = data["asperity_load_ratio"].values[0]
         value = show.quantity("asperity_load_ratio", float(np.max(share)))
         law = show.pretty(input_words(outcome, "models", "asperity_load"))
         words = f"largest part over the cycle, by {law}"
-        yield KeyFigure(38.0, "Load on asperities", value, words, rank=-float(np.max(share)))
+        yield section.KeyFigure(
+            38.0, "Load on asperities", value, words, rank=-float(np.max(share))
+        )
 
 
-CYCLE = Section(
+CYCLE = section.Section(
     name="cycle",
     title="Over the mesh cycle",
     short="Over the cycle",

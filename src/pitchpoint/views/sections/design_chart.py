@@ -9,17 +9,8 @@ import xarray as xr
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views import figures as plot
 from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    PALETTE,
-    Figure,
-    Key,
-    Panel,
-    display,
-    layout,
-    plain,
-    short_axis,
-)
 from pitchpoint.views.inputs import given
 from pitchpoint.views.lines import titled
 
@@ -29,7 +20,7 @@ _SHOWN = ("contact_ratio", "transmission_error_range", "mean_stiffness", "tip_th
 _UNDERCUT, _CUT_BACK = "#fbe9e2", "#fdf5dc"
 _AXIS = "profile shift x1"
 
-Seen = Sequence[tuple[Key, xr.Dataset]]
+Seen = Sequence[tuple[plot.Key, xr.Dataset]]
 
 
 def is_design_chart(data: xr.Dataset) -> bool:
@@ -42,7 +33,7 @@ def is_design_chart(data: xr.Dataset) -> bool:
     )
 
 
-def design_charts(outcomes: Mapping[str, Outcome]) -> list[Panel]:
+def design_charts(outcomes: Mapping[str, Outcome]) -> list[plot.Panel]:
     """A panel for each study of the profile shift with more than two points."""
     return [
         _chart(name, outcomes, seen)
@@ -61,13 +52,13 @@ def _studies(outcomes: Mapping[str, Outcome]) -> Iterator[tuple[str, Seen]]:
         yield (
             name,
             [
-                (Key(variant, PALETTE[k % len(PALETTE)]), data)
+                (plot.Key(variant, plot.PALETTE[k % len(plot.PALETTE)]), data)
                 for k, (variant, data) in enumerate(charts)
             ],
         )
 
 
-def _chart(name: str, outcomes: Mapping[str, Outcome], seen: Seen) -> Panel:
+def _chart(name: str, outcomes: Mapping[str, Outcome], seen: Seen) -> plot.Panel:
     data = seen[0][1]
     least = _least_tip(next(iter(outcomes.values())), data)
     limits = _Limits(data, least)
@@ -76,7 +67,7 @@ def _chart(name: str, outcomes: Mapping[str, Outcome], seen: Seen) -> Panel:
         for variable in _SHOWN
         if variable in data
     ]
-    return Panel(f"{data.attrs['title']}: design chart", figures, note=limits.words)
+    return plot.Panel(f"{data.attrs['title']}: design chart", figures, note=limits.words)
 
 
 class _Limits:
@@ -140,28 +131,32 @@ class _Limits:
         )
 
 
-def _figure(name: str, variable: str, seen: Seen, limits: _Limits) -> Figure:
+def _figure(name: str, variable: str, seen: Seen, limits: _Limits) -> plot.Figure:
     unit = show.unit(VARIABLES[variable].display)
     traces = []
     for key, data in seen:
         order = np.argsort(data["axis"].values)
-        values = display(variable, _valid(variable, data)[order])
+        values = plot.display(variable, _valid(variable, data)[order])
         marks = {"mode": "lines+markers", "marker": {"size": 5, "color": key.colour}}
-        traces.append(plain(key, data["axis"].values[order], values, unit, **marks))
+        traces.append(plot.plain(key, data["axis"].values[order], values, unit, **marks))
     shapes = list(limits.shapes)
     if variable == "tip_thickness_1" and limits.least > 0.0:
-        level = float(display(variable, limits.least))
+        level = float(plot.display(variable, limits.least))
         shapes.append(
             {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": level, "y1": level}
             | {"line": {"color": "#5b6873", "width": 1, "dash": "dot"}}
         )
     axis = {"rangemode": "tozero"} if variable == "tip_thickness_1" else {}
-    return Figure(
+    return plot.Figure(
         name,
         titled(variable),
         traces,
-        layout(
-            _AXIS, short_axis(variable), yaxis=axis, shapes=shapes, annotations=limits.annotations
+        plot.layout(
+            _AXIS,
+            plot.short_axis(variable),
+            yaxis=axis,
+            shapes=shapes,
+            annotations=limits.annotations,
         ),
         "Dotted: least thickness asked for." if len(shapes) > len(limits.shapes) else "",
         tuple(key for key, _ in seen) if len(seen) > 1 else (),

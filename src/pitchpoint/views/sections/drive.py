@@ -15,20 +15,10 @@ import xarray as xr
 
 from pitchpoint.results.variable import length
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.inputs import words
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import of_geometry, period_of
-from pitchpoint.views.section import (
-    Animation,
-    Block,
-    Drawn,
-    Page,
-    Section,
-    SectionTable,
-    by_mesh,
-    naming,
-)
 from pitchpoint.views.sections.passing import gap_panel
 from pitchpoint.views.way import place_of
 
@@ -162,12 +152,12 @@ def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
     ]
 
 
-def _sums_up(outcome: Outcome) -> Iterator[SectionTable]:
+def _sums_up(outcome: Outcome) -> Iterator[section.SectionTable]:
     """Main dimensions; what both splines share stands in both columns."""
-    for name, mesh in by_mesh({"": outcome}, *_PARTS).items():
+    for name, mesh in section.by_mesh({"": outcome}, *_PARTS).items():
         rows = [row if len(row) == 3 else (*row, row[1]) for row in wave_dimensions(mesh)]
         title = ", ".join(filter(None, ["Gears", name]))
-        yield SectionTable([title, "flexspline", "circular spline"], rows, caption=title)
+        yield section.SectionTable([title, "flexspline", "circular spline"], rows, caption=title)
 
 
 def _depth(teeth: xr.Dataset) -> float:
@@ -183,12 +173,12 @@ def _told_arcs(outcome: Outcome) -> str:
     return " and ".join(spans)
 
 
-def _blocks(page: Page) -> Iterator[Block]:
-    meshes = by_mesh(page.having(*_PARTS), *_PARTS)
+def _blocks(page: section.Page) -> Iterator[section.Block]:
+    meshes = section.by_mesh(page.having(*_PARTS), *_PARTS)
     several = len({_told_arcs(one) for one in meshes.values()}) > 1
     for position, (variants, outcome) in enumerate(of_geometry(meshes)):
         of_loads = next(name for name, one in meshes.items() if one is outcome) if several else ""
-        (gap,) = naming(variants or of_loads, [gap_panel(outcome, f"drive{position}")])
+        (gap,) = section.naming(variants or of_loads, [gap_panel(outcome, f"drive{position}")])
         values = {
             "variants": variants,
             "picture": picture(outcome, f"drive{position}"),
@@ -197,10 +187,10 @@ def _blocks(page: Page) -> Iterator[Block]:
             "arcs": _told_arcs(outcome),
             "of_loads": "" if variants else of_loads,
         }
-        yield Drawn("drive.html.jinja", {"d": values}, [gap])
+        yield section.Drawn("drive.html.jinja", {"d": values}, [gap])
 
 
-def _moving(outcome: Outcome, name: str) -> Animation:
+def _moving(outcome: Outcome, name: str) -> section.Animation:
     """Teeth over a turn of what turns fastest."""
     drawn = picture(outcome, name)
     motion = json.loads(drawn["motion_json"])
@@ -208,10 +198,10 @@ def _moving(outcome: Outcome, name: str) -> Animation:
     driven_by = motion["rates"][motion["members"].index(outcome.manifest["driver"])]
     period = degrees(period_of(outcome).angle) / abs(driven_by)
     words = f"Angle, {drawn['turns']}"
-    return Animation("drive", {**drawn, **still}, words, 360.0, 0.5, period, motion["arcs"])
+    return section.Animation("drive", {**drawn, **still}, words, 360.0, 0.5, period, motion["arcs"])
 
 
-DRIVE = Section(
+DRIVE = section.Section(
     name="drive",
     title="Drive and path of the teeth",
     short="Drive",

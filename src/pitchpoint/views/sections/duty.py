@@ -10,18 +10,9 @@ import xarray as xr
 from pitchpoint.duty_cycle.first_failure import WITHOUT_LIFE, part_lives
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.duty_cycle import cycle_figures, cycle_words, first_to_fail, lost_words
 from pitchpoint.views.figures import Figure, Panel, Trace, display, laws, level, rounded
-from pitchpoint.views.section import (
-    Block,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    by_variant,
-)
 from pitchpoint.views.sections.four_quadrants import OF_OUTPUT
 from pitchpoint.views.sections.loss_map import colour_scale, map_figure
 
@@ -101,20 +92,20 @@ def actuator_points(name: str, place: int, outcome: Outcome) -> Figure:
     return replace(drawn, name=f"duty_{name}_{place}", data=[drawn.data[0], points], note=note)
 
 
-def duty_blocks(page: Page) -> Iterator[Block]:
+def duty_blocks(page: section.Page) -> Iterator[section.Block]:
     """Figures and operating points of the duty cycle of each variant."""
-    yield Paragraph(
+    yield section.Paragraph(
         "Torque is that of the output on its load, positive along positive speeds. The cycle goes over and "
         "over."
     )
-    yield from by_variant(page, _PART, _of_variant)
+    yield from section.by_variant(page, _PART, _of_variant)
 
 
-def _of_variant(place: int, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(place: int, outcome: Outcome) -> Iterator[section.Block]:
     data = outcome.parts[_PART]
-    yield Paragraph(show.sentence(cycle_words(data)))
+    yield section.Paragraph(show.sentence(cycle_words(data)))
     rows = [[row.name, row.value, row.detail] for row in cycle_figures(data)]
-    yield SectionTable(["", "value", ""], rows, caption="Over the duty cycle")
+    yield section.SectionTable(["", "value", ""], rows, caption="Over the duty cycle")
     if lives := [(name, life) for name, life in part_lives(data) if not np.isnan(life)]:
         yield _lives(lives)
     if "worn" in data.coords:
@@ -122,7 +113,7 @@ def _of_variant(place: int, outcome: Outcome) -> Iterator[Block]:
     if "law" in data.coords:
         yield _laws(data)
     out = filter(None, str(data.attrs["left_out"]).split(", "))
-    yield Paragraph(" ".join(WITHOUT_LIFE[key] for key in out), "note")
+    yield section.Paragraph(" ".join(WITHOUT_LIFE[key] for key in out), "note")
     figure = operating_points(f"duty_{place}", outcome)
     yield Panel("Operating points over the efficiency", [figure])
     if data.attrs["motor"]:
@@ -130,23 +121,23 @@ def _of_variant(place: int, outcome: Outcome) -> Iterator[Block]:
         yield Panel("Operating points over the map of the actuator", figures)
 
 
-def _lives(lives: Sequence[tuple[str, float]]) -> SectionTable:
+def _lives(lives: Sequence[tuple[str, float]]) -> section.SectionTable:
     """Lives of all parts, the shortest first; parts that endure behind them."""
     rows = [
         [name, show.quantity("shortest_life", life) if np.isfinite(life) else "endures"]
         for name, life in sorted(lives, key=lambda pair: pair[1])
     ]
-    return SectionTable(["part", "life"], rows, caption="Lives of the parts")
+    return section.SectionTable(["part", "life"], rows, caption="Lives of the parts")
 
 
-def _worn(data: xr.Dataset) -> SectionTable:
+def _worn(data: xr.Dataset) -> section.SectionTable:
     """Depth that a cycle wears off."""
     pairs = zip(data["worn"].values, data["cycle_wear"].values, strict=True)
     rows = [[str(name), show.quantity("cycle_wear", float(depth))] for name, depth in pairs]
-    return SectionTable(["flanks", "depth in a cycle"], rows, caption="Wear of one cycle")
+    return section.SectionTable(["flanks", "depth in a cycle"], rows, caption="Wear of one cycle")
 
 
-def _laws(data: xr.Dataset) -> SectionTable:
+def _laws(data: xr.Dataset) -> section.SectionTable:
     """Energies under each friction law."""
     names = ("law_lost_energy", "law_input_energy")
     columns = [data[name].values for name in names]
@@ -155,22 +146,22 @@ def _laws(data: xr.Dataset) -> SectionTable:
         for law, *values in zip(data["law"].values, *columns, strict=True)
     ]
     caption = "Energies by friction law; all else is by the first one, or by duty.law"
-    return SectionTable(["law", "lost", "driver gives"], rows, caption=caption)
+    return section.SectionTable(["law", "lost", "driver gives"], rows, caption=caption)
 
 
-def duty_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def duty_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """What is lost over the duty cycle, and what fails first."""
     data = outcome.parts[_PART]
     taken = show.quantity("input_energy", float(data["input_energy"]), of=data)
     failing = first_to_fail(data, 38.0)
     fails = f"fails first: {failing.value}; of {taken} in"
     detail = fails if data.attrs["first_to_fail"] else f"of {taken} in; {cycle_words(data)}"
-    yield KeyFigure(37.0, "Duty cycle", f"{lost_words(data)} lost", detail)
+    yield section.KeyFigure(37.0, "Duty cycle", f"{lost_words(data)} lost", detail)
     yield failing
 
 
-def duty_printed(outcome: Outcome) -> Iterator[Printed]:
+def duty_printed(outcome: Outcome) -> Iterator[section.Printed]:
     """The same with all figures."""
     data = outcome.parts[_PART]
     rows = [{"": row.name, "value": row.value, "with": row.detail} for row in cycle_figures(data)]
-    yield Printed("Over the duty cycle", rows, cycle_words(data))
+    yield section.Printed("Over the duty cycle", rows, cycle_words(data))

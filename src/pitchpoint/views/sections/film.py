@@ -7,21 +7,8 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    GREY,
-    PALETTE,
-    Choice,
-    Figure,
-    Key,
-    Panel,
-    Trace,
-    display,
-    layout,
-    pair_key,
-    plain,
-    short_axis,
-)
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.film_courses import (
     NONE,
     answered,
@@ -35,7 +22,6 @@ from pitchpoint.views.film_courses import (
     solved_how,
 )
 from pitchpoint.views.lines import titled
-from pitchpoint.views.section import Block, Heading, KeyFigure, Page, Paragraph, Printed, by_variant
 
 __all__ = ["film_answer", "film_blocks", "film_facts", "film_printed", "profiles_panel"]
 
@@ -45,13 +31,13 @@ _SEEN = 0.01
 # ---- across the contacts
 
 
-def profiles_panel(name: str, data: xr.Dataset) -> Panel:
+def profiles_panel(name: str, data: xr.Dataset) -> plot.Panel:
     """Film and pressure across the contacts that carry most, with the phase to slide."""
     figures = [_film_profile(f"{name}_film", data), _pressure_profile(f"{name}_pressure", data)]
     if "profile_rise" in data:
         figures.append(_warm_profile(f"{name}_rise", data))
     choices = [_choice(data, figures, int(phase)) for phase in _in_order(data)]
-    return Panel("", figures, choices=choices, menu="Phase", slides=True)
+    return plot.Panel("", figures, choices=choices, menu="Phase", slides=True)
 
 
 def _in_order(data: xr.Dataset) -> np.ndarray:
@@ -59,56 +45,56 @@ def _in_order(data: xr.Dataset) -> np.ndarray:
     return np.argsort(data["phase"].values % 1.0, kind="stable")
 
 
-def _choice(data: xr.Dataset, figures: Sequence[Figure], phase: int) -> Choice:
+def _choice(data: xr.Dataset, figures: Sequence[plot.Figure], phase: int) -> plot.Choice:
     lines = _film_lines, _pressure_lines, _warm_lines
     pairs = zip(figures, lines, strict=False)
     changes = {figure.name: lines_of(data, phase) for figure, lines_of in pairs}
     label = f"{float(data['phase'][phase]) % 1.0:.3f}"
-    return Choice(label, {key: [_points(lines), {}] for key, lines in changes.items()})
+    return plot.Choice(label, {key: [_points(lines), {}] for key, lines in changes.items()})
 
 
-def _points(lines: Sequence[Trace]) -> dict[str, list[list[float]]]:
+def _points(lines: Sequence[plot.Trace]) -> dict[str, list[list[float]]]:
     return {axis: [line[axis] for line in lines] for axis in ("x", "y")}
 
 
-def _film_profile(name: str, data: xr.Dataset) -> Figure:
+def _film_profile(name: str, data: xr.Dataset) -> plot.Figure:
     middle = np.argmin(np.abs(data["profile_place"].values), axis=-1)[..., None]
     film = np.take_along_axis(data["profile_film"].values, middle, axis=-1)
     ends = 1.1 * np.nanmin(film, initial=0.0), 2.5 * np.nanmax(film, initial=0.0)
     axes = _across(data, "profile_film", *ends)
     title, phase = titled("profile_film", data), int(_in_order(data)[0])
     lines = _film_lines(data, phase)
-    return Figure(name, title, lines, axes, "", (*_keys(data), DRY), NONE)
+    return plot.Figure(name, title, lines, axes, "", (*_keys(data), DRY), NONE)
 
 
-DRY = Key("±b of the dry contact", GREY)
+DRY = plot.Key("±b of the dry contact", plot.GREY)
 
 
-def _pressure_profile(name: str, data: xr.Dataset) -> Figure:
+def _pressure_profile(name: str, data: xr.Dataset) -> plot.Figure:
     top = 1.08 * np.nanmax(data["profile_pressure"].values, initial=0.0)
     axes = _across(data, "profile_pressure", 0.0, top)
-    keys = [*_keys(data), Key("of it on asperities", GREY, "dot"), DRY]
+    keys = [*_keys(data), plot.Key("of it on asperities", plot.GREY, "dot"), DRY]
     title, phase = titled("profile_pressure", data), int(_in_order(data)[0])
-    return Figure(name, title, _pressure_lines(data, phase), axes, SPIKE, tuple(keys), NONE)
+    return plot.Figure(name, title, _pressure_lines(data, phase), axes, SPIKE, tuple(keys), NONE)
 
 
 SPIKE = "A spike is resolved by few nodes: its height changes with the grid."
 
 
-def _warm_profile(name: str, data: xr.Dataset) -> Figure:
+def _warm_profile(name: str, data: xr.Dataset) -> plot.Figure:
     """Temperatures of film and surfaces across the contacts."""
     top = 1.08 * np.nanmax(data["profile_rise"].values, initial=0.0)
     axes = _across(data, "profile_rise", 0.0, top)
     keys = [
         *_keys(data),
-        Key("surface of body 1", GREY, "dot"),
-        Key("surface of body 2", GREY, "dash"),
+        plot.Key("surface of body 1", plot.GREY, "dot"),
+        plot.Key("surface of body 2", plot.GREY, "dash"),
     ]
     title, phase = "Temperatures above the inlet", int(_in_order(data)[0])
-    return Figure(name, title, _warm_lines(data, phase), axes, "", tuple(keys), NONE)
+    return plot.Figure(name, title, _warm_lines(data, phase), axes, "", tuple(keys), NONE)
 
 
-def _warm_lines(data: xr.Dataset, phase: int) -> list[Trace]:
+def _warm_lines(data: xr.Dataset, phase: int) -> list[plot.Trace]:
     """Mean temperature of every film, and those of its surfaces."""
     dashes = {
         "profile_rise": "solid",
@@ -116,7 +102,7 @@ def _warm_lines(data: xr.Dataset, phase: int) -> list[Trace]:
         "profile_surface_rise_2": "dash",
     }
     return [
-        _profile(data, name, phase, k, Key(key.label, key.colour, dash))
+        _profile(data, name, phase, k, plot.Key(key.label, key.colour, dash))
         for name, dash in dashes.items()
         for k, key in enumerate(_keys(data))
     ]
@@ -124,15 +110,15 @@ def _warm_lines(data: xr.Dataset, phase: int) -> list[Trace]:
 
 def _across(data: xr.Dataset, name: str, low: float, top: float) -> dict[str, object]:
     """Layout with axes that stay as they are while the phase slides."""
-    wide = display("profile_place", data["profile_place"].values)[_pressed(data)]
+    wide = plot.display("profile_place", data["profile_place"].values)[_pressed(data)]
     ends = np.array([np.min(wide, initial=-1e-6), np.max(wide, initial=1e-6)])
     ends += 0.05 * np.ptp(ends) * np.array([-1.0, 1.0])
-    high = float(display(name, top)) if top > 0.0 else 1.0
-    return layout(
+    high = float(plot.display(name, top)) if top > 0.0 else 1.0
+    return plot.layout(
         f"x [{show.unit_of('profile_place')}]",
-        short_axis(name),
+        plot.short_axis(name),
         xaxis={"range": [float(end) for end in ends]},
-        yaxis={"range": [float(display(name, low)), high]},
+        yaxis={"range": [float(plot.display(name, low)), high]},
     )
 
 
@@ -143,13 +129,16 @@ def _pressed(data: xr.Dataset) -> np.ndarray:
     return pressed
 
 
-def _keys(data: xr.Dataset) -> list[Key]:
+def _keys(data: xr.Dataset) -> list[plot.Key]:
     """Pairs whose profiles are kept."""
     numbers = enumerate(data["shown_pair"].values)
-    return [Key(pair_key(int(pair)).label, PALETTE[k % len(PALETTE)]) for k, pair in numbers]
+    return [
+        plot.Key(plot.pair_key(int(pair)).label, plot.PALETTE[k % len(plot.PALETTE)])
+        for k, pair in numbers
+    ]
 
 
-def _film_lines(data: xr.Dataset, phase: int) -> list[Trace]:
+def _film_lines(data: xr.Dataset, phase: int) -> list[plot.Trace]:
     lines = [_profile(data, "profile_film", phase, k, key) for k, key in enumerate(_keys(data))]
     film = data["profile_film"].values
     middle = np.argmin(np.abs(data["profile_place"].values), axis=-1)[..., None]
@@ -157,55 +146,55 @@ def _film_lines(data: xr.Dataset, phase: int) -> list[Trace]:
     return [*lines, *_marks(data, "profile_film", phase, float(top))]
 
 
-def _pressure_lines(data: xr.Dataset, phase: int) -> list[Trace]:
+def _pressure_lines(data: xr.Dataset, phase: int) -> list[plot.Trace]:
     """Pressure of every pair, and what asperities carry of it."""
     keys = list(enumerate(_keys(data)))
     profiles = [_profile(data, "profile_pressure", phase, k, key) for k, key in keys]
-    dotted = [(k, Key(key.label, key.colour, "dot")) for k, key in keys]
+    dotted = [(k, plot.Key(key.label, key.colour, "dot")) for k, key in keys]
     some = [_profile(data, "profile_asperity_pressure", phase, k, key) for k, key in dotted]
     top = 0.15 * float(np.nanmax(data["profile_pressure"].values, initial=0.0))
     return [*profiles, *some, *_marks(data, "profile_pressure", phase, top)]
 
 
-def _marks(data: xr.Dataset, name: str, phase: int, top: float) -> list[Trace]:
+def _marks(data: xr.Dataset, name: str, phase: int, top: float) -> list[plot.Trace]:
     """Ends of the dry contact of every pair."""
-    y = display(name, np.array([0.0, top, np.nan, 0.0, top]))
+    y = plot.display(name, np.array([0.0, top, np.nan, 0.0, top]))
     lines = []
     for width, key in zip(data["profile_half_width"].values[phase], _keys(data), strict=True):
-        x = display("profile_place", np.array([-width, -width, np.nan, width, width]))
-        mark = Key(f"±b of {key.label}", key.colour)
-        lines.append(plain(mark, x, y, show.unit_of(name)))
+        x = plot.display("profile_place", np.array([-width, -width, np.nan, width, width]))
+        mark = plot.Key(f"±b of {key.label}", key.colour)
+        lines.append(plot.plain(mark, x, y, show.unit_of(name)))
     return lines
 
 
-def _profile(data: xr.Dataset, name: str, phase: int, which: int, key: Key) -> Trace:
+def _profile(data: xr.Dataset, name: str, phase: int, which: int, key: plot.Key) -> plot.Trace:
     wide = _pressed(data)
     place = data["profile_place"].values
     near = np.abs(place[phase, which]) <= 2.0 * np.max(np.abs(place[wide]), initial=0.0)
-    x = display("profile_place", place[phase, which, near])
-    y = display(name, data[name].values[phase, which, near])
-    return plain(key, x, y, show.unit_of(name))
+    x = plot.display("profile_place", place[phase, which, near])
+    y = plot.display(name, data[name].values[phase, which, near])
+    return plot.plain(key, x, y, show.unit_of(name))
 
 
 # ---- words
 
 
-def film_blocks(page: Page) -> Iterator[Block]:
+def film_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from by_variant(page, "film", _of_variant)
+    yield from section.by_variant(page, "film", _of_variant)
 
 
-def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(position: int, outcome: Outcome) -> Iterator[section.Block]:
     data = outcome.parts["film"]
     nodes = json.loads(data.attrs["choices"])["nodes"]
-    yield Paragraph(solved_how(data, "line contacts", f"{nodes} nodes across a contact"))
+    yield section.Paragraph(solved_how(data, "line contacts", f"{nodes} nodes across a contact"))
     yield from gone(data)
     yield figures_table(outcome, data)
     yield from beneath(data)
-    yield Heading("Across the contacts")
-    yield Paragraph(_of_profiles(data), "note")
+    yield section.Heading("Across the contacts")
+    yield section.Paragraph(_of_profiles(data), "note")
     yield profiles_panel(f"profile{position}", data)
-    yield Heading("Over the mesh cycle")
+    yield section.Heading("Over the mesh cycle")
     yield courses(f"films{position}", outcome, data)
     yield from film_laws(data)
 
@@ -226,11 +215,11 @@ def _of_profiles(data: xr.Dataset) -> str:
     return f"{pairs}{slices}. Oil enters from the left where the surfaces run to the right."
 
 
-def film_facts(outcome: Outcome) -> Iterable[KeyFigure]:
+def film_facts(outcome: Outcome) -> Iterable[section.KeyFigure]:
     """What the films come to."""
     return [film_key_figure("Films solved", film_answer(outcome))]
 
 
-def film_printed(outcome: Outcome) -> Iterable[Printed]:
+def film_printed(outcome: Outcome) -> Iterable[section.Printed]:
     """What the screen shows."""
     return printed("Films", outcome.parts["film"])

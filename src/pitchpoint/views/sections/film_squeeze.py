@@ -7,32 +7,11 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    GREY,
-    INK,
-    PALETTE,
-    Figure,
-    Key,
-    Panel,
-    display,
-    layout,
-    plain,
-    short_axis,
-)
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.film_courses import NONE, film_key_figure, told
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import (
-    Block,
-    Heading,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    by_variant,
-)
 from pitchpoint.views.sections.finite_film import maps_panel
 from pitchpoint.views.way import place_of
 
@@ -54,29 +33,29 @@ _BESIDE = {
 }
 
 
-def squeeze_blocks(page: Page) -> Iterator[Block]:
+def squeeze_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from by_variant(page, "film_squeeze", _of_variant)
+    yield from section.by_variant(page, "film_squeeze", _of_variant)
 
 
-def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(position: int, outcome: Outcome) -> Iterator[section.Block]:
     data, name = outcome.parts["film_squeeze"], f"squeeze{position}"
     yield from _gone(data)
-    yield Paragraph(_how(data))
+    yield section.Paragraph(_how(data))
     if not int(data["solved_moments"]):
         return
     yield _table(data)
-    yield Heading("Over the engagement")
+    yield section.Heading("Over the engagement")
     yield _courses(name, data)
-    yield Heading("The moment with the thinnest film")
-    yield Paragraph(_thinnest(data), "note")
+    yield section.Heading("The moment with the thinnest film")
+    yield section.Paragraph(_thinnest(data), "note")
     yield maps_panel(f"{name}_patch", data, 0)
 
 
-def _gone(data: xr.Dataset) -> Iterator[Paragraph]:
+def _gone(data: xr.Dataset) -> Iterator[section.Paragraph]:
     missing = int(data["loaded_moments"]) - int(data["solved_moments"])
     if missing:
-        yield Paragraph(
+        yield section.Paragraph(
             f"The film of {missing} moments of the engagement was not found, and nothing is shown of it; "
             "what follows a lost film is not known either.",
             "warning",
@@ -101,14 +80,14 @@ def _how(data: xr.Dataset) -> str:
     )
 
 
-def _table(data: xr.Dataset) -> SectionTable:
+def _table(data: xr.Dataset) -> section.SectionTable:
     """Thinnest films with squeeze and without."""
     rows = [
         (titled(name), told(data, name), told(data, steady)) for name, steady in _BESIDE.items()
     ]
     if np.isfinite(float(data["squeeze_change"])):
         rows.append((titled("squeeze_change"), told(data, "squeeze_change"), ""))
-    return SectionTable(["", "with squeeze", "if all were steady"], rows, compact=True)
+    return section.SectionTable(["", "with squeeze", "if all were steady"], rows, compact=True)
 
 
 # ---- over the engagement
@@ -120,52 +99,57 @@ def _abscissa(data: xr.Dataset) -> tuple[np.ndarray, str]:
     ways = np.sign(np.diff(path))
     if np.all(ways == ways[0]) and data["path"].attrs["title"]:
         return path, str(data["path"].attrs["axis"])
-    return display("time", data["time"].values), f"time [{show.unit_of('time')}]"
+    return plot.display("time", data["time"].values), f"time [{show.unit_of('time')}]"
 
 
 _FILMS = {
-    "central_film": Key("in the middle, with squeeze", INK),
-    "steady_central_film": Key("in the middle, steady", INK, "dash"),
-    "minimum_film": Key("smallest, with squeeze", PALETTE[0]),
-    "steady_minimum_film": Key("smallest, steady", PALETTE[0], "dash"),
+    "central_film": plot.Key("in the middle, with squeeze", plot.INK),
+    "steady_central_film": plot.Key("in the middle, steady", plot.INK, "dash"),
+    "minimum_film": plot.Key("smallest, with squeeze", plot.PALETTE[0]),
+    "steady_minimum_film": plot.Key("smallest, steady", plot.PALETTE[0], "dash"),
 }
 _PRESSURES = {
-    "film_pressure": Key("largest, with squeeze", INK),
-    "steady_film_pressure": Key("largest, steady", INK, "dash"),
-    "pressure": Key("Hertz", GREY, "dot"),
+    "film_pressure": plot.Key("largest, with squeeze", plot.INK),
+    "steady_film_pressure": plot.Key("largest, steady", plot.INK, "dash"),
+    "pressure": plot.Key("Hertz", plot.GREY, "dot"),
 }
 
 
-def _courses(name: str, data: xr.Dataset) -> Panel:
+def _courses(name: str, data: xr.Dataset) -> plot.Panel:
     """Films, pressures, load and entrainment over the engagement."""
-    change = {"film_change": Key("film in the middle", INK)}
-    return Panel(
+    change = {"film_change": plot.Key("film in the middle", plot.INK)}
+    return plot.Panel(
         "",
         [
             _figure(f"{name}_films", "Film over the engagement", data, _FILMS),
             _figure(f"{name}_change", "Film with squeeze less the steady one", data, change),
             _figure(f"{name}_pressures", "Pressure over the engagement", data, _PRESSURES),
-            _figure(f"{name}_load", "Load of the pair", data, {"load": Key("load", INK)}),
+            _figure(f"{name}_load", "Load of the pair", data, {"load": plot.Key("load", plot.INK)}),
             _figure(
                 f"{name}_entrainment",
                 "Entrainment",
                 data,
-                {"entrainment": Key("mean surface speed", INK)},
+                {"entrainment": plot.Key("mean surface speed", plot.INK)},
             ),
         ],
     )
 
 
-def _figure(name: str, title: str, data: xr.Dataset, keys: dict[str, Key]) -> Figure:
+def _figure(name: str, title: str, data: xr.Dataset, keys: dict[str, plot.Key]) -> plot.Figure:
     x, axis = _abscissa(data)
     leading = next(iter(keys))
     lines = [
-        plain(key, x, display(variable, data[variable].values, data), show.unit_of(variable, data))
+        plot.plain(
+            key,
+            x,
+            plot.display(variable, data[variable].values, data),
+            show.unit_of(variable, data),
+        )
         for variable, key in keys.items()
     ]
     zero = {} if leading == "film_change" else {"yaxis": {"rangemode": "tozero"}}
-    look = layout(axis, short_axis(leading, data), **zero)
-    return Figure(name, title, lines, look, "", tuple(keys.values()), NONE)
+    look = plot.layout(axis, plot.short_axis(leading, data), **zero)
+    return plot.Figure(name, title, lines, look, "", tuple(keys.values()), NONE)
 
 
 # ---- words
@@ -202,20 +186,20 @@ def answer(data: xr.Dataset) -> str:
     return f"{words}squeeze makes the film in the middle up to {part} % {sense}"
 
 
-def screen(data: xr.Dataset) -> Iterator[Printed]:
+def screen(data: xr.Dataset) -> Iterator[section.Printed]:
     """What the screen shows."""
     row = {head(name, data): shown(name, float(data[name]), data) for name in _HEADLINES}
     solved, every = int(data["solved_moments"]), int(data["loaded_moments"])
-    yield Printed(
+    yield section.Printed(
         "Squeeze of films", [row], f"{solved} of {every} moments have a film that was found."
     )
 
 
-def squeeze_facts(outcome: Outcome) -> Iterable[KeyFigure]:
+def squeeze_facts(outcome: Outcome) -> Iterable[section.KeyFigure]:
     """What squeeze comes to."""
     return [film_key_figure("Squeeze of films", answer(outcome.parts["film_squeeze"]))]
 
 
-def squeeze_printed(outcome: Outcome) -> Iterable[Printed]:
+def squeeze_printed(outcome: Outcome) -> Iterable[section.Printed]:
     """What the screen shows."""
     return screen(outcome.parts["film_squeeze"])

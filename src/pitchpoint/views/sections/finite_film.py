@@ -8,23 +8,8 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    GREY,
-    INK,
-    PALETTE,
-    RISING,
-    Figure,
-    Key,
-    Panel,
-    Trace,
-    display,
-    evenly,
-    layout,
-    plain,
-    rounded,
-    short_axis,
-)
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.film_courses import (
     MOST,
     NONE,
@@ -44,17 +29,6 @@ from pitchpoint.views.film_courses import (
 )
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
-from pitchpoint.views.section import (
-    Block,
-    Folded,
-    Heading,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    by_variant,
-)
 
 __all__ = ["finite_film_blocks", "finite_film_facts", "finite_film_printed"]
 
@@ -79,7 +53,7 @@ _CONTACTS = {"finite_line": "line contacts with their ends", "elliptic": "ellipt
 # ---- maps
 
 
-def maps_panel(name: str, data: xr.Dataset, kept: int) -> Panel:
+def maps_panel(name: str, data: xr.Dataset, kept: int) -> plot.Panel:
     """Pressure, film and its temperature over the patch of a contact, and cuts through them."""
     figures = [
         _map(f"{name}_pressure", data, kept, "field_pressure"),
@@ -97,7 +71,7 @@ def maps_panel(name: str, data: xr.Dataset, kept: int) -> Panel:
             _roughness(f"{name}_heights", data, kept),
             _cut_heights(f"{name}_cut_heights", data, kept),
         ]
-    return Panel("", figures)
+    return plot.Panel("", figures)
 
 
 FLAT = 1e-13
@@ -110,22 +84,25 @@ def is_rough(data: xr.Dataset) -> bool:
     return has_heights and bool(np.nanmax(np.abs(data["field_heights"].values), initial=0.0) > FLAT)
 
 
-def _roughness(name: str, data: xr.Dataset, kept: int) -> Figure:
+def _roughness(name: str, data: xr.Dataset, kept: int) -> plot.Figure:
     """Heights of both surfaces as the cells of the grid see them."""
-    heat = {**_heat(data, kept, "field_heights"), "colorscale": evenly("#1c1c1c", "#ffffff")}
+    heat = {**_heat(data, kept, "field_heights"), "colorscale": plot.evenly("#1c1c1c", "#ffffff")}
     look = _patch_axes(data, kept)
     note = "Every cell sees the mean of the map over its area; what stands out is above zero."
-    keys = (Key("edge of the dry contact", INK, "dot"),)
-    return Figure(
+    keys = (plot.Key("edge of the dry contact", plot.INK, "dot"),)
+    return plot.Figure(
         name, "Roughness seen", [heat, _outline(data, kept, heat)], look, note, keys, NONE
     )
 
 
-def _cut_heights(name: str, data: xr.Dataset, kept: int) -> Figure:
+def _cut_heights(name: str, data: xr.Dataset, kept: int) -> plot.Figure:
     """Film and heights along the contact, in its middle row."""
     x, _ = _places(data, kept)
     row = data["field_film"].shape[1] // 2
-    keys = {"field_film": Key("film", INK), "field_heights": Key("heights", GREY, "dash")}
+    keys = {
+        "field_film": plot.Key("film", plot.INK),
+        "field_heights": plot.Key("heights", plot.GREY, "dash"),
+    }
     lines = [
         _line(key, "kept_x", x, field, data[field].values[kept, row]) for field, key in keys.items()
     ]
@@ -135,11 +112,11 @@ def _cut_heights(name: str, data: xr.Dataset, kept: int) -> Figure:
     )
     axes = {
         "xaxis": {"range": _reach(data, kept)},
-        "yaxis": {"range": [float(display("field_film", end)) for end in ends]},
+        "yaxis": {"range": [float(plot.display("field_film", end)) for end in ends]},
     }
-    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis("field_film"), **axes)
+    look = plot.layout(f"x [{show.unit_of('kept_x')}]", plot.short_axis("field_film"), **axes)
     title = "Film and heights along the contact, in its middle"
-    return Figure(name, title, lines, look, "", tuple(keys.values()), NONE)
+    return plot.Figure(name, title, lines, look, "", tuple(keys.values()), NONE)
 
 
 def _places(data: xr.Dataset, kept: int) -> tuple[np.ndarray, np.ndarray]:
@@ -154,12 +131,15 @@ def _middle_film(data: xr.Dataset, kept: int) -> float:
 
 
 def _map(
-    name: str, data: xr.Dataset, kept: int, variable: str, colours: list[list[Any]] = RISING
-) -> Figure:
+    name: str, data: xr.Dataset, kept: int, variable: str, colours: list[list[Any]] = plot.RISING
+) -> plot.Figure:
     """A variable over the patch, with the edge of the dry contact."""
     values = data[variable].values[kept]
     low, high = min(float(np.nanmin(values)), 0.0), _END_OF_COLOURS[variable](data, kept)
-    shown = float(display(variable, low)), float(display(variable, max(high, low + 1e-12)))
+    shown = (
+        float(plot.display(variable, low)),
+        float(plot.display(variable, max(high, low + 1e-12))),
+    )
     heat = {
         **_heat(data, kept, variable),
         "zmin": shown[0],
@@ -168,46 +148,48 @@ def _map(
     }
     look = _patch_axes(data, kept)
     note = _CUT_COLOURS.get(variable, "") if high < float(np.nanmax(values)) else ""
-    keys = (Key("edge of the dry contact", INK, "dot"),)
+    keys = (plot.Key("edge of the dry contact", plot.INK, "dot"),)
     traces = [heat, _outline(data, kept, heat)]
-    return Figure(name, titled(variable), traces, look, note, keys, NONE)
+    return plot.Figure(name, titled(variable), traces, look, note, keys, NONE)
 
 
 def _patch_axes(data: xr.Dataset, kept: int) -> dict[str, Any]:
     """Axes of a map over the patch, at equal scales where it is about as wide as it is long."""
     unit, reach = show.unit_of("kept_x"), _reach(data, kept)
-    across = display("kept_y", _places(data, kept)[1])
+    across = plot.display("kept_y", _places(data, kept)[1])
     alike = 0.5 < np.ptp(across) / np.ptp(reach) < 2.0
     equal = {"scaleanchor": "x", "scaleratio": 1, "constrain": "domain"} if alike else {}
     xaxis = {"range": reach, "constrain": "domain", "nticks": 3 if alike else 5}
-    return layout(f"x [{unit}]", f"y [{unit}]", xaxis=xaxis, yaxis=equal)
+    return plot.layout(f"x [{unit}]", f"y [{unit}]", xaxis=xaxis, yaxis=equal)
 
 
-def _heat(data: xr.Dataset, kept: int, variable: str) -> Trace:
+def _heat(data: xr.Dataset, kept: int, variable: str) -> plot.Trace:
     """Cells of a map, thinned where there are more than a page can show."""
     (x, y), (rows, columns) = _places(data, kept), _cells(data, kept)
     unit, along = show.unit_of(variable), show.unit_of("kept_x")
     return {
         "type": "heatmap",
-        "x": rounded(display("kept_x", x[columns])),
-        "y": rounded(display("kept_y", y[rows])),
-        "z": rounded(display(variable, data[variable].values[kept][np.ix_(rows, columns)]), 4),
+        "x": plot.rounded(plot.display("kept_x", x[columns])),
+        "y": plot.rounded(plot.display("kept_y", y[rows])),
+        "z": plot.rounded(
+            plot.display(variable, data[variable].values[kept][np.ix_(rows, columns)]), 4
+        ),
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~r}} {unit}<br>x %{{x:.4~r}} {along}, y %{{y:.4~r}} {along}"
         "<extra></extra>",
     }
 
 
-def _outline(data: xr.Dataset, kept: int, heat: Trace) -> Trace:
+def _outline(data: xr.Dataset, kept: int, heat: plot.Trace) -> plot.Trace:
     """Edge of the dry contact."""
     dry = _dry(data, kept)[np.ix_(*_cells(data, kept))]
     return {
         "type": "contour",
         "x": heat["x"],
         "y": heat["y"],
-        "z": rounded(dry / np.max(dry), 3),
+        "z": plot.rounded(dry / np.max(dry), 3),
         "contours": {"start": _EDGE, "end": _EDGE, "size": 1.0, "coloring": "none"},
-        "line": {"color": INK, "width": 1.2, "dash": "dot"},
+        "line": {"color": plot.INK, "width": 1.2, "dash": "dot"},
         "showscale": False,
         "hoverinfo": "skip",
     }
@@ -222,7 +204,7 @@ def _reach(data: xr.Dataset, kept: int) -> list[float]:
     """Ends of an axis along the contact that shows it with what is beside it."""
     x, _ = _places(data, kept)
     wide = _WIDE * float(np.max(np.abs(x[np.any(_dry(data, kept) > 0.0, axis=0)])))
-    return [float(display("kept_x", end)) for end in (-wide, wide)]
+    return [float(plot.display("kept_x", end)) for end in (-wide, wide)]
 
 
 def _cells(data: xr.Dataset, kept: int) -> tuple[np.ndarray, np.ndarray]:
@@ -237,7 +219,7 @@ def _highest(data: xr.Dataset, kept: int) -> float:
     return min(float(np.max(pressure)), _STEEP * middle)
 
 
-_OF_FILM = evenly("#081d58", "#225ea8", "#41b6c4", "#c7e9b4", "#fffff2")
+_OF_FILM = plot.evenly("#081d58", "#225ea8", "#41b6c4", "#c7e9b4", "#fffff2")
 """Colours of a film: what is thin stands out from what is too thick to matter."""
 
 _END_OF_COLOURS: Mapping[str, Callable[[xr.Dataset, int], float]] = {
@@ -261,7 +243,7 @@ def _thinned(size: int) -> np.ndarray:
 # ---- cuts
 
 
-def _rows(data: xr.Dataset, kept: int) -> Iterator[tuple[Key, int]]:
+def _rows(data: xr.Dataset, kept: int) -> Iterator[tuple[plot.Key, int]]:
     """Rows of cuts along x: in the middle, near both ends, half a half-width away from them."""
     x, y = _places(data, kept)
     carries = _dry(data, kept) > 0.0
@@ -270,9 +252,9 @@ def _rows(data: xr.Dataset, kept: int) -> Iterator[tuple[Key, int]]:
     ends = y[held[0]] + 0.5 * wide, y[held[-1]] - 0.5 * wide
     middle = 0.5 * (y[held[0]] + y[held[-1]])
     places = (middle, ends[1]) if _symmetric(data, kept) else (middle, *ends)
-    for colour, place in zip((INK, *PALETTE), places, strict=False):
+    for colour, place in zip((plot.INK, *plot.PALETTE), places, strict=False):
         row = int(np.argmin(np.abs(y - place)))
-        yield Key(_at_row(data, kept, row), colour), row
+        yield plot.Key(_at_row(data, kept, row), colour), row
 
 
 def _symmetric(data: xr.Dataset, kept: int) -> bool:
@@ -282,12 +264,12 @@ def _symmetric(data: xr.Dataset, kept: int) -> bool:
 
 
 def _at_row(data: xr.Dataset, kept: int, row: int) -> str:
-    place = show.number(float(display("kept_y", data["kept_y"].values[kept, row])))
+    place = show.number(float(plot.display("kept_y", data["kept_y"].values[kept, row])))
     unit = show.unit_of("kept_y")
     return f"y = {place} {unit}"
 
 
-def _cut_across(name: str, data: xr.Dataset, kept: int, variable: str) -> Figure:
+def _cut_across(name: str, data: xr.Dataset, kept: int, variable: str) -> plot.Figure:
     """Values along x, in the middle and near both ends."""
     x, _ = _places(data, kept)
     values, rows = data[variable].values[kept], [*_rows(data, kept)]
@@ -296,63 +278,72 @@ def _cut_across(name: str, data: xr.Dataset, kept: int, variable: str) -> Figure
     if variable == "field_film":
         low = min(float(np.nanmin(values)), 0.0)
         ends = 1.1 * low, 2.0 * _THIN * _middle_film(data, kept)
-        axes["yaxis"] = {"range": [float(display(variable, end)) for end in ends]}
-    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis(variable), **axes)
+        axes["yaxis"] = {"range": [float(plot.display(variable, end)) for end in ends]}
+    look = plot.layout(f"x [{show.unit_of('kept_x')}]", plot.short_axis(variable), **axes)
     what = "Pressure" if variable == "field_pressure" else "Film"
     title = f"{what} along the contact, in the middle and near its ends"
-    return Figure(name, title, lines, look, "", tuple(key for key, _ in rows), NONE)
+    return plot.Figure(name, title, lines, look, "", tuple(key for key, _ in rows), NONE)
 
 
-def _line(key: Key, along: str, places: np.ndarray, variable: str, values: np.ndarray) -> Trace:
-    return plain(
+def _line(
+    key: plot.Key, along: str, places: np.ndarray, variable: str, values: np.ndarray
+) -> plot.Trace:
+    return plot.plain(
         key,
-        display(along, places),
-        display(variable, values),
+        plot.display(along, places),
+        plot.display(variable, values),
         show.unit_of(variable),
         name=key.label,
     )
 
 
-def _ridge(name: str, data: xr.Dataset, kept: int) -> Figure:
+def _ridge(name: str, data: xr.Dataset, kept: int) -> plot.Figure:
     """Largest pressure of every row, and what asperities carry there."""
     _, y = _places(data, kept)
-    keys = Key("with oil", INK), Key("dry", GREY, "dash"), Key("of it on asperities", INK, "dot")
+    keys = (
+        plot.Key("with oil", plot.INK),
+        plot.Key("dry", plot.GREY, "dash"),
+        plot.Key("of it on asperities", plot.INK, "dot"),
+    )
     names = ("field_pressure", "field_dry_pressure", "field_asperity_pressure")
     lines = [
         _line(key, "kept_y", y, "field_pressure", np.max(data[variable].values[kept], axis=1))
         for key, variable in zip(keys, names, strict=True)
     ]
-    look = layout(f"y [{show.unit_of('kept_y')}]", short_axis("field_pressure"))
-    return Figure(name, "Largest pressure across the contact", lines, look, "", keys, NONE)
+    look = plot.layout(f"y [{show.unit_of('kept_y')}]", plot.short_axis("field_pressure"))
+    return plot.Figure(name, "Largest pressure across the contact", lines, look, "", keys, NONE)
 
 
-def _valley(name: str, data: xr.Dataset, kept: int) -> Figure:
+def _valley(name: str, data: xr.Dataset, kept: int) -> plot.Figure:
     """Smallest film of every row, and film in its middle."""
     x, y = _places(data, kept)
     film = data["field_film"].values[kept]
     held = np.any(_dry(data, kept) > 0.0, axis=1)
     middle = film[:, int(np.argmin(np.abs(x)))]
-    keys = Key("in the middle, x = 0", INK, "dash"), Key("smallest of the row", INK)
+    keys = (
+        plot.Key("in the middle, x = 0", plot.INK, "dash"),
+        plot.Key("smallest of the row", plot.INK),
+    )
     values = np.where(held, middle, np.nan), np.where(held, np.min(film, axis=1), np.nan)
     lines = [
         _line(key, "kept_y", y, "field_film", heights)
         for key, heights in zip(keys, values, strict=True)
     ]
-    look = layout(f"y [{show.unit_of('kept_y')}]", short_axis("field_film"))
-    return Figure(
+    look = plot.layout(f"y [{show.unit_of('kept_y')}]", plot.short_axis("field_film"))
+    return plot.Figure(
         name, "Film across the contact, where its dry rows carry", lines, look, "", keys, NONE
     )
 
 
-def _warmth_along(name: str, data: xr.Dataset, kept: int) -> Figure:
+def _warmth_along(name: str, data: xr.Dataset, kept: int) -> plot.Figure:
     """Temperatures of film and surfaces above the inlet along x, in the row where the film is warmest."""
     x, _ = _places(data, kept)
     film = data["field_rise"].values[kept]
     row = int(np.argmax(np.max(film, axis=1)))
     keys = (
-        Key("film", INK),
-        Key("surface of body 1", PALETTE[0]),
-        Key("surface of body 2", PALETTE[1]),
+        plot.Key("film", plot.INK),
+        plot.Key("surface of body 1", plot.PALETTE[0]),
+        plot.Key("surface of body 2", plot.PALETTE[1]),
     )
     names = ("field_rise", "field_surface_rise_1", "field_surface_rise_2")
     lines = [
@@ -360,25 +351,25 @@ def _warmth_along(name: str, data: xr.Dataset, kept: int) -> Figure:
         for key, variable in zip(keys, names, strict=True)
     ]
     axes = {"xaxis": {"range": _reach(data, kept)}}
-    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis("field_rise"), **axes)
+    look = plot.layout(f"x [{show.unit_of('kept_x')}]", plot.short_axis("field_rise"), **axes)
     title = f"Temperature above the inlet, in the warmest row, {_at_row(data, kept, row)}"
-    return Figure(name, title, lines, look, "", keys, NONE)
+    return plot.Figure(name, title, lines, look, "", keys, NONE)
 
 
 # ---- over the mesh cycle
 
 
-def _pressures(name: str, outcome: Outcome, data: xr.Dataset) -> Figure:
+def _pressures(name: str, outcome: Outcome, data: xr.Dataset) -> plot.Figure:
     """Largest pressures over the mesh cycle: in all, near the ends, and of the dry line."""
     near = np.nanmax(data["near_ends"].values, axis=-2, initial=-np.inf)
     near = np.where(np.isfinite(near), near, np.nan)
     courses_of = {
-        Key("largest, with oil", INK): data["film_pressure"].values,
-        Key("Hertz", GREY, "dash"): data["pressure"].values,
+        plot.Key("largest, with oil", plot.INK): data["film_pressure"].values,
+        plot.Key("Hertz", plot.GREY, "dash"): data["pressure"].values,
     }
     for k, far in enumerate(data["distance"].values):
         if np.isfinite(near[..., k]).any():
-            courses_of[Key(f"{far:g} b from an end", PALETTE[k])] = near[..., k]
+            courses_of[plot.Key(f"{far:g} b from an end", plot.PALETTE[k])] = near[..., k]
     lines = [
         (key, course(data, "film_pressure", key, of_most(data, values)))
         for key, values in courses_of.items()
@@ -390,7 +381,7 @@ def _pressures(name: str, outcome: Outcome, data: xr.Dataset) -> Figure:
 # ---- tables and words
 
 
-def _ends_table(data: xr.Dataset) -> SectionTable:
+def _ends_table(data: xr.Dataset) -> section.SectionTable:
     """Pressures at distances from the ends of the contact that carries most, here and on a coarser grid."""
     at = tuple(data["kept_at"].values[0])
     here, coarse = data["near_ends"].values[at], data["coarse_near_ends"].values[0]
@@ -413,7 +404,7 @@ def _ends_table(data: xr.Dataset) -> SectionTable:
     rows.append(
         ("Hertz, without ends", _or_nothing("pressure", float(data["pressure"].values[at])), "", "")
     )
-    return SectionTable(
+    return section.SectionTable(
         ["", "first end", "last end", "higher one on a coarser grid"], rows, compact=True
     )
 
@@ -422,7 +413,7 @@ def _or_nothing(name: str, value: float) -> str:
     return show.quantity(name, value) if np.isfinite(value) else ""
 
 
-def _grid_table(data: xr.Dataset) -> SectionTable:
+def _grid_table(data: xr.Dataset) -> section.SectionTable:
     """Values of the contact that carries most, on its grid, on one of half as many cells, and as a line."""
     at = tuple(data["kept_at"].values[0])
     lines = ["line without ends"] * ("line_central_film" in data)
@@ -435,7 +426,7 @@ def _grid_table(data: xr.Dataset) -> SectionTable:
         coarse = float(data[f"coarse_{_COARSE.get(name, name)}"].values[0])
         beside = [value(endless) for _ in lines]
         rows.append((titled(name), value(name), _or_nothing(name, coarse), *beside))
-    return SectionTable(
+    return section.SectionTable(
         ["", "this grid", "half as many cells either way", *lines], rows, compact=True
     )
 
@@ -451,23 +442,23 @@ _COARSE = {"film_friction": "friction"}
 _WHICH = ("carries most", "has the thinnest film")
 
 
-def finite_film_blocks(page: Page) -> Iterator[Block]:
+def finite_film_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from by_variant(page, "finite_film", _of_variant)
+    yield from section.by_variant(page, "finite_film", _of_variant)
 
 
-def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(position: int, outcome: Outcome) -> Iterator[section.Block]:
     data = outcome.parts["finite_film"]
     yield from gone(data)
     still = np.unique(data["central_film"].values).size == 1  # one contact, the same at all phases
     times = {"times": "times, at all of which the contact is the same,"} if still else {}
-    yield Paragraph(solved_how(data, _CONTACTS[data.attrs["solver"]], _grid(data), **times))
+    yield section.Paragraph(solved_how(data, _CONTACTS[data.attrs["solver"]], _grid(data), **times))
     yield figures_table(outcome, data)
     yield from beneath(data)
     if int(data["solved_contacts"]):
         yield from _of_kept(position, data)
     if not still:
-        yield Heading("Over the mesh cycle")
+        yield section.Heading("Over the mesh cycle")
         name = f"finite{position}"
         figures = [_pressures(f"{name}_pressures", outcome, data)]
         yield courses(name, outcome, data, figures)
@@ -485,15 +476,15 @@ def _grid(data: xr.Dataset) -> str:
     return f"{nodes} nodes along and {cells} cells across{ends.get(data.attrs['ends'], '')}{ends_words}"
 
 
-def _of_kept(position: int, data: xr.Dataset) -> Iterator[Block]:
+def _of_kept(position: int, data: xr.Dataset) -> Iterator[section.Block]:
     """Maps and cuts of the contacts that are kept, and what their grid is worth."""
     places = [tuple(map(int, at)) for at in data["kept_at"].values]
     for k, (phase, pair, part) in enumerate(places):
         if k and places[k] == places[0]:
-            yield Paragraph("It has the thinnest film as well.", "note")
+            yield section.Paragraph("It has the thinnest film as well.", "note")
             continue
-        yield Heading(f"The contact that {_WHICH[k]}")
-        yield Paragraph(
+        yield section.Heading(f"The contact that {_WHICH[k]}")
+        yield section.Paragraph(
             f"At {place_of(data, phase, pair, part)}: {_loaded(data, places[k])}. Oil enters from "
             "the left where the surfaces run to the right.",
             "note",
@@ -505,7 +496,7 @@ def _of_kept(position: int, data: xr.Dataset) -> Iterator[Block]:
     if np.isfinite(data["coarse_central_film"].values).any():
         tables.append(_grid_table(data))
     if tables:
-        yield Folded("What the grid is worth", tables)
+        yield section.Folded("What the grid is worth", tables)
 
 
 def _loaded(data: xr.Dataset, at: tuple[int, ...]) -> str:
@@ -514,11 +505,11 @@ def _loaded(data: xr.Dataset, at: tuple[int, ...]) -> str:
     return f"{force} on {show.quantity('line_length', long)}" if long else force
 
 
-def finite_film_facts(outcome: Outcome) -> Iterable[KeyFigure]:
+def finite_film_facts(outcome: Outcome) -> Iterable[section.KeyFigure]:
     """What the films come to."""
     return [film_key_figure("Films of finite contacts", answered(outcome.parts["finite_film"]))]
 
 
-def finite_film_printed(outcome: Outcome) -> Iterable[Printed]:
+def finite_film_printed(outcome: Outcome) -> Iterable[section.Printed]:
     """What the screen shows."""
     return printed("Films of finite contacts", outcome.parts["finite_film"])

@@ -8,19 +8,9 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.point import named_members
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import (
-    Block,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    Section,
-    SectionTable,
-    by_variant,
-)
 
 __all__ = ["INSPECTION", "backlash_rows", "measured_rows"]
 
@@ -135,8 +125,8 @@ def _tolerance_rows(data: xr.Dataset) -> list[Row]:
     ]
 
 
-def _blocks(page: Page) -> Iterator[Block]:
-    yield from by_variant(page, "inspection", _of_variant)
+def _blocks(page: section.Page) -> Iterator[section.Block]:
+    yield from section.by_variant(page, "inspection", _of_variant)
 
 
 def _of_members(outcome: Outcome) -> xr.Dataset:
@@ -146,31 +136,31 @@ def _of_members(outcome: Outcome) -> xr.Dataset:
     return data.assign_coords(gear=named_members(outcome)) if has_bodies else data
 
 
-def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(_: int, outcome: Outcome) -> Iterator[section.Block]:
     data = _of_members(outcome)
     gears = [str(name) for name in data["gear"].values]
-    yield Paragraph(data.attrs["note"])
-    yield SectionTable(
+    yield section.Paragraph(data.attrs["note"])
+    yield section.SectionTable(
         ["backlash", *map(str, data["case"].values)], backlash_rows(data), compact=True
     )
-    yield SectionTable(["dimension", *gears], measured_rows(data), compact=True)
+    yield section.SectionTable(["dimension", *gears], measured_rows(data), compact=True)
     if "flank_tolerance" in data:
         classes = [f"{value:.0f}" for value in json.loads(data.attrs["iso_class"])]
         titles = [f"{gear}, class {of}" for gear, of in zip(gears, classes, strict=True)]
-        yield SectionTable(
+        yield section.SectionTable(
             ["tolerance by ISO 1328-1", *titles], _tolerance_rows(data), compact=True
         )
     if data.sizes["case"] == 1:
-        yield Paragraph(
+        yield section.Paragraph(
             "Without tolerances: a table [gears.inspection] with thickness allowances and a deviation of the "
             "centre distance gives the least, mean and largest backlash.",
             "note",
         )
     untold = (text[:1].upper() + text[1:] for text in json.loads(data.attrs["unmeasured"]))
-    yield Paragraph(" ".join([_USUAL, *untold]), "note")
+    yield section.Paragraph(" ".join([_USUAL, *untold]), "note")
 
 
-def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
+def _answer(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Backlash, its limits where tolerances are given."""
     data = _of_members(outcome) if "inspection" in outcome.parts else None
     if data is None:
@@ -183,7 +173,7 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
         f"{show.unit_of('backlash_angle')} at {gear}"
         for gear in data["gear"].values
     ]
-    yield KeyFigure(
+    yield section.KeyFigure(
         60.0,
         "Backlash by tolerances" if several else "Backlash",
         f"{' to '.join(on_circle[1:])} {show.unit_of('backlash_on_circle')}",
@@ -201,12 +191,12 @@ def _of_allowances(data: xr.Dataset) -> str:
     return "nominal, no allowance is given; " if none else "nominal, "
 
 
-def _printed(outcome: Outcome) -> Iterator[Printed]:
+def _printed(outcome: Outcome) -> Iterator[section.Printed]:
     """What is asked for alone: the screen is short."""
     data = _of_members(outcome) if "inspection" in outcome.parts else None
     if data is None or not data.attrs["asked"]:
         return
-    yield Printed(rows=[_on_screen(data, str(gear)) for gear in data["gear"].values])
+    yield section.Printed(rows=[_on_screen(data, str(gear)) for gear in data["gear"].values])
 
 
 def _on_screen(data: xr.Dataset, gear: str) -> dict[str, str]:
@@ -221,7 +211,7 @@ def _on_screen(data: xr.Dataset, gear: str) -> dict[str, str]:
     return row | {head("backlash_angle"): " to ".join(words)}
 
 
-INSPECTION = Section(
+INSPECTION = section.Section(
     name="inspection",
     title="Inspection: backlash, span, balls, tolerances",
     short="Inspection",

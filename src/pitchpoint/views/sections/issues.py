@@ -4,9 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from pitchpoint.analyses.figures import MAIN
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.figures import laws
-from pitchpoint.views.section import Block, Drawn, Heading, Page, Section, SectionTable
 from pitchpoint.views.sections.back_driving import back_driving
 from pitchpoint.views.sections.spread import spread
 
@@ -25,18 +24,18 @@ _SIDE_BY_SIDE = (
 _STEADY = ("mean_transmission_error", "transmission_error_range", "largest_dynamic_factor")
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def _blocks(page: section.Page) -> Iterator[section.Block]:
     issues = page.first["issues"]
     if page.several:
         if issues:
-            yield Heading("What each variant says")
+            yield section.Heading("What each variant says")
         yield _side_by_side(page)
     if issues:
-        yield Heading("Issues and verdicts")
-        yield Drawn("issues.html.jinja", {"issues": issues})
+        yield section.Heading("Issues and verdicts")
+        yield section.Drawn("issues.html.jinja", {"issues": issues})
 
 
-def _side_by_side(page: Page) -> SectionTable:
+def _side_by_side(page: section.Page) -> section.SectionTable:
     """Main figures of all variants and laws in one table, with the spread of the laws."""
     columns = [
         (variant, outcome, position, law)
@@ -53,7 +52,7 @@ def _side_by_side(page: Page) -> SectionTable:
     ]
     within = [(spread(design) or {"text": "not computed"})["text"] for _, design, *_ in columns]
     back = [back_driving(design, law) for _, design, _, law in columns]
-    return SectionTable(
+    return section.SectionTable(
         [
             "At the operating point",
             *(page.curves[variant, law].label for variant, _, _, law in columns),
@@ -75,11 +74,11 @@ def _told(data: Any, name: str, law: int) -> str:
     return show.quantity(name, float(data[name].values[law, 0]), with_unit=False, of=data)
 
 
-def _titled(page: Page) -> str:
+def _titled(page: section.Page) -> str:
     return "Issues of the publication" if page.first["issues"] else "Variants side by side"
 
 
-ISSUES = Section(
+ISSUES = section.Section(
     name="issues",
     title=_titled,
     short=lambda page: "Issues" if page.first["issues"] else "Variants",

@@ -6,34 +6,12 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.campbell import campbell
-from pitchpoint.views.figures import (
-    GREY,
-    PALETTE,
-    Figure,
-    Key,
-    Panel,
-    display,
-    layout,
-    plain,
-    short_axis,
-    verticals,
-)
 from pitchpoint.views.inputs import words
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import (
-    Block,
-    Heading,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    naming,
-    turned,
-)
 
 __all__ = [
     "critical_rows",
@@ -101,7 +79,7 @@ def critical_rows(outcome: Outcome) -> list[dict[str, str]]:
     ]
 
 
-def joint_panel(name: str, title: str, outcome: Outcome) -> Panel:
+def joint_panel(name: str, title: str, outcome: Outcome) -> plot.Panel:
     """Amplitudes against speed and the diagram of Campbell."""
     data = outcome.parts["joint"]
     figures = [
@@ -109,23 +87,25 @@ def joint_panel(name: str, title: str, outcome: Outcome) -> Panel:
         _amplitudes(f"{name}_output", data, "output_amplitude", (0,)),
         _campbell(f"{name}_campbell", data),
     ]
-    return Panel(title, figures)
+    return plot.Panel(title, figures)
 
 
-def _keys(data: xr.Dataset) -> list[Key]:
+def _keys(data: xr.Dataset) -> list[plot.Key]:
     return [
-        Key(str(name), PALETTE[k % len(PALETTE)])
+        plot.Key(str(name), plot.PALETTE[k % len(plot.PALETTE)])
         for k, name in enumerate(data["excitation"].values)
     ]
 
 
-def _amplitudes(name: str, data: xr.Dataset, variable: str, motors: tuple[int, ...]) -> Figure:
+def _amplitudes(name: str, data: xr.Dataset, variable: str, motors: tuple[int, ...]) -> plot.Figure:
     """Amplitude by each wave against speed, by the tangent of the wind-up."""
-    speed, unit = display("speed", data["speed"], data), show.unit_of(variable, data)
-    values = display(variable, data[variable].values, data)
+    speed, unit = plot.display("speed", data["speed"], data), show.unit_of(variable, data)
+    values = plot.display(variable, data[variable].values, data)
     traces = [
-        plain(
-            Key(f"{key.label}, {data['motor'].values[m]}", key.colour, "dash" if m else "solid"),
+        plot.plain(
+            plot.Key(
+                f"{key.label}, {data['motor'].values[m]}", key.colour, "dash" if m else "solid"
+            ),
             speed,
             values[m, k],
             unit,
@@ -135,18 +115,21 @@ def _amplitudes(name: str, data: xr.Dataset, variable: str, motors: tuple[int, .
     ]
     keys = _keys(data)
     if len(motors) > 1:
-        keys += [Key("motor holds its speed", GREY), Key("motor runs free", GREY, "dash")]
+        keys += [
+            plot.Key("motor holds its speed", plot.GREY),
+            plot.Key("motor runs free", plot.GREY, "dash"),
+        ]
     held = "" if len(motors) > 1 else " Motor holds its speed."
-    return Figure(
+    return plot.Figure(
         name,
         f"{titled(variable, data)} against driver speed",
         traces,
-        layout(
+        plot.layout(
             show.axis_title("speed", data),
-            short_axis(variable, data),
+            plot.short_axis(variable, data),
             yaxis={"rangemode": "tozero"},
         )
-        | verticals(_marks(data, speed, motors)),
+        | plot.verticals(_marks(data, speed, motors)),
         f"Each wave by itself. Dotted: critical speeds.{held}",
         tuple(keys),
     )
@@ -155,7 +138,7 @@ def _amplitudes(name: str, data: xr.Dataset, variable: str, motors: tuple[int, .
 def _marks(data: xr.Dataset, speed: np.ndarray, motors: tuple[int, ...]) -> list[tuple[str, float]]:
     """Critical speeds inside the figure that stand apart, the strongest waves first, by their order."""
     marks: list[tuple[str, float]] = []
-    critical = display("critical_speed", data["critical_speed"].values, data)
+    critical = plot.display("critical_speed", data["critical_speed"].values, data)
     for m in motors:
         for k, order in enumerate(data["wave_order"].values):
             there = float(critical[m, k])
@@ -165,11 +148,11 @@ def _marks(data: xr.Dataset, speed: np.ndarray, motors: tuple[int, ...]) -> list
     return marks
 
 
-def _campbell(name: str, data: xr.Dataset) -> Figure:
+def _campbell(name: str, data: xr.Dataset) -> plot.Figure:
     """Frequencies of the waves over speed, with the natural frequencies."""
     levels = (
-        Key("natural frequency, motor holds its speed", GREY),
-        Key("natural frequency, motor runs free", GREY, "dash"),
+        plot.Key("natural frequency, motor holds its speed", plot.GREY),
+        plot.Key("natural frequency, motor runs free", plot.GREY, "dash"),
     )
     natural = data["natural_frequency"].values
     orders = zip(_keys(data), data["wave_order"].values, strict=True)
@@ -187,13 +170,15 @@ def _title(name: str, data: xr.Dataset) -> str:
     return show.bracketed(f"{variable.long_name} {variable.symbol}", variable)
 
 
-def _own_table(outcome: Outcome) -> SectionTable:
+def _own_table(outcome: Outcome) -> section.SectionTable:
     data = outcome.parts["joint"]
     rows = [
         (_title(name, data), *(shown(name, float(value), data) for value in data[name].values))
         for name in _OWN
     ]
-    return SectionTable(["", *(str(motor) for motor in data["motor"].values)], rows, compact=True)
+    return section.SectionTable(
+        ["", *(str(motor) for motor in data["motor"].values)], rows, compact=True
+    )
 
 
 def _curve_rows(outcome: Outcome) -> list[dict[str, str]]:
@@ -211,13 +196,13 @@ def _curve_rows(outcome: Outcome) -> list[dict[str, str]]:
     ]
 
 
-def joint_blocks(page: Page) -> Iterator[Block]:
+def joint_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
     for position, title, outcome in page.each("joint"):
         data = outcome.parts["joint"]
         if title:
-            yield Heading(title)
-        yield Paragraph(
+            yield section.Heading(title)
+        yield section.Paragraph(
             "Motor and load on both sides of the drive, with its error between them: small vibrations by the "
             "tangent of the wind-up at the operating torque. The damping ratio, "
             f"{words(outcome, 'dynamics', 'damping_ratio')}, is that of the free joint, assumed where the "
@@ -226,12 +211,12 @@ def joint_blocks(page: Page) -> Iterator[Block]:
         yield _own_table(outcome)
         rows = critical_rows(outcome)
         corner, *heads = rows[0]
-        yield turned(heads, [[*row.values()] for row in rows], corner)
-        yield from naming(title, [joint_panel(f"joint{position}", "", outcome)])
+        yield section.turned(heads, [[*row.values()] for row in rows], corner)
+        yield from section.naming(title, [joint_panel(f"joint{position}", "", outcome)])
         rows = _curve_rows(outcome)
-        yield Paragraph(_whole(data))
-        yield SectionTable([*rows[0]], [[*row.values()] for row in rows])
-        yield Paragraph(f"{_friction(data)} {data.attrs['note']}", "note")
+        yield section.Paragraph(_whole(data))
+        yield section.SectionTable([*rows[0]], [[*row.values()] for row in rows])
+        yield section.Paragraph(f"{_friction(data)} {data.attrs['note']}", "note")
 
 
 def _whole(data: xr.Dataset) -> str:
@@ -258,16 +243,16 @@ def _friction(data: xr.Dataset) -> str:
     )
 
 
-def joint_printed(outcome: Outcome) -> Iterator[Printed]:
+def joint_printed(outcome: Outcome) -> Iterator[section.Printed]:
     """What the screen shows."""
     if "joint" in outcome.parts:
-        yield Printed(
+        yield section.Printed(
             "Torsional vibration of the joint", critical_rows(outcome), f"{joint_answer(outcome)}."
         )
 
 
-def joint_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def joint_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Natural frequencies of the joint, for which the case gave its inertia."""
     (held, speed), (free, _) = _resonances(outcome.parts["joint"])
     detail = f"motor held, {free} motor free; critical {speed} motor held"
-    yield KeyFigure(36.5, "Joint resonance", held, detail)
+    yield section.KeyFigure(36.5, "Joint resonance", held, detail)

@@ -8,31 +8,9 @@ import xarray as xr
 
 from pitchpoint.analyses.figures import error_ranges
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    GREY,
-    PALETTE,
-    Figure,
-    Key,
-    Panel,
-    continued,
-    display,
-    layout,
-    order_bars,
-    plain,
-    short_axis,
-)
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import (
-    Block,
-    Heading,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    key_figure,
-    naming,
-)
 
 __all__ = [
     "error_blocks",
@@ -44,9 +22,9 @@ __all__ = [
 ]
 
 _KEYS = {
-    "geometry": Key("rigid teeth without load", GREY),
-    "elastic mean": Key("elastic mean over the pairs that carry", PALETTE[0], "dash"),
-    "under load": Key("under the operating torque", PALETTE[1]),
+    "geometry": plot.Key("rigid teeth without load", plot.GREY),
+    "elastic mean": plot.Key("elastic mean over the pairs that carry", plot.PALETTE[0], "dash"),
+    "under load": plot.Key("under the operating torque", plot.PALETTE[1]),
 }
 _LEAST = 0.05
 """Part of the largest amplitude below which the orders end in the figure."""
@@ -55,7 +33,7 @@ _FEWEST = 6
 """Orders that are always in it."""
 
 
-def kinematic_error_panels(page: Page) -> list[Panel]:
+def kinematic_error_panels(page: section.Page) -> list[plot.Panel]:
     """Figures for each variant whose teeth have deviations, and for each such stage."""
     return [
         _panel(f"kinematic{position}", title, outcome)
@@ -82,7 +60,7 @@ def kinematic_error_answer(outcome: Outcome) -> str:
     )
 
 
-def _panel(name: str, title: str, outcome: Outcome) -> Panel:
+def _panel(name: str, title: str, outcome: Outcome) -> plot.Panel:
     data = outcome.parts["kinematic_error"]
     members = [str(member) for member in data["member"].values]
     deviate = np.any(data["kinematic_error_range"].values[:, : len(members)] != 0.0, axis=0)
@@ -91,29 +69,31 @@ def _panel(name: str, title: str, outcome: Outcome) -> Panel:
         for position, member in enumerate(members)
         if deviate[position]
     ]
-    return Panel(title, [_turn(f"{name}_turn", data), *bars], note=data.attrs["note"])
+    return plot.Panel(title, [_turn(f"{name}_turn", data), *bars], note=data.attrs["note"])
 
 
-def _turn(name: str, data: xr.Dataset) -> Figure:
+def _turn(name: str, data: xr.Dataset) -> plot.Figure:
     """Error by the deviations of both members."""
-    angle = display("turn_angle", data["turn_angle"])
+    angle = plot.display("turn_angle", data["turn_angle"])
     unit = show.unit_of("kinematic_error", data)
-    quarter = float(display("turn_angle", 0.5 * np.pi))
+    quarter = float(plot.display("turn_angle", 0.5 * np.pi))
     traces = [
-        plain(
+        plot.plain(
             key,
-            *continued(angle, display("kinematic_error", data["kinematic_error"][k], data)),
+            *plot.continued(
+                angle, plot.display("kinematic_error", data["kinematic_error"][k], data)
+            ),
             unit,
         )
         for k, key in enumerate(_KEYS.values())
     ]
-    return Figure(
+    return plot.Figure(
         name,
         f"Kinematic error over {data.attrs['turn']}",
         traces,
-        layout(
+        plot.layout(
             f"{data.attrs['turn_angle']} θ [{show.unit_of('turn_angle')}]",
-            short_axis("kinematic_error", data),
+            plot.short_axis("kinematic_error", data),
             xaxis={"range": [0, 4.0 * quarter], "dtick": quarter},
         ),
         "Rotation of the loaded member in the sense of its torque, less that of teeth without "
@@ -123,18 +103,23 @@ def _turn(name: str, data: xr.Dataset) -> Figure:
     )
 
 
-def _spectrum(name: str, data: xr.Dataset, position: int, member: str) -> Figure:
+def _spectrum(name: str, data: xr.Dataset, position: int, member: str) -> plot.Figure:
     """Amplitudes of the orders that the deviations of one member make."""
-    lines = display("kinematic_error_spectrum", data["kinematic_error_spectrum"][:, position], data)
+    lines = plot.display(
+        "kinematic_error_spectrum", data["kinematic_error_spectrum"][:, position], data
+    )
     alone = float(data["kinematic_error_range"].values[-1, position])
     orders, unit = _orders(lines), show.unit_of("kinematic_error_spectrum", data)
-    return Figure(
+    return plot.Figure(
         name,
         f"Orders by {show.the(member)}",
-        [order_bars(key, orders, lines[k][orders], unit) for k, key in enumerate(_KEYS.values())],
-        layout(
+        [
+            plot.order_bars(key, orders, lines[k][orders], unit)
+            for k, key in enumerate(_KEYS.values())
+        ],
+        plot.layout(
             f"order, per {data.attrs['own_turn'].format(member)}",
-            short_axis("kinematic_error_spectrum", data),
+            plot.short_axis("kinematic_error_spectrum", data),
             xaxis={"range": [0.4, orders[-1] + 0.6], "dtick": 1 if orders.size < 25 else None},
             yaxis={"rangemode": "tozero"},
             barmode="group",
@@ -164,27 +149,27 @@ def error_rows(outcome: Outcome) -> list[dict[str, str]]:
     ]
 
 
-def error_blocks(page: Page) -> Iterator[Block]:
+def error_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield Paragraph(
+    yield section.Paragraph(
         "By the deviations that the case gives for the teeth, which differ from tooth to tooth: the mesh "
         "cycle, its losses and stiffness are those of teeth without them."
     )
     for it in kinematic_error_panels(page):
         if it.title:
-            yield Heading(it.title)
-        yield Paragraph(it.note)
-        yield from naming(it.title, [it])
+            yield section.Heading(it.title)
+        yield section.Paragraph(it.note)
+        yield from section.naming(it.title, [it])
 
 
-def error_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def error_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Peak to peak of the kinematic error."""
     words = kinematic_error_answer(outcome)
-    figure = key_figure(73.0, "Kinematic error", words, " peak to peak")
+    figure = section.key_figure(73.0, "Kinematic error", words, " peak to peak")
     detail = figure.detail.replace("peak to peak ", "peak to peak, ", 1)
     yield replace(figure, detail=detail, asked_by=("gears.deviations",))
 
 
-def error_printed(outcome: Outcome) -> Iterable[Printed]:
+def error_printed(outcome: Outcome) -> Iterable[section.Printed]:
     """What the screen shows."""
-    return [Printed(rows=error_rows(outcome))]
+    return [section.Printed(rows=error_rows(outcome))]

@@ -7,17 +7,8 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import (
-    Block,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    by_variant,
-)
 
 __all__ = ["limit_rows", "limits_blocks", "limits_facts", "limits_printed", "stress_rows"]
 
@@ -97,53 +88,53 @@ def _life(data: xr.Dataset) -> str:
     return f"Life of the wave generator's bearing: {life}, by the rating of the case, L (T_r/T)³ n_r/n."
 
 
-def limits_blocks(page: Page) -> Iterator[Block]:
+def limits_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from by_variant(page, "load_limits", _of_variant)
+    yield from section.by_variant(page, "load_limits", _of_variant)
 
 
-def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(_: int, outcome: Outcome) -> Iterator[section.Block]:
     data = outcome.parts["load_limits"]
     torque = show.quantity("flexspline_torque", float(data["flexspline_torque"]))
-    yield Paragraph(f"Torque on the flexspline: {torque}. {data.attrs['note']}")
+    yield section.Paragraph(f"Torque on the flexspline: {torque}. {data.attrs['note']}")
     places = [str(name) for name in data["place"].values]
-    yield SectionTable(["flexspline", *places], stress_rows(data), compact=True)
+    yield section.SectionTable(["flexspline", *places], stress_rows(data), compact=True)
     notes = [_concentrated(data), *([] if "goodman_safety" in data else [_WITHOUT])]
-    yield Paragraph(" ".join(notes), "note")
+    yield section.Paragraph(" ".join(notes), "note")
     torques = limit_rows(data)
     if torques:
         unit = show.unit_of("limit_torque")
-        yield SectionTable(["against", f"torque [{unit}]", "margin"], torques, compact=True)
-    yield Paragraph(_limits_note(data), "note")
+        yield section.SectionTable(["against", f"torque [{unit}]", "margin"], torques, compact=True)
+    yield section.Paragraph(_limits_note(data), "note")
     if "bearing_life" in data:
-        yield Paragraph(_life(data))
+        yield section.Paragraph(_life(data))
 
 
-def limits_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def limits_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """What follows from strengths and ratings that the case gives."""
     data = outcome.parts.get("load_limits")
     if data is None:
         return
     if "goodman_safety" in data:
         safety = show.number(float(data["goodman_safety"].min()))
-        yield KeyFigure(
+        yield section.KeyFigure(
             40.0,
             "Flexspline safety",
             safety,
             "for endless life; an estimate of a smooth ring and tube",
         )
     for name, _, margin in limit_rows(data):
-        yield KeyFigure(
+        yield section.KeyFigure(
             41.0, f"Against {name}", f"{margin} times", "the torque, which the case gives"
         )
     if "bearing_life" in data:
         life = show.quantity("bearing_life", float(data["bearing_life"]))
-        yield KeyFigure(
+        yield section.KeyFigure(
             42.0, "Life of the bearing", life, "of the wave generator, by the rating of the case"
         )
 
 
-def limits_printed(outcome: Outcome) -> Iterator[Printed]:
+def limits_printed(outcome: Outcome) -> Iterator[section.Printed]:
     """What the screen shows."""
     data = outcome.parts.get("load_limits")
     if data is None:
@@ -154,7 +145,7 @@ def limits_printed(outcome: Outcome) -> Iterator[Printed]:
         | {head(name): shown(name, float(data[name].values[k])) for name in names if name in data}
         for k, place in enumerate(data["place"].values)
     ]
-    yield Printed(rows=rows, line=" ".join(_on_screen(data)))
+    yield section.Printed(rows=rows, line=" ".join(_on_screen(data)))
 
 
 def _on_screen(data: xr.Dataset) -> Iterator[str]:

@@ -11,27 +11,8 @@ import xarray as xr
 
 from pitchpoint.analyses.figures import covered, why_not
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views import figures as plot
 from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    DASHES,
-    INK,
-    Choice,
-    Curve,
-    Curves,
-    Figure,
-    Key,
-    Menu,
-    Panel,
-    display,
-    evenly,
-    law_title,
-    laws,
-    layout,
-    level,
-    line,
-    rounded,
-    short_axis,
-)
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section
@@ -80,11 +61,13 @@ OF_DRIVER = Chart(
 )
 
 
-def map_panel(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart = OF_DRIVER) -> Panel:
+def map_panel(
+    outcomes: Mapping[str, Outcome], known: plot.Curves, chart: Chart = OF_DRIVER
+) -> plot.Panel:
     """Heat maps of loss and efficiency with a menu for law, variant and temperature."""
     choices = list(_choices(outcomes, chart))
     if not choices:
-        return Panel(chart.title, [])
+        return plot.Panel(chart.title, [])
     shown = min(range(len(choices)), key=lambda at: choices[at][0])
     _, variant, position, law = choices[shown]
     even = {name: words for name in chart.shown if (words := _even(name, outcomes, chart))}
@@ -98,10 +81,10 @@ def map_panel(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart = OF_
     if not figures:
         menu, menus, shown = [], [], 0
     note = " ".join(even.values())
-    return Panel(chart.title, figures, [], menu, note, menu="Shown for", menus=menus, at=shown)
+    return plot.Panel(chart.title, figures, [], menu, note, menu="Shown for", menus=menus, at=shown)
 
 
-def map_blocks(panel: Panel) -> Iterator[Block]:
+def map_blocks(panel: plot.Panel) -> Iterator[Block]:
     """The heat maps of a panel below what is the same everywhere.
 
     Args:
@@ -123,15 +106,15 @@ def _even(name: str, outcomes: Mapping[str, Outcome], chart: Chart) -> str:
     return f"{title}: {show.quantity(name, low, of=data)} throughout, to four digits."
 
 
-def _menus(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart) -> list[Menu]:
+def _menus(outcomes: Mapping[str, Outcome], known: plot.Curves, chart: Chart) -> list[plot.Menu]:
     """Menus for law and for temperature; none where variants have their maps at others."""
     maps = chart.of(outcomes)
     degrees = {tuple(data["temperature"].values.tolist()) for data in maps.values()}
-    labels = [known[name, law].label for name, data in maps.items() for law in laws(data)]
+    labels = [known[name, law].label for name, data in maps.items() for law in plot.laws(data)]
     if len(degrees) > 1:
         return []
-    levels = [level("temperature", degree) for degree in degrees.pop()]
-    menus = [Menu("Friction", labels), Menu("Oil at", levels)]
+    levels = [plot.level("temperature", degree) for degree in degrees.pop()]
+    menus = [plot.Menu("Friction", labels), plot.Menu("Oil at", levels)]
     return [menu for menu in menus if len(menu.labels) > 1]
 
 
@@ -153,7 +136,7 @@ def colour_scale(name: str, maps: Iterable[np.ndarray]) -> dict[str, float]:
         name: of the quantity.
         maps: its values, as many as have one scale.
     """
-    low, high = _ends(np.concatenate([display(name, values).ravel() for values in maps]))
+    low, high = _ends(np.concatenate([plot.display(name, values).ravel() for values in maps]))
     low, high = (-max(-low, high), max(-low, high)) if name in _SIGNED else (low, high)
     if not high > low:  # as one colour, not its last digits over the whole scale
         low, high = low - _SEEN * abs(low), low + _SEEN * abs(low)
@@ -162,7 +145,7 @@ def colour_scale(name: str, maps: Iterable[np.ndarray]) -> dict[str, float]:
 
 def _holds(outcome: Outcome, data: xr.Dataset) -> np.ndarray:
     """True for laws of a map that are in their range at the operating point, or of which nobody knows."""
-    return ~np.isin(laws(data), [*why_not(outcome.parts)])
+    return ~np.isin(plot.laws(data), [*why_not(outcome.parts)])
 
 
 def _ends(values: np.ndarray) -> tuple[float, float]:
@@ -198,21 +181,21 @@ def _choices(
 
 def _choice(
     outcomes: Mapping[str, Outcome],
-    known: Curves,
+    known: plot.Curves,
     chart: Chart,
     variant: str,
     position: int,
     law: int,
-) -> Choice:
+) -> plot.Choice:
     data = outcomes[variant].parts[chart.part]
-    curve = known[variant, laws(data)[law]]
-    degree = level("temperature", float(data["temperature"].values[position]))
+    curve = known[variant, plot.laws(data)[law]]
+    degree = plot.level("temperature", float(data["temperature"].values[position]))
     changes: dict[str, list[Any]] = {}
     for name in chart.shown:
         heat = _heat(name, data, chart, law, position)
         restyled = {**heat, **_contours(heat["z"])}
         changes[f"{chart.name}_{name}"] = [{k: [values] for k, values in restyled.items()}, {}, [0]]
-    return Choice(f"{curve.label}, oil at {degree}", changes)
+    return plot.Choice(f"{curve.label}, oil at {degree}", changes)
 
 
 def _heat(name: str, data: xr.Dataset, chart: Chart, law: int, temperature: int) -> dict[str, Any]:
@@ -223,9 +206,9 @@ def _heat(name: str, data: xr.Dataset, chart: Chart, law: int, temperature: int)
     rows, columns = (_thinned(finite.any(axis=axis)) for axis in (1, 0))
     values = every[law, temperature]
     return {
-        "x": rounded(display(across, data[across].values[columns], data)),
-        "y": rounded(display(up, data[up].values[rows], data)),
-        "z": rounded(display(name, values[np.ix_(rows, columns)], data)),
+        "x": plot.rounded(plot.display(across, data[across].values[columns], data)),
+        "y": plot.rounded(plot.display(up, data[up].values[rows], data)),
+        "z": plot.rounded(plot.display(name, values[np.ix_(rows, columns)], data)),
     }
 
 
@@ -243,7 +226,7 @@ def map_figure(
     law: int,
     temperature: int,
     scale: Mapping[str, float] = MappingProxyType({}),
-) -> Figure:
+) -> plot.Figure:
     """Heat map of a quantity with the operating point.
 
     Args:
@@ -265,14 +248,14 @@ def map_figure(
     heat = {
         "type": "contour",
         **shown,
-        **_COLOURS.get(name, {"colorscale": evenly("#ffffcc", "#feb24c", "#f4714d")}),
+        **_COLOURS.get(name, {"colorscale": plot.evenly("#ffffcc", "#feb24c", "#f4714d")}),
         "hoverongaps": False,
         **scale,
         "zauto": not scale,
         "showscale": not uniform,
         "autocontour": False,
         "contours": {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11}, **lines},
-        "line": {"color": INK, "width": 0.7},
+        "line": {"color": plot.INK, "width": 0.7},
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~r}} {unit}<br>%{{x:.4~r}} {units[0]}, %{{y:.4~r}} {units[1]}"
         "<extra></extra>",
@@ -280,17 +263,17 @@ def map_figure(
     point = {
         "type": "scatter",
         "mode": "markers",
-        "x": rounded(display(across, [speed], data)),
-        "y": rounded(display(up, [fact.torque], data)),
+        "x": plot.rounded(plot.display(across, [speed], data)),
+        "y": plot.rounded(plot.display(up, [fact.torque], data)),
         # The number of a contour can be read inside.
         "marker": {"symbol": "circle-open", "size": 20, "color": "#222", "line": {"width": 2}},
         "hovertemplate": "operating point<extra></extra>",
     }
-    return Figure(
+    return plot.Figure(
         f"{chart.name}_{name}",
         titled(name, data),
         [heat, point],
-        layout(show.axis_title(across, data), show.axis_title(up, data)),
+        plot.layout(show.axis_title(across, data), show.axis_title(up, data)),
         f"The ring marks the operating point.{_beginning(name, data, chart, shown)}{uniform}",
     )
 
@@ -319,8 +302,10 @@ _SIGNED = ("mean_input_torque", "map_electrical_power")
 """Quantities whose scale has zero in its middle."""
 
 _COLOURS: dict[str, dict[str, Any]] = {
-    **{name: {"colorscale": evenly("#8fa3cf", "#c9cdd0", "#ffe45c")} for name in _EFFICIENCIES},
-    **{name: {"colorscale": evenly("#e08a6d", "#f4f2ef", "#79a9d8")} for name in _SIGNED},
+    **{
+        name: {"colorscale": plot.evenly("#8fa3cf", "#c9cdd0", "#ffe45c")} for name in _EFFICIENCIES
+    },
+    **{name: {"colorscale": plot.evenly("#e08a6d", "#f4f2ef", "#79a9d8")} for name in _SIGNED},
 }
 """Colours of quantities of which little is not what is wanted; light, so that contours can be read."""
 
@@ -328,7 +313,7 @@ _AXES = {"torque": "temperature", "speed": "temperature", "temperature": "torque
 """For the axis of a figure, what its lines differ in."""
 
 
-def efficiency_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+def efficiency_panel(outcomes: Mapping[str, Outcome], known: plot.Curves) -> plot.Panel:
     """Efficiency against torque, speed and temperature, lines through the operating point and beside it.
 
     Several laws have a figure each, with one scale of the efficiency.
@@ -337,7 +322,7 @@ def efficiency_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
         (known[variant, law], outcome, position)
         for variant, outcome in outcomes.items()
         if "loss_map" in outcome.parts
-        for position, law in enumerate(laws(outcome.parts["loss_map"]))
+        for position, law in enumerate(plot.laws(outcome.parts["loss_map"]))
     ]
     figures = [
         figure
@@ -347,43 +332,48 @@ def efficiency_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
             {drawn[0].label: _lines(axis, level_axis, *drawn) for drawn in seen}
         )
     ]
-    return Panel("Efficiency", figures, [curve for curve, *_ in seen] if len(seen) == 1 else [])
+    return plot.Panel(
+        "Efficiency", figures, [curve for curve, *_ in seen] if len(seen) == 1 else []
+    )
 
 
-def _worth(axis: str, seen: list[tuple[Curve, Outcome, int]]) -> bool:
+def _worth(axis: str, seen: list[tuple[plot.Curve, Outcome, int]]) -> bool:
     """True if there are enough values for a line."""
     return any(outcome.parts["loss_map"].sizes[axis] > 2 for _, outcome, _ in seen)
 
 
-def _lines(axis: str, other: str, curve: Curve, outcome: Outcome, law: int) -> Figure:
+def _lines(axis: str, other: str, curve: plot.Curve, outcome: Outcome, law: int) -> plot.Figure:
     """Efficiency under one law, a line for each of some values of another axis."""
     data = outcome.parts["loss_map"].isel(law=law)
     (third,) = {"torque", "speed", "temperature"} - {axis, other}
     near = data.sel({third: getattr(operating_point(outcome), third)}, method="nearest")
-    values = dict(zip(_spread(near[other].values, other), DASHES, strict=False))
+    values = dict(zip(_spread(near[other].values, other), plot.DASHES, strict=False))
     drawn = [
-        line(
+        plot.line(
             curve,
-            display(axis, near[axis], data),
-            display("mean_efficiency", near["mean_efficiency"].sel({other: value})),
+            plot.display(axis, near[axis], data),
+            plot.display("mean_efficiency", near["mean_efficiency"].sel({other: value})),
             show.unit_of("mean_efficiency"),
             line={"color": curve.colour, "dash": dash, "width": 2},
         )
         for value, dash in values.items()
     ]
-    held = level(third, float(near[third]), data)
-    return Figure(
+    held = plot.level(third, float(near[third]), data)
+    return plot.Figure(
         f"efficiency_{axis}",
         f"Mean efficiency against {show.described(axis, data).long_name}",
         drawn,
-        layout(show.axis_title(axis, data), short_axis("mean_efficiency")),
+        plot.layout(show.axis_title(axis, data), plot.short_axis("mean_efficiency")),
         f"At {held}, which of the loss map is nearest to the operating point.",
-        tuple(Key(level(other, value, data), INK, dash) for value, dash in values.items()),
+        tuple(
+            plot.Key(plot.level(other, value, data), plot.INK, dash)
+            for value, dash in values.items()
+        ),
         missing="Undefined here: no power is transmitted, or the mesh is locked.",
     )
 
 
-def _on_one_scale(figures: Mapping[str, Figure]) -> list[Figure]:
+def _on_one_scale(figures: Mapping[str, plot.Figure]) -> list[plot.Figure]:
     """The same figures, several with one range of their values and named by their curve."""
     if len(figures) < 2:
         return [*figures.values()]
@@ -406,7 +396,7 @@ def _on_one_scale(figures: Mapping[str, Figure]) -> list[Figure]:
 def _spread(values: np.ndarray, name: str) -> list[float]:
     """At most so many values of an axis as there are dashes, from its least to its largest."""
     every = values[values > 0.0] if name == "torque" else values
-    count = min(every.size, len(DASHES))
+    count = min(every.size, len(plot.DASHES))
     return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]
 
 
@@ -426,7 +416,7 @@ def _colours(outcomes: Mapping[str, Outcome]) -> str:
     locked = any(bool((data["locked"] & (data["torque"] > 0.0)).any()) for _, data in maps)
     blank = " Blank cells: friction locks the mesh there." if locked else ""
     outside = [
-        law_title(outcome, laws(d)[k])
+        plot.law_title(outcome, plot.laws(d)[k])
         for outcome, d in maps
         for k in np.flatnonzero(~_holds(outcome, d))
     ]

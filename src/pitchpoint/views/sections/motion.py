@@ -7,44 +7,14 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import CAMPBELL, headline
+from pitchpoint.analyses.figures import CAMPBELL, OF_COURSE, headline
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.campbell import campbell
-from pitchpoint.views.figures import (
-    GREY,
-    PALETTE,
-    RISING,
-    Figure,
-    Key,
-    Panel,
-    Trace,
-    continued,
-    display,
-    law_title,
-    laws,
-    layout,
-    order_bars,
-    pair_key,
-    plain,
-    rounded,
-    short_axis,
-)
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import (
-    Block,
-    Heading,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    by_variant,
-    key_figure,
-    naming,
-)
 
 __all__ = [
     "motion_answer",
@@ -64,12 +34,7 @@ _FIGURES = (
     "quasi_static_efficiency",
     "efficiency_difference",
     "mean_input_torque",
-    "mean_transmission_error",
-    "transmission_error_rms",
-    "transmission_error_range",
-    "largest_mesh_force",
-    "smallest_mesh_force",
-    "largest_bearing_force",
+    *OF_COURSE,
     "mesh_frequency",
     "mesh_damping",
 )
@@ -126,7 +91,7 @@ def _found(data: xr.Dataset) -> bool:
 # ---- one period
 
 
-def motion_panel(name: str, outcome: Outcome) -> Panel:
+def motion_panel(name: str, outcome: Outcome) -> plot.Panel:
     """Courses over the period and the orders of the transmission error."""
     data = outcome.parts["motion"]
     figures = [
@@ -138,10 +103,10 @@ def motion_panel(name: str, outcome: Outcome) -> Panel:
     ]
     if data.sizes.get("bearing"):
         figures += [*_bearings(name, data), _bearing_spectrum(f"{name}_bearing_spectrum", data)]
-    return Panel("", figures)
+    return plot.Panel("", figures)
 
 
-def _bearings(name: str, data: xr.Dataset) -> Iterator[Figure]:
+def _bearings(name: str, data: xr.Dataset) -> Iterator[plot.Figure]:
     """Forces on the bearings of every gear, where they yield."""
     if data.sizes.get("bearing"):
         yield _labelled(f"{name}_bearing", data, "bearing_force", "bearing")
@@ -150,46 +115,52 @@ def _bearings(name: str, data: xr.Dataset) -> Iterator[Figure]:
 _NOW = "Less what the contacts lose at the moment, of the mean power that is put in."
 
 
-def _course(name: str, data: xr.Dataset, variable: str, note: str = "") -> Figure:
+def _course(name: str, data: xr.Dataset, variable: str, note: str = "") -> plot.Figure:
     """One course over the period, or from a start."""
-    values = display(variable, data[variable].values, data)
+    values = plot.display(variable, data[variable].values, data)
     return replace(
-        _lines(name, data, variable, [Key("", PALETTE[0])], [values]), keys=(), note=note
+        _lines(name, data, variable, [plot.Key("", plot.PALETTE[0])], [values]), keys=(), note=note
     )
 
 
-def _pairs(name: str, data: xr.Dataset, variable: str) -> Figure:
+def _pairs(name: str, data: xr.Dataset, variable: str) -> plot.Figure:
     """A quantity of every pair of teeth; gaps where a pair carries nothing."""
     carries = np.abs(data["load"].values) > 0.0
-    values = display(variable, np.where(carries, data[variable].values, np.nan), data)
-    keys = [pair_key(pair) for pair in range(data.sizes["pair"])]
+    values = plot.display(variable, np.where(carries, data[variable].values, np.nan), data)
+    keys = [plot.pair_key(pair) for pair in range(data.sizes["pair"])]
     return _lines(name, data, variable, keys, values)
 
 
-def _speeds(name: str, data: xr.Dataset) -> Figure:
+def _speeds(name: str, data: xr.Dataset) -> plot.Figure:
     """Speed of every body, over the nominal one within a period."""
     return _labelled(name, data, _speed_of(data), "body")
 
 
-def _labelled(name: str, data: xr.Dataset, variable: str, axis: str) -> Figure:
+def _labelled(name: str, data: xr.Dataset, variable: str, axis: str) -> plot.Figure:
     """A quantity of everything that an axis names."""
     names = enumerate(data[axis].values)
-    keys = [Key(str(label), PALETTE[k % len(PALETTE)]) for k, label in names]
-    return _lines(name, data, variable, keys, display(variable, data[variable].values, data))
+    keys = [plot.Key(str(label), plot.PALETTE[k % len(plot.PALETTE)]) for k, label in names]
+    return _lines(name, data, variable, keys, plot.display(variable, data[variable].values, data))
 
 
 def _lines(
-    name: str, data: xr.Dataset, variable: str, keys: Sequence[Key], values: Iterable[np.ndarray]
-) -> Figure:
+    name: str,
+    data: xr.Dataset,
+    variable: str,
+    keys: Sequence[plot.Key],
+    values: Iterable[np.ndarray],
+) -> plot.Figure:
     """Lines over the time of a start, else over what the driver has turned."""
     unit = show.unit_of(variable, data)
     if "turned" in data:
         x, along = data["turned"].values, TURNED
     else:
-        x, along = display("time", data["time"].values, data), show.axis_title("time", data)
-    traces = [plain(key, *continued(x, y), unit) for key, y in zip(keys, values, strict=True)]
-    axes = layout(along, short_axis(variable, data))
-    return Figure(name, titled(variable, data), traces, axes, "", tuple(keys), NONE)
+        x, along = plot.display("time", data["time"].values, data), show.axis_title("time", data)
+    traces = [
+        plot.plain(key, *plot.continued(x, y), unit) for key, y in zip(keys, values, strict=True)
+    ]
+    axes = plot.layout(along, plot.short_axis(variable, data))
+    return plot.Figure(name, titled(variable, data), traces, axes, "", tuple(keys), NONE)
 
 
 def _speed_of(data: xr.Dataset) -> str:
@@ -197,16 +168,18 @@ def _speed_of(data: xr.Dataset) -> str:
     return "body_speed" if "body_speed" in data else "relative_speed"
 
 
-def _spectrum(name: str, data: xr.Dataset) -> Figure:
+def _spectrum(name: str, data: xr.Dataset) -> plot.Figure:
     """Amplitudes of the orders of the transmission error."""
-    bars = [_orders(data, "spectrum", data["spectrum"].values, Key("", PALETTE[0], ""))]
+    bars = [_orders(data, "spectrum", data["spectrum"].values, plot.Key("", plot.PALETTE[0], ""))]
     return _of_orders(name, "Orders of the transmission error", "spectrum", bars)
 
 
-def _bearing_spectrum(name: str, data: xr.Dataset) -> Figure:
+def _bearing_spectrum(name: str, data: xr.Dataset) -> plot.Figure:
     """Those of the forces on the bearings of every gear."""
     names = data["bearing"].values
-    keys = [Key(str(one), PALETTE[k % len(PALETTE)], "") for k, one in enumerate(names)]
+    keys = [
+        plot.Key(str(one), plot.PALETTE[k % len(plot.PALETTE)], "") for k, one in enumerate(names)
+    ]
     values = data["bearing_spectrum"].values
     bars = [
         _orders(data, "bearing_spectrum", one, key) for one, key in zip(values, keys, strict=True)
@@ -215,31 +188,31 @@ def _bearing_spectrum(name: str, data: xr.Dataset) -> Figure:
     return replace(_of_orders(name, title, "bearing_spectrum", bars), keys=tuple(keys))
 
 
-def _orders(data: xr.Dataset, variable: str, values: np.ndarray, key: Key) -> Trace:
+def _orders(data: xr.Dataset, variable: str, values: np.ndarray, key: plot.Key) -> plot.Trace:
     """Amplitudes of the orders of the mesh frequency; that of order zero is the mean."""
     orders = data["order"].values
     shown = (orders > 0.0) & (orders <= 20.0)
-    amplitudes = display(variable, values[shown])
-    return order_bars(key, orders[shown], amplitudes, show.unit_of(variable))
+    amplitudes = plot.display(variable, values[shown])
+    return plot.order_bars(key, orders[shown], amplitudes, show.unit_of(variable))
 
 
-def _of_orders(name: str, title: str, variable: str, bars: list[Trace]) -> Figure:
-    axes = layout(
-        "order of the mesh frequency", short_axis(variable), yaxis={"rangemode": "tozero"}
+def _of_orders(name: str, title: str, variable: str, bars: list[plot.Trace]) -> plot.Figure:
+    axes = plot.layout(
+        "order of the mesh frequency", plot.short_axis(variable), yaxis={"rangemode": "tozero"}
     )
-    return Figure(name, title, bars, axes, missing=NONE)
+    return plot.Figure(name, title, bars, axes, missing=NONE)
 
 
-def _table(data: xr.Dataset) -> SectionTable:
+def _table(data: xr.Dataset) -> section.SectionTable:
     names = [name for name in _FIGURES if name != "largest_bearing_force" or "bearing" in data]
     rows = [
         (f"{titled(name, data)} {show.described(name, data).symbol}", _cell(data, name))
         for name in names
     ]
-    return SectionTable(["", ""], rows, compact=True)
+    return section.SectionTable(["", ""], rows, compact=True)
 
 
-def _modes(data: xr.Dataset) -> SectionTable:
+def _modes(data: xr.Dataset) -> section.SectionTable:
     """Natural frequencies with the mean stiffness, what yields in them, and how they are damped."""
     rows = [
         (
@@ -248,7 +221,7 @@ def _modes(data: xr.Dataset) -> SectionTable:
         )
         for k, name in enumerate(data["mode"].values)
     ]
-    return SectionTable(
+    return section.SectionTable(
         ["Mode: elastic energy in", *(titled(variable, data) for variable in _OF_MODES)],
         rows,
         compact=True,
@@ -265,39 +238,43 @@ def _cell(data: xr.Dataset, name: str) -> str:
     return show.quantity(name, value, of=data) if np.isfinite(value) else "none"
 
 
-def _works(data: xr.Dataset) -> SectionTable:
+def _works(data: xr.Dataset) -> section.SectionTable:
     """Energies of one period that are not nothing, and how well they balance."""
     rows = [(titled(name, data), _cell(data, name)) for name in _WORKS if float(data[name])]
     closure = float(data["energy_closure"])
     left = f"{closure:.0e}" if np.isfinite(closure) else "not known"
     rows.append(("What is left of their balance, of the largest", left))
-    return SectionTable(["Energy of one period", ""], rows, compact=True)
+    return section.SectionTable(["Energy of one period", ""], rows, compact=True)
 
 
 # ---- against speed
 
 
-def speeds_panel(name: str, outcome: Outcome) -> Panel:
+def speeds_panel(name: str, outcome: Outcome) -> plot.Panel:
     """Figures against speed, the orders over speed, and the diagram of Campbell."""
     data = outcome.parts["motion_against_speed"]
     figures = [_against(f"{name}_{variable}", data, variable) for variable in _AGAINST_SPEED]
     figures.insert(2, _efficiencies(f"{name}_efficiency", data))
     if data["largest_bearing_force"].notnull().any():
         figures.append(_against(f"{name}_bearing", data, "largest_bearing_force"))
-    return Panel("", [*figures, _waterfall(f"{name}_waterfall", data), _campbell(name, outcome)])
+    return plot.Panel(
+        "", [*figures, _waterfall(f"{name}_waterfall", data), _campbell(name, outcome)]
+    )
 
 
-def _branches(data: xr.Dataset, variable: str, colour: str) -> tuple[list[Trace], list[Key], str]:
+def _branches(
+    data: xr.Dataset, variable: str, colour: str
+) -> tuple[list[plot.Trace], list[plot.Key], str]:
     """Curves for rising and falling speed with their legend; where both are the same, one and a sentence."""
-    speed, unit = display("speed", data["speed"].values, data), show.unit_of(variable, data)
+    speed, unit = plot.display("speed", data["speed"].values, data), show.unit_of(variable, data)
     traces, keys = [], []
-    courses = display(variable, _steady(data, variable))
+    courses = plot.display(variable, _steady(data, variable))
     alike = len(courses) > 1 and np.allclose(courses[0], courses[1], rtol=1e-6, equal_nan=True)
     looks = zip(data["direction"].values, ("solid", "dash"), strict=False)
     for (direction, dash), values in zip(looks, courses[:1] if alike else courses, strict=False):
-        key = Key(f"speed {direction}", colour, dash)
+        key = plot.Key(f"speed {direction}", colour, dash)
         dots = {"mode": "lines+markers", "marker": {"size": 4, "color": colour}}
-        traces.append(plain(key, speed, values, unit, **dots))
+        traces.append(plot.plain(key, speed, values, unit, **dots))
         keys.append(key)
     return traces, keys, "Speed rising and falling give the same." if alike else ""
 
@@ -307,84 +284,90 @@ def _steady(data: xr.Dataset, variable: str) -> np.ndarray:
     return np.where(data["vibration_status"].values == 0, data[variable].values, np.nan)
 
 
-def _against(name: str, data: xr.Dataset, variable: str) -> Figure:
-    traces, keys, note = _branches(data, variable, PALETTE[0])
-    axes = layout(
-        show.axis_title("speed", data), short_axis(variable, data), yaxis={"rangemode": "tozero"}
+def _against(name: str, data: xr.Dataset, variable: str) -> plot.Figure:
+    traces, keys, note = _branches(data, variable, plot.PALETTE[0])
+    axes = plot.layout(
+        show.axis_title("speed", data),
+        plot.short_axis(variable, data),
+        yaxis={"rangemode": "tozero"},
     )
     several = tuple(keys) if len(keys) > 1 else ()
-    return Figure(
+    return plot.Figure(
         name, f"{titled(variable, data)} against speed", traces, axes, note, several, NONE
     )
 
 
-def _efficiencies(name: str, data: xr.Dataset) -> Figure:
+def _efficiencies(name: str, data: xr.Dataset) -> plot.Figure:
     """Mean efficiency in motion beside that without vibration."""
-    traces, keys, remark = _branches(data, "mean_efficiency", PALETTE[0])
-    still = Key("without vibration", GREY, "dot")
-    speed = display("speed", data["speed"].values, data)
-    values = display("quasi_static_efficiency", data["quasi_static_efficiency"].values)
-    traces.append(plain(still, speed, values, "%"))
+    traces, keys, remark = _branches(data, "mean_efficiency", plot.PALETTE[0])
+    still = plot.Key("without vibration", plot.GREY, "dot")
+    speed = plot.display("speed", data["speed"].values, data)
+    values = plot.display("quasi_static_efficiency", data["quasi_static_efficiency"].values)
+    traces.append(plot.plain(still, speed, values, "%"))
     if len(keys) == 1:
-        keys = [Key("in motion", PALETTE[0])]
-    axes = layout(show.axis_title("speed", data), short_axis("mean_efficiency"))
+        keys = [plot.Key("in motion", plot.PALETTE[0])]
+    axes = plot.layout(show.axis_title("speed", data), plot.short_axis("mean_efficiency"))
     note = f"Of the teeth, pairs sharing the load as they yield. {remark}".rstrip()
     title = "Mean efficiency against speed"
-    return Figure(name, title, traces, axes, note, (*keys, still), NONE)
+    return plot.Figure(name, title, traces, axes, note, (*keys, still), NONE)
 
 
-def _waterfall(name: str, data: xr.Dataset) -> Figure:
+def _waterfall(name: str, data: xr.Dataset) -> plot.Figure:
     """Amplitude of every order over speed, rising."""
     orders, unit = data["order"].values, show.unit_of("spectrum")
     shown = (orders > 0.0) & (orders <= 12.0)
     codes = data["vibration_status"].values[0]
     amplitude = np.where(codes[:, None] == 0, data["spectrum"].values[0], np.nan)[:, shown]
-    heat: Trace = {
+    heat: plot.Trace = {
         "type": "heatmap",
-        "x": rounded(display("speed", data["speed"].values, data)),
+        "x": plot.rounded(plot.display("speed", data["speed"].values, data)),
         "y": orders[shown].tolist(),
-        "z": [rounded(row) for row in display("spectrum", amplitude).T],
-        "colorscale": RISING,
+        "z": [plot.rounded(row) for row in plot.display("spectrum", amplitude).T],
+        "colorscale": plot.RISING,
         "hoverongaps": False,
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~r}} {unit}<br>%{{x:.4~r}}, order %{{y}}<extra></extra>",
     }
-    axes = layout(show.axis_title("speed", data), "order of the mesh frequency")
+    axes = plot.layout(show.axis_title("speed", data), "order of the mesh frequency")
     title = "Orders of the transmission error over speed"
-    return Figure(name, title, [heat], axes, "Speed rising.", missing=NONE)
+    return plot.Figure(name, title, [heat], axes, "Speed rising.", missing=NONE)
 
 
-def _campbell(name: str, outcome: Outcome) -> Figure:
+def _campbell(name: str, outcome: Outcome) -> plot.Figure:
     """Frequencies of the orders over speed, with the natural frequencies."""
     data, cycle = outcome.parts["motion_against_speed"], period_of(outcome).angle
-    orders = [(Key(str(one), PALETTE[0]), one / cycle) for one in range(1, CAMPBELL + 1)]
+    orders = [(plot.Key(str(one), plot.PALETTE[0]), one / cycle) for one in range(1, CAMPBELL + 1)]
     natural = data["natural_frequency"].values
     diagram = campbell(
         f"{name}_campbell",
         data,
         orders,
-        [(Key("natural frequencies", GREY, "dash"), float(one)) for one in natural],
+        [(plot.Key("natural frequencies", plot.GREY, "dash"), float(one)) for one in natural],
         1.15 * float(natural.max()),
         marked=True,
     )
     keys = (
-        Key("orders of the mesh frequency", PALETTE[0]),
-        Key("natural frequencies", GREY, "dash"),
+        plot.Key("orders of the mesh frequency", plot.PALETTE[0]),
+        plot.Key("natural frequencies", plot.GREY, "dash"),
     )
     note = "Where an order crosses a natural frequency, with the mean stiffness, lies a critical speed."
     return replace(diagram, title="Campbell's diagram", note=note, keys=keys, missing=NONE)
 
 
-def _critical(data: xr.Dataset) -> Iterator[Block]:
+def _critical(data: xr.Dataset) -> Iterator[section.Block]:
     """Crossings in the diagram of Campbell between the slowest speed and the fastest."""
     natural = "natural_frequency"
     heads = [_headed(name, data) for name in (natural, "critical_speed", "half_power_width")]
     rows = [_crossing(data, k) for k in range(data.sizes["crossing"])]
     if rows:
-        yield Paragraph("Critical speeds, where an order of the mesh frequency meets a mode:")
-        yield SectionTable(["Mode: elastic energy in", "Order", *heads], rows)
+        yield section.Paragraph(
+            "Critical speeds, where an order of the mesh frequency meets a mode:"
+        )
+        yield section.SectionTable(["Mode: elastic energy in", "Order", *heads], rows)
     else:
-        yield Paragraph(f"No order up to {CAMPBELL} meets a natural frequency at these speeds.")
+        yield section.Paragraph(
+            f"No order up to {CAMPBELL} meets a natural frequency at these speeds."
+        )
 
 
 def _headed(name: str, data: xr.Dataset) -> str:
@@ -410,7 +393,7 @@ def _crossing(data: xr.Dataset, number: int) -> tuple[str, ...]:
 # ---- from a start
 
 
-def _start_table(data: xr.Dataset) -> SectionTable:
+def _start_table(data: xr.Dataset) -> section.SectionTable:
     """The largest of the forces, and where a start ends."""
     names = ["largest_mesh_force", *(["largest_bearing_force"] if "bearing" in data else [])]
     rows = [(titled(name, data), _cell(data, name)) for name in names]
@@ -422,10 +405,10 @@ def _start_table(data: xr.Dataset) -> SectionTable:
         for name in lost
         if float(data[name][-1])
     ]
-    return SectionTable(["", ""], rows, compact=True)
+    return section.SectionTable(["", ""], rows, compact=True)
 
 
-def start_panel(name: str, outcome: Outcome) -> Panel:
+def start_panel(name: str, outcome: Outcome) -> plot.Panel:
     """Courses in time from a start."""
     data = outcome.parts["start_up"]
     figures = [
@@ -433,7 +416,7 @@ def start_panel(name: str, outcome: Outcome) -> Panel:
         _course(f"{name}_error", data, "transmission_error"),
         *(_pairs(f"{name}_{variable}", data, variable) for variable in ("load", "friction_force")),
     ]
-    return Panel("", [*figures, *_bearings(name, data)])
+    return plot.Panel("", [*figures, *_bearings(name, data)])
 
 
 def _balance(data: xr.Dataset) -> str:
@@ -447,40 +430,40 @@ def _balance(data: xr.Dataset) -> str:
 # ---- the section
 
 
-def motion_blocks(page: Page) -> Iterator[Block]:
+def motion_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from by_variant(page, "motion", _of_period)
+    yield from section.by_variant(page, "motion", _of_period)
     for position, title, outcome in page.each("motion_against_speed"):
-        yield Heading(f"Against speed: {title}" if title else "Against speed")
+        yield section.Heading(f"Against speed: {title}" if title else "Against speed")
         data = outcome.parts["motion_against_speed"]
         yield from _gaps(data)
         yield from _critical(data)
-        yield from naming(title, [speeds_panel(f"speeds{position}", outcome)])
+        yield from section.naming(title, [speeds_panel(f"speeds{position}", outcome)])
     for position, title, outcome in page.each("start_up"):
-        yield Heading(f"Start: {title}" if title else "Start")
+        yield section.Heading(f"Start: {title}" if title else "Start")
         data = outcome.parts["start_up"]
-        yield Paragraph(
+        yield section.Paragraph(
             f"Under the torques of the case: {data.attrs['sentence']}. {_balance(data)}At rest "
             "nothing sticks; below a hundredth of the operating speed friction is that of the law at it."
         )
         if np.isfinite(data["largest_mesh_force"]):
             yield _start_table(data)
-        yield from naming(title, [start_panel(f"start{position}", outcome)])
+        yield from section.naming(title, [start_panel(f"start{position}", outcome)])
 
 
-def _of_period(position: int, outcome: Outcome) -> Iterator[Block]:
+def _of_period(position: int, outcome: Outcome) -> Iterator[section.Block]:
     data = outcome.parts["motion"]
     held = " on bearings that yield" if data.sizes.get("bearing") else ""
-    yield Paragraph(
+    yield section.Paragraph(
         f"Both gears as bodies{held}, at the mean speed of the operating point, steady. Every contact draws "
         f"at its own force, speeds and film by the law of friction: {data.attrs['law']}. Contact: "
         f"{data.attrs['contact']}."
     )
     if not _found(data):
-        yield Paragraph(f"No values are shown: {data.attrs['sentence']}.", "warning")
+        yield section.Paragraph(f"No values are shown: {data.attrs['sentence']}.", "warning")
         return
     yield _table(data)
-    yield Paragraph(
+    yield section.Paragraph(
         "The efficiency counts sliding, rolling and damping while the gears vibrate; that without vibration "
         "is quasi-static, pairs sharing the load as they yield. Springs that change with the phase and "
         "errors bring in work without a torque for it, listed below: it counts as put in by the driver. The "
@@ -492,7 +475,7 @@ def _of_period(position: int, outcome: Outcome) -> Iterator[Block]:
     yield motion_panel(f"motion{position}", outcome)
 
 
-def _gaps(data: xr.Dataset) -> Iterator[Block]:
+def _gaps(data: xr.Dataset) -> Iterator[section.Block]:
     """Speeds without a steady motion, and why."""
     sentences: Sequence[str] = json.loads(data.attrs["sentences"])
     for direction, codes in zip(
@@ -500,27 +483,27 @@ def _gaps(data: xr.Dataset) -> Iterator[Block]:
     ):
         for code in np.unique(codes[codes != 0]):
             count = np.count_nonzero(codes == code)
-            yield Paragraph(
+            yield section.Paragraph(
                 f"Speed {direction}: {count} of {codes.size} speeds are left out, {sentences[int(code)]}.",
                 "warning",
             )
 
 
-def motion_printed(outcome: Outcome) -> Iterator[Printed]:
+def motion_printed(outcome: Outcome) -> Iterator[section.Printed]:
     """What the screen shows."""
     data = outcome.parts.get("motion")
     if data is None:
         return
     if not _found(data):
-        yield Printed(
+        yield section.Printed(
             "Motion with friction", line=f"No values are shown: {motion_answer(outcome)}."
         )
         return
     row = {head(name, data): shown(name, float(data[name]), data) for name in _ON_SCREEN}
     sentence = f"{motion_answer(outcome)}; natural frequencies {_frequencies(data)}."
-    yield Printed("Motion with friction", [row], sentence)
+    yield section.Printed("Motion with friction", [row], sentence)
     if "start_up" in outcome.parts:
-        yield Printed(line=f"{_end_of_start(outcome.parts['start_up'])}.")
+        yield section.Printed(line=f"{_end_of_start(outcome.parts['start_up'])}.")
 
 
 def _end_of_start(data: xr.Dataset) -> str:
@@ -543,14 +526,16 @@ def _last_speeds(data: xr.Dataset) -> Iterator[tuple[str, str]]:
 def _frequencies(data: xr.Dataset) -> str:
     values = ", ".join(
         show.number(float(frequency))
-        for frequency in display("natural_frequency", data["natural_frequency"].values, data)
+        for frequency in plot.display("natural_frequency", data["natural_frequency"].values, data)
     )
     return f"{values} {show.unit_of('natural_frequency', data)}"
 
 
-def motion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def motion_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Efficiency and transmission error in motion, with its law where the efficiency is by another one."""
-    figure = key_figure(34.0, "In motion", motion_answer(outcome), " of the teeth with")
+    figure = section.key_figure(34.0, "In motion", motion_answer(outcome), " of the teeth with")
     law, parts = str(outcome.parts["motion"].attrs["law"]), outcome.parts
-    stands_by = law_title(outcome, laws(headline(parts))[0]) if "operation" in parts else law
+    stands_by = (
+        plot.law_title(outcome, plot.laws(headline(parts))[0]) if "operation" in parts else law
+    )
     yield figure if stands_by == law else replace(figure, detail=f"by {law}; {figure.detail}")

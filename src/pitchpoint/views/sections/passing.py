@@ -8,21 +8,8 @@ import xarray as xr
 from pitchpoint.results.variable import length
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views import figures as plot
 from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    GREY,
-    INK,
-    PALETTE,
-    Figure,
-    Key,
-    Panel,
-    Trace,
-    display,
-    layout,
-    plain,
-    rounded,
-    short_axis,
-)
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.way import at_origin, place_of
@@ -33,35 +20,37 @@ _LENGTH = length("", "")
 _LEAST = 1e-8
 """Smallest clearance drawn [m]: flanks that slide on each other have none."""
 
-_TEETH = Key("teeth that carry", "#c0392b", "dot")
+_TEETH = plot.Key("teeth that carry", "#c0392b", "dot")
 
 
-def gap_panel(outcome: Outcome, name: str) -> Panel:
+def gap_panel(outcome: Outcome, name: str) -> plot.Panel:
     """Path of a tooth into its space, and clearance along the wave.
 
     Args:
         outcome: a result whose teeth are carried by a wave.
         name: with which the figures begin in the page.
     """
-    return Panel("", [_passing(f"{name}_passing", outcome), _clearance(f"{name}_gap", outcome)])
+    return plot.Panel(
+        "", [_passing(f"{name}_passing", outcome), _clearance(f"{name}_gap", outcome)]
+    )
 
 
-def _clearance(name: str, outcome: Outcome) -> Figure:
+def _clearance(name: str, outcome: Outcome) -> plot.Figure:
     """Clearance of unloaded flanks, with the teeth that carry at one moment."""
     teeth = outcome.parts["teeth"]
-    angle = display("clearance_angle", teeth["clearance_angle"].values)
+    angle = plot.display("clearance_angle", teeth["clearance_angle"].values)
     clearance = np.maximum(teeth["clearance"].values, _LEAST)
     unit = show.unit(VARIABLES["clearance"].display)
-    key = Key("clearance of the unloaded flanks", PALETTE[0])
-    traces = [plain(key, angle, display("clearance", clearance), unit)]
+    key = plot.Key("clearance of the unloaded flanks", plot.PALETTE[0])
+    traces = [plot.plain(key, angle, plot.display("clearance", clearance), unit)]
     keys = [key]
-    least = f"{show.number(float(display('clearance', _LEAST)))} {unit}"
+    least = f"{show.number(float(plot.display('clearance', _LEAST)))} {unit}"
     note = f"Clearances below {least} are drawn there: flanks without one slide on each other."
     places = _carrying(outcome)
     if places.size:
-        there = np.interp(places, angle, display("clearance", clearance))
+        there = np.interp(places, angle, plot.display("clearance", clearance))
         traces.append(
-            plain(_TEETH, places, there, unit)
+            plot.plain(_TEETH, places, there, unit)
             | {"mode": "markers", "marker": {"size": 7, "color": _TEETH.colour}}
         )
         keys.append(_TEETH)
@@ -70,13 +59,13 @@ def _clearance(name: str, outcome: Outcome) -> Figure:
             f"{_torque(outcome)} at one moment; load has closed their clearance. {note}"
         )
     ends = angle[np.isfinite(clearance)][[0, -1]].tolist()
-    return Figure(
+    return plot.Figure(
         name,
         "Clearance along the wave",
         traces,
-        layout(
+        plot.layout(
             _angle_axis(),
-            short_axis("clearance"),
+            plot.short_axis("clearance"),
             xaxis={"range": ends},
             yaxis={"type": "log", "dtick": 1, "exponentformat": "none"},
             shapes=[at_origin()],
@@ -102,10 +91,10 @@ def _carrying(outcome: Outcome) -> np.ndarray:
         return np.zeros(0)
     half = data.sizes["pair"] // int(data["path"].attrs["zones"])
     carries = data["load"].values[0, 0, :half].max(axis=-1) > 0.0
-    return display("clearance_angle", np.radians(place_of(data)[0, :half, 0][carries]))
+    return plot.display("clearance_angle", np.radians(place_of(data)[0, :half, 0][carries]))
 
 
-def _passing(name: str, outcome: Outcome) -> Figure:
+def _passing(name: str, outcome: Outcome) -> plot.Figure:
     """One tooth in its space at several angles, seen from the circular spline."""
     teeth = outcome.parts["teeth"]
     low = float(teeth["space"].values[:, 1].min())
@@ -124,11 +113,11 @@ def _passing(name: str, outcome: Outcome) -> Figure:
         )
     )
     axis = {"constrain": "domain", "scaleanchor": "x", "scaleratio": 1}
-    return Figure(
+    return plot.Figure(
         name,
         "Path of a tooth into its space",
         traces,
-        layout(
+        plot.layout(
             show.bracketed("across", _LENGTH),
             show.bracketed("outwards", _LENGTH),
             xaxis={"range": [3.2 * wide, -3.2 * wide], "constrain": "domain"},
@@ -138,10 +127,10 @@ def _passing(name: str, outcome: Outcome) -> Figure:
         "which is shaded, outwards from its tip circle; positive rotation is to the left. Equal scale "
         "in both directions.",
         (
-            Key("tooth on the long axis, p = 0", INK),
-            Key("p > 0", PALETTE[0]),
-            Key("p < 0", PALETTE[1]),
-            Key("middle of its tip", GREY, "dash"),
+            plot.Key("tooth on the long axis, p = 0", plot.INK),
+            plot.Key("p > 0", plot.PALETTE[0]),
+            plot.Key("p < 0", plot.PALETTE[1]),
+            plot.Key("middle of its tip", plot.GREY, "dash"),
         ),
     )
 
@@ -155,7 +144,7 @@ def _reach(teeth: xr.Dataset) -> float:
     return 0.6 * float(np.ptp(teeth["tooth"].values[:, 1]))
 
 
-def _space(teeth: xr.Dataset, low: float) -> Trace:
+def _space(teeth: xr.Dataset, low: float) -> plot.Trace:
     """The circular spline around the space and half of its neighbours."""
     x, y = simplified(teeth["space"].values, 2e-7).T
     turns = np.exp(2j * np.pi * np.array([-1, 0, 1]) / float(teeth["teeth"].values[1]))
@@ -166,8 +155,8 @@ def _space(teeth: xr.Dataset, low: float) -> Trace:
     return {
         "type": "scatter",
         "mode": "lines",
-        "x": rounded([*across.tolist(), *ends]),
-        "y": rounded([*outwards.tolist(), deep, deep]),
+        "x": plot.rounded([*across.tolist(), *ends]),
+        "y": plot.rounded([*outwards.tolist(), deep, deep]),
         "fill": "toself",
         "fillcolor": "#ece5d6",
         "line": {"color": "#8a7b55", "width": 1.5},
@@ -175,20 +164,20 @@ def _space(teeth: xr.Dataset, low: float) -> Trace:
     }
 
 
-def _outline(corners: np.ndarray, low: float, angle: float, reach: float) -> Trace:
-    colour = INK if abs(angle) < 1e-9 else PALETTE[0] if angle > 0.0 else PALETTE[1]
+def _outline(corners: np.ndarray, low: float, angle: float, reach: float) -> plot.Trace:
+    colour = plot.INK if abs(angle) < 1e-9 else plot.PALETTE[0] if angle > 0.0 else plot.PALETTE[1]
     x, y = _LENGTH.displayed(simplified(corners, 1e-6) - np.array([0.0, low])).T
     return {
         "type": "scatter",
         "mode": "lines",
-        "x": rounded(x, 4),
-        "y": rounded(y, 4),
-        "line": {"color": colour, "width": 2.4 if colour == INK else 0.9},
+        "x": plot.rounded(x, 4),
+        "y": plot.rounded(y, 4),
+        "line": {"color": colour, "width": 2.4 if colour == plot.INK else 0.9},
         "hovertemplate": f"p = {show.number(angle)}°<extra></extra>",
     }
 
 
-def _track(passing: np.ndarray, low: float) -> Trace:
+def _track(passing: np.ndarray, low: float) -> plot.Trace:
     middle = passing.shape[1] // 2
     x, y = _LENGTH.displayed(
         passing[:, middle - 1 : middle + 1].mean(axis=1) - np.array([0.0, low])
@@ -196,8 +185,8 @@ def _track(passing: np.ndarray, low: float) -> Trace:
     return {
         "type": "scatter",
         "mode": "lines",
-        "x": rounded(x, 4),
-        "y": rounded(y, 4),
-        "line": {"color": GREY, "width": 1.2, "dash": "dash"},
+        "x": plot.rounded(x, 4),
+        "y": plot.rounded(y, 4),
+        "line": {"color": plot.GREY, "width": 1.2, "dash": "dash"},
         "hoverinfo": "skip",
     }

@@ -8,20 +8,8 @@ import xarray as xr
 
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views import figures as plot
 from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    NO_POWER,
-    Curve,
-    Curves,
-    Figure,
-    Panel,
-    display,
-    laws,
-    layout,
-    line,
-    merged,
-    short_axis,
-)
 from pitchpoint.views.lines import REGIMES, SHORT, Points, gapped, regimes, titled, values_of
 from pitchpoint.views.path import StraightPath, marks, path_of
 from pitchpoint.views.point import named_members
@@ -71,12 +59,12 @@ def _loss_words(outcome: Outcome, law: int) -> str:
     return loss_sentence(loss_places(outcome.parts["cycle"], law, path), path)
 
 
-def path_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+def path_panel(outcomes: Mapping[str, Outcome], known: plot.Curves) -> plot.Panel:
     """Quantities of one pair on its way from A to E."""
     seen = list(_seen(outcomes, known))
     path = path_of(next(iter(outcomes.values())))
     figures = [_along_figure(name, seen, path) for name in _ALONG] if seen else []
-    return Panel("Along the path of contact", figures, [curve for curve, *_ in seen])
+    return plot.Panel("Along the path of contact", figures, [curve for curve, *_ in seen])
 
 
 def loss_places(data: xr.Dataset, law: int, path: StraightPath) -> dict[tuple[str, str], float]:
@@ -155,30 +143,30 @@ def _between(x: float, path: np.ndarray, values: np.ndarray) -> float:
 
 
 def _seen(
-    outcomes: Mapping[str, Outcome], known: Curves
-) -> Iterator[tuple[Curve, xr.Dataset, int, StraightPath]]:
+    outcomes: Mapping[str, Outcome], known: plot.Curves
+) -> Iterator[tuple[plot.Curve, xr.Dataset, int, StraightPath]]:
     """Curve, cycle, position of the law and path for every law of every variant."""
     for variant, outcome in outcomes.items():
         if "cycle" in outcome.parts:
             data, path = outcome.parts["cycle"], path_of(outcome)
-            for position, law in enumerate(laws(data)):
+            for position, law in enumerate(plot.laws(data)):
                 yield known[variant, law], data, position, path
 
 
 def _along_figure(
-    name: str, seen: list[tuple[Curve, xr.Dataset, int, StraightPath]], first: StraightPath
-) -> Figure:
+    name: str, seen: list[tuple[plot.Curve, xr.Dataset, int, StraightPath]], first: StraightPath
+) -> plot.Figure:
     unit = show.unit(VARIABLES[name].display)
     traces = []
     for curve, data, law, path in seen:
         x, y = along(data, name, law, path)
-        traces.append(line(curve, x, display(name, y), unit))
-    shown, remark = merged(traces)
+        traces.append(plot.line(curve, x, plot.display(name, y), unit))
+    shown, remark = plot.merged(traces)
     of_line = first.helical and name in _WHOLE
     end = first.contact_ratio if of_line else first.transverse_ratio
-    look = layout(
+    look = plot.layout(
         f"{first.pitch}es since the pair entered" if of_line else first.axis,
-        short_axis(name),
+        plot.short_axis(name),
         xaxis={"range": [-0.02 * end, 1.02 * end]},
         yaxis={} if name == "sliding_velocity" else {"rangemode": "nonnegative"},
         **({} if of_line else marks(first)),
@@ -189,8 +177,8 @@ def _along_figure(
     note = _LINES.get(name, _ALONG[name]) if first.helical else _ALONG[name]
     if name == "sliding_velocity":
         note = str(seen[0][1]["path"].attrs["sliding"])
-    note, missing = " ".join(filter(None, (note, remark))), _MISSING.get(name, NO_POWER)
-    return Figure(f"along_{name}", title, shown, look, note, missing=missing)
+    note, missing = " ".join(filter(None, (note, remark))), _MISSING.get(name, plot.NO_POWER)
+    return plot.Figure(f"along_{name}", title, shown, look, note, missing=missing)
 
 
 def loss_sentence(shares: Mapping[tuple[str, str], float], path: StraightPath) -> str:

@@ -8,35 +8,25 @@ import xarray as xr
 
 from pitchpoint.cases.strength import MESH_LOAD
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.section import (
-    Block,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    by_variant,
-    of_meshes,
-)
+from pitchpoint.views import section, show
 
 __all__ = ["sharing_blocks", "sharing_facts", "sharing_printed"]
 
 
-def sharing_blocks(page: Page) -> Iterator[Block]:
+def sharing_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from by_variant(page, "planet_sharing", _of_variant)
+    yield from section.by_variant(page, "planet_sharing", _of_variant)
 
 
-def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(_: int, outcome: Outcome) -> Iterator[section.Block]:
     data = outcome.parts["planet_sharing"]
     if rows := _rows(data):
-        yield SectionTable(_HEADS, rows, compact=True)
+        yield section.SectionTable(_HEADS, rows, compact=True)
     if "drawn_planet_load_factor" in data:
-        yield SectionTable(
+        yield section.SectionTable(
             ["of sets sampled by tolerance", "K_γ at most"], _drawn(data), compact=True
         )
-    yield Paragraph(_assumed(data), "note")
+    yield section.Paragraph(_assumed(data), "note")
 
 
 def _assumed(data: xr.Dataset) -> str:
@@ -84,23 +74,23 @@ def _drawn(data: xr.Dataset) -> list[tuple[str, ...]]:
     ]
 
 
-def sharing_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def sharing_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """The mesh load factor by which planets are rated; where none are, that by the deviations of each set."""
     if "strength" in outcome.parts:
         yield from _rated(outcome)
         return
-    for label, mesh in of_meshes(outcome, "planet_sharing"):
+    for label, mesh in section.of_meshes(outcome, "planet_sharing"):
         if "planet_sharing" in mesh.parts:
             data, of_stage = mesh.parts["planet_sharing"], f", {label}" if label else ""
             factor = show.quantity("planet_load_factor", _most_by_deviations(data))
             name = f"Load on a planet{of_stage}"
-            yield KeyFigure(42.0, name, f"K_γ {factor}", _by_deviations(data))
+            yield section.KeyFigure(42.0, name, f"K_γ {factor}", _by_deviations(data))
 
 
-def _rated(outcome: Outcome) -> Iterator[KeyFigure]:
+def _rated(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Mesh load factor by which the planets of sets are rated, the largest one, and whence it is."""
     data = outcome.parts["strength"]
-    sharing = {label: mesh.parts for label, mesh in of_meshes(outcome, "planet_sharing")}
+    sharing = {label: mesh.parts for label, mesh in section.of_meshes(outcome, "planet_sharing")}
     factors: dict[str, tuple[float, str]] = {}
     trains = [train for train in outcome.manifest.get("trains", ()) if len(train["angles"]) > 1]
     for train in trains:
@@ -114,7 +104,7 @@ def _rated(outcome: Outcome) -> Iterator[KeyFigure]:
     if factors:
         stage, (factor, whence) = max(factors.items(), key=lambda item: item[1][0])
         detail = f"{stage}; {whence}" if len(trains) > 1 else whence
-        yield KeyFigure(42.0, "Load on a planet", f"K_γ {show.number(factor, 3)}", detail)
+        yield section.KeyFigure(42.0, "Load on a planet", f"K_γ {show.number(factor, 3)}", detail)
 
 
 def _whence(factor: float, planets: int, sharing: xr.Dataset | None) -> str:
@@ -144,11 +134,11 @@ def _by_deviations(data: xr.Dataset) -> str:
     return f"at most that in {level} of sampled sets"
 
 
-def sharing_printed(outcome: Outcome) -> Iterator[Printed]:
+def sharing_printed(outcome: Outcome) -> Iterator[section.Printed]:
     """What the screen shows."""
     data = outcome.parts["planet_sharing"]
-    yield Printed(rows=[dict(zip(_HEADS, row, strict=True)) for row in _rows(data)])
+    yield section.Printed(rows=[dict(zip(_HEADS, row, strict=True)) for row in _rows(data)])
     if "drawn_planet_load_factor" in data:
         factors = ", ".join(f"{level} of them K_γ up to {factor}" for level, factor in _drawn(data))
-        yield Printed(line=f"Of sets sampled by tolerance {factors}.")
-    yield Printed(line=_assumed(data))
+        yield section.Printed(line=f"Of sets sampled by tolerance {factors}.")
+    yield section.Printed(line=_assumed(data))

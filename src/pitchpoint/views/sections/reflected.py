@@ -8,16 +8,7 @@ import xarray as xr
 
 from pitchpoint.registry import enumerated
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.section import (
-    Block,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    by_variant,
-)
+from pitchpoint.views import section, show
 from pitchpoint.views.sections.bodies import INERTIA
 
 __all__ = ["reflected_blocks", "reflected_facts", "reflected_printed"]
@@ -30,12 +21,12 @@ _ASSUMED = (
 Row = tuple[str, ...]
 
 
-def reflected_blocks(page: Page) -> Iterator[Block]:
+def reflected_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from by_variant(page, "reflected", _of_variant)
+    yield from section.by_variant(page, "reflected", _of_variant)
 
 
-def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(_: int, outcome: Outcome) -> Iterator[section.Block]:
     data = outcome.parts["reflected"]
     if "output_backlash" in data:
         unit = show.unit_of("output_backlash")
@@ -43,9 +34,9 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
         plays = [(str(case), _cell("output_backlash", float(value))) for case, value in backlash]
         heads, cells = zip(*(plays if _by_tolerances(data) else plays[:1]), strict=True)
         row = (f"turn of the output, the input held [{unit}]", *cells)
-        yield SectionTable(["backlash", *heads], [row], compact=True)
-    yield SectionTable(_heads(data), _rows(data), compact=True)
-    yield Paragraph(" ".join([_ASSUMED, *_of_planets(data), *_of_backlash(data)]), "note")
+        yield section.SectionTable(["backlash", *heads], [row], compact=True)
+    yield section.SectionTable(_heads(data), _rows(data), compact=True)
+    yield section.Paragraph(" ".join([_ASSUMED, *_of_planets(data), *_of_backlash(data)]), "note")
 
 
 def _by_tolerances(data: xr.Dataset) -> bool:
@@ -84,7 +75,7 @@ def _of_backlash(data: xr.Dataset) -> Iterator[str]:
         )
 
 
-def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def reflected_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Backlash at the output and inertia at the ends, which a joint is driven with."""
     data = outcome.parts["reflected"]
     if "output_backlash" in data:
@@ -93,7 +84,7 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         value = " to ".join(_cell("output_backlash", end) for end in ends)
         unit = show.unit_of("output_backlash")
         behind = _NONE_ALLOWED if max(map(abs, ends)) < _NO_PLAY else 59.0
-        yield KeyFigure(
+        yield section.KeyFigure(
             _OF_SETS if outcome.manifest.get("trains") else behind,
             "Backlash at the output",
             f"{value} {unit}",
@@ -112,10 +103,10 @@ def reflected_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         mass = show.quantity("drive_mass", float(data["drive_mass"]))
         without = f", without {_carriers(data)}" if _carriers(data) else ""
         detail = f"{further}gears {mass}{without}"
-        yield KeyFigure(75.0, f"Inertia at the {end}", value, detail, asked_by=INERTIA)
+        yield section.KeyFigure(75.0, f"Inertia at the {end}", value, detail, asked_by=INERTIA)
     if '"from_stiffness" do' in outcome.manifest["lacks"].get("torsion", ""):
         how = 'load_sharing = "from_stiffness" has it'
-        yield KeyFigure(79.5, "Torsional stiffness", "not asked", how)
+        yield section.KeyFigure(79.5, "Torsional stiffness", "not asked", how)
 
 
 _NO_PLAY = 1e-9
@@ -143,10 +134,10 @@ def _of_nominal(backlash: float) -> str:
     return "nominal: no allowance is given" if none else "nominal, the input held"
 
 
-def reflected_printed(outcome: Outcome) -> Iterator[Printed]:
+def reflected_printed(outcome: Outcome) -> Iterator[section.Printed]:
     """What the screen shows."""
     data = outcome.parts["reflected"]
-    yield Printed(rows=[dict(zip(_heads(data), row, strict=True)) for row in _rows(data)])
+    yield section.Printed(rows=[dict(zip(_heads(data), row, strict=True)) for row in _rows(data)])
 
 
 def _columns(data: xr.Dataset) -> list[tuple[str, list[str]]]:

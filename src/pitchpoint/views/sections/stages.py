@@ -8,19 +8,8 @@ import xarray as xr
 
 from pitchpoint.analyses.figures import STAGES as FIGURES
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views import figures as plot
 from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    DASHES,
-    PALETTE,
-    Figure,
-    Key,
-    Panel,
-    display,
-    laws,
-    layout,
-    plain,
-    short_axis,
-)
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import Block, Heading, Page, Printed, Section, naming, turned
@@ -40,7 +29,7 @@ def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
             head(name, data): _of_stage(shown, name, float(data[name].values[k, 0, at]), data)
             for name in names
         }
-        for k, law in enumerate(laws(data))
+        for k, law in enumerate(plot.laws(data))
         for at, stage in enumerate(data["stage"].values)
     ]
 
@@ -67,7 +56,7 @@ def _card(outcome: Outcome, law: str) -> Iterator[tuple[str, str]]:
     data = outcome.parts["operation"]
     if "stage" not in data.coords:
         return
-    position = laws(data).index(law)
+    position = plot.laws(data).index(law)
     for at, stage in enumerate(data["stage"].values):
         loss, efficiency = (
             show.quantity(name, float(data[name].values[position, 0, at]), of=data)
@@ -83,7 +72,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         data = outcome.parts["operation"]
         names = [name for name in FIGURES if name in data]
         titles = [show.described(name, data).long_name for name in names]
-        for k, law in enumerate(laws(data)):
+        for k, law in enumerate(plot.laws(data)):
             columns = [
                 (
                     f"stage {stage_words(outcome, at, stage)}",
@@ -97,26 +86,30 @@ def _blocks(page: Page) -> Iterator[Block]:
             yield turned(titles, columns, f"by {law}")
     for position, title, outcome in page.each("torsion.stage_wind_up"):
         figure = _wind_up(f"stages{position}", outcome.parts["torsion"])
-        yield from naming(title, [Panel(title, [figure])])
+        yield from naming(title, [plot.Panel(title, [figure])])
 
 
-def _wind_up(name: str, data: xr.Dataset) -> Figure:
+def _wind_up(name: str, data: xr.Dataset) -> plot.Figure:
     """Wind-up at the output by each stage against torque."""
     variable = "stage_wind_up"
     unit = show.unit_of(variable, data)
     keys = tuple(
-        Key(f"stage {stage}", PALETTE[at % len(PALETTE)], DASHES[at % len(DASHES)])
+        plot.Key(
+            f"stage {stage}",
+            plot.PALETTE[at % len(plot.PALETTE)],
+            plot.DASHES[at % len(plot.DASHES)],
+        )
         for at, stage in enumerate(data["stage"].values)
     )
-    load = display("torque", data["torque"], data)
-    turned = display(variable, data[variable], data)
-    return Figure(
+    load = plot.display("torque", data["torque"], data)
+    turned = plot.display(variable, data[variable], data)
+    return plot.Figure(
         name,
         titled(variable, data),
-        [plain(key, load, turned[:, at], unit) for at, key in enumerate(keys)],
-        layout(
-            short_axis("torque", data),
-            short_axis(variable, data),
+        [plot.plain(key, load, turned[:, at], unit) for at, key in enumerate(keys)],
+        plot.layout(
+            plot.short_axis("torque", data),
+            plot.short_axis(variable, data),
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
         ),

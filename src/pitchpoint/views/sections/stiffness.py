@@ -10,33 +10,10 @@ from pitchpoint.doubts import doubts_of
 from pitchpoint.published.registry import publication_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    GREY,
-    INK,
-    PALETTE,
-    Figure,
-    Key,
-    Panel,
-    Trace,
-    continued,
-    display,
-    layout,
-    pair_key,
-    plain,
-    short_axis,
-)
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.lines import overlaid
 from pitchpoint.views.point import Period, period_of
-from pitchpoint.views.section import (
-    Block,
-    KeyFigure,
-    Page,
-    Paragraph,
-    SectionTable,
-    key_figure,
-    tabbed,
-)
 
 __all__ = [
     "stiffness_answer",
@@ -46,13 +23,13 @@ __all__ = [
 ]
 
 _ROWS = ("mean_stiffness", "stiffness_variation", "standard_stiffness", "standard_single_stiffness")
-_STANDARD = Key("mesh, estimate of ISO 6336-1", "#8a4b08", "longdash")
-_OUTSIDE = Key("mesh, estimate of ISO 6336-1, outside its range", "#8a4b08", "longdash")
-_TOTAL = Key("mesh", INK)
-_MEAN = Key("mesh, mean", GREY, "dot")
+_STANDARD = plot.Key("mesh, estimate of ISO 6336-1", "#8a4b08", "longdash")
+_OUTSIDE = plot.Key("mesh, estimate of ISO 6336-1, outside its range", "#8a4b08", "longdash")
+_TOTAL = plot.Key("mesh", plot.INK)
+_MEAN = plot.Key("mesh, mean", plot.GREY, "dot")
 
 
-def stiffness_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
+def stiffness_panels(outcomes: Mapping[str, Outcome]) -> list[plot.Panel]:
     """Figures for each variant whose stiffness is there."""
     return [
         _panel(f"stiffness{position}", name if len(outcomes) > 1 else "", outcome)
@@ -61,7 +38,7 @@ def stiffness_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
     ]
 
 
-def _table(page: Page) -> SectionTable:
+def _table(page: section.Page) -> section.SectionTable:
     """Means and variations, a column for each variant."""
     parts = {name: outcome.parts["stiffness"] for name, outcome in page.outcomes.items()}
     rows = [
@@ -71,7 +48,9 @@ def _table(page: Page) -> SectionTable:
     ]
     models = [str(data.attrs.get("model", "")) for data in parts.values()]
     head = [*parts] if page.several or "number" in page.first else ["value"]
-    return SectionTable(["Stiffness", *head], [*rows, ("teeth yield as", *models)], compact=True)
+    return section.SectionTable(
+        ["Stiffness", *head], [*rows, ("teeth yield as", *models)], compact=True
+    )
 
 
 def stiffness_answer(outcome: Outcome) -> str:
@@ -95,11 +74,11 @@ def _cell(data: xr.Dataset, name: str) -> str:
     return show.quantity(name, float(data[name])) if name in data else "no estimate"
 
 
-def _panel(name: str, variant: str, outcome: Outcome) -> Panel:
+def _panel(name: str, variant: str, outcome: Outcome) -> plot.Panel:
     data, period = outcome.parts["stiffness"], period_of(outcome)
     reasons = "; ".join(_outside_standard(data))
     note = f"The estimate of ISO 6336-1 is outside its range: {reasons}." if reasons else ""
-    return Panel(
+    return plot.Panel(
         variant, [_over_phase(name, data, period), _of_a_pair(name, data, period)], note=note
     )
 
@@ -109,45 +88,47 @@ def _outside_standard(data: xr.Dataset) -> list[str]:
     return [doubt for doubt in doubts_of(data.attrs) if "ISO 6336-1" in doubt]
 
 
-def _over_phase(name: str, data: xr.Dataset, period: Period) -> Figure:
+def _over_phase(name: str, data: xr.Dataset, period: Period) -> plot.Figure:
     phase, unit = data["phase"].values, show.unit(VARIABLES["mesh_stiffness"].display)
-    keys = [pair_key(pair) for pair in range(data.sizes["pair"])]
+    keys = [plot.pair_key(pair) for pair in range(data.sizes["pair"])]
     traces = [
-        plain(key, *_shown(phase, values), unit)
+        plot.plain(key, *_shown(phase, values), unit)
         for key, values in zip(keys, _touching(data, "pair_stiffness"), strict=True)
     ]
-    total = plain(_TOTAL, *_shown(phase, data["mesh_stiffness"].values), unit)
+    total = plot.plain(_TOTAL, *_shown(phase, data["mesh_stiffness"].values), unit)
     total["line"] = {**total["line"], "width": 3}
     standard = _OUTSIDE if _outside_standard(data) else _STANDARD
     levels = {_MEAN: "mean_stiffness", standard: "standard_stiffness"}
     shown_levels = {key: variable for key, variable in levels.items() if variable in data}
     traces += [total, *(_level(key, float(data[v]), unit) for key, v in shown_levels.items())]
-    return Figure(
+    return plot.Figure(
         f"{name}_phase",
         "Stiffness of the pairs and of the mesh",
         traces,
-        layout(period.axis, f"k [{unit}]", xaxis={"range": [0, 1]}, yaxis={"rangemode": "tozero"}),
+        plot.layout(
+            period.axis, f"k [{unit}]", xaxis={"range": [0, 1]}, yaxis={"rangemode": "tozero"}
+        ),
         keys=(*keys, _TOTAL, *shown_levels),
     )
 
 
-def _of_a_pair(name: str, data: xr.Dataset, period: Period) -> Figure:
+def _of_a_pair(name: str, data: xr.Dataset, period: Period) -> plot.Figure:
     """A pair from its entry to its exit."""
     entered = data["entered"].values.ravel()
     order = np.argsort(entered, kind="stable")
     values = _touching(data, "pair_stiffness").ravel()[order]
     unit = show.unit(VARIABLES["pair_stiffness"].display)
-    key = Key("pair", PALETTE[0])
+    key = plot.Key("pair", plot.PALETTE[0])
     x, y = _shown(entered[order], values)
     seen = np.isfinite(values)
     end = float(entered[order][seen][-1]) if seen.any() else 1.0
-    return Figure(
+    return plot.Figure(
         f"{name}_pair",
         "Stiffness of one pair from its entry to its exit",
-        [plain(key, x, y, unit)],
-        layout(
+        [plot.plain(key, x, y, unit)],
+        plot.layout(
             f"{period.pitch}es since the pair entered ε_0",
-            short_axis("pair_stiffness"),
+            plot.short_axis("pair_stiffness"),
             xaxis={"range": [-0.02 * end, 1.02 * end]},
             yaxis={"rangemode": "tozero"},
         ),
@@ -161,21 +142,21 @@ def _touching(data: xr.Dataset, name: str) -> np.ndarray:
 
 
 def _shown(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return continued(x, display("mesh_stiffness", y))
+    return plot.continued(x, plot.display("mesh_stiffness", y))
 
 
-def _level(key: Key, value: float, unit: str) -> Trace:
-    return plain(key, [0.0, 1.0], [float(display("mesh_stiffness", value))] * 2, unit)
+def _level(key: plot.Key, value: float, unit: str) -> plot.Trace:
+    return plot.plain(key, [0.0, 1.0], [float(plot.display("mesh_stiffness", value))] * 2, unit)
 
 
-def stiffness_blocks(page: Page) -> Iterator[Block]:
+def stiffness_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield Paragraph(
+    yield section.Paragraph(
         "Along the transverse line of action: force there over the approach of the teeth. Pair I entered in "
         "this period, II one period before, and so on; the mesh is their sum."
     )
     if note := _of_publication(page.first.get("source", "")):
-        yield Paragraph(note, "note")
+        yield section.Paragraph(note, "note")
     of_drives, page = page.outcomes, page.by_mesh("stiffness")
     yield _table(page)
     having = page.outcomes
@@ -183,9 +164,11 @@ def stiffness_blocks(page: Page) -> Iterator[Block]:
         parts = {name: outcome.parts["stiffness"] for name, outcome in having.items()}
         title = "Mesh stiffness over the mesh cycle"
         figure = overlaid("stiffness_of_designs", title, "phase", "mesh_stiffness", parts)
-        yield Panel("Designs on the same axes", [figure])
+        yield plot.Panel("Designs on the same axes", [figure])
     alone = "" if {*having} <= {*of_drives} else next(iter(having))
-    yield from tabbed((it.title or alone, _of_variant(it)) for it in stiffness_panels(having))
+    yield from section.tabbed(
+        (it.title or alone, _of_variant(it)) for it in stiffness_panels(having)
+    )
 
 
 def _of_publication(source: str) -> str:
@@ -194,15 +177,15 @@ def _of_publication(source: str) -> str:
     return publication.stiffness if publication else ""
 
 
-def _of_variant(it: Panel) -> Iterator[Block]:
+def _of_variant(it: plot.Panel) -> Iterator[section.Block]:
     yield it
     if it.note:
-        yield Paragraph(it.note, "warning")
+        yield section.Paragraph(it.note, "warning")
 
 
-def stiffness_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def stiffness_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Stiffness of the mesh, and how much it varies."""
     published = _of_publication(outcome.manifest.get("source", ""))
     title = "Mesh stiffness of the library, not of the motion" if published else "Mesh stiffness"
-    figure = key_figure(72.0, title, stiffness_answer(outcome), " in the mean")
+    figure = section.key_figure(72.0, title, stiffness_answer(outcome), " in the mean")
     yield replace(figure, asked_by=("models.tooth_compliance", "models.line_stiffness"))

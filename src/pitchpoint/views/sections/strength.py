@@ -11,22 +11,10 @@ import xarray as xr
 from pitchpoint.doubts import apart, doubts_of, without_repeats
 from pitchpoint.results.by_stage import as_label
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.inputs import words
 from pitchpoint.views.point import member_names
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import (
-    Block,
-    Folded,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    Section,
-    SectionTable,
-    by_variant,
-    turned,
-)
 
 __all__ = ["STRENGTH", "strength_rows"]
 
@@ -148,14 +136,16 @@ def _caveats(data: xr.Dataset) -> list[str]:
     ]
 
 
-def _table(title: str, names: tuple[str, ...], data: xr.Dataset) -> SectionTable:
+def _table(title: str, names: tuple[str, ...], data: xr.Dataset) -> section.SectionTable:
     variables = [
         name
         for name in names
         if name not in _WHERE_ASKED or (name in data and data[name].notnull().any())
     ]
     rows = [(_words(name, data), *_values(name, data)) for name in variables]
-    return SectionTable([title, *(str(gear) for gear in data["gear"].values)], rows, compact=True)
+    return section.SectionTable(
+        [title, *(str(gear) for gear in data["gear"].values)], rows, compact=True
+    )
 
 
 def _words(name: str, data: xr.Dataset) -> str:
@@ -169,40 +159,40 @@ def _values(name: str, data: xr.Dataset) -> tuple[str, ...]:
     return tuple(_cell(data, name, gear) for gear in range(2))
 
 
-def _by_gear(rows: Sequence[Mapping[str, str]]) -> SectionTable:
+def _by_gear(rows: Sequence[Mapping[str, str]]) -> section.SectionTable:
     """Forces, stresses and safeties with a column for each gear, those of trains with their stage."""
     heads = [name for name in rows[0] if name not in ("stage", "gear")]
     columns = []
     for row in rows:
         stage = f", stage\u00a0{row['stage']}" if "stage" in row else ""
         columns.append([f"{row['gear']}{stage}", *(row[name] for name in heads)])
-    return turned(heads, columns)
+    return section.turned(heads, columns)
 
 
-def _blocks_of(_: int, outcome: Outcome) -> Iterator[Block]:
+def _blocks_of(_: int, outcome: Outcome) -> Iterator[section.Block]:
     strength = outcome.parts["strength"]
     yield _by_gear(strength_rows(outcome))
     for text in chain(*_doubts(strength).values()):
-        yield Paragraph(text, "warning")
+        yield section.Paragraph(text, "warning")
     for text in _caveats(strength):
-        yield Paragraph(text, "note")
+        yield section.Paragraph(text, "note")
     for name, data in _pairs(outcome):
         tables = [
             _table(title, names, data)
             for title, names in (("Load factors", _LOAD), ("Flank", _FLANK), ("Root", _ROOT))
         ]
-        yield Folded(f"Factors and limits behind them{f', {name}' if name else ''}", tables)
+        yield section.Folded(f"Factors and limits behind them{f', {name}' if name else ''}", tables)
 
 
-def _blocks(page: Page) -> Iterator[Block]:
-    return by_variant(page, "strength", _blocks_of)
+def _blocks(page: section.Page) -> Iterator[section.Block]:
+    return section.by_variant(page, "strength", _blocks_of)
 
 
 _ASKED, _UNASKED = 12.0, 40.0
 """Place of safeties among the key figures: behind the efficiency where a case has a table on strength."""
 
 
-def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
+def _answer(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """The least safeties; where none is known, the largest stresses that are rated."""
     data = outcome.parts.get("strength")
     if data is None:
@@ -223,7 +213,7 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
             place, duty = f"at {_place(least, outcome)}", _duty(outcome, at, f"{part}_cycles")
             detail = "; ".join([place, *_doubted(outcome, least, stress), duty])
             value = show.number(float(least))
-            yield KeyFigure(order, f"Safety of {where}", value, detail, f"{value} {place}")
+            yield section.KeyFigure(order, f"Safety of {where}", value, detail, f"{value} {place}")
         elif data[stress].notnull().any():
             largest = data[stress].argmax([*data[stress].dims])
             most = data[stress].isel(largest)
@@ -235,7 +225,7 @@ def _answer(outcome: Outcome) -> Iterator[KeyFigure]:
                 lacks = [place, lacks[0]]  # other stages may not be rated
             cure = f"name one that has them, or give strength.sigma_{limit}"
             detail = "; ".join([*_doubted(outcome, most, stress), *lacks, cure])
-            yield KeyFigure(order, f"Stress of {where}", value, detail)
+            yield section.KeyFigure(order, f"Stress of {where}", value, detail)
 
 
 def _doubted(outcome: Outcome, value: xr.DataArray, stress: str) -> list[str]:
@@ -268,7 +258,7 @@ def _duty(outcome: Outcome, place: Mapping[Hashable, xr.DataArray], cycles: str)
     return f"{life}, application factor {factor}"
 
 
-def _sums_up(outcome: Outcome) -> Iterator[SectionTable | Paragraph]:
+def _sums_up(outcome: Outcome) -> Iterator[section.SectionTable | section.Paragraph]:
     """Stresses and safeties of each gear, and what is assumed for them."""
     data = outcome.parts.get("strength")
     if data is None:
@@ -281,11 +271,11 @@ def _sums_up(outcome: Outcome) -> Iterator[SectionTable | Paragraph]:
         for stage, pair in _pairs(outcome)
         for at in range(2)
     ]
-    yield SectionTable(
+    yield section.SectionTable(
         ["Strength", *(head(name, data) for name in _STRESSES)], rows, caption="Strength"
     )
     for text in _told(data, "assumed"):
-        yield Paragraph(text)
+        yield section.Paragraph(text)
 
 
 def _place(value: xr.DataArray, outcome: Outcome) -> str:
@@ -296,14 +286,14 @@ def _place(value: xr.DataArray, outcome: Outcome) -> str:
     return f"{member_names(outcome, stage)[str(value['gear'].values)]} of stage {stage}"
 
 
-def _screen(outcome: Outcome) -> Iterator[Printed]:
+def _screen(outcome: Outcome) -> Iterator[section.Printed]:
     data = outcome.parts.get("strength")
     if data is not None:
         line = " ".join([*_doubts(data)["warnings"], *_caveats(data)])  # what fails stands first
-        yield Printed("Strength of the teeth", strength_rows(outcome), line)
+        yield section.Printed("Strength of the teeth", strength_rows(outcome), line)
 
 
-STRENGTH = Section(
+STRENGTH = section.Section(
     name="strength",
     title="Strength of the teeth",
     short="Strength",

@@ -15,7 +15,7 @@ from pitchpoint.registry import enumerated
 from pitchpoint.results.chosen_units import unit_in_use
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.figures import (
     Choice,
     Curve,
@@ -34,16 +34,6 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.inputs import in_words
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import efficiency_of, head, shown
-from pitchpoint.views.section import (
-    Block,
-    Drawn,
-    Heading,
-    Page,
-    Paragraph,
-    Printed,
-    Section,
-    SectionTable,
-)
 from pitchpoint.views.sections.design_chart import design_charts, is_design_chart
 
 __all__ = [
@@ -113,7 +103,7 @@ def _kind(seen: Seen) -> tuple[Any, ...]:
     return same_looks, data.attrs["sweep_key"], *map(tuple, (_shown(seen), _axes(data)))
 
 
-def _tables(page: Page) -> Iterator[Block]:
+def _tables(page: section.Page) -> Iterator[section.Block]:
     """Tables for studies of a single point, and for sweeps of the same key with few of them."""
     alone: list[Seen] = []
     sweeps: dict[str, list[Seen]] = {}
@@ -129,13 +119,13 @@ def _tables(page: Page) -> Iterator[Block]:
         yield from _split(f"Few values: {_words_of(key)}", f"Swept: {key}.", studies)
 
 
-def _split(title: str, note: str, studies: list[Seen]) -> Iterator[Block]:
+def _split(title: str, note: str, studies: list[Seen]) -> Iterator[section.Block]:
     """Tables of studies, rows without any loss apart: all that tells of it is the same in them."""
     for lossless, suffix in ((False, ""), (True, ", without friction")):
         rows = [[row for row in seen if _lossless(*row[1:]) == lossless] for seen in studies]
         if these := [seen for seen in rows if seen]:
             remarks = " ".join(filter(None, (note, _WITHOUT if lossless else "")))
-            yield Heading(f"{title}{suffix}")
+            yield section.Heading(f"{title}{suffix}")
             yield from _table(these, remarks, lossless=lossless, named=len(studies) > 1)
 
 
@@ -147,7 +137,9 @@ def _lossless(data: xr.Dataset, law: int) -> bool:
     return bool(np.all((loss == 0.0) & (np.abs(efficiency - 1.0) < ROUNDING)))
 
 
-def _table(studies: list[Seen], note: str, *, lossless: bool, named: bool) -> Iterator[Block]:
+def _table(
+    studies: list[Seen], note: str, *, lossless: bool, named: bool
+) -> Iterator[section.Block]:
     """Every point of studies of the same key under every law, without the columns that do not vary."""
     like = studies[0][0][1]
     every = [study_point for seen in studies for study_point in seen]
@@ -170,12 +162,12 @@ def _table(studies: list[Seen], note: str, *, lossless: bool, named: bool) -> It
         values_words = ", ".join(f"{heads[k]} {rows[0][k]}" for k in constant)
         note = " ".join(filter(None, (note, f"The same in all rows: {values_words}.")))
     if note:
-        yield Paragraph(note, "note")
+        yield section.Paragraph(note, "note")
     names = [k for k in varying if k <= _PLACE]
     numbers = np.array(varying[len(names) :], dtype=int)
     for part in np.array_split(numbers, max(-(-numbers.size // _MOST), 1)):
         of_part = [*names, *part]
-        yield SectionTable(
+        yield section.SectionTable(
             [heads[k] for k in of_part],
             [tuple(row[k] for k in of_part) for row in rows],
             wide=len(of_part) > _WIDE,
@@ -351,10 +343,10 @@ def _ratio_varies(data: xr.Dataset) -> bool:
     return "contact_ratio" in data and bool(np.ptp(data["contact_ratio"].values) > 1e-6)
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def _blocks(page: section.Page) -> Iterator[section.Block]:
     from markupsafe import Markup
 
-    yield Paragraph(
+    yield section.Paragraph(
         Markup(
             "Apart from what is named, every study stands at the operating point. How far the friction laws "
             'disagree is shown at the operating point, <a href="#answer">above</a>.'
@@ -362,18 +354,18 @@ def _blocks(page: Page) -> Iterator[Block]:
         "note",
     )
     if alone := covered([outcome.parts for outcome in page.outcomes.values()]):
-        yield Paragraph(alone, "note")
+        yield section.Paragraph(alone, "note")
     warnings = _warnings(page)
     if warnings:
-        yield Drawn("study_warnings.html.jinja", {"study_warnings": warnings})
+        yield section.Drawn("study_warnings.html.jinja", {"study_warnings": warnings})
     for it in (*design_charts(page.outcomes), *study_panels(page.outcomes, page.curves)):
-        yield Heading(it.title)
-        yield Paragraph(it.note, "note")
+        yield section.Heading(it.title)
+        yield section.Paragraph(it.note, "note")
         yield it
     yield from _tables(page)
 
 
-def _warnings(page: Page) -> list[str]:
+def _warnings(page: section.Page) -> list[str]:
     """Sentences of the studies, each with all the variants and titles that it is about."""
     about: dict[str, dict[str, list[str]]] = {}
     for variant, outcome in page.outcomes.items():
@@ -410,13 +402,13 @@ SWEPT = (
 )
 
 
-def _screen(outcome: Outcome) -> Iterator[Printed]:
+def _screen(outcome: Outcome) -> Iterator[section.Printed]:
     """Every sweep of the command line: point by point, each friction law by name."""
     for name, data in outcome.parts.items():
         if is_swept(name, data):
             rows = swept_rows(data)
             note = extrapolated_note(row.values() for row in rows)
-            yield Printed(str(data.attrs["title"]), rows, note)
+            yield section.Printed(str(data.attrs["title"]), rows, note)
 
 
 OUTSIDE = "†"
@@ -481,12 +473,12 @@ def _place(value: float, key: str) -> str:
     return f"{value:.6g}" if quantity is None else in_words(float(value), quantity)
 
 
-def _lacks(page: Page) -> str | None:
+def _lacks(page: section.Page) -> str | None:
     there = any(is_study(name) for outcome in page.outcomes.values() for name in outcome.parts)
     return None if there else ""
 
 
-STUDIES = Section(
+STUDIES = section.Section(
     name="studies",
     title="Studies",
     short="Studies",

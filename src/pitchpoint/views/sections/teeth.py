@@ -8,22 +8,12 @@ import xarray as xr
 
 from pitchpoint.results.variable import Variable, angle, deviation, dimensionless, length
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.figures import Panel, pair_key
 from pitchpoint.views.inputs import words
 from pitchpoint.views.path import StraightPath, path_of
 from pitchpoint.views.picture import picture_of
 from pitchpoint.views.point import by_bodies, named_members, of_geometry
-from pitchpoint.views.section import (
-    Animation,
-    Block,
-    Drawn,
-    Page,
-    Section,
-    SectionTable,
-    by_mesh,
-    naming,
-)
 from pitchpoint.views.sections.plane_of_action import plane_of_action
 from pitchpoint.views.sections.sliding import sliding_figure
 
@@ -35,12 +25,12 @@ LENGTH, DEVIATION, ANGLE = length("", ""), deviation("", ""), angle("", "")
 PLAIN = dimensionless("", "")
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def _blocks(page: section.Page) -> Iterator[section.Block]:
     for position, (variants, outcome) in enumerate(
-        of_geometry(by_mesh(page.having(*_PARTS), *_PARTS))
+        of_geometry(section.by_mesh(page.having(*_PARTS), *_PARTS))
     ):
         panel = Panel("", [sliding_figure(f"sliding{position}", outcome)])
-        (sliding,) = naming(variants, [panel])
+        (sliding,) = section.naming(variants, [panel])
         values = {
             "variants": _titled(variants, outcome),
             "picture": picture_of(outcome).svg(f"mesh{position}"),
@@ -51,7 +41,7 @@ def _blocks(page: Page) -> Iterator[Block]:
             "path": path_of(outcome),
             "ring": _ring(outcome),
         }
-        yield Drawn("teeth.html.jinja", {"t": values}, [sliding])
+        yield section.Drawn("teeth.html.jinja", {"t": values}, [sliding])
 
 
 def _titled(variants: str, outcome: Outcome) -> str:
@@ -62,9 +52,9 @@ def _titled(variants: str, outcome: Outcome) -> str:
     )
 
 
-def _moving(outcome: Outcome, name: str) -> Animation:
+def _moving(outcome: Outcome, name: str) -> section.Animation:
     """Teeth in mesh over one period, in frames as close as those of the report."""
-    return Animation("mesh", picture_of(outcome).svg(name), "Phase", 1.0, 1.0 / 48.0)
+    return section.Animation("mesh", picture_of(outcome).svg(name), "Phase", 1.0, 1.0 / 48.0)
 
 
 def _ring(outcome: Outcome) -> str:
@@ -138,16 +128,16 @@ _LEGIBLE = 2
 """Meshes with all their dimensions that one page holds in letters which can be read."""
 
 
-def _sums_up(outcome: Outcome) -> Iterator[SectionTable]:
+def _sums_up(outcome: Outcome) -> Iterator[section.SectionTable]:
     """Dimensions that a drawing has, of many meshes the main ones; what both gears share stands twice."""
-    meshes = by_mesh({"": outcome}, *_PARTS)
+    meshes = section.by_mesh({"": outcome}, *_PARTS)
     for name, mesh in meshes.items():
         rows = [row for row in dimensions(mesh) if not row[0].startswith(_DETAILS)]
         if len(meshes) > _LEGIBLE:
             rows = [row for row in rows if row[0].startswith(_MAIN)]
         both = [row if len(row) == 3 else (row[0], row[1], row[1]) for row in rows]
         title = ", ".join(filter(None, ["Gears", name]))
-        yield SectionTable([title, *named_members(mesh)[:2]], both, caption=title)
+        yield section.SectionTable([title, *named_members(mesh)[:2]], both, caption=title)
 
 
 Dimension = tuple[str, float, int, Variable]
@@ -264,7 +254,7 @@ def _undercut_limits(teeth: xr.Dataset) -> list[Row]:
     return [("smallest x without undercut x_min", *limits)]
 
 
-TEETH = Section(
+TEETH = section.Section(
     name="teeth",
     title="Teeth and path of contact",
     short="Teeth",

@@ -9,36 +9,11 @@ import xarray as xr
 from pitchpoint.analyses.figures import WIND_UP
 from pitchpoint.results.variables import VARIABLES, variable_of
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    GREY,
-    INK,
-    PALETTE,
-    Curves,
-    Figure,
-    Key,
-    Panel,
-    Trace,
-    display,
-    laws,
-    layout,
-    level,
-    plain,
-    short_axis,
-)
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.lines import folded, overlaid
 from pitchpoint.views.point import Period, operating_point, period_of
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import (
-    Block,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    key_figure,
-    tabbed,
-)
 from pitchpoint.views.way import beside, place_of
 
 __all__ = [
@@ -55,8 +30,8 @@ __all__ = [
 _SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
 """Colours from small to large torque, which differ in lightness alone."""
 
-_ELASTIC = Key("without friction", INK, "dash")
-_PAIRS = Key("pairs that carry, mean over the mesh cycle", PALETTE[2])
+_ELASTIC = plot.Key("without friction", plot.INK, "dash")
+_PAIRS = plot.Key("pairs that carry, mean over the mesh cycle", plot.PALETTE[2])
 
 
 _SLOPES = ("torsional_stiffness", "tangent_torsional_stiffness")
@@ -67,7 +42,7 @@ _PLAY = 1e-3
 """Play over the largest wind-up below which nobody feels it, and dimensions are not known to it."""
 
 
-def torsion_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:
+def torsion_panels(outcomes: Mapping[str, Outcome], known: plot.Curves) -> list[plot.Panel]:
     """Figures for each variant whose wind-up is there."""
     return [
         _panel(f"torsion{position}", name, len(outcomes) > 1, outcome, known)
@@ -91,7 +66,7 @@ def torsion_answer(outcome: Outcome) -> str:
     }
     if not np.isfinite([*values.values()]).all():
         return "no equilibrium was found at the operating point"
-    words = {name: level(name, value, data) for name, value in values.items()}
+    words = {name: plot.level(name, value, data) for name, value in values.items()}
     return (
         f"{words['torsional_stiffness']} at the operating point{_slope(values, words)}, where the drive has "
         f"{_words(data).yielded} by {words['wind_up']}"
@@ -118,17 +93,19 @@ def _free(data: xr.Dataset) -> str:
     """Play between the flanks in words; empty without any."""
     if not data["kinematic_play"] > _PLAY * data["wind_up"].max():
         return ""
-    free = level("kinematic_play", float(data["kinematic_play"]), data)
+    free = plot.level("kinematic_play", float(data["kinematic_play"]), data)
     return f"; without load its flanks let it {_words(data).moves} freely by a kinematic play of {free}"
 
 
-def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curves) -> Panel:
+def _panel(
+    name: str, variant: str, several: bool, outcome: Outcome, known: plot.Curves
+) -> plot.Panel:
     data = outcome.parts["torsion"]
     one_mesh = "tooth_force" in data
     words = _words(data)
-    slope = Key(f"slope of the {words.load} over the {words.way}", PALETTE[0])
+    slope = plot.Key(f"slope of the {words.load} over the {words.way}", plot.PALETTE[0])
     over = "over the mesh cycle" if one_mesh else "of each stage, at the output, summed"
-    spread = Key(f"largest less smallest {words.motion} {over}", PALETTE[3])
+    spread = plot.Key(f"largest less smallest {words.motion} {over}", plot.PALETTE[3])
     figures = [
         *([_distribution(f"{name}_load", data)] if one_mesh else []),
         *([_loop(f"{name}_loop", variant, data, known)] if one_mesh else []),
@@ -154,7 +131,7 @@ def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curv
         ),
         *([_bearing(f"{name}_bearing", data)] if "zone_load" in data else []),
     ]
-    return Panel(variant if several else "", figures, note=str(data.attrs.get("note", "")))
+    return plot.Panel(variant if several else "", figures, note=str(data.attrs.get("note", "")))
 
 
 @dataclass(frozen=True)
@@ -181,9 +158,9 @@ def _words(data: xr.Dataset) -> _Words:
     return _Words("torque", *axes, "Torsional stiffness", "wound up", "turn", "rotation")
 
 
-def _distribution(name: str, data: xr.Dataset) -> Figure:
+def _distribution(name: str, data: xr.Dataset) -> plot.Figure:
     """Force on every tooth at one end of the long axis at several torques, all phases together."""
-    force = display("tooth_force", data["tooth_force"])
+    force = plot.display("tooth_force", data["tooth_force"])
     zones, origin = (data["path"].attrs[name] for name in ("zones", "origin"))
     half = data.sizes["pair"] // int(zones)
     angle = place_of(data)[:, :half].ravel()
@@ -193,13 +170,13 @@ def _distribution(name: str, data: xr.Dataset) -> Figure:
     touched = [x for trace in traces for x, y in zip(trace["x"], trace["y"], strict=True) if y]
     ends = [min(touched, default=-20.0), max(touched, default=20.0)]
     edge = 0.06 * (ends[1] - ends[0])
-    return Figure(
+    return plot.Figure(
         name,
         f"Load on the teeth at one end of {origin}" if zones > 1 else "Load on the teeth",
         traces,
-        layout(
+        plot.layout(
             data["path"].attrs["axis"],
-            short_axis("tooth_force"),
+            plot.short_axis("tooth_force"),
             xaxis={"range": [ends[0] - edge, ends[1] + edge]},
             yaxis={"rangemode": "tozero"},
         ),
@@ -210,18 +187,18 @@ def _distribution(name: str, data: xr.Dataset) -> Figure:
     )
 
 
-def _shades(data: xr.Dataset) -> list[tuple[int, Key]]:
+def _shades(data: xr.Dataset) -> list[tuple[int, plot.Key]]:
     """Some torques, by place, and how they are drawn."""
     torques = data["torque"].values
     chosen = np.unique(np.linspace(0, torques.size - 1, len(_SHADES) + 1).round().astype(int))
     chosen = chosen[torques[chosen] > 0.0]
     return [
-        (int(k), Key(level("torque", float(torques[k]), data), shade))
+        (int(k), plot.Key(plot.level("torque", float(torques[k]), data), shade))
         for k, shade in zip(chosen, _SHADES, strict=False)
     ]
 
 
-def _over_cycle(name: str, data: xr.Dataset, period: Period) -> Figure:
+def _over_cycle(name: str, data: xr.Dataset, period: Period) -> plot.Figure:
     """Motion of the loaded member under load over one mesh cycle less its mean, at several torques."""
     ripple, shown = "angular_transmission_error_range", _shades(data)
     symbol = show.described("angular_transmission_error", data).symbol
@@ -230,12 +207,12 @@ def _over_cycle(name: str, data: xr.Dataset, period: Period) -> Figure:
     for k, key in shown:
         values = data["angular_transmission_error"].values[k]
         phase, error = folded(data["phase"].values, values - _mean(data["phase"].values, values))
-        traces.append(plain(key, phase, display(ripple, error, data), unit))
-    return Figure(
+        traces.append(plot.plain(key, phase, plot.display(ripple, error, data), unit))
+    return plot.Figure(
         name,
         "Static transmission error over the mesh cycle, less its mean",
         traces,
-        layout(period.axis, f"{symbol} less its mean [{unit}]", xaxis={"range": [0, 1]}),
+        plot.layout(period.axis, f"{symbol} less its mean [{unit}]", xaxis={"range": [0, 1]}),
         f"{_words(data).motion.capitalize()} of the loaded member against its place without load and "
         "without gaps between the flanks as designed, each line less its mean.",
         tuple(key for _, key in shown),
@@ -249,37 +226,39 @@ def _mean(phase: np.ndarray, values: np.ndarray) -> float:
     return float(np.trapezoid(np.append(values, values[0]), around))
 
 
-def _course(key: Key, angle: np.ndarray, force: np.ndarray) -> Trace:
+def _course(key: plot.Key, angle: np.ndarray, force: np.ndarray) -> plot.Trace:
     """Line of the force where a tooth carries, with gaps where it does not touch."""
     unit = show.unit(VARIABLES["tooth_force"].display)
     near = beside(force > 0.0)
-    return plain(key, angle[near], np.where(force > 0.0, force, np.nan)[near], unit)
+    return plot.plain(key, angle[near], np.where(force > 0.0, force, np.nan)[near], unit)
 
 
-def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
+def _loop(name: str, variant: str, data: xr.Dataset, known: plot.Curves) -> plot.Figure:
     """Torque over wind-up: growing, shrinking, and without friction."""
-    wind_up, unit = display("wind_up", data["wind_up"], data), show.unit_of("torque", data)
+    wind_up, unit = plot.display("wind_up", data["wind_up"], data), show.unit_of("torque", data)
     words = _words(data)
     keys, traces = [], []
-    for position, law in enumerate(laws(data)):
+    for position, law in enumerate(plot.laws(data)):
         curve = known.get((variant, law))
-        key = Key(law if curve is None else curve.label, PALETTE[position % len(PALETTE)])
+        key = plot.Key(
+            law if curve is None else curve.label, plot.PALETTE[position % len(plot.PALETTE)]
+        )
         up, down = (
-            display("torque", data[branch].values[position], data)
+            plot.display("torque", data[branch].values[position], data)
             for branch in ("loading_torque", "unloading_torque")
         )
         x = np.concatenate([wind_up, wind_up[::-1]])
         colour = key.colour if curve is None else curve.colour
-        key = Key(f"with friction: {key.label}", colour)
-        trace = plain(key, x, np.concatenate([up, down[::-1]]), unit)
+        key = plot.Key(f"with friction: {key.label}", colour)
+        trace = plot.plain(key, x, np.concatenate([up, down[::-1]]), unit)
         traces.append({**trace, "fill": "toself", "fillcolor": f"{colour}22"})
         keys.append(key)
-    traces.append(plain(_ELASTIC, wind_up, display("torque", data["torque"], data), unit))
-    return Figure(
+    traces.append(plot.plain(_ELASTIC, wind_up, plot.display("torque", data["torque"], data), unit))
+    return plot.Figure(
         name,
         f"{words.load.capitalize()} over {words.way}, growing and shrinking",
         traces,
-        layout(
+        plot.layout(
             words.way_axis,
             words.load_axis,
             xaxis={"rangemode": "tozero"},
@@ -292,20 +271,23 @@ def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
     )
 
 
-def _against(name: str, variable: str, title: str, data: xr.Dataset, key: Key) -> Figure:
+def _against(name: str, variable: str, title: str, data: xr.Dataset, key: plot.Key) -> plot.Figure:
     unit = show.unit_of(variable, data)
     values = data[variable].where(data["torque"] > 0.0)
-    return Figure(
+    return plot.Figure(
         name,
         f"{title} against {_words(data).load}",
         [
-            plain(
-                key, display("torque", data["torque"], data), display(variable, values, data), unit
+            plot.plain(
+                key,
+                plot.display("torque", data["torque"], data),
+                plot.display(variable, values, data),
+                unit,
             )
         ],
-        layout(
+        plot.layout(
             _words(data).load_axis,
-            short_axis(variable, data),
+            plot.short_axis(variable, data),
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
         ),
@@ -313,23 +295,31 @@ def _against(name: str, variable: str, title: str, data: xr.Dataset, key: Key) -
     )
 
 
-def _bearing(name: str, data: xr.Dataset) -> Figure:
+def _bearing(name: str, data: xr.Dataset) -> plot.Figure:
     """Inward load of the teeth at both ends of the long axis."""
     unit, origin = show.unit_of("zone_load", data), data["path"].attrs["origin"]
-    ends = (Key(f"one end of {origin}", PALETTE[0]), Key("the other end", PALETTE[1], "dash"))
-    torque, loads = display("torque", data["torque"], data), display("zone_load", data["zone_load"])
-    traces = [plain(key, torque, values, unit) for key, values in zip(ends, loads.T, strict=False)]
+    ends = (
+        plot.Key(f"one end of {origin}", plot.PALETTE[0]),
+        plot.Key("the other end", plot.PALETTE[1], "dash"),
+    )
+    torque, loads = (
+        plot.display("torque", data["torque"], data),
+        plot.display("zone_load", data["zone_load"]),
+    )
+    traces = [
+        plot.plain(key, torque, values, unit) for key, values in zip(ends, loads.T, strict=False)
+    ]
     alike = np.allclose(loads[:, 0], loads[:, -1], rtol=1e-4, equal_nan=True)
-    keys = (Key(f"either end of {origin}", GREY),) if alike else ends
+    keys = (plot.Key(f"either end of {origin}", plot.GREY),) if alike else ends
     if alike:
-        traces = [plain(keys[0], torque, loads[:, 0], unit)]
-    return Figure(
+        traces = [plot.plain(keys[0], torque, loads[:, 0], unit)]
+    return plot.Figure(
         name,
         "Radial load of the teeth on the wave generator",
         traces,
-        layout(
+        plot.layout(
             _words(data).load_axis,
-            short_axis("zone_load"),
+            plot.short_axis("zone_load"),
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
         ),
@@ -370,7 +360,7 @@ def part_rows(outcome: Outcome) -> list[dict[str, str]]:
         float(np.interp(at, data["torque"], values)) for values in data["wind_up_part"].values
     ]
     order = sorted(range(len(wind_ups)), key=lambda k: -wind_ups[k])
-    words = f"at {level('torque', at, data)} [{show.unit_of('wind_up_part')}]"
+    words = f"at {plot.level('torque', at, data)} [{show.unit_of('wind_up_part')}]"
     return [
         {
             "part of the wind-up": str(data["part"].values[k]),
@@ -387,7 +377,9 @@ def slope_rows(outcome: Outcome) -> list[dict[str, str]]:
     if "slope_stiffness" not in data:
         return []
     slopes = {
-        f"{name} up to {level('slope_torque', float(end))}": level("slope_stiffness", float(value))
+        f"{name} up to {plot.level('slope_torque', float(end))}": plot.level(
+            "slope_stiffness", float(value)
+        )
         for name, end, value in zip(
             data["slope"].values,
             data["slope_torque"].values,
@@ -409,10 +401,12 @@ def slope_rows(outcome: Outcome) -> list[dict[str, str]]:
     ]
 
 
-def _table(rows: list[dict[str, str]]) -> Iterator[Block]:
+def _table(rows: list[dict[str, str]]) -> Iterator[section.Block]:
     """Rows as a table of the report; nothing without any."""
     if rows:
-        yield SectionTable([*rows[0]], [[*row.values()] for row in rows], compact=len(rows[0]) < 5)
+        yield section.SectionTable(
+            [*rows[0]], [[*row.values()] for row in rows], compact=len(rows[0]) < 5
+        )
 
 
 def _down(rows: list[dict[str, str]]) -> list[dict[str, str]]:
@@ -421,16 +415,16 @@ def _down(rows: list[dict[str, str]]) -> list[dict[str, str]]:
     return [{names[0]: name} | {row[names[0]]: row[name] for row in rows} for name in names[1:]]
 
 
-def torsion_blocks(page: Page) -> Iterator[Block]:
+def torsion_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
     panels, having = torsion_panels(page.outcomes, page.curves), page.having("torsion")
     if page.designs and len(having) > 1:
         yield _of_designs({name: design.parts["torsion"] for name, design in having.items()})
     there = zip(panels, having.values(), strict=True)
-    yield from tabbed((it.title, _of_variant(it, outcome)) for it, outcome in there)
+    yield from section.tabbed((it.title, _of_variant(it, outcome)) for it, outcome in there)
 
 
-def _of_designs(designs: Mapping[str, xr.Dataset]) -> Panel:
+def _of_designs(designs: Mapping[str, xr.Dataset]) -> plot.Panel:
     """Wind-up and stiffness of several designs on the same axes."""
     drawn = (
         ("wind_up", "torque", "Load over wind-up, without friction"),
@@ -441,10 +435,10 @@ def _of_designs(designs: Mapping[str, xr.Dataset]) -> Panel:
     figures = [
         overlaid(f"torsion_of_designs_{up}", title, across, up, like) for across, up, title in drawn
     ]
-    return Panel("Designs on the same axes", figures)
+    return plot.Panel("Designs on the same axes", figures)
 
 
-def _of_variant(it: Panel, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(it: plot.Panel, outcome: Outcome) -> Iterator[section.Block]:
     note = f"{it.note[0].upper()}{it.note[1:]}." if it.note else ""
     data = outcome.parts["torsion"]
     held = (
@@ -453,20 +447,20 @@ def _of_variant(it: Panel, outcome: Outcome) -> Iterator[Block]:
         else "with the input held, while the shafts between them turn: the sum of those of the stages, "
         "each the mean over its mesh cycle"
     )
-    yield Paragraph(f"{_words(data).way.capitalize()} of the loaded member {held}. {note}")
+    yield section.Paragraph(f"{_words(data).way.capitalize()} of the loaded member {held}. {note}")
     if left_out := str(data.attrs.get("left_out", "")):
-        yield Paragraph(left_out, "note")
+        yield section.Paragraph(left_out, "note")
     yield from _table(_down(slope_rows(outcome)))
     yield from _table(part_rows(outcome))
     if "hysteresis_loss" in data:
-        yield Paragraph(_NO_LOOP, "note")
+        yield section.Paragraph(_NO_LOOP, "note")
     yield it
 
 
-def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def torsion_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Stiffness at the operating point; three slopes and lost motion where a maker would state them."""
     words, data = torsion_answer(outcome), outcome.parts["torsion"]
-    figure = key_figure(70.0, _words(data).stiffness, words, " at the operating point")
+    figure = section.key_figure(70.0, _words(data).stiffness, words, " at the operating point")
     slopes = _slopes(data)
     rigid = _rigid(data)
     detail = figure.detail.replace(f"; {rigid} are not in it", "")
@@ -478,7 +472,7 @@ def torsion_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         shown = dict.fromkeys(show.quantity("catalogue_lost_motion", float(v)) for v in values)
         detail = "at ±4 % of torque, tooth friction alone"
         asked_by = "gears.yielding", "gears.backlash", "gears.wave_generator.bearing.play"
-        yield KeyFigure(71.0, "Lost motion", " and ".join(shown), detail, asked_by=asked_by)
+        yield section.KeyFigure(71.0, "Lost motion", " and ".join(shown), detail, asked_by=asked_by)
 
 
 def _pins(data: xr.Dataset) -> str:
@@ -521,12 +515,12 @@ def _slopes(data: xr.Dataset) -> str:
     return f"{names[0]}–{names[-1]} {shown_slopes}{unit}"
 
 
-def torsion_printed(outcome: Outcome) -> list[Printed]:
+def torsion_printed(outcome: Outcome) -> list[section.Printed]:
     """What the screen shows."""
     slopes, attrs = slope_rows(outcome), outcome.parts["torsion"].attrs
     note, left_out = (str(attrs.get(name, "")) for name in ("brief", "left_out"))
     return [
-        Printed(rows=wind_up_rows(outcome), line=f"Stiffness: {note}." if note else ""),
-        Printed(rows=slopes, line=_NO_LOOP if slopes else left_out),
-        Printed(rows=part_rows(outcome)),
+        section.Printed(rows=wind_up_rows(outcome), line=f"Stiffness: {note}." if note else ""),
+        section.Printed(rows=slopes, line=_NO_LOOP if slopes else left_out),
+        section.Printed(rows=part_rows(outcome)),
     ]

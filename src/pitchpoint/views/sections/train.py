@@ -9,19 +9,8 @@ import xarray as xr
 from pitchpoint.gears.cylindrical.design import RING_RIM_RATIO
 from pitchpoint.results.variable import length
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.inputs import given
-from pitchpoint.views.section import (
-    Block,
-    Drawn,
-    Heading,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    of_meshes,
-)
 from pitchpoint.views.sections.planet_sharing import sharing_facts
 from pitchpoint.views.train_picture import train_pictures
 
@@ -45,7 +34,7 @@ _NOTE = (
 )
 
 
-def train_blocks(page: Page) -> Iterator[Block]:
+def train_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
     for variant, outcome in page.outcomes.items():
         for number, train in enumerate(outcome.manifest.get("trains", ())):
@@ -54,20 +43,22 @@ def train_blocks(page: Page) -> Iterator[Block]:
                 f"stage {train['stage']}" if train["stage"] else "",
             ]
             if any(titles):
-                yield Heading(", ".join(filter(None, titles)))
+                yield section.Heading(", ".join(filter(None, titles)))
             if "teeth" in outcome.parts:
                 planes = train_pictures(outcome, train)
                 values = {"planes": planes, "name": f"train{number}", "words": _words(train)}
-                yield Drawn("train.html.jinja", {"t": values})
-            yield SectionTable(BODIES, _bodies(train), compact=True, caption="Speeds")
-            yield SectionTable(MESHES, _meshes(train), compact=True, caption="Meshes", wide=True)
-            yield Paragraph(_NOTE, "note")
+                yield section.Drawn("train.html.jinja", {"t": values})
+            yield section.SectionTable(BODIES, _bodies(train), compact=True, caption="Speeds")
+            yield section.SectionTable(
+                MESHES, _meshes(train), compact=True, caption="Meshes", wide=True
+            )
+            yield section.Paragraph(_NOTE, "note")
 
 
-def train_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def train_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Load on a planet, diameter around the gears of the largest set, centre distance of its planets."""
     yield from sharing_facts(outcome)
-    teeth = {label: mesh.parts["teeth"] for label, mesh in of_meshes(outcome, "teeth")}
+    teeth = {label: mesh.parts["teeth"] for label, mesh in section.of_meshes(outcome, "teeth")}
     sets = [
         (*_around(outcome, train, teeth), train["stage"])
         for train in outcome.manifest.get("trains", ())
@@ -78,7 +69,7 @@ def train_facts(outcome: Outcome) -> Iterator[KeyFigure]:
     across, whence, apart, stage = max(sets)
     of_stage = f"stage {stage}; " if len(sets) > 1 else ""
     detail = f"{of_stage}{whence}; axes {_length(apart)} apart"
-    yield KeyFigure(44.0, "Outer diameter", _length(across), detail)
+    yield section.KeyFigure(44.0, "Outer diameter", _length(across), detail)
 
 
 def _around(
@@ -106,15 +97,15 @@ def _length(metres: float) -> str:
     return f"{show.number(float(variable.displayed(metres)))} {show.unit(variable.display)}"
 
 
-def train_printed(outcome: Outcome) -> Iterator[Printed]:
+def train_printed(outcome: Outcome) -> Iterator[section.Printed]:
     """What the screen shows."""
     for train in outcome.manifest.get("trains", ()):
         of_stage = f"Stage {train['stage']}: " if train["stage"] else ""
-        yield Printed(line=f"{of_stage}{_words(train)}.")
-        yield Printed(rows=[dict(zip(BODIES, row, strict=True)) for row in _bodies(train)])
-        yield Printed(rows=[dict(zip(MESHES, row, strict=True)) for row in _meshes(train)])
+        yield section.Printed(line=f"{of_stage}{_words(train)}.")
+        yield section.Printed(rows=[dict(zip(BODIES, row, strict=True)) for row in _bodies(train)])
+        yield section.Printed(rows=[dict(zip(MESHES, row, strict=True)) for row in _meshes(train)])
     if outcome.manifest.get("trains"):
-        yield Printed(line=_NOTE)
+        yield section.Printed(line=_NOTE)
 
 
 def _words(train: Record) -> str:

@@ -11,23 +11,8 @@ import xarray as xr
 from pitchpoint.analyses.figures import VIBRATION as FIGURES
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views import figures as plot
 from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    DASHES,
-    PALETTE,
-    Figure,
-    Key,
-    Panel,
-    Trace,
-    continued,
-    display,
-    layout,
-    order_bars,
-    pair_key,
-    plain,
-    short_axis,
-    verticals,
-)
 from pitchpoint.views.inputs import words
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
@@ -66,7 +51,7 @@ _AGAINST_SPEED = ("transmission_error_range", "largest_dynamic_factor")
 _FEW = 6
 
 
-def vibration_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
+def vibration_panels(outcomes: Mapping[str, Outcome]) -> list[plot.Panel]:
     """Figures for each variant whose vibration is there."""
     return [
         _panel(f"vibration{position}", name if len(outcomes) > 1 else "", outcome)
@@ -105,7 +90,7 @@ def _found(data: xr.Dataset) -> list[bool]:
 
 def _torques(data: xr.Dataset) -> list[str]:
     unit = show.unit_of("torque", data)
-    values = display("torque", data["torque"], data)
+    values = plot.display("torque", data["torque"], data)
     return [f"{show.number(float(value))} {unit}" for value in values]
 
 
@@ -139,14 +124,14 @@ def _title(name: str) -> str:
     return f"{variable.long_name} {variable.symbol}"
 
 
-def _panel(name: str, variant: str, outcome: Outcome) -> Panel:
+def _panel(name: str, variant: str, outcome: Outcome) -> plot.Panel:
     data, backwards = outcome.parts["vibration"], period_of(outcome).backwards
     figures = [
         _errors(name, data, backwards),
         _factors(name, data, backwards),
         _spectrum(name, data),
     ]
-    return Panel(variant, figures, note=_missing(data))
+    return plot.Panel(variant, figures, note=_missing(data))
 
 
 def _missing(data: xr.Dataset) -> str:
@@ -159,11 +144,14 @@ def _missing(data: xr.Dataset) -> str:
     return " ".join(lines)
 
 
-def _keys(data: xr.Dataset) -> list[Key]:
-    return [Key(words, PALETTE[k % len(PALETTE)]) for k, words in enumerate(_torques(data))]
+def _keys(data: xr.Dataset) -> list[plot.Key]:
+    return [
+        plot.Key(words, plot.PALETTE[k % len(plot.PALETTE)])
+        for k, words in enumerate(_torques(data))
+    ]
 
 
-def _errors(name: str, data: xr.Dataset, backwards: bool) -> Figure:
+def _errors(name: str, data: xr.Dataset, backwards: bool) -> plot.Figure:
     """Transmission error over one period, dynamic and static, for every torque."""
     traces, keys, unit = [], [], show.unit_of("transmission_error")
     for k, (key, ok) in enumerate(zip(_keys(data), _found(data), strict=True)):
@@ -174,40 +162,42 @@ def _errors(name: str, data: xr.Dataset, backwards: bool) -> Figure:
             looks["transmission_error"] = replace(key, label=f"{key.label}, dynamic")
         for variable, look in reversed(looks.items()):
             x, y = _over_time(data, data[variable].values[k], backwards)
-            traces.append(plain(look, x, display(variable, y), unit))
+            traces.append(plot.plain(look, x, plot.display(variable, y), unit))
             keys.append(look)
-    return Figure(
+    return plot.Figure(
         f"{name}_error",
         "Transmission error over one mesh period",
         traces,
-        layout(TIME, f"δ [{unit}]", xaxis={"range": [0, 1]}),
+        plot.layout(TIME, f"δ [{unit}]", xaxis={"range": [0, 1]}),
         "Dynamic: with inertia and damping. Static: load over stiffness at each instant.",
         tuple(keys),
         NONE,
     )
 
 
-def _factors(name: str, data: xr.Dataset, backwards: bool) -> Figure:
+def _factors(name: str, data: xr.Dataset, backwards: bool) -> plot.Figure:
     """Force of each pair over that of a single pair that carries everything."""
-    traces: list[Trace] = []
+    traces: list[plot.Trace] = []
     torques: list[tuple[str, str]] = []
     for k, torque in enumerate(_torques(data)):
         if not _found(data)[k]:
             continue
-        dash = DASHES[len(torques) % len(DASHES)]
+        dash = plot.DASHES[len(torques) % len(plot.DASHES)]
         torques.append((torque, dash))
         for pair, values in enumerate(data["dynamic_factor"].values[k]):
-            key = replace(pair_key(pair), label=f"{pair_key(pair).label}, {torque}", dash=dash)
+            key = replace(
+                plot.pair_key(pair), label=f"{plot.pair_key(pair).label}, {torque}", dash=dash
+            )
             course = np.where(np.abs(values) > 1e-12, values, np.nan)
-            traces.append(plain(key, *_over_time(data, course, backwards), ""))
-    keys = [pair_key(pair) for pair in range(data.sizes["pair"])]
+            traces.append(plot.plain(key, *_over_time(data, course, backwards), ""))
+    keys = [plot.pair_key(pair) for pair in range(data.sizes["pair"])]
     if len(torques) > 1:
-        keys += [Key(f"at {torque}", "#5b6873", dash) for torque, dash in torques]
-    return Figure(
+        keys += [plot.Key(f"at {torque}", "#5b6873", dash) for torque, dash in torques]
+    return plot.Figure(
         f"{name}_factor",
         "Dynamic factors of the pairs",
         traces,
-        layout(TIME, short_axis("dynamic_factor"), xaxis={"range": [0, 1]}),
+        plot.layout(TIME, plot.short_axis("dynamic_factor"), xaxis={"range": [0, 1]}),
         "Force of a pair over that of a single pair that carries everything without vibration.",
         tuple(keys),
         NONE,
@@ -219,10 +209,14 @@ def _over_time(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Time over period, and values; time may run against the phase."""
     phase = data["phase"].values
-    return continued(1.0 - phase[::-1], values[::-1]) if backwards else continued(phase, values)
+    return (
+        plot.continued(1.0 - phase[::-1], values[::-1])
+        if backwards
+        else plot.continued(phase, values)
+    )
 
 
-def _spectrum(name: str, data: xr.Dataset) -> Figure:
+def _spectrum(name: str, data: xr.Dataset) -> plot.Figure:
     """Amplitudes of the orders of the mesh frequency."""
     wanted = np.isin(data["order"].values, ORDERS)
     keys = [key for key, ok in zip(_keys(data), _found(data), strict=True) if ok]
@@ -230,21 +224,21 @@ def _spectrum(name: str, data: xr.Dataset) -> Figure:
         values for values, ok in zip(data["spectrum"].values, _found(data), strict=True) if ok
     ]
     traces = [
-        order_bars(
+        plot.order_bars(
             key,
             data["order"].values[wanted],
-            display("spectrum", values[wanted]),
+            plot.display("spectrum", values[wanted]),
             show.unit_of("spectrum"),
         )
         for key, values in zip(keys, spectra, strict=True)
     ]
-    return Figure(
+    return plot.Figure(
         f"{name}_spectrum",
         "Orders of the transmission error",
         traces,
-        layout(
+        plot.layout(
             "order of the mesh frequency",
-            short_axis("spectrum"),
+            plot.short_axis("spectrum"),
             xaxis={"tickvals": [1, *range(5, ORDERS[-1] + 1, 5)], "range": [0.4, ORDERS[-1] + 0.6]},
             yaxis={"rangemode": "tozero"},
             barmode="group",
@@ -254,10 +248,10 @@ def _spectrum(name: str, data: xr.Dataset) -> Figure:
     )
 
 
-def resonance_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
+def resonance_panels(outcomes: Mapping[str, Outcome]) -> list[plot.Panel]:
     """Vibration against speed for each variant that has it."""
     return [
-        Panel(
+        plot.Panel(
             name if len(outcomes) > 1 else "",
             [
                 _against_speed(f"resonance{position}", variable, outcome)
@@ -270,11 +264,11 @@ def resonance_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
     ]
 
 
-def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
+def _against_speed(name: str, variable: str, outcome: Outcome) -> plot.Figure:
     data = outcome.parts["resonance"]
     values = np.where(data["vibration_status"].values == 0, data[variable].values, np.nan)
-    rising, falling = display(variable, values)
-    speed, unit = display("speed", data["speed"].values, data), show.unit_of(variable)
+    rising, falling = plot.display(variable, values)
+    speed, unit = plot.display("speed", data["speed"].values, data), show.unit_of(variable)
     alike = np.allclose(rising, falling, rtol=1e-6, equal_nan=True)
     traces = []
     for key, up, down in zip(_keys(data), rising, falling, strict=True):
@@ -285,11 +279,11 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
         )
         for branch, (dash, course) in branches.items():
             look = replace(key, label=f"{key.label}, {branch}", dash=dash)
-            traces.append(plain(look, speed, course, unit, **_dots(key.colour, branch)))
+            traces.append(plot.plain(look, speed, course, unit, **_dots(key.colour, branch)))
     keys = _keys(data)
     note = "Speed rising and falling give the same."
     if not alike:
-        keys += [Key("speed rising", "#5b6873"), Key("speed falling", "#5b6873", "dash")]
+        keys += [plot.Key("speed rising", "#5b6873"), plot.Key("speed falling", "#5b6873", "dash")]
         note = "Where only the solid line is seen, both branches lie on each other."
     marks = _resonances(outcome, speed)
     if marks:
@@ -297,12 +291,14 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
             f" Dotted: speeds at which {', '.join(label for label, _ in marks)} is the mesh "
             "frequency, with the mean stiffness."
         )
-    return Figure(
+    return plot.Figure(
         f"{name}_{variable}",
         f"{titled(variable)} against speed",
         traces,
-        layout(show.axis_title("speed", data), short_axis(variable), yaxis={"rangemode": "tozero"})
-        | verticals(marks),
+        plot.layout(
+            show.axis_title("speed", data), plot.short_axis(variable), yaxis={"rangemode": "tozero"}
+        )
+        | plot.verticals(marks),
         note,
         tuple(keys),
         NONE,
@@ -323,7 +319,7 @@ def _resonances(outcome: Outcome, speed: np.ndarray) -> list[tuple[str, float]]:
     angle = period_of(outcome).angle
     marks: list[tuple[str, float]] = []
     for part in range(1, _FEW + 1):
-        there = float(display("speed", natural / part * angle, outcome.parts["resonance"]))
+        there = float(plot.display("speed", natural / part * angle, outcome.parts["resonance"]))
         near = marks and abs(marks[-1][1] - there) < 0.13 * np.ptp(speed)
         if speed.min() <= there <= speed.max() and not near:
             marks.append(("f_n" if part == 1 else f"f_n/{part}", there))
@@ -335,7 +331,7 @@ def _gaps(data: xr.Dataset) -> Iterator[str]:
     ways: dict[tuple[str, str], list[str]] = {}
     sentences = json.loads(data.attrs.get("sentences", "[]"))
     codes = data["vibration_status"].values
-    speed, unit = display("speed", data["speed"].values, data), show.unit_of("speed", data)
+    speed, unit = plot.display("speed", data["speed"].values, data), show.unit_of("speed", data)
     for direction, by_torque in zip(data["direction"].values, codes, strict=True):
         for torque, statuses in zip(_torques(data), by_torque, strict=True):
             for code in np.unique(statuses[statuses != 0]):
@@ -357,13 +353,13 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield from tabbed((it.title, _through_resonance(it)) for it in swept)
 
 
-def _through_resonance(it: Panel) -> Iterator[Block]:
+def _through_resonance(it: plot.Panel) -> Iterator[Block]:
     if it.note:
         yield Paragraph(it.note, "warning")
     yield it
 
 
-def _steady(it: Panel, outcome: Outcome) -> Iterator[Block]:
+def _steady(it: plot.Panel, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts["vibration"]
     yield Paragraph(
         "Steady state at the operating speed; the motion of one member against the other, measured along "

@@ -9,38 +9,11 @@ import xarray as xr
 
 from pitchpoint.doubts import doubts_of
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    GREY,
-    INK,
-    PALETTE,
-    RISING,
-    Choice,
-    Figure,
-    Key,
-    Panel,
-    Trace,
-    display,
-    layout,
-    plain,
-    rounded,
-    short_axis,
-    verticals,
-)
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import named_members
 from pitchpoint.views.screen import head
-from pitchpoint.views.section import (
-    Block,
-    Heading,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    by_variant,
-    key_figure,
-)
 from pitchpoint.wear.stages import SEVERE, SEVERE_BY
 
 __all__ = ["wear_blocks", "wear_facts", "wear_printed"]
@@ -70,31 +43,31 @@ _ENDS = {
 _FIGURES = ("final_cycles", "final_cycles_error", "life_hours", "final_depth", "pressure_change")
 
 
-def wear_blocks(page: Page) -> Iterator[Block]:
+def wear_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from by_variant(page, "wear", _of_variant)
+    yield from section.by_variant(page, "wear", _of_variant)
 
 
-def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
+def _of_variant(position: int, outcome: Outcome) -> Iterator[section.Block]:
     data, name = _of_members(outcome), f"wear{position}"
     if data.attrs["end"] == "lost":
-        yield Paragraph(_said(data, "were not found"), "warning")
-    yield Paragraph(_how(data))
+        yield section.Paragraph(_said(data, "were not found"), "warning")
+    yield section.Paragraph(_how(data))
     yield _whole(data)
     yield _table(data)
     if data.attrs["end"] == "no wear":
         return
-    yield Heading("Worn flanks")
+    yield section.Heading("Worn flanks")
     yield _flanks(name, data)
     if data.sizes["strip"] > 1:
-        yield Heading("Over the face")
-        yield Panel("", [_map(f"{name}_map{k}", data, k) for k in range(2)])
-    yield Heading("Over the cycles")
+        yield section.Heading("Over the face")
+        yield plot.Panel("", [_map(f"{name}_map{k}", data, k) for k in range(2)])
+    yield section.Heading("Over the cycles")
     yield _life(name, data)
     rows = _sensitive(data)
     if rows:
-        yield Heading("What the life depends on")
-        yield Paragraph(
+        yield section.Heading("What the life depends on")
+        yield section.Paragraph(
             "Changes with 1 % more of an input alone, by derivatives along the steps of the march: of the "
             "turns to the depth at its end (life), of the depth after as many turns, and of the largest "
             "depth that a turn wears off flanks as new. Dimensions that follow from others follow; "
@@ -102,7 +75,7 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
             "near the case: where another pair comes to carry they jump.",
             "note",
         )
-        yield SectionTable(
+        yield section.SectionTable(
             ["1 % more of", "life", "depth", "depth per turn, new"], rows, compact=True
         )
 
@@ -138,7 +111,7 @@ def _by_films(data: xr.Dataset) -> str:
     return ", with the load on asperities from solved films" if films else ""
 
 
-def _whole(data: xr.Dataset) -> SectionTable:
+def _whole(data: xr.Dataset) -> section.SectionTable:
     """Where the march ended, and its stages."""
     rows = [(titled(name, data), _told(data, name)) for name in _FIGURES]
     for name in ("backlash_growth", "backlash_growth_error"):
@@ -147,7 +120,7 @@ def _whole(data: xr.Dataset) -> SectionTable:
     rows.append(("ended", _ENDS[str(data.attrs["end"])]))
     for name in ("run_in_cycles", "severe_cycles"):
         rows.append((titled(name, data), _told(data, name)))
-    return SectionTable(["", ""], rows, compact=True)
+    return section.SectionTable(["", ""], rows, compact=True)
 
 
 def _told(data: xr.Dataset, name: str) -> str:
@@ -192,7 +165,7 @@ def _members(data: xr.Dataset) -> list[str]:
     return [str(name) for name in json.loads(data.attrs["members"])]
 
 
-def _table(data: xr.Dataset) -> SectionTable:
+def _table(data: xr.Dataset) -> section.SectionTable:
     """What each member has lost at the end, and where most."""
     names = _members(data)
     rows = [
@@ -200,7 +173,7 @@ def _table(data: xr.Dataset) -> SectionTable:
         for name in _OF_MEMBER
         if name in data
     ]
-    return SectionTable(["at the end", *names], rows, compact=True)
+    return section.SectionTable(["at the end", *names], rows, compact=True)
 
 
 def _places(data: xr.Dataset, member: int) -> tuple[str, np.ndarray]:
@@ -214,51 +187,51 @@ def _places(data: xr.Dataset, member: int) -> tuple[str, np.ndarray]:
 # ---- flanks
 
 
-def _flanks(name: str, data: xr.Dataset) -> Panel:
+def _flanks(name: str, data: xr.Dataset) -> plot.Panel:
     """Depth along both flanks and the teeth before and after, with the cycles to slide."""
     figures = [_flank(f"{name}_flank{k}", data, k) for k in range(2)]
     if "flank_height" in data:
         figures += [_tooth(f"{name}_tooth{k}", data, k) for k in range(2)]
     choices = [_choice(figures, data, step) for step in range(data.sizes["step"])]
     final_step = len(choices) - 1
-    return Panel("", figures, choices=choices, menu="Turns", slides=True, at=final_step)
+    return plot.Panel("", figures, choices=choices, menu="Turns", slides=True, at=final_step)
 
 
-def _choice(figures: list[Figure], data: xr.Dataset, step: int) -> Choice:
+def _choice(figures: list[plot.Figure], data: xr.Dataset, step: int) -> plot.Choice:
     turns = float(data["cycles"][step])
     drawn = [(lines, member) for lines in (_lines, _outlines) for member in range(2)]
     changes = {
         figure.name: [_moved(lines(data, member, step)), {}]
         for figure, (lines, member) in zip(figures, drawn, strict=False)
     }
-    return Choice(show.number(turns), changes)
+    return plot.Choice(show.number(turns), changes)
 
 
-def _moved(lines: list[Trace]) -> dict[str, list[Any]]:
+def _moved(lines: list[plot.Trace]) -> dict[str, list[Any]]:
     """Places of lines, for a choice."""
     return {axis: [line[axis] for line in lines] for axis in ("x", "y")}
 
 
-def _flank(name: str, data: xr.Dataset, member: int) -> Figure:
+def _flank(name: str, data: xr.Dataset, member: int) -> plot.Figure:
     place, _ = _places(data, member)
-    top = float(display("worn_depth", data["deepest_wear"].values[:, member].max()))
-    look = layout(
+    top = float(plot.display("worn_depth", data["deepest_wear"].values[:, member].max()))
+    look = plot.layout(
         show.axis_title(place, data),
-        short_axis("worn_depth", data),
+        plot.short_axis("worn_depth", data),
         yaxis={"range": [1.05 * top or 1.0, 0.0]},
     )
     title = f"Depth of wear, {_members(data)[member]}"
     lines = _lines(data, member, data.sizes["step"] - 1)
-    return Figure(name, title, lines, look, "", _keys(data), _NONE)
+    return plot.Figure(name, title, lines, look, "", _keys(data), _NONE)
 
 
-def _keys(data: xr.Dataset) -> tuple[Key, ...]:
+def _keys(data: xr.Dataset) -> tuple[plot.Key, ...]:
     if data.sizes["strip"] == 1:
-        return (Key("depth", INK),)
-    return Key("mean over the face", INK), Key("largest", PALETTE[1], "dash")
+        return (plot.Key("depth", plot.INK),)
+    return plot.Key("mean over the face", plot.INK), plot.Key("largest", plot.PALETTE[1], "dash")
 
 
-def _lines(data: xr.Dataset, member: int, step: int) -> list[Trace]:
+def _lines(data: xr.Dataset, member: int, step: int) -> list[plot.Trace]:
     place, x = _places(data, member)
     depth, unit = data["worn_depth"].values[step, member], show.unit_of("worn_depth", data)
     largest = x, depth.max(axis=1)
@@ -266,31 +239,31 @@ def _lines(data: xr.Dataset, member: int, step: int) -> list[Trace]:
         largest = data["profile_radius"].values[member], data["profile_depth"].values[step, member]
     courses = [(x, depth.mean(axis=1)), largest][-len(_keys(data)) :]
     return [
-        plain(
+        plot.plain(
             key,
-            display(place, at[order := np.argsort(at, kind="stable")]),
-            display("worn_depth", values[order]),
+            plot.display(place, at[order := np.argsort(at, kind="stable")]),
+            plot.display("worn_depth", values[order]),
             unit,
         )
         for key, (at, values) in zip(_keys(data), courses, strict=True)
     ]
 
 
-def _tooth(name: str, data: xr.Dataset, member: int) -> Figure:
+def _tooth(name: str, data: xr.Dataset, member: int) -> plot.Figure:
     """Half a tooth before and after, its wear magnified."""
     lines = _outlines(data, member, data.sizes["step"] - 1)
-    look = layout(
+    look = plot.layout(
         f"from the axis of the tooth [{show.unit_of('flank_half_thickness')}]",
-        short_axis("flank_height", data),
+        plot.short_axis("flank_height", data),
         yaxis={"scaleanchor": "x", "scaleratio": 1, "constrain": "domain"},
         xaxis={"constrain": "domain", "nticks": 3, "range": _as_wide_as_high(lines)},
     )
     title = f"Flank as new and worn, {_members(data)[member]}"
     keys = _before_and_after(data)
-    return Figure(name, title, lines, look, "In the normal section.", keys, _NONE)
+    return plot.Figure(name, title, lines, look, "In the normal section.", keys, _NONE)
 
 
-def _as_wide_as_high(lines: list[Trace]) -> list[float]:
+def _as_wide_as_high(lines: list[plot.Trace]) -> list[float]:
     """Ends of an axis across outlines that leave room for its numbers, however slender these are."""
     across, upwards = (
         [x for outline in lines for x in outline[name] if x is not None] for name in "xy"
@@ -300,11 +273,13 @@ def _as_wide_as_high(lines: list[Trace]) -> list[float]:
     return [round(middle - half, 3), round(middle + half, 3)]
 
 
-def _before_and_after(data: xr.Dataset) -> tuple[Key, Key]:
-    return Key("as new", GREY), Key(f"worn, depth times {_magnified(data):g}", INK)
+def _before_and_after(data: xr.Dataset) -> tuple[plot.Key, plot.Key]:
+    return plot.Key("as new", plot.GREY), plot.Key(
+        f"worn, depth times {_magnified(data):g}", plot.INK
+    )
 
 
-def _outlines(data: xr.Dataset, member: int, step: int) -> list[Trace]:
+def _outlines(data: xr.Dataset, member: int, step: int) -> list[plot.Trace]:
     """The flank as new, and what a step leaves of it where most is gone across the face."""
     half, height, angle = (
         data[name].values[member]
@@ -313,10 +288,10 @@ def _outlines(data: xr.Dataset, member: int, step: int) -> list[Trace]:
     gone = _magnified(data) * data["worn_depth"].values[step, member].max(axis=1)
     order, unit = np.argsort(height), show.unit_of("flank_height")
     return [
-        plain(
+        plot.plain(
             key,
-            display("flank_half_thickness", (half - off * np.cos(angle))[order]),
-            display("flank_height", (height - off * np.sin(angle))[order]),
+            plot.display("flank_half_thickness", (half - off * np.cos(angle))[order]),
+            plot.display("flank_height", (height - off * np.sin(angle))[order]),
             unit,
         )
         for key, off in zip(_before_and_after(data), (0.0 * gone, gone), strict=True)
@@ -334,33 +309,37 @@ def _magnified(data: xr.Dataset) -> float:
     return float(power * max(factor for factor in (1.0, 2.0, 5.0) if factor * power <= wanted))
 
 
-def _map(name: str, data: xr.Dataset, member: int) -> Figure:
+def _map(name: str, data: xr.Dataset, member: int) -> plot.Figure:
     """Depth over a flank at the end."""
     place, x = _places(data, member)
     order, unit = np.argsort(x), show.unit_of("worn_depth", data)
     along, across = show.unit_of(place), show.unit_of("across_place")
     heat = {
         "type": "heatmap",
-        "x": rounded(display("across_place", data["across_place"].values)),
-        "y": rounded(display(place, x[order])),
-        "z": rounded(display("worn_depth", data["worn_depth"].values[-1, member][order]), 4),
-        "colorscale": RISING,
+        "x": plot.rounded(plot.display("across_place", data["across_place"].values)),
+        "y": plot.rounded(plot.display(place, x[order])),
+        "z": plot.rounded(
+            plot.display("worn_depth", data["worn_depth"].values[-1, member][order]), 4
+        ),
+        "colorscale": plot.RISING,
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~r}} {unit}<br>y %{{x:.4~r}} {across}, r %{{y:.4~r}} {along}"
         "<extra></extra>",
     }
-    look = layout(f"y [{across}]", f"{titled(place, data)} [{along}]")
-    return Figure(name, f"Depth at the end, {_members(data)[member]}", [heat], look, "", (), _NONE)
+    look = plot.layout(f"y [{across}]", f"{titled(place, data)} [{along}]")
+    return plot.Figure(
+        name, f"Depth at the end, {_members(data)[member]}", [heat], look, "", (), _NONE
+    )
 
 
 # ---- over the cycles
 
 
-def _life(name: str, data: xr.Dataset) -> Panel:
+def _life(name: str, data: xr.Dataset) -> plot.Panel:
     """Depth, rate and pressure over the cycles."""
-    members = tuple(Key(body, PALETTE[k]) for k, body in enumerate(_members(data)))
-    pressure = (Key("largest Hertz pressure", INK),)
-    return Panel(
+    members = tuple(plot.Key(body, plot.PALETTE[k]) for k, body in enumerate(_members(data)))
+    pressure = (plot.Key("largest Hertz pressure", plot.INK),)
+    return plot.Panel(
         "",
         [
             _course(f"{name}_depth", data, "deepest_wear", members),
@@ -374,21 +353,21 @@ def _marks(data: xr.Dataset) -> dict[str, object]:
     """Ends of the stages, as far as there are any."""
     ends = {"run-in ends": "run_in_cycles", "severe": "severe_cycles"}
     marks = [(words, float(data[name])) for words, name in ends.items()]
-    return verticals([(words, at) for words, at in marks if np.isfinite(at) and at > 0.0])
+    return plot.verticals([(words, at) for words, at in marks if np.isfinite(at) and at > 0.0])
 
 
-def _course(name: str, data: xr.Dataset, variable: str, keys: tuple[Key, ...]) -> Figure:
+def _course(name: str, data: xr.Dataset, variable: str, keys: tuple[plot.Key, ...]) -> plot.Figure:
     """A variable over the cycles, a line for each key."""
     x, unit = data["cycles"].values, show.unit_of(variable, data)
-    courses = display(variable, data[variable].values).reshape(x.size, -1).T
-    lines = [plain(key, x, course, unit) for key, course in zip(keys, courses, strict=True)]
-    look = layout(
+    courses = plot.display(variable, data[variable].values).reshape(x.size, -1).T
+    lines = [plot.plain(key, x, course, unit) for key, course in zip(keys, courses, strict=True)]
+    look = plot.layout(
         f"turns of {data.attrs['driver']}, N",
-        short_axis(variable, data),
+        plot.short_axis(variable, data),
         yaxis={"rangemode": "tozero"},
         **_marks(data),
     )
-    return Figure(name, titled(variable, data).capitalize(), lines, look, "", keys, _NONE)
+    return plot.Figure(name, titled(variable, data).capitalize(), lines, look, "", keys, _NONE)
 
 
 def _sensitive(data: xr.Dataset) -> list[tuple[str, ...]]:
@@ -427,7 +406,7 @@ def _answer(data: xr.Dataset) -> str:
     return words if end == "turns" else f"{words}: the march ended {_ENDS[end]}"
 
 
-def _screen(data: xr.Dataset) -> Iterator[Printed]:
+def _screen(data: xr.Dataset) -> Iterator[section.Printed]:
     row = {
         head(name, data): show.quantity(name, float(data[name]), with_unit=False)
         for name in _FIGURES
@@ -436,14 +415,14 @@ def _screen(data: xr.Dataset) -> Iterator[Printed]:
         row[f"h max {body} [{show.unit_of('deepest_wear')}]"] = show.quantity(
             "deepest_wear", float(data["deepest_wear"].values[-1, k]), with_unit=False
         )
-    yield Printed("Wear", [row], f"The march ended {_ENDS[str(data.attrs['end'])]}.")
+    yield section.Printed("Wear", [row], f"The march ended {_ENDS[str(data.attrs['end'])]}.")
 
 
-def wear_facts(outcome: Outcome) -> Iterable[KeyFigure]:
+def wear_facts(outcome: Outcome) -> Iterable[section.KeyFigure]:
     """Depth at the end of the march."""
-    return [key_figure(30.0, "Wear depth", _answer(_of_members(outcome)), " at most")]
+    return [section.key_figure(30.0, "Wear depth", _answer(_of_members(outcome)), " at most")]
 
 
-def wear_printed(outcome: Outcome) -> Iterable[Printed]:
+def wear_printed(outcome: Outcome) -> Iterable[section.Printed]:
     """What the screen shows."""
     return _screen(_of_members(outcome))
