@@ -13,9 +13,9 @@ import numpy as np
 from pitchpoint.registry import enumerated
 from pitchpoint.results.store import make_folder, without_nan, write_text
 from pitchpoint.runs.bench import BENCHED, LOADS, SPEEDS, Bench, BenchedDrive
+from pitchpoint.views import figures as plot
 from pitchpoint.views import show
 from pitchpoint.views.columns import lines_of
-from pitchpoint.views.figures import DASHES, PALETTE, Figure, Key, Panel, Trace, layout, plain, text
 from pitchpoint.views.first_screen import Line, wrapped
 from pitchpoint.views.report import page_of
 from pitchpoint.views.section import Block, Paragraph, SectionTable
@@ -275,19 +275,23 @@ def _lacking(bench: Bench) -> Iterator[Block]:
         yield Paragraph("Every drive has every figure.")
 
 
-def _keys(bench: Bench) -> list[Key]:
+def _keys(bench: Bench) -> list[plot.Key]:
     """A line for each drive."""
     return [
-        Key(drive.name, PALETTE[at % len(PALETTE)], DASHES[at // len(PALETTE) % len(DASHES)])
+        plot.Key(
+            drive.name,
+            plot.PALETTE[at % len(plot.PALETTE)],
+            plot.DASHES[at // len(plot.PALETTE) % len(plot.DASHES)],
+        )
         for at, drive in enumerate(bench.drives)
     ]
 
 
-def _panel(bench: Bench) -> Panel:
+def _panel(bench: Bench) -> plot.Panel:
     keys = _keys(bench)
     over_load = ("part of the load [%]", LOADS)
     over_speed = ("part of the speed [%]", SPEEDS)
-    return Panel(
+    return plot.Panel(
         "On the same axes",
         [
             _curves(bench, keys, "efficiency", "Efficiency over the load", *over_load),
@@ -309,19 +313,19 @@ def _panel(bench: Bench) -> Panel:
 
 
 def _curves(
-    bench: Bench, keys: Sequence[Key], name: str, title: str, axis: str, parts: Sequence[float]
-) -> Figure:
+    bench: Bench, keys: Sequence[plot.Key], name: str, title: str, axis: str, parts: Sequence[float]
+) -> plot.Figure:
     """A line of each drive over its load or speed."""
     percents = 100.0 * np.array(parts)
     traces = [
-        plain(key, percents, 100.0 * getattr(drive, name), "%", mode="lines+markers")
+        plot.plain(key, percents, 100.0 * getattr(drive, name), "%", mode="lines+markers")
         for key, drive in zip(keys, bench.drives, strict=True)
     ]
-    return Figure(
+    return plot.Figure(
         f"bench_{name}",
         title,
         traces,
-        layout(axis, "η [%]"),
+        plot.layout(axis, "η [%]"),
         "" if all(np.isfinite(getattr(one, name)).all() for one in bench.drives) else _GAPS,
         tuple(keys),
         missing="Friction holds every drive.",
@@ -331,28 +335,28 @@ def _curves(
 _GAPS = "A line has a gap where friction holds its drive, or no balance was found."
 
 
-def _scatter(bench: Bench, keys: Sequence[Key], name: str, title: str) -> Figure:
+def _scatter(bench: Bench, keys: Sequence[plot.Key], name: str, title: str) -> plot.Figure:
     """A dot for each drive over its mass, in handy units."""
     mass, unit = BENCHED["drive_mass"], "%" if name == "loss" else show.unit(BENCHED[name].display)
-    traces: list[Trace] = []
+    traces: list[plot.Trace] = []
     for key, drive in zip(keys, bench.drives, strict=True):
         value, weight = _value(drive, name), drive.figures.get("drive_mass", np.nan)
         if np.isfinite(value) and np.isfinite(weight):
             marks: dict[str, Any] = {
                 "mode": "markers+text" if len(keys) <= _FEW else "markers",
-                "text": [text(key.label)],
+                "text": [plot.text(key.label)],
                 "textposition": "top center",
                 "marker": {"size": 9, "color": key.colour},
                 "cliponaxis": False,
             }
-            traces.append(plain(key, [float(mass.displayed(weight))], [value], unit, **marks))
+            traces.append(plot.plain(key, [float(mass.displayed(weight))], [value], unit, **marks))
     words = f"loss [{unit}]" if name == "loss" else f"{HEADS[name]} [{unit}]"
     scales = {"xaxis": {"type": "log"}, "yaxis": {"type": "log"}}
-    return Figure(
+    return plot.Figure(
         f"bench_{name}",
         title,
         traces,
-        layout(f"mass [{show.unit(mass.display)}]", words, **scales),
+        plot.layout(f"mass [{show.unit(mass.display)}]", words, **scales),
         "Both axes in equal ratios.",
         tuple(keys) if len(keys) > _FEW else (),
         missing="No drive has both.",

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from pitchpoint.views import section
 from pitchpoint.views.designs import (
     Compared,
     differing,
@@ -10,38 +11,39 @@ from pitchpoint.views.designs import (
     of_several,
     result_table,
 )
-from pitchpoint.views.section import Block, Folded, Heading, Page, Paragraph, SectionTable
 
 __all__ = ["designs_blocks"]
 
 
-def designs_blocks(page: Page) -> Iterator[Block]:
+def designs_blocks(page: section.Page) -> Iterator[section.Block]:
     """Inputs that differ, results, and what follows from the inputs, side by side."""
     differing_inputs, *following = (_inputs(*table) for table in differing(page.outcomes).items())
     yield from differing_inputs
-    yield Heading("Results")
-    yield Paragraph(law_words(page.outcomes))
+    yield section.Heading("Results")
+    yield section.Paragraph(law_words(page.outcomes))
     results = result_table(page.outcomes)
     shared, _ = of_several(results, len(page.outcomes))
-    yield SectionTable(shared.head, shared.rows)
+    yield section.SectionTable(shared.head, shared.rows)
     alone = [row for row in results.rows if row not in shared.rows]
     if alone:
         columns = slice(results.names + len(page.outcomes))
-        yield Heading("Results that one design alone has")
-        yield SectionTable(results.head[columns], [row[columns] for row in alone])
+        yield section.Heading("Results that one design alone has")
+        yield section.SectionTable(results.head[columns], [row[columns] for row in alone])
     for blocks in following:
         yield from blocks
 
 
-def _inputs(title: str, table: Compared) -> Iterator[Block]:
-    yield Heading(title)
+def _inputs(title: str, table: Compared) -> Iterator[section.Block]:
+    yield section.Heading(title)
     if not table.rows:
-        yield Paragraph("None.")
+        yield section.Paragraph("None.")
         return
     head, rows = ["input", *table.head[2:]], named_inputs(table)
-    yield SectionTable(head, rows[:_OPEN])
+    yield section.SectionTable(head, rows[:_OPEN])
     if hidden := rows[_OPEN:]:
-        yield Folded(f"{len(hidden)} more inputs that differ", [SectionTable(head, hidden)])
+        yield section.Folded(
+            f"{len(hidden)} more inputs that differ", [section.SectionTable(head, hidden)]
+        )
 
 
 _OPEN = 10

@@ -15,33 +15,10 @@ from pitchpoint.published.publication import Beside, Curves, Maps
 from pitchpoint.published.registry import publication_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.status import Code
-from pitchpoint.views import show
-from pitchpoint.views.figures import (
-    PALETTE,
-    RISING,
-    Choice,
-    Figure,
-    Key,
-    Panel,
-    Trace,
-    display,
-    layout,
-    line_heights,
-    plain,
-    rounded,
-    short_axis,
-)
+from pitchpoint.views import figures as plot
+from pitchpoint.views import section, show
 from pitchpoint.views.inputs import in_words
 from pitchpoint.views.outlines import visible_points
-from pitchpoint.views.section import (
-    Block,
-    Folded,
-    Heading,
-    KeyFigure,
-    Page,
-    Paragraph,
-    SectionTable,
-)
 
 __all__ = ["formulas_answer", "formulas_blocks", "formulas_lack"]
 
@@ -61,7 +38,7 @@ _MANY = 1e6
 """Cycles from which on an axis counts them in powers of ten."""
 
 
-def _besides(page: Page) -> Iterator[tuple[Beside, "list[_Study]"]]:
+def _besides(page: section.Page) -> Iterator[tuple[Beside, "list[_Study]"]]:
     """What the publication sets beside each other, with the studies that hold it, where there are any."""
     publication = publication_of(page.first.get("source", ""))
     for beside in publication.beside if publication else ():
@@ -77,7 +54,7 @@ class _Study(NamedTuple):
     data: xr.Dataset
 
 
-def _studies(page: Page, beside: Beside) -> list[_Study]:
+def _studies(page: section.Page, beside: Beside) -> list[_Study]:
     """Studies that hold readings, without those whose points all stand in one with as much to tell."""
     candidates = [
         (variant, _Study(part.removeprefix(PREFIX), str(data.attrs["title"]), data))
@@ -122,12 +99,12 @@ def _points(data: xr.Dataset, beside: Beside) -> list[_Told]:
     ]
 
 
-def formulas_blocks(page: Page) -> Iterator[Block]:
+def formulas_blocks(page: section.Page) -> Iterator[section.Block]:
     """Figures and numbers that the publication sets beside each other."""
     for number, (beside, studies) in enumerate(_besides(page)):
-        yield Paragraph(beside.note, "note")
+        yield section.Paragraph(beside.note, "note")
         if beside.calibrated:
-            yield Paragraph(beside.calibrated, "warning")
+            yield section.Paragraph(beside.calibrated, "warning")
         name = f"formulas{number}"
         drawn = [
             _maps(f"{name}_map", studies, beside),
@@ -142,15 +119,15 @@ def formulas_blocks(page: Page) -> Iterator[Block]:
         if others:
             inside = [block for study in others for block in _numbers(study, beside)]
             title = f"{len(others)} further studies" if len(others) > 1 else "one further study"
-            yield Folded(f"The numbers of {title}", inside)
+            yield section.Folded(f"The numbers of {title}", inside)
 
 
-def _numbers(study: _Study, beside: Beside) -> Iterator[Block]:
-    yield Heading(study.title)
+def _numbers(study: _Study, beside: Beside) -> Iterator[section.Block]:
+    yield section.Heading(study.title)
     yield _table(study.data, beside)
 
 
-def _solves(studies: list[_Study], beside: Beside) -> Iterator[Block]:
+def _solves(studies: list[_Study], beside: Beside) -> Iterator[section.Block]:
     """What became of solves that are not plainly solved, and where."""
     for label, names in beside.solves.items():
         by_code: dict[Code, list[str]] = {}
@@ -166,7 +143,7 @@ def _solves(studies: list[_Study], beside: Beside) -> Iterator[Block]:
             if not code.ok:
                 where = "everywhere" if len(by_code) == 1 else _listed(places)
                 words = f"{label[0].upper()}{label[1:]}, {where}: {code.sentence}."
-                yield Paragraph(words, "warning")
+                yield section.Paragraph(words, "warning")
 
 
 def _listed(places: list[str]) -> str:
@@ -179,21 +156,21 @@ _Where = tuple[_Study, int]
 """A point of a study."""
 
 
-def _panel(name: str, studies: list[_Study], beside: Beside) -> Panel:
+def _panel(name: str, studies: list[_Study], beside: Beside) -> plot.Panel:
     """Courses at a point, with a menu of the points of all studies; it begins where most are known."""
     points = [(study, k) for study in studies for k in range(study.data.sizes["point"])]
     found_at = {k: [_known(one, *point) for point in points] for k, one in enumerate(beside.curves)}
     there = {f"{name}_{k}": beside.curves[k] for k, them in found_at.items() if any(them)}
     if not there:
-        return Panel("", [])
+        return plot.Panel("", [])
     at = int(np.argmax(np.sum([*found_at.values()], axis=0)))
     figures = [_figure(each, one, points[at], beside) for each, one in there.items()]
     choices = [
-        Choice(_point(*point), {each: [_at(one, *point), {}] for each, one in there.items()})
+        plot.Choice(_point(*point), {each: [_at(one, *point), {}] for each, one in there.items()})
         for point in points
     ]
     several = choices if len(choices) > 1 else []
-    return Panel("", figures, choices=several, menu="Shown at", at=at if several else 0)
+    return plot.Panel("", figures, choices=several, menu="Shown at", at=at if several else 0)
 
 
 def _known(one: Curves, study: _Study, point: int) -> bool:
@@ -221,7 +198,7 @@ def _at(one: Curves, study: _Study, point: int) -> dict[str, list[Any]]:
     return {"x": [x for x, _ in courses], "y": [y for _, y in courses]}
 
 
-def _families(name: str, studies: list[_Study], beside: Beside) -> Panel:
+def _families(name: str, studies: list[_Study], beside: Beside) -> plot.Panel:
     """Courses of all points of each sweep over each other; a sweep beyond all colours is left out."""
     figures = []
     for number, study in enumerate(studies):
@@ -233,15 +210,15 @@ def _families(name: str, studies: list[_Study], beside: Beside) -> Panel:
             if not family.studies or study.name in family.studies
         ]
         for k, family in enumerate(drawn):
-            if 1 < len(places) <= len(PALETTE) and _holds(study.data, family):
+            if 1 < len(places) <= len(plot.PALETTE) and _holds(study.data, family):
                 titled = replace(
                     family, title=f"{family.title}; {study.title[0].lower()}{study.title[1:]}"
                 )
                 figures.append(_family(f"{name}_{number}_{k}", titled, places_of, places))
-    return Panel("", figures)
+    return plot.Panel("", figures)
 
 
-def _side_by_side(name: str, studies: list[_Study], beside: Beside) -> Panel:
+def _side_by_side(name: str, studies: list[_Study], beside: Beside) -> plot.Panel:
     """Courses of all studies of one point over each other."""
     figures = []
     for k, family in enumerate(beside.over_studies):
@@ -251,18 +228,18 @@ def _side_by_side(name: str, studies: list[_Study], beside: Beside) -> Panel:
             if study.data.sizes["point"] == 1 and _holds(study.data, family)
         ]
         titles = [study.title for study in alone]
-        if 1 < len(alone) <= len(PALETTE):
+        if 1 < len(alone) <= len(plot.PALETTE):
             figures.append(_family(f"{name}{k}", family, [(study, 0) for study in alone], titles))
-    return Panel("", figures)
+    return plot.Panel("", figures)
 
 
-def _family(name: str, one: Curves, points: list[_Where], titles: list[str]) -> Figure:
+def _family(name: str, one: Curves, points: list[_Where], titles: list[str]) -> plot.Figure:
     """One course at each of several points."""
     (variable,) = one.names
-    keys = [Key(show.pretty(title), PALETTE[k]) for k, title in enumerate(titles)]
+    keys = [plot.Key(show.pretty(title), plot.PALETTE[k]) for k, title in enumerate(titles)]
     unit = show.unit_of(variable)
     traces = [
-        plain(key, *_course(variable, study.data, point, one), unit)
+        plot.plain(key, *_course(variable, study.data, point, one), unit)
         for key, (study, point) in zip(keys, points, strict=True)
     ]
     figure = _drawn(name, one, traces, keys)
@@ -270,12 +247,12 @@ def _family(name: str, one: Curves, points: list[_Where], titles: list[str]) -> 
     return replace(figure, note="All curves are the same.") if alike else figure
 
 
-def _drawn(name: str, one: Curves, traces: list[Trace], keys: list[Key]) -> Figure:
+def _drawn(name: str, one: Curves, traces: list[plot.Trace], keys: list[plot.Key]) -> plot.Figure:
     scales: dict[str, Any] = {"yaxis": {"type": "log"}} if one.decades else {}
     if max(filter(None, traces[0]["x"]), default=0.0) > _MANY:
         scales["xaxis"] = {"exponentformat": "power", "separatethousands": False}
-    axes = layout(show.axis_title(one.along), _values_axis(one.names), **scales)
-    return Figure(
+    axes = plot.layout(show.axis_title(one.along), _values_axis(one.names), **scales)
+    return plot.Figure(
         name, _title(one), traces, axes, keys=tuple(keys), missing="No numbers were found."
     )
 
@@ -284,7 +261,7 @@ def _values_axis(names: tuple[str, ...]) -> str:
     """Symbols of the courses and their unit; that of the first alone where they are many."""
     symbols = dict.fromkeys(show.described(name).symbol for name in names)
     if len(symbols) > _FEW_SYMBOLS:
-        return short_axis(names[0])
+        return plot.short_axis(names[0])
     return show.bracketed(", ".join(symbols), show.described(names[0]))
 
 
@@ -296,7 +273,7 @@ def _title(one: Curves | Maps) -> str:
 
 
 def _shown(name: str, data: xr.Dataset, point: int) -> list[Any]:
-    return rounded(display(name, data[name].values[point]))
+    return plot.rounded(plot.display(name, data[name].values[point]))
 
 
 _LEVELS = 1000
@@ -305,20 +282,20 @@ _LEVELS = 1000
 
 def _course(name: str, data: xr.Dataset, point: int, one: Curves) -> tuple[list[Any], list[Any]]:
     """Places and values of a course that can be seen; on decades small values keep their digits."""
-    x, y = (display(of, data[of].values[point]) for of in (one.along, name))
+    x, y = (plot.display(of, data[of].values[point]) for of in (one.along, name))
     with np.errstate(divide="ignore", invalid="ignore"):
         visible = visible_points(x, np.log10(y) if one.decades else y)
-    heights = rounded(y[visible]) if one.decades else line_heights(y[visible], _LEVELS)
-    return line_heights(x[visible], _LEVELS), heights
+    heights = plot.rounded(y[visible]) if one.decades else plot.line_heights(y[visible], _LEVELS)
+    return plot.line_heights(x[visible], _LEVELS), heights
 
 
-def _figure(name: str, one: Curves, point: _Where, beside: Beside) -> Figure:
+def _figure(name: str, one: Curves, point: _Where, beside: Beside) -> plot.Figure:
     """Courses over each other at a point; empty where only other studies hold them."""
     columns = one.columns or beside.columns
-    keys = [Key(column, PALETTE[k]) for k, column in enumerate(columns)]
+    keys = [plot.Key(column, plot.PALETTE[k]) for k, column in enumerate(columns)]
     shown, unit = _at(one, *point), show.unit_of(one.names[0])
     traces = [
-        plain(key, x, y, unit) for key, x, y in zip(keys, shown["x"], shown["y"], strict=True)
+        plot.plain(key, x, y, unit) for key, x, y in zip(keys, shown["x"], shown["y"], strict=True)
     ]
     if any(_turns(y) > _MANY_TURNS for y in shown["y"]):
         for trace in traces:
@@ -336,34 +313,36 @@ def _turns(course: Sequence[float]) -> int:
     return int(np.count_nonzero(steps[1:] * steps[:-1] < 0.0))
 
 
-def _maps(name: str, studies: list[_Study], beside: Beside) -> Panel:
+def _maps(name: str, studies: list[_Study], beside: Beside) -> plot.Panel:
     """Fields in colours at the first point of the first study that holds them."""
     figures = []
     for k, map_view in enumerate(beside.maps):
         there = [study.data for study in studies if map_view.name in study.data]
         figures += [_map(f"{name}{k}", map_view, data) for data in there[:1]]
-    return Panel("", figures)
+    return plot.Panel("", figures)
 
 
-def _map(name: str, one: Maps, data: xr.Dataset) -> Figure:
+def _map(name: str, one: Maps, data: xr.Dataset) -> plot.Figure:
     x, y = (_shown(axis, data, 0) for axis in one.axes)
-    values = display(one.name, data[one.name].values[0]).reshape(len(y), len(x))
+    values = plot.display(one.name, data[one.name].values[0]).reshape(len(y), len(x))
     unit = show.unit_of(one.name)
-    heat: Trace = {
+    heat: plot.Trace = {
         "type": "heatmap",
         "x": x,
         "y": y,
-        "z": rounded(values, 4),
-        "colorscale": RISING,
+        "z": plot.rounded(values, 4),
+        "colorscale": plot.RISING,
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~r}} {unit}<extra></extra>",
     }
     along, across = (show.axis_title(axis) for axis in one.axes)
-    axes = layout(along, across.replace(", ", ",<br>"))  # in one line it is longer than the axis
-    return Figure(name, _title(one), [heat], axes, missing="No numbers were found.")
+    axes = plot.layout(
+        along, across.replace(", ", ",<br>")
+    )  # in one line it is longer than the axis
+    return plot.Figure(name, _title(one), [heat], axes, missing="No numbers were found.")
 
 
-def _table(data: xr.Dataset, beside: Beside) -> SectionTable:
+def _table(data: xr.Dataset, beside: Beside) -> section.SectionTable:
     """Points of a sweep side by side, or below each other where they are many."""
     places, rows = _places(data), _rows(data, beside).items()
     if len(places) * len(beside.columns) > _WIDE:
@@ -372,7 +351,7 @@ def _table(data: xr.Dataset, beside: Beside) -> SectionTable:
             for label, names in rows
             for point, place in enumerate(places)
         ]
-        return SectionTable(["Quantity", *beside.columns], long)
+        return section.SectionTable(["Quantity", *beside.columns], long)
     heads = [
         ", ".join(filter(None, (place, label))) for place in places for label in beside.columns
     ]
@@ -383,7 +362,9 @@ def _table(data: xr.Dataset, beside: Beside) -> SectionTable:
         )
         for label, names in rows
     ]
-    return SectionTable(["Quantity", *heads], wide, compact=len(heads) < 4 or len(wide) > _LONG)
+    return section.SectionTable(
+        ["Quantity", *heads], wide, compact=len(heads) < 4 or len(wide) > _LONG
+    )
 
 
 def _titled(told: str, name: str) -> str:
@@ -409,7 +390,7 @@ def _places(data: xr.Dataset) -> list[str]:
     ]
 
 
-def formulas_answer(outcome: Outcome) -> Iterator[KeyFigure]:
+def formulas_answer(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """What the publication is about, at the first point of the first study."""
     publication = publication_of(str(outcome.manifest.get("source", "")))
     for name in publication.answers if publication else ():
@@ -418,9 +399,11 @@ def formulas_answer(outcome: Outcome) -> Iterator[KeyFigure]:
             value = float(data[name].values[0, 0])
             words = show.quantity(name, value) if np.isfinite(value) else "not found"
             at = _Study("", str(data.attrs["title"]), data)
-            yield KeyFigure(5.0, show.described(name).long_name, words, f"({_point(at, 0)})")
+            yield section.KeyFigure(
+                5.0, show.described(name).long_name, words, f"({_point(at, 0)})"
+            )
 
 
-def formulas_lack(page: Page) -> str | None:
+def formulas_lack(page: section.Page) -> str | None:
     """None where studies hold what the publication compares; nobody asks for it elsewhere."""
     return None if any(_besides(page)) else ""

@@ -15,19 +15,9 @@ from pitchpoint.analyses.figures import (
 )
 from pitchpoint.doubts import in_percent
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views import show
+from pitchpoint.views import section, show
 from pitchpoint.views.figures import laws
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import (
-    Block,
-    Heading,
-    KeyFigure,
-    Page,
-    Paragraph,
-    Printed,
-    SectionTable,
-    by_variant,
-)
 from pitchpoint.views.sections.beside import starts_doubtfully
 from pitchpoint.views.sections.loss_map import Chart, map_blocks, map_panel
 
@@ -46,38 +36,38 @@ HELD = f"{OF_OUTPUT.part}.{HOLDING[0]}"
 """The map as it is now; results of before lack the torques that hold a load."""
 
 
-def quadrants_blocks(page: Page) -> Iterator[Block]:
+def quadrants_blocks(page: section.Page) -> Iterator[section.Block]:
     """Paragraphs, tables and panels of the map."""
     there = page.having(HELD)
     data = next(iter(there.values())).parts[OF_OUTPUT.part]
     load, driving = (
         show.described(name, data).long_name for name in ("output_torque", "mean_input_torque")
     )
-    yield Paragraph(
+    yield section.Paragraph(
         f"Where {load} and speed have one sign the driver drives, where they differ the load does. The "
         f"{driving} is positive where it acts along a positive speed of the output. The "
         "efficiency is blank from rest and from no load, where no power comes out, to the nodes beside "
         "them; everything is where friction locks the drive against its output."
     )
-    yield Paragraph(str(data.attrs["note"]), "note")
+    yield section.Paragraph(str(data.attrs["note"]), "note")
     for sentence in dict.fromkeys(_errors(design) for design in there.values()):
-        yield Paragraph(sentence, "note")
+        yield section.Paragraph(sentence, "note")
     if any(
         bool(np.any(design.parts[OF_OUTPUT.part]["locked"].values)) for design in there.values()
     ):
         sentence = (
             "Friction locks the drive against its output at some of these points, see the warnings."
         )
-        yield Paragraph(sentence, "note")
+        yield section.Paragraph(sentence, "note")
     if alone := covered([design.parts for design in there.values()]):
-        yield Paragraph(alone, "note")
+        yield section.Paragraph(alone, "note")
     yield from map_blocks(map_panel(there, page.curves, OF_OUTPUT))
-    yield Heading("Held at rest")
+    yield section.Heading("Held at rest")
     banded = any(
         HOLDING_BANDS[HOLDING[0]][0] in design.parts[OF_OUTPUT.part] for design in there.values()
     )
-    yield Paragraph(f"{AT_REST} {IN_BRACKETS}" if banded else AT_REST)
-    yield from by_variant(page, HELD, lambda _, outcome: _held(outcome))
+    yield section.Paragraph(f"{AT_REST} {IN_BRACKETS}" if banded else AT_REST)
+    yield from section.by_variant(page, HELD, lambda _, outcome: _held(outcome))
 
 
 AT_REST = (
@@ -134,19 +124,21 @@ def _word(data: xr.Dataset, name: str, at: tuple[int, int]) -> str:
     return f"{value} ({' to '.join(ends)})" if ends else value
 
 
-def _held(outcome: Outcome) -> Iterator[Block]:
+def _held(outcome: Outcome) -> Iterator[section.Block]:
     rows = _rows(outcome)
     caption = f"Torques that hold a load at {_degree(outcome)}"
-    yield SectionTable([*rows[0]], [[*row.values()] for row in rows], caption=caption)
+    yield section.SectionTable([*rows[0]], [[*row.values()] for row in rows], caption=caption)
 
 
-def quadrants_printed(outcome: Outcome) -> Iterator[Printed]:
+def quadrants_printed(outcome: Outcome) -> Iterator[section.Printed]:
     """What holds the drive at rest, for the screen."""
     if HOLDING[0] in outcome.parts.get(OF_OUTPUT.part, ()):
-        yield Printed(f"Held at rest at {_degree(outcome)}", _rows(outcome), _errors(outcome))
+        yield section.Printed(
+            f"Held at rest at {_degree(outcome)}", _rows(outcome), _errors(outcome)
+        )
 
 
-def quadrants_facts(outcome: Outcome) -> Iterator[KeyFigure]:
+def quadrants_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     """Torque that holds the load of operation at rest, under the first law."""
     if HOLDING[0] not in outcome.parts.get(OF_OUTPUT.part, ()):
         return
@@ -164,7 +156,7 @@ def quadrants_facts(outcome: Outcome) -> Iterator[KeyFigure]:
         alone = f"for {load} at rest; {_without(ends[0])}"
         band = _of_band(held, data, load)
         detail = band or (f"{_TOO_NARROW}; {alone}" if _doubted(outcome) else alone)
-    yield KeyFigure(36.0, "Holding torque", words, detail)
+    yield section.KeyFigure(36.0, "Holding torque", words, detail)
 
 
 _TOO_NARROW = "too narrow: no breakaway given"
