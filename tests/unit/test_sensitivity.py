@@ -31,6 +31,20 @@ def test_indices_of_a_closed_form():
     assert np.all(found["first_order"] <= found["first_order_high"])
 
 
+def test_bounds_are_as_wide_as_95_of_100_indices_of_other_samples():
+    """Of a linear function on random designs: some four standard deviations of what other draws give."""
+    indices, widths = [], []
+    for seed in range(12):
+        first, second = np.random.default_rng(seed).random((2, 3, 256))
+        swapped = [np.where((np.arange(3) == key)[:, None], second, first) for key in range(3)]
+        rows = np.stack([one.sum(axis=0) for one in (first, second, *swapped)])
+        found = indices_of(rows[None])
+        indices.append(found["first_order"][0])
+        widths.append((found["first_order_high"] - found["first_order_low"])[0])
+    in_deviations = np.mean(widths) / np.mean(np.std(indices, axis=0))
+    assert 2.7 < in_deviations < 5.6
+
+
 def test_what_does_not_vary_has_no_indices():
     found = indices_of(np.ones((1, 4, 16)))
     assert np.isnan(found["total_order"]).all()

@@ -1,6 +1,7 @@
 """Gears drawn within their tolerances: backlash, kinematic error and safety against direct sampling."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from pitchpoint.gears.cylindrical.iso_286 import symmetrical_deviation
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
 from pitchpoint.runs.layouts import layout_of
 from pitchpoint.runs.tolerances import with_tolerances
+from pitchpoint.views.many_designs import figures_of_many
 
 PAIR = pp.Case(
     gears={
@@ -269,3 +271,18 @@ def test_tolerances_that_cannot_be_drawn(change: dict[str, object], told: str) -
     with pytest.raises(InputError) as caught:
         pp.study(pp.Case(tables).set(change), tolerances="normal", n=16)
     assert told in str(caught.value)
+
+
+def test_the_screen_has_the_percentiles_that_it_names_and_what_does_not_follow() -> None:
+    values = np.random.default_rng(1).permutation(101)[None].astype(float)
+    dims = ("law", "design")
+    figures = {
+        "circumferential_backlash": (dims, values, {"long_name": "backlash", "units": "um"}),
+        "reason": (dims, np.full(values.shape, "")),
+    }
+    found = xr.Dataset(figures, {"law": ["xu_2007"]}, {"reasons": "{}", "tolerances": "uniform"})
+    told, rows = figures_of_many(found.assign_attrs(remarks='["Safeties stay."]'), Path("x"))
+    assert rows[0] | {"1 %": "1", "median": "50", "99 %": "99"} == rows[0]
+    assert told == ["101 designs", "Safeties stay.", "every design: x"]
+    ends = figures_of_many(found.assign_attrs(tolerances=""), Path("x"))[1]
+    assert ends == []  # without tolerances the backlash is no main figure
