@@ -28,8 +28,8 @@ from pitchpoint.runs.optimum_search import (
 )
 from pitchpoint.runs.optimum_task import (
     DESIGNS_FILE,
-    Limit,
     OptimiserTask,
+    ResultLimit,
     VariedKey,
     optimiser_task,
 )
@@ -83,7 +83,7 @@ class Optimum:
     law: str
     varied: tuple[VariedKey, ...]
     listed: Mapping[str, Sequence[Any]]
-    limits: tuple[Limit, ...]
+    limits: tuple[ResultLimit, ...]
     start: Mapping[str, Any]
     best: Mapping[str, Any]
     multipliers: Multipliers | None
@@ -104,12 +104,12 @@ class Optimum:
         """Where a key lies between its ends, from 0 to 1."""
         return (float(self.best[varied.key]) - varied.low) / (varied.high - varied.low)
 
-    def kept_as_given(self, limit: Limit) -> bool:
+    def kept_as_given(self, limit: ResultLimit) -> bool:
         """True for a constraint that the case as given keeps, or has no figure for."""
         over = float(limit.kept(np.array([self.start[limit.figure.name]]))[0])
         return not (abs(over) > EQUAL if limit.way == "=" else over < -EQUAL)
 
-    def active(self, limit: Limit) -> bool:
+    def active(self, limit: ResultLimit) -> bool:
         """True for a constraint that holds the design where it is."""
         off = abs(float(limit.kept(np.array([self.best[limit.figure.name]]))[0]))
         return limit.way == "=" or off < AT_LIMIT
