@@ -12,9 +12,8 @@ import numpy as np
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.cases.handed_over import hand_over
-from pitchpoint.cases.optimise_table import OptimiseTable
 from pitchpoint.cases.record import CASE
-from pitchpoint.cases.schema import validate, with_meshes
+from pitchpoint.cases.schema import OptimiseTable, validate, with_meshes
 from pitchpoint.errors import ConvergenceError, InputError, shorten
 from pitchpoint.registry import enumerated
 from pitchpoint.results.store import make_folder

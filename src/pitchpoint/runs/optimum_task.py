@@ -21,8 +21,7 @@ from pitchpoint.analyses.designs import CaseDesigns
 from pitchpoint.analyses.studies import demand_one
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.cases.optimise_table import STARTS
-from pitchpoint.cases.schema import Sweep
+from pitchpoint.cases.schema import STARTS, Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.gradients import figure_gradient
 from pitchpoint.errors import Complaints, ConvergenceError, InputError, PitchpointError
@@ -440,8 +439,9 @@ def _varied(base: Variant, case: Case, name: str, stated: Any) -> VariedKey | St
                 first, second = (str(shown(value)).strip('"') for value in axis.values)
                 told = f'"{first}:{second}" for all values between, or {{ values = [...] }} for these two'
                 raise InputError(f"{shown(values)} may be two ends or two values; write {told}")
-        for value in axis.values if axis.quantity is not None else ():
-            axis.quantity.read(value)
+        if axis.quantity is not None:
+            for value in axis.values:
+                axis.quantity.read(value)
         if not between:
             return axis
         if axis.quantity is None:
