@@ -196,6 +196,7 @@ def test_a_task_without_a_solution_says_which_limit_and_by_how_much() -> None:
         ({SHIFT: "0:0.5"}, {"minimise": "weight of it"}, "is no result; results are those of a study"),
         ({SHIFT: "0:0.5"}, {"minimise": "disc_mass"}, "has 2 values at each design; name one: disc_mass.1"),
         ({SHIFT: "0:0.5"}, {"minimise": "disc_mass.3"}, 'disc_mass has no value "3"; it has 1, 2'),
+        ({SHIFT: "0:0.5"}, {"minimise": "inspection.mean_loss"}, 'inspection has no result "mean_loss"'),
         ({SHIFT: "0:0.5"}, {"minimise": "output_backlash"}, "is no result of this case: backlash, masses"),
         ({SHIFT: "0:0.5"}, {"maximise": "mean_loss"}, "minimise: give one result"),
         ({SHIFT: "0:0.5"}, {"subject_to": "rubbish"}, 'subject_to: "rubbish" is no limit'),
@@ -210,6 +211,15 @@ def test_what_is_wrong_is_told_in_a_sentence(vary: Any, given: Any, words: str) 
     with pytest.raises(InputError) as caught:
         pp.optimise(PAIR, vary, **{"minimise": "mean_loss", **given})
     assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_key_of_gears_that_stand_for_several_meshes_has_its_value_as_given() -> None:
+    shared = {key: PAIR.tables[key] for key in ("lubricant", "roughness", "operation", "models")}
+    gears = {"family": "planetary", "teeth": [24, 30, 84], "planets": 3, "module": "1 mm"}
+    planets = pp.Case({"gears": {**gears, "face_width": "12 mm"}, **shared})
+    found = pp.optimise(planets, {WIDTH: ["10 mm", "12 mm", "14 mm"]}, minimise="drive_mass")
+    assert found.start[WIDTH] == pytest.approx(0.012) and found.best[WIDTH] == pytest.approx(0.01)
+    assert found.value == pytest.approx(found.start["drive_mass"] * 10 / 12, rel=1e-9)
 
 
 def test_an_aim_without_a_figure_says_so() -> None:

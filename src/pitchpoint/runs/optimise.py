@@ -18,6 +18,7 @@ from pitchpoint.errors import ConvergenceError, InputError, shorten
 from pitchpoint.registry import enumerated
 from pitchpoint.results.store import make_folder
 from pitchpoint.runs.case import Case, CaseLike, as_case
+from pitchpoint.runs.layouts import StudyAxis
 from pitchpoint.runs.optimum_search import (
     AT_LIMIT,
     ConstrainedSearch,
@@ -347,18 +348,25 @@ def _shares_of_case(task: OptimiserTask) -> np.ndarray | None:
     """Where the case as given lies in the ranges; None where it lies outside, or gives no number."""
     shares = []
     for one in task.varied:
-        value = _value_of_case(task, one.key)
+        value = _value_of_case(task, one.axis)
         if not isinstance(value, float) or not one.low <= value <= one.high:
             return None
         shares.append((value - one.low) / (one.high - one.low))
     return np.array(shares) if shares else None
 
 
-def _value_of_case(task: OptimiserTask, key: str) -> Any:
+def _value_of_case(task: OptimiserTask, axis: StudyAxis) -> Any:
+    """Value of a key as given [SI], or its text; None where the case leaves it open."""
     try:
-        value = task.case[key]
+        value = task.case[axis.key]
     except InputError:
-        return None
+        value = None
+    if not isinstance(value, int | float | str):  # of gears that stand for several meshes
+        value = task.base.document().tree
+        for part in axis.key.split("."):
+            value = value.get(part) if isinstance(value, Mapping) else None
+    if isinstance(value, str) and axis.quantity is not None:
+        return axis.quantity.si(value)
     if isinstance(value, int | float):
         return float(value)
     return value if isinstance(value, str) else None
@@ -477,7 +485,7 @@ def _optimum(
         varied=task.varied,
         listed={axis.key: axis.values for axis in task.listed},
         limits=task.limits,
-        start={**{key: _value_of_case(task, key) for key in of_keys}, **start},
+        start={**{axis.key: _value_of_case(task, axis) for axis in axes}, **start},
         best={**of_keys, **best},
         derived=task.derived,
         designs=len(task.file.rows),
