@@ -202,6 +202,15 @@ folder = "many"
 piece = 8
 workers = 2
 
+[optimise]
+vary = { "operation.torque" = "20 N m:60 N m" }
+minimise = "mean_loss"
+maximise = ""
+subject_to = ["contact_ratio >= 1.2"]
+law = "constant"
+starts = 4
+folder = "best"
+
 [loss_map]
 temperatures = ["60 degC"]
 
@@ -1686,6 +1695,7 @@ OTHER_CALLS = {
     "run pair.toml --set": '; write --set operation.torque="50 N m"',
     "run pair.toml other.toml": "it takes one case, pitchpoint compare several",
     "show": "a name out of pitchpoint cases",
+    "optimise tian2024": "table [optimise] of the case or by option: --vary gears.face_width=",
     "study tian2024": 'table [study] of the case or by option: --over operation.torque="20 N m:90 N m:8"',
     "models steel oil": "it takes one kind or name, such as friction",
     "cases tian": "pitchpoint show CASE has the inputs of one",

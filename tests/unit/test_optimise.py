@@ -85,6 +85,7 @@ def test_an_active_limit_is_met_and_costs_what_the_closed_form_says(tmp_path: An
         pp.optimise(PAIR, {WIDTH: "8 mm:40 mm"}, minimise="mean_loss", folder=tmp_path)
 
 
+@pytest.mark.whole
 def test_two_keys_against_a_grid() -> None:
     """Both shifts of equal gears: the loss falls until the contact ratio holds it, where both are alike."""
     free = free_pair()
@@ -125,6 +126,7 @@ def test_automatic_derivatives_are_those_of_differences() -> None:
             np.testing.assert_allclose(automatic, search.slopes(point), rtol=1e-5, atol=1e-9)
 
 
+@pytest.mark.whole
 def test_lists_are_tried_with_each_other_and_with_ranges() -> None:
     modules = ["1.95 mm", "2 mm"]
     found = pp.optimise(
@@ -140,6 +142,7 @@ def test_lists_are_tried_with_each_other_and_with_ranges() -> None:
     assert found.listed == {"gears.module": modules}
 
 
+@pytest.mark.whole
 def test_an_equality_of_a_result(least_loss: pp.Optimum) -> None:
     """Shifts that vary without a given centre distance, kept by a limit: the optimum is the same."""
     found = pp.optimise(
@@ -213,6 +216,7 @@ def test_what_is_wrong_is_told_in_a_sentence(vary: Any, given: Any, words: str) 
     assert words in str(caught.value) and "\n" not in str(caught.value)
 
 
+@pytest.mark.whole
 def test_a_key_of_gears_that_stand_for_several_meshes_has_its_value_as_given() -> None:
     shared = {key: PAIR.tables[key] for key in ("lubricant", "roughness", "operation", "models")}
     gears = {"family": "planetary", "teeth": [24, 30, 84], "planets": 3, "module": "1 mm"}
