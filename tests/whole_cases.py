@@ -179,6 +179,15 @@ folder = "many"
 piece = 8
 workers = 2
 
+[optimise]
+vary = { "operation.torque" = "20 N m:60 N m" }
+minimise = "mean_loss"
+maximise = ""
+subject_to = ["contact_ratio >= 1.2"]
+law = "constant"
+starts = 4
+folder = "best"
+
 [loss_map]
 temperatures = ["60 degC"]
 

@@ -35,6 +35,7 @@ _LAZY: dict[str, str] = {
     "Heating": "pitchpoint.duty_cycle.cycle",
     "gradients": "pitchpoint.notebook.gradients",
     "optimise": "pitchpoint.runs.optimise",
+    "Optimum": "pitchpoint.runs.optimise",
     "models": "pitchpoint.notebook.tables",
     "cite": "pitchpoint.notebook.tables",
     "load_case": "pitchpoint.runs.run",

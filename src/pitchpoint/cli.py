@@ -617,7 +617,7 @@ def optimise(
         )
     usual = default_folder(case, Path("results"), settings) / "optimum"
     folder = output or folder_of_optimum(of_table, chosen) or usual
-    with _progress(folder, "designs") as progress:
+    with _progress(None) as progress:  # what was kept is told with the best so far
         found = search(
             chosen,
             _varied(vary) if vary else None,

@@ -155,6 +155,7 @@ OTHER_CALLS = {
     "run pair.toml --set": '; write --set operation.torque="50 N m"',
     "run pair.toml other.toml": "it takes one case, pitchpoint compare several",
     "show": "a name out of pitchpoint cases",
+    "optimise tian2024": "table [optimise] of the case or by option: --vary gears.face_width=",
     "study tian2024": 'table [study] of the case or by option: --over operation.torque="20 N m:90 N m:8"',
     "models steel oil": "it takes one kind or name, such as friction",
     "cases tian": "pitchpoint show CASE has the inputs of one",

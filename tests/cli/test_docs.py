@@ -36,6 +36,7 @@ from pitchpoint.runs import run
 from pitchpoint.runs.designs import wanted
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.layouts import layout_of
+from pitchpoint.runs.optimum_task import OptimiserTask
 from pitchpoint.sizing.table import Task
 
 PAIR, VARIANTS = blocks("README.md", "toml")
@@ -136,7 +137,7 @@ def test_every_block_is_known() -> None:
     assert set(kinds) <= {"sh", "toml", "python", "text", *OF_THE_SITE}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 32
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 33
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 
@@ -362,10 +363,11 @@ COMPARED = [line for line in SHELL if " compare " in line]
 EXPLORED = [line for line in SHELL if " explore " in line]
 STUDIED = [line for line in SHELL if " study " in line]
 SIZED = [line for line in SHELL if " size " in line]
+OPTIMISED = [line for line in SHELL if " optimise " in line]
 
 
 @pytest.mark.parametrize(
-    "line", sorted({*SHELL} - {*SET_UP, *COMPARED, *EXPLORED, *STUDIED, *SIZED})
+    "line", sorted({*SHELL} - {*SET_UP, *COMPARED, *EXPLORED, *STUDIED, *SIZED, *OPTIMISED})
 )
 def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Parsed and laid out as far as the computation itself."""
@@ -387,6 +389,23 @@ def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
         cli.main()
     assert caught.value.code == 0
     assert laid_out[0]["title"] == "First stage of a robot joint"
+
+
+@pytest.mark.parametrize("line", OPTIMISED)
+def test_an_optimiser(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Checked as far as the first design."""
+    tasks = []
+
+    def prepare(task: OptimiserTask, *_: Any) -> None:
+        tasks.append(task)
+        raise SystemExit(0)
+
+    monkeypatch.setattr("pitchpoint.runs.optimise._solved", prepare)
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", *shlex.split(line)[1:]])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert caught.value.code == 0
+    assert [len(task.varied) for task in tasks] == [2]
 
 
 @pytest.mark.parametrize("line", STUDIED)

@@ -9,7 +9,6 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from pitchpoint.cases.document import STAGES, too_many
 from pitchpoint.cases.laws import Choices
-from pitchpoint.cases.optimise_table import OptimiseTable
 from pitchpoint.cases.schema import (
     CaseFile,
     DriveLosses,
@@ -19,7 +18,7 @@ from pitchpoint.cases.schema import (
     check_load,
     check_quadrants,
 )
-from pitchpoint.cases.study_tables import Issues, Studies, StudyTable, Targets
+from pitchpoint.cases.study_tables import Issues, OptimiseTable, Studies, StudyTable, Targets
 from pitchpoint.duty_cycle.table import DutyTable
 from pitchpoint.dynamics.vibration_tables import Dynamics
 from pitchpoint.efficiency.drag_tables import Loss, check_losses

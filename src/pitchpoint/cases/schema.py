@@ -17,8 +17,16 @@ from pitchpoint import units
 from pitchpoint.cases.document import at_most
 from pitchpoint.cases.laws import Choices, FrictionChoice
 from pitchpoint.cases.loss_sets import expanded, named_set
-from pitchpoint.cases.optimise_table import OptimiseTable
-from pitchpoint.cases.study_tables import Issues, Studies, Study, StudyTable, Sweep, Target, Targets
+from pitchpoint.cases.study_tables import (
+    Issues,
+    OptimiseTable,
+    Studies,
+    Study,
+    StudyTable,
+    Sweep,
+    Target,
+    Targets,
+)
 from pitchpoint.duty_cycle.table import DutyTable
 from pitchpoint.dynamics.vibration_tables import Dynamics
 from pitchpoint.efficiency.drag_tables import Loss, check_losses

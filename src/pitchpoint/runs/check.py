@@ -9,6 +9,7 @@ from pitchpoint.cases.record import is_record, is_result
 from pitchpoint.doubts import Doubt, as_doubt, of_designs
 from pitchpoint.errors import CollectedInputError, InputError
 from pitchpoint.runs.case import Case
+from pitchpoint.runs.optimise import demand_optimiser
 from pitchpoint.runs.run import forewarned
 from pitchpoint.runs.study import demand_study
 
@@ -40,7 +41,9 @@ def check(
                 for text in map(as_doubt, sentences):
                     sentences_of[kind].setdefault(text, []).append(name)
             if name:
-                demand_study(Case(case, variant=name).set(settings or {}))
+                one_variant = Case(case, variant=name).set(settings or {})
+                demand_study(one_variant)
+                demand_optimiser(one_variant)
         except InputError as error:
             every = error.errors if isinstance(error, CollectedInputError) else (error,)
             for fault in every:

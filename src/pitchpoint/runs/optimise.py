@@ -12,13 +12,14 @@ import numpy as np
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.cases.handed_over import hand_over
-from pitchpoint.cases.optimise_table import OptimiseTable
 from pitchpoint.cases.record import CASE
+from pitchpoint.cases.study_tables import OptimiseTable
 from pitchpoint.cases.validation import validate, with_meshes
 from pitchpoint.errors import ConvergenceError, InputError, shorten
 from pitchpoint.registry import enumerated
 from pitchpoint.results.store import make_folder
 from pitchpoint.runs.case import Case, CaseLike, as_case
+from pitchpoint.runs.layouts import StudyAxis
 from pitchpoint.runs.optimum_search import (
     AT_LIMIT,
     ConstrainedSearch,
@@ -28,8 +29,8 @@ from pitchpoint.runs.optimum_search import (
 )
 from pitchpoint.runs.optimum_task import (
     DESIGNS_FILE,
-    Limit,
     OptimiserTask,
+    ResultLimit,
     VariedKey,
     optimiser_task,
 )
@@ -83,7 +84,7 @@ class Optimum:
     law: str
     varied: tuple[VariedKey, ...]
     listed: Mapping[str, Sequence[Any]]
-    limits: tuple[Limit, ...]
+    limits: tuple[ResultLimit, ...]
     start: Mapping[str, Any]
     best: Mapping[str, Any]
     multipliers: Multipliers | None
@@ -104,12 +105,12 @@ class Optimum:
         """Where a key lies between its ends, from 0 to 1."""
         return (float(self.best[varied.key]) - varied.low) / (varied.high - varied.low)
 
-    def kept_as_given(self, limit: Limit) -> bool:
+    def kept_as_given(self, limit: ResultLimit) -> bool:
         """True for a constraint that the case as given keeps, or has no figure for."""
         over = float(limit.kept(np.array([self.start[limit.figure.name]]))[0])
         return not (abs(over) > EQUAL if limit.way == "=" else over < -EQUAL)
 
-    def active(self, limit: Limit) -> bool:
+    def active(self, limit: ResultLimit) -> bool:
         """True for a constraint that holds the design where it is."""
         off = abs(float(limit.kept(np.array([self.best[limit.figure.name]]))[0]))
         return limit.way == "=" or off < AT_LIMIT
@@ -348,18 +349,25 @@ def _shares_of_case(task: OptimiserTask) -> np.ndarray | None:
     """Where the case as given lies in the ranges; None where it lies outside, or gives no number."""
     shares = []
     for one in task.varied:
-        value = _value_of_case(task, one.key)
+        value = _value_of_case(task, one.axis)
         if not isinstance(value, float) or not one.low <= value <= one.high:
             return None
         shares.append((value - one.low) / (one.high - one.low))
     return np.array(shares) if shares else None
 
 
-def _value_of_case(task: OptimiserTask, key: str) -> Any:
+def _value_of_case(task: OptimiserTask, axis: StudyAxis) -> Any:
+    """Value of a key as given [SI], or its text; None where the case leaves it open."""
     try:
-        value = task.case[key]
+        value = task.case[axis.key]
     except InputError:
-        return None
+        value = None
+    if not isinstance(value, int | float | str):  # of gears that stand for several meshes
+        value = task.base.document().tree
+        for part in axis.key.split("."):
+            value = value.get(part) if isinstance(value, Mapping) else None
+    if isinstance(value, str) and axis.quantity is not None:
+        return axis.quantity.si(value)
     if isinstance(value, int | float):
         return float(value)
     return value if isinstance(value, str) else None
@@ -478,7 +486,7 @@ def _optimum(
         varied=task.varied,
         listed={axis.key: axis.values for axis in task.listed},
         limits=task.limits,
-        start={**{key: _value_of_case(task, key) for key in of_keys}, **start},
+        start={**{axis.key: _value_of_case(task, axis) for axis in axes}, **start},
         best={**of_keys, **best},
         derived=task.derived,
         designs=len(task.file.rows),

@@ -1,6 +1,6 @@
 """The least value of an aim under constraints over designs of which some are refused: a search in shares."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,8 +24,11 @@ APART = 0.15
 ITERATIONS, ACCURACY = 40, 1e-9
 """Most iterations of SLSQP, and the change of the aim over its spread at which they end."""
 
-RADIUS, LEAST_RADIUS, ROUNDS = 0.02, 2e-5, 40
+RADIUS, LEAST_RADIUS, ROUNDS = 0.02, 1e-4, 60
 """First and last distance at which designs around the best one are tried, and how often at most."""
+
+QUICKLY, SLOWLY = 8.0, 1.5
+"""By what the distance is divided where none is better: slowly beside designs that are refused."""
 
 Shares = Float[np.ndarray, "design key"]
 Columns = Float[np.ndarray, "design column"]
@@ -186,32 +189,37 @@ class ConstrainedSearch:
     def look_around(self) -> None:
         """Move to better designs around the best one until none is left, at smaller and smaller distances.
 
-        It goes along designs that are refused, where no constraint says how far they are, and over kinks.
+        It goes along designs that are refused, where no constraint says how far they are, and over kinks,
+        and ends where it took three times the designs that there were before.
         """
         if self.best is None or self.equal.any():
             return
         point, found = self.best
-        directions = _directions(len(point))
-        radius = RADIUS
-        for _ in range(ROUNDS):
-            around = np.clip(point + radius * directions, 0.0, 1.0)
+        most = 4 * len(self.columns)
+        radius, onward = RADIUS, np.zeros((0, len(point)))
+        for directions in _directions(len(point)):
+            around = np.clip(point + np.vstack([radius * directions, onward]), 0.0, 1.0)
             columns = np.vstack([found[None], self.at(around)])
             number = int(self.order(columns)[0])
+            onward = onward[:0]
             if number:
+                step = around[number - 1] - point
                 point, found = around[number - 1], columns[number]
-            elif radius < LEAST_RADIUS:
-                return
+                onward = np.outer([1.0, 2.0, 4.0, 8.0], step)
+                radius = max(radius, float(np.abs(step).max()) / 2.0)
             else:
-                radius /= 4.0
+                radius /= SLOWLY if np.isnan(columns).any() else QUICKLY
+            if radius < LEAST_RADIUS or len(self.columns) > most:
+                return
 
 
-def _directions(keys: int) -> Shares:
-    """Both ways along each key, and as many ways again that are spread evenly."""
+def _directions(keys: int) -> Iterator[Shares]:
+    """Both ways along each key, and as many ways again between them, others in every round."""
     both = np.vstack([np.eye(keys), -np.eye(keys)])
-    if keys == 1:
-        return both
-    spread = 2.0 * even_shares(4 * keys, keys) - 1.0
-    return np.vstack([both, spread / np.linalg.norm(spread, axis=1, keepdims=True).clip(1e-3)])
+    spread = 2.0 * even_shares(4 * keys * ROUNDS, keys) - 1.0
+    between = spread / np.linalg.norm(spread, axis=1, keepdims=True).clip(1e-3)
+    for further in between.reshape(ROUNDS, 4 * keys, keys):
+        yield np.vstack([both, further] if keys > 1 else [both])
 
 
 def _steps(share: float) -> tuple[float, float]:

@@ -21,8 +21,7 @@ from pitchpoint.analyses.designs import CaseDesigns
 from pitchpoint.analyses.studies import demand_one
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.cases.optimise_table import STARTS
-from pitchpoint.cases.study_tables import Sweep
+from pitchpoint.cases.study_tables import STARTS, Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.gradients import figure_gradient
 from pitchpoint.errors import Complaints, ConvergenceError, InputError, PitchpointError
@@ -34,7 +33,7 @@ from pitchpoint.runs.optimum_search import STEP, ConstrainedSearch
 from pitchpoint.runs.run import FrictionChoice, Outcome, run
 from pitchpoint.runs.sought_figures import SoughtFigure, value_in, values_of_study
 
-__all__ = ["DESIGNS_FILE", "Limit", "OptimiserTask", "VariedKey", "optimiser_task"]
+__all__ = ["DESIGNS_FILE", "OptimiserTask", "ResultLimit", "VariedKey", "optimiser_task"]
 
 MOST_COMBINATIONS = 200
 """Products of lists of values that are tried one by one."""
@@ -94,7 +93,7 @@ class VariedKey:
 
 
 @dataclass(frozen=True)
-class Limit:
+class ResultLimit:
     """A constraint on a result.
 
     Attributes:
@@ -139,7 +138,7 @@ class OptimiserTask:
     listed: tuple[StudyAxis, ...]
     aim: SoughtFigure
     largest: bool
-    limits: tuple[Limit, ...]
+    limits: tuple[ResultLimit, ...]
     starts: int
     friction: FrictionChoice | None
     file: "_DesignsTable" = field(default_factory=lambda: _DesignsTable())
@@ -408,7 +407,7 @@ def _aimed_at(name: str, study: Any, built: Ready, largest: bool) -> SoughtFigur
         raise error.at(key="maximise" if largest else "minimise") from None
 
 
-def _limit(text: Any, study: Any, built: Ready) -> Limit:
+def _limit(text: Any, study: Any, built: Ready) -> ResultLimit:
     match = _LIMIT.fullmatch(text) if isinstance(text, str) else None
     if match is None:
         told = f'{shown(text)} is no limit; write a result, >=, <= or =, and a value: "root_safety >= 1.5"'
@@ -424,7 +423,7 @@ def _limit(text: Any, study: Any, built: Ready) -> Limit:
         )
     except InputError as error:
         raise InputError(error.message, key=f"subject_to {text.strip()}", value=text) from None
-    return Limit(text.strip(), figure, _WAYS.get(way, way), bound)
+    return ResultLimit(text.strip(), figure, _WAYS.get(way, way), bound)
 
 
 def _varied(base: Variant, case: Case, name: str, stated: Any) -> VariedKey | StudyAxis:

@@ -13,7 +13,7 @@ from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
-from pitchpoint.registry import alike
+from pitchpoint.registry import alike, nearest
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES, variable_of
 from pitchpoint.runs.run import Outcome
@@ -131,7 +131,7 @@ def value_in(outcome: Outcome, figure: SoughtFigure, law: str) -> float:
         law: of friction.
 
     Raises:
-        InputError: it is several numbers, and no place says which.
+        InputError: its part does not have it; it is several numbers, and no place says which.
     """
     parts: Mapping[str, xr.Dataset] = outcome.parts
     holding = [figure.part] if figure.part else ["operation", "strength", *parts]
@@ -142,6 +142,11 @@ def value_in(outcome: Outcome, figure: SoughtFigure, law: str) -> float:
             if "law" in values.dims:
                 values = values.sel(law=law)
             return value_of(values, figure)
+    data = parts.get(figure.part)
+    if data is not None:
+        numbers = [str(name) for name in data if data[name].dtype.kind == "f"]
+        near = nearest(figure.variable, numbers)
+        raise InputError(f"{figure.part} has no result {shown(figure.variable)}{near}")
     return float("nan")
 
 

@@ -10,7 +10,7 @@ from pitchpoint.registry import enumerated
 from pitchpoint.results.store import without_nan
 from pitchpoint.runs.optimise import Optimum
 from pitchpoint.runs.optimum_search import AT_LIMIT
-from pitchpoint.runs.optimum_task import DESIGNS_FILE, Limit, VariedKey
+from pitchpoint.runs.optimum_task import DESIGNS_FILE, ResultLimit, VariedKey
 from pitchpoint.runs.sought_figures import SoughtFigure
 from pitchpoint.views.columns import lines_of
 from pitchpoint.views.first_screen import Line, within, wrapped
@@ -149,7 +149,7 @@ def _figure_rows(optimum: Optimum) -> Iterator[dict[str, str]]:
         }
 
 
-def _limit_words(optimum: Optimum, limit: Limit, number: int) -> str:
+def _limit_words(optimum: Optimum, limit: ResultLimit, number: int) -> str:
     words = f"{limit.way} {limit.figure.told(limit.bound)}"
     if not optimum.active(limit):
         return words
