@@ -85,6 +85,22 @@ def test_an_active_limit_is_met_and_costs_what_the_closed_form_says(tmp_path: An
         pp.optimise(PAIR, {WIDTH: "8 mm:40 mm"}, minimise="mean_loss", folder=tmp_path)
 
 
+def test_a_largest_aim_under_an_upper_limit() -> None:
+    """The same the other way round: the safety goes with the root of the mass."""
+    found = pp.optimise(
+        PAIR,
+        {WIDTH: "8 mm:40 mm"},
+        maximise="flank_safety",
+        subject_to="disc_mass.1 <= 0.2 kg",
+        starts=4,
+    )
+    start, mass = found.start["flank_safety"], found.start["disc_mass.1"]
+    assert 0.2 * (1.0 - 2e-6) < found.best["disc_mass.1"] <= 0.2
+    assert found.value == pytest.approx(start * (0.2 / mass) ** 0.5, rel=1e-5)
+    assert found.multipliers is not None
+    np.testing.assert_allclose(found.multipliers.constraints, [found.value / 2.0], rtol=1e-4)
+
+
 @pytest.mark.whole
 def test_two_keys_against_a_grid() -> None:
     """Both shifts of equal gears: the loss falls until the contact ratio holds it, where both are alike."""

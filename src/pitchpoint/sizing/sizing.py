@@ -233,7 +233,7 @@ def size(
     those of teeth by ISO/TR 14179-2. Shafts, bearings, seals, oil that is churned, housings and carriers
     are in nothing. Strain wave gears have the proportions and the rating of a catalogue, and no rated
     teeth. Profile shifts are a rule and widths go in steps: `optimise` on the case of a design goes between
-    them, and took 10 % off the mass of one of two stages.
+    them, and took 5 and 10 % off the mass of two designs of two stages at no more loss.
 
     Example:
         >>> from pitchpoint.sizing.sizing import size
