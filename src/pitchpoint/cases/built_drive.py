@@ -24,7 +24,6 @@ from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.schema import DriveCase, StageTable
 from pitchpoint.doubts import in_stage
 from pitchpoint.drive.kinematics import HOUSING, Ends
-from pitchpoint.drive.torques import TrainTorques, train_torques
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Drive
 from pitchpoint.efficiency.drive_summary import drive_figures
@@ -35,6 +34,7 @@ from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.variable import End
 
 if TYPE_CHECKING:
+    from pitchpoint.drive.torques import TrainTorques
     from pitchpoint.efficiency.train import Train, TrainMesh
     from pitchpoint.efficiency.train_state import TrainLink
 
@@ -608,8 +608,10 @@ class BuiltTrain(BuiltDrive):
         return tuple(mesh.copies for mesh in self.design.meshes)
 
     @cached_property
-    def ideal_torques(self) -> TrainTorques:
+    def ideal_torques(self) -> "TrainTorques":
         """Torques of the bodies for a unit at the output, without losses."""
+        from pitchpoint.drive.torques import train_torques
+
         train = self.design
         links = [mesh.link for mesh in train.meshes]
         ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
