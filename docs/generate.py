@@ -197,7 +197,7 @@ def _note(entry: Mapping[str, str]) -> str:
 
 TASKS: dict[str, str] = {
     "Run a case and read its result": "Case run Result open_result load_case write_report models cite",
-    "Size a drive": "size three_k_sets three_k_tables",
+    "Size a drive": "size bench three_k_sets three_k_tables",
     "Vary a case": "study sobol_indices Study Sweep gradients optimise Optimum",
     "Follow a duty cycle": "duty Motor RatedLife ThermalNetwork Heating",
     "Hand a joint to a simulator": "JointModel MapRange fit_friction",

@@ -127,9 +127,17 @@ PAIR = {
         (["planetary.toml.txt"], "planetary.toml.txt"),
         ([PAIR], "carries nothing at its operating point"),
         (["tian2024", "tian2024"], '"tian2024" was named twice'),
+        ([PAIR, PAIR], '"case" was named twice'),
     ],
 )
 def test_what_is_no_drive_is_refused_in_a_sentence(cases, words):
     with pytest.raises(InputError) as caught:
         bench(cases)
     assert words in str(caught.value)
+
+
+def test_names_are_one_for_each_case():
+    with pytest.raises(InputError, match="names: 1 were given for 2 cases"):
+        bench([PAIR, PAIR], names=["first"])
+    with pytest.raises(InputError, match='names: "pair" was named twice'):
+        bench([PAIR, PAIR], names=["pair", "pair"])

@@ -34,6 +34,7 @@ from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.variable import End
 
 if TYPE_CHECKING:
+    from pitchpoint.drive.torques import TrainTorques
     from pitchpoint.efficiency.train import Train, TrainMesh
     from pitchpoint.efficiency.train_state import TrainLink
 
@@ -607,7 +608,7 @@ class BuiltTrain(BuiltDrive):
         return tuple(mesh.copies for mesh in self.design.meshes)
 
     @cached_property
-    def ideal_torques(self) -> TrainTorques:
+    def ideal_torques(self) -> "TrainTorques":
         """Torques of the bodies for a unit at the output, without losses."""
         train = self.design
         links = [mesh.link for mesh in train.meshes]

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -192,12 +193,18 @@ class Bench:
 
 
 @double_precision()
-def bench(cases: Sequence[CaseLike] | CaseLike, *, progress: Progress | None = None) -> Bench:
+def bench(
+    cases: Sequence[CaseLike],
+    *,
+    names: Sequence[str] | None = None,
+    progress: Progress | None = None,
+) -> Bench:
     """Drives of any families beside each other: what each answers at its operating point.
 
     Args:
         cases: names of shipped cases, files, folders of results, `Case`s or tables; of several variants the
-            first one, or `file.toml@variant`.
+            first one, or "file.toml@variant".
+        names: of the drives on the bench, one for each; those of the cases unless given.
         progress: told about each drive.
 
     Returns:
@@ -217,12 +224,12 @@ def bench(cases: Sequence[CaseLike] | CaseLike, *, progress: Progress | None = N
             ...
         pitchpoint.errors.InputError: no drive was named; name cases, files or folders of results
     """
-    listed = (
-        [cases] if isinstance(cases, str | Mapping) or not isinstance(cases, Sequence) else cases
-    )
+    listed = [cases] if isinstance(cases, str) else [*cases]
     if not listed:
         raise InputError("no drive was named; name cases, files or folders of results")
-    named = _named([*listed])
+    if names is not None and len(names) != len(listed):
+        raise InputError(f"{len(names)} were given for {len(listed)} cases", key="names")
+    named = _named(listed, names)
     watching = progress or Progress()
     watching.expect(len(named))
     drives = []
@@ -232,21 +239,25 @@ def bench(cases: Sequence[CaseLike] | CaseLike, *, progress: Progress | None = N
     return Bench(tuple(drives))
 
 
-def _named(cases: Sequence[CaseLike]) -> dict[str, Variant]:
-    """The first variant of each case, or that which is named, by short names."""
+def _named(cases: Sequence[CaseLike], names: Sequence[str] | None) -> dict[str, Variant]:
+    """The first variant of each case, or that which is named, by the names given or by short ones."""
     variants: list[Variant] = []
     labels: list[str] = []
     for case in cases:
-        reference = wanted(case) if isinstance(case, str) else None
+        reference = wanted(str(case)) if isinstance(case, str | Path) else None
         source = case if reference is None else reference.case
         only = [reference.variant] if reference and reference.variant else []
         variants.append(held(source, only)[0])
-        labels.append(case if isinstance(case, str) else str(variants[-1].label))
-    names = design_names(labels)
+        labels.append(variants[-1].label if reference is None else str(case))
+    labels = labels if names is None else [*names]
     for label in labels:
         if labels.count(label) > 1:
-            raise InputError(f"{shown(visible(label))} was named twice; name each drive once")
-    return {names[label]: variant for label, variant in zip(labels, variants, strict=True)}
+            raise InputError(
+                f"{shown(visible(label))} was named twice; name each drive once",
+                key=None if names is None else "names",
+            )
+    short = design_names(labels) if names is None else dict(zip(labels, labels, strict=True))
+    return {short[label]: variant for label, variant in zip(labels, variants, strict=True)}
 
 
 @dataclass(frozen=True)
