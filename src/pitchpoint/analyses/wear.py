@@ -1,11 +1,11 @@
 """Wear of the flanks over the life of a drive; the march is imported when a case asks for it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
+from pitchpoint.analyses.analysis import Analysis, Unasked
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.cases.built import Built
 from pitchpoint.gears.mesh import has
@@ -36,24 +36,6 @@ def _unasked(built: Built) -> str | None:
     return Unasked("the case has no [wear]") if built.case.wear is None else None
 
 
-def _compute(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
-    from pitchpoint.analyses.wear_course import wear_part
-
-    return wear_part(built, piece, progress)
-
-
-def _further(built: Built, last: xr.Dataset, progress: PieceProgress) -> xr.Dataset | None:
-    from pitchpoint.analyses.wear_course import further
-
-    return further(built, last, progress)
-
-
-def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    from pitchpoint.analyses.wear_course import joined
-
-    return joined(built, parts)
-
-
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("wear")
     if data is None:
@@ -69,9 +51,9 @@ WEAR = Analysis(
     of="mesh",
     under_load=True,
     lacks=_unasked,
-    compute=_compute,
-    joined=_joined,
-    onward=_further,
+    compute="pitchpoint.analyses.wear_course:wear_part",
+    joined="pitchpoint.analyses.wear_course:joined",
+    onward="pitchpoint.analyses.wear_course:further",
     main=_MAIN,
     figures=_figures,
 )
