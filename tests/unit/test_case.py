@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from pitchpoint.cases.document import Document
 from pitchpoint.cases.library import names
 from pitchpoint.cases.validation import validate
 from pitchpoint.errors import InputError
@@ -158,3 +159,9 @@ def test_changes_are_in_the_file(case: Case, tmp_path: Path) -> None:
     case.set(torque=1.0 / 3.0).to_toml(path)
     assert Case(path)["torque"] == 1.0 / 3.0
     assert 'torque = "0.3333333333333333 N m"' in path.read_text("utf-8")
+
+
+def test_materials_of_a_set_that_are_no_table_are_refused_in_a_sentence() -> None:
+    tree = tomllib.loads((EXAMPLES[0].parent / "planetary.toml").read_text("utf-8"))
+    with pytest.raises(InputError, match=r"^set: materials: 0 was given where a table belongs"):
+        validate(Document("set", {**tree, "materials": 0}))

@@ -1,11 +1,11 @@
 """Mesh stiffness, vibration and motion, along the line of action; imported in full when asked for."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
+from pitchpoint.analyses.analysis import Analysis, Unasked
 from pitchpoint.analyses.figures import (
     OF_CROSSING,
     OF_MOTION,
@@ -20,54 +20,6 @@ from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
 
 __all__ = ["MOTION", "MOTIONS", "RESONANCE", "START_UP", "STIFFNESS", "VIBRATIONS"]
-
-
-def _stiffness(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
-    from pitchpoint.analyses.vibration import stiffness_part
-
-    return stiffness_part(built)
-
-
-def _vibration(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
-    from pitchpoint.analyses.vibration import vibration_part
-
-    return vibration_part(built)
-
-
-def _resonance(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
-    from pitchpoint.analyses.vibration import resonance_part
-
-    return resonance_part(built)
-
-
-def _motion(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
-    from pitchpoint.analyses.motion import motion_part
-
-    return motion_part(built)
-
-
-def _motions(built: Built, _: Piece, progress: PieceProgress) -> xr.Dataset:
-    from pitchpoint.analyses.motion import against_speed_part
-
-    return against_speed_part(built, progress)
-
-
-def _further(built: Built, last: xr.Dataset, progress: PieceProgress) -> xr.Dataset | None:
-    from pitchpoint.analyses.motion import next_speeds
-
-    return next_speeds(built, last, progress)
-
-
-def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    from pitchpoint.analyses.motion import joined
-
-    return joined(built, parts)
-
-
-def _start_up(built: Built, _: Piece, __: PieceProgress) -> xr.Dataset:
-    from pitchpoint.analyses.motion import start_up_part
-
-    return start_up_part(built)
 
 
 def _no_line(built: Built) -> str | None:
@@ -160,7 +112,7 @@ STIFFNESS = Analysis(
     of="mesh",
     under_load=True,
     lacks=_no_stiffness,
-    compute=_stiffness,
+    compute="pitchpoint.analyses.vibration:stiffness_part",
 )
 VIBRATIONS = Analysis(
     name="vibration",
@@ -169,7 +121,7 @@ VIBRATIONS = Analysis(
     under_load=True,
     of_no_train=TOGETHER,
     lacks=_still,
-    compute=_vibration,
+    compute="pitchpoint.analyses.vibration:vibration_part",
     main=VIBRATION,
     figures=_figures,
 )
@@ -180,7 +132,7 @@ RESONANCE = Analysis(
     under_load=True,
     of_no_train=TOGETHER,
     lacks=_one_speed,
-    compute=_resonance,
+    compute="pitchpoint.analyses.vibration:resonance_part",
 )
 MOTION = Analysis(
     name="motion",
@@ -189,7 +141,7 @@ MOTION = Analysis(
     under_load=True,
     of_no_train=TOGETHER,
     lacks=_unmoved,
-    compute=_motion,
+    compute="pitchpoint.analyses.motion:motion_part",
     main=OF_MOTION,
     figures=_motion_figures,
 )
@@ -200,9 +152,9 @@ MOTIONS = Analysis(
     under_load=True,
     of_no_train=TOGETHER,
     lacks=_one_motion,
-    compute=_motions,
-    onward=_further,
-    joined=_joined,
+    compute="pitchpoint.analyses.motion:against_speed_part",
+    onward="pitchpoint.analyses.motion:next_speeds",
+    joined="pitchpoint.analyses.motion:joined",
     main=OF_CROSSING,
     figures=_critical_speeds,
 )
@@ -213,7 +165,7 @@ START_UP = Analysis(
     under_load=True,
     of_no_train=TOGETHER,
     lacks=_no_start,
-    compute=_start_up,
+    compute="pitchpoint.analyses.motion:start_up_part",
     main=OF_START,
     figures=_start_figures,
 )

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
+from pitchpoint.analyses.analysis import Analysis, Piece, Unasked
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import TOUCH
+from pitchpoint.registry import code_at
 
 __all__ = ["FILM", "FILM_SQUEEZE", "FINITE_FILM", "OVERLAP", "film_notes"]
 
@@ -80,51 +81,30 @@ def _steady(built: Built) -> str | None:
     return None if built.case.film.squeezes else Unasked("[film] asks for steady films")
 
 
-def _solver(built: Built) -> Any:
-    """What solves the films that a case asks for."""
-    if built.case.film is not None and built.case.film.over_patch:
-        from pitchpoint.analyses import finite_film
-
-        return finite_film
-    from pitchpoint.analyses import film
-
-    return film
+def _line_pieces(built: Built) -> Iterable[Piece]:
+    code_at("pitchpoint.analyses.film_series:check_series")(built)
+    pieces: Iterable[Piece] = code_at("pitchpoint.analyses.film:pieces")(built)
+    return pieces
 
 
-def _pieces(built: Built) -> Iterable[Piece]:
-    from pitchpoint.analyses.film_series import check_series
-
-    check_series(built)
-    if _endless(built) is None:
-        _check_contacts(built)
-    pieces: Iterable[Piece] = _solver(built).pieces(built)
+def _finite_pieces(built: Built) -> Iterable[Piece]:
+    code_at("pitchpoint.analyses.film_series:check_series")(built)
+    _check_contacts(built)
+    pieces: Iterable[Piece] = code_at("pitchpoint.analyses.finite_film:pieces")(built)
     return pieces
 
 
 def _check_contacts(built: Built) -> None:
     """InputError for height maps that do not fit, and for an engagement that cannot be followed."""
-    from pitchpoint.analyses.engagement import check_course, check_heights
-
-    check_heights(built)
+    code_at("pitchpoint.analyses.engagement:check_heights")(built)
     if _steady(built) is None:
-        check_course(built)
-
-
-def _compute(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
-    films: xr.Dataset = _solver(built).film_part(built, piece, progress)
-    return films
-
-
-def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    films: xr.Dataset = _solver(built).joined(built, parts)
-    return films
+        code_at("pitchpoint.analyses.engagement:check_course")(built)
 
 
 def _squeeze_pieces(built: Built) -> Iterable[Piece]:
-    from pitchpoint.analyses.film_squeeze import pieces
-
     _check_contacts(built)
-    return pieces(built)
+    pieces: Iterable[Piece] = code_at("pitchpoint.analyses.film_squeeze:pieces")(built)
+    return pieces
 
 
 def _squeeze_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
@@ -186,9 +166,9 @@ FILM = Analysis(
     of="mesh",
     under_load=True,
     lacks=_dry,
-    compute=_compute,
-    pieces=_pieces,
-    joined=_joined,
+    compute="pitchpoint.analyses.film:film_part",
+    pieces=_line_pieces,
+    joined="pitchpoint.analyses.film:joined",
     main=_MAIN,
     figures=_figures,
 )
@@ -199,9 +179,9 @@ FINITE_FILM = Analysis(
     of="mesh",
     under_load=True,
     lacks=_endless,
-    compute=_compute,
-    pieces=_pieces,
-    joined=_joined,
+    compute="pitchpoint.analyses.finite_film:film_part",
+    pieces=_finite_pieces,
+    joined="pitchpoint.analyses.finite_film:joined",
     main=_MAIN,
     figures=_finite_figures,
 )

@@ -308,7 +308,7 @@ def quasi_static(built: Built, speeds: Sequence[float] | np.ndarray) -> np.ndarr
     return np.where(figures["locked"], np.nan, figures["mean_efficiency"])
 
 
-def motion_part(built: Built) -> xr.Dataset:
+def motion_part(built: Built, *_piece: object) -> xr.Dataset:
     """Steady motion at the operating point."""
     moving, natural_modes = moving_of(built)
     motion, speed = _asked(built), built.case.operation.speed
@@ -433,7 +433,7 @@ def next_speeds(built: Built, last: xr.Dataset, progress: Any) -> xr.Dataset | N
     return _piece(built, done, last["state"].values, progress)
 
 
-def against_speed_part(built: Built, progress: Any) -> xr.Dataset:
+def against_speed_part(built: Built, _: object, progress: Any) -> xr.Dataset:
     """Motions at the first speeds of a march through them."""
     return _piece(built, 0, None, progress)
 
@@ -589,7 +589,7 @@ def _coarse(
 # ---- from a start
 
 
-def start_up_part(built: Built) -> xr.Dataset:
+def start_up_part(built: Built, *_piece: object) -> xr.Dataset:
     """Motion from a start under a constant torque or that of a motor, the load rising."""
     start_up = _asked(built).start_up
     assert start_up is not None

@@ -17,7 +17,6 @@ from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.analyses.lacking import no_pins
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
-from pitchpoint.cases.strength import MESH_LOAD
 from pitchpoint.doubts import Doubt, fails, in_stage
 from pitchpoint.efficiency.summary import groups_alike, of_stacks, stacks, whole_of
 from pitchpoint.gears.mesh import Mesh
@@ -29,6 +28,7 @@ from pitchpoint.strength.limits import STRESS_CORRECTION
 from pitchpoint.strength.load_factors import MOST_RESONANCE
 from pitchpoint.strength.rating import ROWS, ratings
 from pitchpoint.strength.root import THINNEST_RIM, THINNEST_RING
+from pitchpoint.strength.strength_table import MESH_LOAD
 
 __all__ = ["STRENGTH", "mesh_load_of", "rated_rows", "rating_inputs", "ratings_of"]
 

@@ -94,7 +94,7 @@ def separating(built: Built) -> bool:
     return not CONTACT_LAWS[built.case.models.tooth_contact].linear
 
 
-def stiffness_part(built: Built) -> xr.Dataset:
+def stiffness_part(built: Built, *_piece: object) -> xr.Dataset:
     """Stiffness of each pair and of the mesh over one period, with the estimate of ISO 6336.
 
     Where flanks have gaps only the springs that carry count.
@@ -145,7 +145,7 @@ def _stiffness(
     return values, None if stiffness.state is None else stiffness.state.status
 
 
-def vibration_part(built: Built) -> xr.Dataset:
+def vibration_part(built: Built, *_piece: object) -> xr.Dataset:
     """Steady vibration at the operating speed for every torque of the case."""
     inputs = [(built.design, point, vibrating_of(built)) for point in _loads(built)]
     figures = _solved(inputs, built, _course)
@@ -181,7 +181,7 @@ def _course(stiffness: MeshStiffness, moved: System, found: Response) -> dict[st
     }
 
 
-def resonance_part(built: Built) -> xr.Dataset:
+def resonance_part(built: Built, *_piece: object) -> xr.Dataset:
     """Vibration against speed, speeds rising and falling, for every torque of the case."""
     assert built.case.dynamics is not None
     sweep = built.case.dynamics.speeds

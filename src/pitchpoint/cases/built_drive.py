@@ -32,6 +32,7 @@ from pitchpoint.efficiency.running_torque import torques_at_rest_of_drive
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.variable import End
+from pitchpoint.strength.strength_table import MESH_LOAD
 
 if TYPE_CHECKING:
     from pitchpoint.drive.torques import TrainTorques
@@ -560,8 +561,6 @@ class BuiltTrain(BuiltDrive):
     @property
     def on_load_factors(self) -> tuple[str, ...]:
         """Sentences on the load factors that a rating takes."""
-        from pitchpoint.cases.strength import MESH_LOAD
-
         count = self.planets
         share = (
             f"K_γ is at least {MESH_LOAD[count]}, for {count} planets by IEC 61400-4"

@@ -21,10 +21,10 @@ from pitchpoint.strength.flank import NO_MODIFICATION
 from pitchpoint.strength.limits import Constants
 from pitchpoint.strength.load_factors import CLASSES, running_in_relief
 from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths
-from pitchpoint.strength.strength_table import UNRATED, StrengthTable
+from pitchpoint.strength.strength_table import MESH_LOAD, UNRATED, StrengthTable
 from pitchpoint.strength.treatments import PLASTIC, PLASTIC_CYCLES, TREATMENTS, Treatment
 
-__all__ = ["MESH_LOAD", "Rated", "check_strength", "of_planets", "rated_case"]
+__all__ = ["Rated", "check_strength", "of_planets", "rated_case"]
 
 _EDITIONS = {
     "2006": ("iso_6336_2_2006", "iso_6336_3_2006"),
@@ -35,9 +35,6 @@ _ROOT_ROUGHNESS = 10e-6  # Rz of the test gears [m]
 _RZ_PER_RA = 6.0  # ISO 6336-2:2006, 12.3; IACS UR M56, 2.10 c
 
 Used = tuple[SolidInUse, SolidInUse]
-
-MESH_LOAD = {3: 1.1, 4: 1.25, 5: 1.35, 6: 1.44, 7: 1.47}
-"""Mesh load factor K_gamma by the number of planets, IEC 61400-4:2012."""
 
 BOTH_WAYS = 0.7
 """Mean stress factor Y_M of teeth that bear the same load both ways, ISO 6336-3."""

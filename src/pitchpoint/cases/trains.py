@@ -13,7 +13,7 @@ from pitchpoint.cases.document import STAGES
 from pitchpoint.cases.drive_schema import DriveCase, TrainTable
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.solids import BY_VALUE
-from pitchpoint.cases.strength import MESH_LOAD, of_planets
+from pitchpoint.cases.strength import of_planets
 from pitchpoint.doubts import GUESSED, REMARKED, Doubt
 from pitchpoint.drive.assembly import (
     check_neighbours,
@@ -33,7 +33,7 @@ from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials.material_tables import SolidValues
 from pitchpoint.materials.solids import SolidRecord
-from pitchpoint.strength.strength_table import StrengthTable
+from pitchpoint.strength.strength_table import MESH_LOAD, StrengthTable
 from pitchpoint.wear.wear_tables import WearTable
 
 __all__ = ["USUAL_BEARING", "about_trains", "rates_of", "train_of", "turning_together"]

@@ -1,5 +1,6 @@
 """Torque, speed and temperature of an output over time."""
 
+import io
 import re
 import warnings
 from collections.abc import Callable, Mapping
@@ -219,8 +220,6 @@ def read_history(path: Path, temperature: float, *, travels: bool = False) -> Lo
 
 def _table_of(text: str) -> "pd.DataFrame":
     """The table that a file has in its text; ValueError where it is none."""
-    import io
-
     import pandas as pd
 
     heads = text.partition("\n")[0]

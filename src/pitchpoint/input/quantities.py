@@ -16,6 +16,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from pitchpoint import units
 from pitchpoint.errors import InputError, shorten
+from pitchpoint.registry import known_as, listed, nearest
 
 __all__ = ["Pair", "Quantity", "SIValue", "count_of", "for_both", "named", "shown", "text"]
 
@@ -288,8 +289,6 @@ def named(
     def read(value: Any) -> str:
         if isinstance(value, str) and value in at_hand:
             return value
-        from pitchpoint.registry import known_as, listed, nearest
-
         names = registry()
         if not isinstance(value, str):
             number = isinstance(value, int | float) and not isinstance(value, bool)

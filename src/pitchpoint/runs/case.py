@@ -25,6 +25,7 @@ from pitchpoint.cases.keys import keys, quantity_at
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.validation import in_form, validate
 from pitchpoint.cases.variant import Variant
+from pitchpoint.cases.wishes import WISHES, answer
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.table import SHIFT
@@ -120,8 +121,6 @@ class Case:
             return matches[0]
         if not matches:
             ends = dict.fromkeys(key.rpartition(".")[2] for key in _every_key(tree))
-            from pitchpoint.cases.wishes import WISHES, answer
-
             wishes = (answer((table, name), None, {}, ends) for table in WISHES)
             advice = next(filter(None, wishes), nearest(name, ends))
             raise InputError(f"there is no such key{advice}", key=shorten(name))

@@ -1,5 +1,6 @@
 """Pieces of a study by workers of `dask.distributed`, on this machine or under a scheduler anywhere."""
 
+import logging
 import socket
 import subprocess
 import sys
@@ -80,8 +81,6 @@ def _demand_distributed() -> None:
 @contextmanager
 def _quiet() -> "Iterator[None]":
     """Keep what `distributed` logs of lost connections from standing before the sentence about them."""
-    import logging
-
     # Its configuration gives levels of their own to some below the first one.
     every = [name for name in logging.root.manager.loggerDict if name.startswith("distributed.")]
     logs = [logging.getLogger(name) for name in ("distributed", *every)]

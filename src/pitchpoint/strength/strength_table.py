@@ -12,7 +12,7 @@ from pitchpoint.input.quantities import Pair, Quantity, for_both, named
 from pitchpoint.input.tables import Table
 from pitchpoint.strength.treatments import TREATMENTS
 
-__all__ = ["UNRATED", "StrengthTable"]
+__all__ = ["MESH_LOAD", "UNRATED", "StrengthTable"]
 
 
 ACCURACY = Quantity("dimensionless", 3, 8, whole=True)
@@ -146,3 +146,7 @@ class StrengthTable(Table):
                     key="pinion_offset",
                 )
         return self
+
+
+MESH_LOAD = {3: 1.1, 4: 1.25, 5: 1.35, 6: 1.44, 7: 1.47}
+"""Mesh load factor K_gamma by the number of planets, IEC 61400-4:2012."""

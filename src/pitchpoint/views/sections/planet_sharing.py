@@ -6,8 +6,8 @@ from math import nan
 import numpy as np
 import xarray as xr
 
-from pitchpoint.cases.strength import MESH_LOAD
 from pitchpoint.runs.run import Outcome
+from pitchpoint.strength.strength_table import MESH_LOAD
 from pitchpoint.views import section, show
 
 __all__ = ["sharing_blocks", "sharing_facts", "sharing_printed"]
